@@ -1,0 +1,1 @@
+//! Control blocks: filters, limiters, PID. They know no plant.

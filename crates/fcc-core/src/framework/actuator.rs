@@ -1,0 +1,54 @@
+//! Where outputs go.
+
+use core::fmt;
+
+use super::Tick;
+
+/// Carries the outputs `A` of a tick to the plant.
+pub trait Actuator<A>: Send {
+    /// Sends the outputs off and returns. Never waits, allocates, locks, logs
+    /// or panics. The first call after a release takes control.
+    ///
+    /// # Errors
+    /// What went wrong in this tick; the loop counts it and goes on.
+    fn apply(&mut self, tick: &Tick, outputs: &A) -> Result<(), ActuatorFault>;
+
+    /// Gives control back: centres, then lets go. Called on every way out of
+    /// control (disengaged, failsafe's end, stop, signal, a panic), perhaps
+    /// more than once, perhaps without an `apply` before: then it does
+    /// nothing.
+    ///
+    /// # Errors
+    /// When control may still be held, with the reason.
+    fn release(&mut self) -> Result<(), ActuatorFault>;
+
+    /// What people call this actuator; for events and reports.
+    fn name(&self) -> &'static str;
+}
+
+/// What can go wrong when an actuator is driven.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum ActuatorFault {
+    /// The operating system refused a write, with its error number.
+    Io {
+        /// `errno`, 0 if there was none.
+        errno: i32,
+    },
+    /// Writes are sent, but the plant does not follow them.
+    Unconfirmed,
+    /// Where to send is not known yet.
+    NotConnected,
+}
+
+impl fmt::Display for ActuatorFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io { errno } => write!(f, "writing failed (errno {errno})"),
+            Self::Unconfirmed => f.write_str("writes are sent but do not take effect"),
+            Self::NotConnected => f.write_str("where to send is not known yet"),
+        }
+    }
+}
+
+impl core::error::Error for ActuatorFault {}

@@ -1,0 +1,80 @@
+//! What the loop runs.
+
+use super::{Flags, Reading, Tick, Time};
+
+/// The position of the switch that engages the loop.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[repr(u8)]
+pub enum Switch {
+    /// Hands off.
+    #[default]
+    Off = 0,
+    /// The loop shall control.
+    On = 1,
+}
+
+/// What the loop runs: from measurements to outputs.
+///
+/// In each tick the loop calls, in this order and each at most once:
+/// [`command`](Self::command) for every order, [`estimate`](Self::estimate)
+/// (in every state), [`engage`](Self::engage) if it is to begin, then
+/// [`guide`](Self::guide) and [`control`](Self::control) while engaged or
+/// [`failsafe`](Self::failsafe) while in failsafe. All of them are pure
+/// functions of the controller's state and what they are handed: they read no
+/// clock, allocate nothing and do not panic.
+pub trait Controller: Send {
+    /// What the sensors measure.
+    type Measurements: Copy + Default + Send + 'static;
+    /// What the controller aims for, for those who watch.
+    type Setpoints: Copy + Default + Send + 'static;
+    /// What the actuators carry out.
+    type Outputs: Copy + Default + Send + 'static;
+    /// What may be asked of the controller from outside.
+    type Order: Copy + Send + 'static;
+
+    /// Follows the plant, in every state of the loop: filters and estimates,
+    /// so that they are settled when the loop engages.
+    fn estimate(&mut self, tick: &Tick, measurements: &Self::Measurements);
+
+    /// Why the loop may not engage now; empty if it may.
+    fn blockers(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
+
+    /// What makes going on unsafe, while engaged; empty if nothing does.
+    fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
+
+    /// The name of one bit of [`blockers`](Self::blockers) and
+    /// [`faults`](Self::faults), in words for people.
+    fn flag_name(bit: u32) -> &'static str
+    where
+        Self: Sized;
+
+    /// Takes over: captures the present as set points, so that the outputs do
+    /// not jump.
+    fn engage(&mut self, tick: &Tick, measurements: &Self::Measurements);
+
+    /// Works out where to go next: set points.
+    fn guide(&mut self, _tick: &Tick, _measurements: &Self::Measurements) {}
+
+    /// Works out the outputs that lead there.
+    fn control(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
+
+    /// The safest outputs that what is left of the measurements allows.
+    fn failsafe(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
+
+    /// Lets go.
+    fn disengage(&mut self) {}
+
+    /// Takes an order from outside; one that makes no sense now is left.
+    fn command(&mut self, _order: &Self::Order) {}
+
+    /// The present set points.
+    fn setpoints(&self) -> Self::Setpoints;
+
+    /// Whether these outputs may be sent: every one finite and in its range.
+    fn outputs_are_valid(&self, outputs: &Self::Outputs) -> bool;
+
+    /// The engage switch as measured; never read where there is none.
+    fn switch(&self, _measurements: &Self::Measurements) -> Reading<Switch> {
+        Reading::new(Switch::Off, Time::NEVER)
+    }
+}

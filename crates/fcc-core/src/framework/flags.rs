@@ -1,0 +1,64 @@
+//! A set of up to 32 conditions.
+
+use core::ops::{BitOr, BitOrAssign};
+
+/// A set of up to 32 conditions: why a loop may not engage, or what fails it.
+/// A controller names its bits ([`Controller::flag_name`](super::Controller::flag_name)).
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[repr(transparent)]
+pub struct Flags(u32);
+
+impl Flags {
+    /// No condition holds.
+    pub const NONE: Self = Self(0);
+
+    /// The set of one condition, by its bit 0..=31; a higher bit wraps.
+    pub const fn bit(bit: u32) -> Self {
+        Self(1_u32.wrapping_shl(bit))
+    }
+
+    /// From the bits as stored.
+    pub const fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
+    /// The bits, for storing.
+    pub const fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// Whether no condition holds.
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether every condition of `other` holds.
+    pub const fn contains(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// These conditions, and `other` if `holds`.
+    #[must_use]
+    pub const fn with(self, other: Self, holds: bool) -> Self {
+        if holds { Self(self.0 | other.0) } else { self }
+    }
+
+    /// The bits that are set, lowest first.
+    pub fn iter(self) -> impl Iterator<Item = u32> {
+        (0..32).filter(move |bit| self.contains(Self::bit(*bit)))
+    }
+}
+
+impl BitOr for Flags {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+impl BitOrAssign for Flags {
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}

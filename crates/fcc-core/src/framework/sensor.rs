@@ -1,0 +1,51 @@
+//! Where measurements come from.
+
+use core::fmt;
+
+use super::Tick;
+
+/// Writes its part of the measurements `M` once a tick.
+///
+/// The loop holds sensors as `Box<dyn Sensor<M>>`: flying by the simulator or
+/// by a board's own sensors differs in configuration and in no line of the
+/// loop. A sensor that has nothing new leaves `into` as it is: each
+/// [`Reading`](super::Reading) carries its own time, and grows old by itself.
+pub trait Sensor<M>: Send {
+    /// Takes what is there and returns. Never waits, allocates, locks, logs or
+    /// panics.
+    ///
+    /// # Errors
+    /// What went wrong in this tick. The loop counts it, shows it in the
+    /// record and goes on: what decides about failsafe is the readings' age.
+    fn sample(&mut self, tick: &Tick, into: &mut M) -> Result<(), SensorFault>;
+
+    /// What people call this sensor; for events and reports.
+    fn name(&self) -> &'static str;
+}
+
+/// What can go wrong when a sensor is sampled.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum SensorFault {
+    /// The source has been silent for longer than it should be.
+    Silent,
+    /// The operating system refused a read, with its error number.
+    Io {
+        /// `errno`, 0 if there was none.
+        errno: i32,
+    },
+    /// What came could not be understood, and was left out.
+    Malformed,
+}
+
+impl fmt::Display for SensorFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Silent => f.write_str("nothing arrives"),
+            Self::Io { errno } => write!(f, "reading failed (errno {errno})"),
+            Self::Malformed => f.write_str("what arrives cannot be understood"),
+        }
+    }
+}
+
+impl core::error::Error for SensorFault {}

@@ -1,0 +1,31 @@
+//! One turn of the loop.
+
+use core::time::Duration;
+
+use super::Time;
+
+/// One turn of the loop: its number and its times. All that code inside a tick
+/// knows of time, it knows from here.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[repr(C)]
+pub struct Tick {
+    /// Counts periods from 0 at the loop's start; a missed period is counted
+    /// too, so a gap in the numbers is a gap in time.
+    pub number: u64,
+    /// When the tick was due.
+    pub scheduled: Time,
+    /// When the loop woke for it.
+    pub woke: Time,
+    /// Periods that passed unserved right before this tick.
+    pub missed: u64,
+    /// Seconds since the tick before, by schedule: the period, times one more
+    /// than the missed. Positive.
+    pub dt_s: f64,
+}
+
+impl Tick {
+    /// How late the loop woke: `woke - scheduled`.
+    pub const fn lateness(&self) -> Duration {
+        self.woke.since(self.scheduled)
+    }
+}

@@ -1,0 +1,2 @@
+//! The framework with no aircraft in it.
+fn main() {}
