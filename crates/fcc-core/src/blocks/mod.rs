@@ -1,1 +1,21 @@
-//! Control blocks: filters, limiters, PID. They know no plant.
+//! Control blocks: filters, limiters, profiles, PID. They know no plant.
+//!
+//! Every block steps with the time since its last step, `dt_s`, because a
+//! coefficient per sample is right at one rate only. A step of nought seconds
+//! changes nothing: a plant that is paused leaves no trace in a filter.
+
+mod angle;
+mod complementary;
+mod high_pass;
+mod low_pass;
+mod pid;
+mod profile;
+mod rate_limit;
+
+pub use angle::{wrap_pi, wrap_two_pi};
+pub use complementary::Complementary;
+pub use high_pass::HighPass;
+pub use low_pass::{LowPass, smoothing_factor, time_constant};
+pub use pid::{AntiWindup, Pid, PidConfig};
+pub use profile::SquareRootProfile;
+pub use rate_limit::RateLimit;

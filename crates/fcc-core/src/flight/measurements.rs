@@ -1,5 +1,6 @@
 //! What an aircraft's sensors measure.
 
+use super::Surfaces;
 use crate::framework::{Reading, Switch};
 
 /// What an aircraft's sensors measure, each with the time it was taken.
@@ -28,6 +29,9 @@ pub struct Measurements {
     pub position: Reading<Position>,
     /// How it moves over the ground; for navigation.
     pub velocity: Reading<Velocity>,
+    /// Where throttle and surfaces stand, if the plant tells: for taking over
+    /// without a bump.
+    pub surfaces: Reading<Surfaces>,
     /// The engage switch.
     pub engage_switch: Reading<Switch>,
     /// A simulated plant's own clock and condition; never read on a real one.

@@ -1,0 +1,70 @@
+//! Two sensors of one quantity: one good in the short run, one in the long.
+
+use super::low_pass::smoothing_factor;
+
+/// First-order complementary filter: integrates a rate, and leans towards an
+/// absolute measurement with a time constant. Above `1/τ` rad/s it believes
+/// the rate, below it the measurement.
+///
+/// ```
+/// use fcc_core::blocks::Complementary;
+/// let mut roll = Complementary::new(0.5);
+/// roll.reset(0.0);
+/// roll.predict(0.2, 0.025); // a gyroscope: 0.2 rad/s for 25 ms
+/// roll.correct(0.0, 0.025); // an accelerometer: level
+/// assert!(roll.value() > 0.0 && roll.value() < 0.005);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Complementary {
+    tau_s: f64,
+    value: f64,
+}
+
+impl Complementary {
+    /// A filter of time constant `tau_s` (s), at 0.
+    pub const fn new(tau_s: f64) -> Self {
+        Self { tau_s, value: 0.0 }
+    }
+
+    /// Sets the value.
+    pub const fn reset(&mut self, value: f64) {
+        self.value = value;
+    }
+
+    /// Integrates a rate (units per second) for `dt_s` seconds.
+    pub fn predict(&mut self, rate: f64, dt_s: f64) {
+        self.value += rate * dt_s;
+    }
+
+    /// Leans towards a measurement; `dt_s` is the time since the one before.
+    pub fn correct(&mut self, measurement: f64, dt_s: f64) {
+        self.lean(measurement - self.value, dt_s);
+    }
+
+    /// Leans by an error that the caller worked out: on a circle, the short
+    /// way round.
+    pub fn lean(&mut self, error: f64, dt_s: f64) {
+        self.value += smoothing_factor(dt_s, self.tau_s) * error;
+    }
+
+    /// The value.
+    pub const fn value(&self) -> f64 {
+        self.value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A rate with bias b settles at b·τ off: from ẋ = b + (m - x)/τ.
+    #[test]
+    fn a_biased_rate_settles_at_bias_times_time_constant() {
+        let mut filter = Complementary::new(0.5);
+        for _ in 0..100_000 {
+            filter.predict(0.01, 1e-4);
+            filter.correct(0.0, 1e-4);
+        }
+        assert!((filter.value() - 0.005).abs() < 2e-6, "{}", filter.value());
+    }
+}

@@ -1,0 +1,52 @@
+//! Limits how fast a signal may move.
+
+/// Limits how fast a signal may move.
+#[derive(Clone, Copy, Debug)]
+pub struct RateLimit {
+    rate_per_s: f64,
+    output: Option<f64>,
+}
+
+impl RateLimit {
+    /// A limiter of `rate_per_s` (units per second, positive) that begins at
+    /// its first input.
+    pub const fn new(rate_per_s: f64) -> Self {
+        Self {
+            rate_per_s,
+            output: None,
+        }
+    }
+
+    /// Sets the output.
+    pub const fn reset(&mut self, output: f64) {
+        self.output = Some(output);
+    }
+
+    /// Moves towards `input` for `dt_s` seconds; the output.
+    pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
+        let output = match self.output {
+            None => input,
+            Some(output) => {
+                let most = self.rate_per_s * dt_s.max(0.0);
+                output + (input - output).max(-most).min(most)
+            }
+        };
+        self.output = Some(output);
+        output
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moves_at_the_rate_and_then_follows() {
+        let mut limit = RateLimit::new(2.0);
+        limit.reset(0.0);
+        assert!((limit.step(1.0, 0.25) - 0.5).abs() < 1e-15);
+        assert!((limit.step(1.0, 0.25) - 1.0).abs() < 1e-15);
+        assert!((limit.step(-9.0, 0.5)).abs() < 1e-15);
+        assert!((limit.step(0.1, 0.5) - 0.1).abs() < 1e-15);
+    }
+}
