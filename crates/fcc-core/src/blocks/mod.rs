@@ -7,6 +7,7 @@
 mod angle;
 mod complementary;
 mod high_pass;
+mod limit;
 mod low_pass;
 mod pid;
 mod profile;
@@ -15,6 +16,7 @@ mod rate_limit;
 pub use angle::{wrap_pi, wrap_two_pi};
 pub use complementary::Complementary;
 pub use high_pass::HighPass;
+pub use limit::{limit, limit_abs};
 pub use low_pass::{LowPass, smoothing_factor, time_constant};
 pub use pid::{AntiWindup, Pid, PidConfig};
 pub use profile::SquareRootProfile;

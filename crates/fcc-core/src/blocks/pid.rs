@@ -1,6 +1,6 @@
 //! PID controller.
 
-use super::low_pass::smoothing_factor;
+use super::{limit, limit_abs, smoothing_factor};
 
 /// What keeps the integral from growing while the output cannot follow.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -155,16 +155,14 @@ impl Pid {
     }
 
     fn limit(&self, output: f64) -> f64 {
-        output
-            .max(self.config.output_min)
-            .min(self.config.output_max)
+        limit(output, self.config.output_min, self.config.output_max)
     }
 
     fn limit_rate(&self, output: f64, dt_s: f64) -> f64 {
         match self.last_output {
             Some(last) if self.config.output_rate_per_s.is_finite() => {
                 let most = self.config.output_rate_per_s * dt_s.max(0.0);
-                last + (output - last).max(-most).min(most)
+                last + limit_abs(output - last, most)
             }
             _ => output,
         }

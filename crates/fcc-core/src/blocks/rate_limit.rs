@@ -1,5 +1,7 @@
 //! Limits how fast a signal may move.
 
+use super::limit_abs;
+
 /// Limits how fast a signal may move.
 #[derive(Clone, Copy, Debug)]
 pub struct RateLimit {
@@ -28,7 +30,7 @@ impl RateLimit {
             None => input,
             Some(output) => {
                 let most = self.rate_per_s * dt_s.max(0.0);
-                output + (input - output).max(-most).min(most)
+                output + limit_abs(input - output, most)
             }
         };
         self.output = Some(output);

@@ -1,10 +1,22 @@
 //! The aircraft: the values that travel, and the autopilot that turns
 //! measurements into surfaces by navigation, guidance and control.
+//!
+//! | module | answers |
+//! |---|---|
+//! | [`navigation`] | where are we, how do we move? |
+//! | [`guidance`] | where to go next? (set points) |
+//! | [`control`] | which surfaces, what throttle? |
 
+pub mod atmosphere;
+mod autopilot;
+pub mod control;
+pub mod guidance;
 mod measurements;
+pub mod navigation;
 mod setpoints;
 mod surfaces;
 
+pub use autopilot::{Autopilot, AutopilotConfig, Course, Order, flags};
 pub use measurements::{
     Attitude, BodyRates, Measurements, Plant, PlantState, Position, SpecificForce, Velocity,
 };

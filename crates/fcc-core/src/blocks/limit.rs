@@ -1,0 +1,27 @@
+//! Limits that neither panic nor hide what is not a number.
+
+/// The value, or the limit that it passes.
+///
+/// Unlike [`f64::clamp`] it cannot panic; unlike a chain of `max` and `min` it
+/// lets NaN through, so that a broken value is seen at the outputs and not
+/// taken for a limit. Where the limits are crossed, `max` holds.
+///
+/// ```
+/// use fcc_core::blocks::limit;
+/// assert_eq!(limit(1.2, -1.0, 1.0), 1.0);
+/// assert!(limit(f64::NAN, -1.0, 1.0).is_nan());
+/// ```
+pub fn limit(value: f64, min: f64, max: f64) -> f64 {
+    if value > max {
+        max
+    } else if value < min {
+        if min > max { max } else { min }
+    } else {
+        value
+    }
+}
+
+/// The value, held to `-most..=most`.
+pub fn limit_abs(value: f64, most: f64) -> f64 {
+    limit(value, -most, most)
+}

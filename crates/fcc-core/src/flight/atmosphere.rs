@@ -1,0 +1,84 @@
+//! The standard atmosphere below 11 km.
+//!
+//! International Standard Atmosphere (ISO 2533:1975): sea-level temperature
+//! 288.15 K and pressure 101,325 Pa, lapse rate -6.5 K/km, dry air.
+
+use libm::{pow, sqrt};
+
+/// Standard gravity, m/s².
+pub const GRAVITY_MPS2: f64 = 9.806_65;
+
+const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
+const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
+const LAPSE_RATE_K_PER_M: f64 = -0.006_5;
+const GAS_CONSTANT_J_PER_KG_K: f64 = 287.053;
+/// Where the lapse rate ends, m. Above, the altitude is held at this one: the
+/// aircraft this is made for do not go there.
+const TROPOPAUSE_M: f64 = 11_000.0;
+/// The exponent of pressure over temperature, g/(-L R) = 5.256.
+const PRESSURE_EXPONENT: f64 = GRAVITY_MPS2 / (-LAPSE_RATE_K_PER_M * GAS_CONSTANT_J_PER_KG_K);
+
+/// Pressure altitude in m from static pressure in Pa (the thesis' figure 5.9:
+/// h = (T₀/L)((p/p₀)^(-L R/g) - 1)). Not a number for a pressure that is not
+/// positive.
+pub fn pressure_altitude_m(pressure_pa: f64) -> f64 {
+    let ratio = pow(pressure_pa / SEA_LEVEL_PRESSURE_PA, 1.0 / PRESSURE_EXPONENT);
+    SEA_LEVEL_TEMPERATURE_K / LAPSE_RATE_K_PER_M * (ratio - 1.0)
+}
+
+/// Static pressure in Pa at a pressure altitude in m.
+pub fn pressure_pa(altitude_m: f64) -> f64 {
+    SEA_LEVEL_PRESSURE_PA * pow(temperature_ratio(altitude_m), PRESSURE_EXPONENT)
+}
+
+/// Air density over its sea-level value (1.225 kg/m³), σ, at a pressure
+/// altitude in m.
+pub fn density_ratio(altitude_m: f64) -> f64 {
+    pow(temperature_ratio(altitude_m), PRESSURE_EXPONENT - 1.0)
+}
+
+/// True airspeed in m/s from equivalent airspeed in m/s at a pressure altitude
+/// in m: EAS/√σ. Below 100 m/s indicated, calibrated and equivalent airspeed
+/// differ by less than 1 %.
+pub fn true_airspeed_mps(equivalent_mps: f64, altitude_m: f64) -> f64 {
+    equivalent_mps / sqrt(density_ratio(altitude_m))
+}
+
+fn temperature_ratio(altitude_m: f64) -> f64 {
+    1.0 + LAPSE_RATE_K_PER_M / SEA_LEVEL_TEMPERATURE_K * altitude_m.min(TROPOPAUSE_M)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ISO 2533:1975: geopotential altitude (m), pressure (Pa), density (kg/m³).
+    const TABLE: [(f64, f64, f64); 5] = [
+        (0.0, 101_325.0, 1.225),
+        (1_000.0, 89_874.6, 1.111_64),
+        (2_000.0, 79_495.2, 1.006_49),
+        (5_000.0, 54_019.9, 0.736_116),
+        (10_000.0, 26_436.3, 0.412_706),
+    ];
+
+    #[test]
+    fn agrees_with_the_standard_atmosphere() {
+        for (altitude, pressure, density) in TABLE {
+            assert!((pressure_pa(altitude) / pressure - 1.0).abs() < 1e-5);
+            assert!((density_ratio(altitude) * 1.225 / density - 1.0).abs() < 1e-5);
+            assert!((pressure_altitude_m(pressure) - altitude).abs() < 0.1);
+        }
+    }
+
+    /// FAA-H-8083-25C, chapter 4: pressure falls by about 1 inHg in 1,000 ft.
+    #[test]
+    fn an_inch_of_mercury_is_about_a_thousand_feet() {
+        let feet = pressure_altitude_m(101_325.0 - 3_386.39) / 0.304_8;
+        assert!((feet - 1_000.0).abs() < 100.0, "{feet}");
+    }
+
+    #[test]
+    fn nonsense_in_is_not_a_number_out() {
+        assert!(pressure_altitude_m(-1.0).is_nan());
+    }
+}

@@ -1,0 +1,108 @@
+//! Airspeed → throttle.
+
+use super::SURFACE;
+use crate::blocks::{Pid, PidConfig};
+use crate::flight::atmosphere::GRAVITY_MPS2;
+use crate::flight::navigation::Estimate;
+
+/// Gains of the airspeed loop.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct AirspeedConfig {
+    /// Acceleration asked for per airspeed error, 1/s.
+    pub airspeed_gain_per_s: f64,
+    /// The same, integrated, 1/s².
+    pub airspeed_integral_gain_per_s2: f64,
+    /// Throttle that accelerates the aircraft, per m/s².
+    pub throttle_per_mps2: f64,
+    /// Drag of lift at 1 g over weight: what a turn costs more is this times
+    /// (n² - 1).
+    pub induced_drag_ratio: f64,
+    /// Fastest throttle, 1/s.
+    pub max_throttle_rate_per_s: f64,
+    /// Throttle that flies level at the reference airspeed, 0..=1: taken at
+    /// engagement if the plant does not tell its throttle, and in failsafe.
+    pub trim_throttle: f64,
+}
+
+impl Default for AirspeedConfig {
+    fn default() -> Self {
+        Self {
+            airspeed_gain_per_s: 0.5,
+            airspeed_integral_gain_per_s2: 0.06,
+            throttle_per_mps2: 0.45,
+            induced_drag_ratio: 0.025,
+            max_throttle_rate_per_s: 1.0,
+            trim_throttle: 0.65,
+        }
+    }
+}
+
+/// What the airspeed loop has to know of the other two.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ThrottleDemand {
+    /// Indicated airspeed asked for, m/s.
+    pub airspeed_mps: f64,
+    /// Climb rate asked for, m/s.
+    pub climb_rate_mps: f64,
+    /// Load factor of the turn.
+    pub load_factor: f64,
+    /// Whether the aircraft is too slow: then full throttle.
+    pub underspeed: bool,
+}
+
+/// Airspeed → throttle, with climb and turn fed forward.
+#[derive(Clone, Debug)]
+pub struct AirspeedLoop {
+    config: AirspeedConfig,
+    throttle: Pid,
+}
+
+impl AirspeedLoop {
+    /// A loop at rest.
+    pub const fn new(config: AirspeedConfig) -> Self {
+        Self {
+            config,
+            throttle: Pid::new(PidConfig {
+                kp: config.airspeed_gain_per_s * config.throttle_per_mps2,
+                ki: config.airspeed_integral_gain_per_s2 * config.throttle_per_mps2,
+                output_min: 0.0,
+                output_rate_per_s: config.max_throttle_rate_per_s,
+                ..SURFACE
+            }),
+        }
+    }
+
+    /// Takes over with the throttle where it stands.
+    pub fn engage(&mut self, throttle: f64, demand: &ThrottleDemand, estimate: &Estimate) {
+        let feed_forward = self.feed_forward(demand, estimate);
+        self.throttle.engage(
+            throttle,
+            demand.airspeed_mps,
+            estimate.airspeed_mps,
+            feed_forward,
+        );
+    }
+
+    /// One step; the throttle, 0..=1.
+    pub fn step(&mut self, demand: &ThrottleDemand, estimate: &Estimate, dt_s: f64) -> f64 {
+        let feed_forward = self.feed_forward(demand, estimate);
+        let throttle = self.throttle.step_scheduled(
+            demand.airspeed_mps,
+            estimate.airspeed_mps,
+            feed_forward,
+            1.0,
+            dt_s,
+        );
+        if demand.underspeed { 1.0 } else { throttle }
+    }
+
+    /// Climbing costs g sin γ, turning the induced drag of the load.
+    fn feed_forward(&self, demand: &ThrottleDemand, estimate: &Estimate) -> f64 {
+        let speed = estimate.true_airspeed_mps.max(1.0);
+        let climb = GRAVITY_MPS2 * demand.climb_rate_mps / speed;
+        let turn = GRAVITY_MPS2
+            * self.config.induced_drag_ratio
+            * (demand.load_factor * demand.load_factor - 1.0);
+        self.config.throttle_per_mps2 * (climb + turn)
+    }
+}

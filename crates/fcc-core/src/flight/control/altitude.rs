@@ -1,0 +1,229 @@
+//! Altitude → climb rate → pitch → pitch rate → elevator.
+
+use libm::{asin, cos, sin, tan};
+
+use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
+use crate::blocks::{Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
+use crate::flight::atmosphere::GRAVITY_MPS2;
+use crate::flight::navigation::Estimate;
+
+/// Gains of the altitude loop; surface gains hold at the reference airspeed.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct AltitudeConfig {
+    /// Climb rate per altitude error near the target, 1/s.
+    pub altitude_gain_per_s: f64,
+    /// Vertical deceleration to plan the capture with, m/s².
+    pub capture_mps2: f64,
+    /// Fastest change of the climb rate asked for, m/s².
+    pub climb_acceleration_mps2: f64,
+    /// Flight-path angle asked for per climb-rate error over airspeed.
+    pub climb_rate_gain: f64,
+    /// The same, integrated, 1/s.
+    pub climb_rate_integral_gain_per_s: f64,
+    /// Angle of attack that carries 1 g at the reference airspeed, rad.
+    pub angle_of_attack_per_g_rad: f64,
+    /// Pitch rate per pitch error, 1/s.
+    pub pitch_gain_per_s: f64,
+    /// Largest pitch rate asked for besides the turn's own, rad/s.
+    pub max_pitch_rate_radps: f64,
+    /// Elevator per pitch-rate error, per rad/s.
+    pub pitch_rate_gain: f64,
+    /// Elevator per integrated pitch-rate error, per rad.
+    pub pitch_rate_integral_gain: f64,
+    /// Elevator that goes with the turn's load, per g above 1.
+    pub elevator_per_g: f64,
+}
+
+impl Default for AltitudeConfig {
+    fn default() -> Self {
+        Self {
+            altitude_gain_per_s: 0.5,
+            capture_mps2: 0.8,
+            climb_acceleration_mps2: 1.5,
+            climb_rate_gain: 1.0,
+            climb_rate_integral_gain_per_s: 0.4,
+            angle_of_attack_per_g_rad: 0.08,
+            pitch_gain_per_s: 2.5,
+            max_pitch_rate_radps: 0.15,
+            pitch_rate_gain: 0.6,
+            pitch_rate_integral_gain: 1.5,
+            elevator_per_g: 0.2,
+        }
+    }
+}
+
+/// Bounds of the climb rate, m/s; where they contradict, the upper one holds:
+/// too slow matters more than too fast.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct ClimbLimits {
+    /// Fastest climb.
+    pub max_mps: f64,
+    /// Fastest descent, a negative number.
+    pub min_mps: f64,
+}
+
+/// What the altitude loop commands.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct PitchCommand {
+    /// Climb rate asked for, m/s.
+    pub climb_rate_mps: f64,
+    /// Pitch asked for, rad.
+    pub pitch_rad: f64,
+    /// -1..=1, positive raises the nose.
+    pub elevator: f64,
+}
+
+/// Altitude → climb rate → pitch → pitch rate → elevator.
+#[derive(Clone, Debug)]
+pub struct AltitudeLoop {
+    config: AltitudeConfig,
+    climb_rate: RateLimit,
+    pitch: Pid,
+    pitch_rate: Pid,
+}
+
+impl AltitudeLoop {
+    /// A loop at rest.
+    pub const fn new(config: AltitudeConfig, envelope: &Envelope) -> Self {
+        Self {
+            config,
+            climb_rate: RateLimit::new(config.climb_acceleration_mps2),
+            pitch: Pid::new(PidConfig {
+                kp: config.climb_rate_gain,
+                ki: config.climb_rate_integral_gain_per_s,
+                output_min: envelope.min_pitch_rad,
+                output_max: envelope.max_pitch_rad,
+                ..SURFACE
+            }),
+            pitch_rate: Pid::new(PidConfig {
+                kp: config.pitch_rate_gain,
+                ki: config.pitch_rate_integral_gain,
+                ..SURFACE
+            }),
+        }
+    }
+
+    /// Takes over with the elevator and the aircraft's motion as they are.
+    pub fn engage(&mut self, elevator: f64, estimate: &Estimate, schedule: Schedule) {
+        let path = flight_path(estimate.climb_rate_mps, estimate);
+        self.climb_rate.reset(estimate.climb_rate_mps);
+        self.pitch.engage(
+            estimate.pitch_rad,
+            path,
+            path,
+            path + self.angle_of_attack(estimate, schedule),
+        );
+        let rate = estimate.body_rates.pitch_radps;
+        let feed_forward = schedule.moment * self.config.elevator_per_g * turn_load(estimate);
+        self.pitch_rate.engage(elevator, rate, rate, feed_forward);
+    }
+
+    /// One step towards an altitude (m).
+    pub fn step(
+        &mut self,
+        altitude_m: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
+        let profile = SquareRootProfile {
+            gain_per_s: self.config.altitude_gain_per_s,
+            deceleration: self.config.capture_mps2,
+        };
+        let limits = envelope.climb_limits(estimate.airspeed_mps);
+        let wanted = limit(
+            profile.speed(altitude_m - estimate.altitude_m),
+            limits.min_mps,
+            limits.max_mps,
+        );
+        let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
+        let path = flight_path(climb_rate_mps, estimate);
+        let pitch_rad = self.pitch.step_scheduled(
+            path,
+            flight_path(estimate.climb_rate_mps, estimate),
+            path + self.angle_of_attack(estimate, schedule),
+            1.0,
+            dt_s,
+        );
+        self.hold(
+            climb_rate_mps,
+            pitch_rad,
+            estimate,
+            envelope,
+            schedule,
+            dt_s,
+        )
+    }
+
+    /// One step towards a pitch (rad), whatever the altitude.
+    pub fn hold_pitch(
+        &mut self,
+        pitch_rad: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
+        self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
+    }
+
+    /// The elevator that the loop has found to keep the pitch.
+    pub const fn trim(&self) -> f64 {
+        self.pitch_rate.integral()
+    }
+
+    fn hold(
+        &mut self,
+        climb_rate_mps: f64,
+        pitch_rad: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
+        let config = &self.config;
+        let speed = estimate.true_airspeed_mps.max(1.0);
+        let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
+        // Euler pitch rate into body axes, and what the turn itself needs:
+        // q = θ̇ cos φ + ψ̇ cos θ sin φ.
+        let theta_rate = limit_abs(
+            config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
+            config.max_pitch_rate_radps,
+        );
+        let turn_rate = GRAVITY_MPS2 / speed * tan(bank);
+        let turn_pitch_rate = turn_rate * cos(estimate.pitch_rad) * sin(bank);
+        // Load factor in excess of 1 is about V q / g.
+        let most = GRAVITY_MPS2 / speed * (envelope.max_load_factor - cos(bank)).max(0.1);
+        let pitch_rate = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        let elevator = self.pitch_rate.step_scheduled(
+            pitch_rate,
+            estimate.body_rates.pitch_radps,
+            schedule.moment * config.elevator_per_g * turn_load(estimate),
+            schedule.moment,
+            dt_s,
+        );
+        PitchCommand {
+            climb_rate_mps,
+            pitch_rad,
+            elevator,
+        }
+    }
+
+    /// The angle of attack that carries the aircraft in this turn at this
+    /// airspeed: proportional to load, inversely to dynamic pressure.
+    fn angle_of_attack(&self, estimate: &Estimate, schedule: Schedule) -> f64 {
+        self.config.angle_of_attack_per_g_rad * schedule.moment * (1.0 + turn_load(estimate))
+    }
+}
+
+/// Load factor above 1 of a level turn at the present bank: 1/cos φ - 1.
+fn turn_load(estimate: &Estimate) -> f64 {
+    1.0 / cos(limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD)) - 1.0
+}
+
+/// Flight-path angle of a climb rate at the present airspeed, rad.
+fn flight_path(climb_rate_mps: f64, estimate: &Estimate) -> f64 {
+    let speed = estimate.true_airspeed_mps.max(1.0);
+    asin(limit_abs(climb_rate_mps / speed, 0.7))
+}

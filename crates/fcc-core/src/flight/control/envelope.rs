@@ -1,0 +1,105 @@
+//! What the outer loops may ask of the aircraft.
+
+use libm::acos;
+
+use super::ClimbLimits;
+use crate::blocks::limit;
+
+/// What the outer loops may ask of the aircraft.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Envelope {
+    /// Largest bank, rad.
+    pub max_bank_rad: f64,
+    /// Largest load factor in g; above 1.
+    pub max_load_factor: f64,
+    /// Largest pitch, rad.
+    pub max_pitch_rad: f64,
+    /// Smallest pitch, rad; negative.
+    pub min_pitch_rad: f64,
+    /// Slowest indicated airspeed, m/s: below, altitude is traded for speed.
+    pub min_airspeed_mps: f64,
+    /// Fastest indicated airspeed, m/s: above, the aircraft may not descend.
+    pub max_airspeed_mps: f64,
+    /// Fastest climb, m/s.
+    pub max_climb_mps: f64,
+    /// Fastest descent, m/s, a positive number.
+    pub max_sink_mps: f64,
+    /// Within this of either airspeed limit the climb limits close in, m/s.
+    pub airspeed_margin_mps: f64,
+}
+
+impl Default for Envelope {
+    /// A light single-engine aircraft of the Cessna 172's kind.
+    fn default() -> Self {
+        Self {
+            max_bank_rad: 30.0_f64.to_radians(),
+            max_load_factor: 2.0,
+            max_pitch_rad: 20.0_f64.to_radians(),
+            min_pitch_rad: -15.0_f64.to_radians(),
+            min_airspeed_mps: 33.0,
+            max_airspeed_mps: 70.0,
+            max_climb_mps: 6.0,
+            max_sink_mps: 6.0,
+            airspeed_margin_mps: 4.0,
+        }
+    }
+}
+
+impl Envelope {
+    /// The bank limit: the configured one, or the one at which a level turn
+    /// reaches the largest load factor (n = 1/cos φ), whichever is less; rad.
+    pub fn bank_limit_rad(&self) -> f64 {
+        self.max_bank_rad
+            .min(acos(1.0 / self.max_load_factor.max(1.0)))
+    }
+
+    /// Climb limits at an indicated airspeed: they close in near the slowest
+    /// airspeed (below it, only a descent is left) and near the fastest.
+    pub fn climb_limits(&self, airspeed_mps: f64) -> ClimbLimits {
+        let margin = self.airspeed_margin_mps.max(0.1);
+        let above_floor = (airspeed_mps - self.min_airspeed_mps) / margin;
+        let below_ceiling = (self.max_airspeed_mps - airspeed_mps) / margin;
+        ClimbLimits {
+            max_mps: limit(
+                self.max_climb_mps * above_floor,
+                -self.max_sink_mps,
+                self.max_climb_mps,
+            ),
+            min_mps: limit(
+                -self.max_sink_mps * below_ceiling,
+                -self.max_sink_mps,
+                self.max_climb_mps,
+            ),
+        }
+    }
+
+    /// Whether the aircraft is slower than it may be.
+    pub fn is_underspeed(&self, airspeed_mps: f64) -> bool {
+        airspeed_mps < self.min_airspeed_mps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// FAA-H-8083-3C, figure 10-1: a level turn at 60° of bank pulls 2 g.
+    #[test]
+    fn the_load_factor_limits_the_bank() {
+        let envelope = Envelope {
+            max_bank_rad: 80.0_f64.to_radians(),
+            ..Envelope::default()
+        };
+        assert!((envelope.bank_limit_rad().to_degrees() - 60.0).abs() < 1e-9);
+        assert!((Envelope::default().bank_limit_rad().to_degrees() - 30.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn too_slow_may_only_descend_and_too_fast_may_only_climb() {
+        let envelope = Envelope::default();
+        assert!(envelope.climb_limits(30.0).max_mps < 0.0);
+        assert!(envelope.climb_limits(73.0).min_mps > 0.0);
+        let cruise = envelope.climb_limits(51.4);
+        assert_eq!((cruise.min_mps, cruise.max_mps), (-6.0, 6.0));
+    }
+}

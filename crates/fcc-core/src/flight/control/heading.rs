@@ -1,0 +1,174 @@
+//! Heading → turn rate → bank → roll rate → aileron, and the rudder.
+
+use libm::{atan, cos, sin, tan};
+
+use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
+use crate::blocks::{Pid, PidConfig, SquareRootProfile, limit_abs};
+use crate::flight::atmosphere::GRAVITY_MPS2;
+use crate::flight::navigation::Estimate;
+
+/// Gains of the heading loop; surface gains hold at the reference airspeed.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct HeadingConfig {
+    /// Turn rate per heading error near the target, 1/s.
+    pub heading_gain_per_s: f64,
+    /// Roll rate to plan the roll-out with, rad/s.
+    pub rollout_rate_radps: f64,
+    /// How far ahead the heading is looked at, s: what the roll loop lags.
+    pub lead_s: f64,
+    /// Roll rate per bank error, 1/s.
+    pub roll_gain_per_s: f64,
+    /// Largest roll rate asked for, rad/s.
+    pub max_roll_rate_radps: f64,
+    /// Aileron that keeps up a roll rate, per rad/s.
+    pub aileron_per_roll_rate: f64,
+    /// Aileron per roll-rate error, per rad/s.
+    pub roll_rate_gain: f64,
+    /// Aileron per integrated roll-rate error, per rad.
+    pub roll_rate_integral_gain: f64,
+    /// Rudder that goes with the aileron, against adverse yaw.
+    pub rudder_per_aileron: f64,
+    /// Rudder per side force, per m/s².
+    pub side_force_gain: f64,
+    /// Rudder per integrated side force, per m/s.
+    pub side_force_integral_gain: f64,
+    /// Rudder per yaw rate in excess of the turn's, per rad/s.
+    pub yaw_damping: f64,
+}
+
+impl Default for HeadingConfig {
+    fn default() -> Self {
+        Self {
+            heading_gain_per_s: 0.8,
+            rollout_rate_radps: 0.30,
+            lead_s: 0.3,
+            roll_gain_per_s: 2.5,
+            max_roll_rate_radps: 0.5,
+            aileron_per_roll_rate: 0.6,
+            roll_rate_gain: 0.4,
+            roll_rate_integral_gain: 0.5,
+            rudder_per_aileron: 0.1,
+            side_force_gain: 0.03,
+            side_force_integral_gain: 0.03,
+            yaw_damping: 0.2,
+        }
+    }
+}
+
+/// What the heading loop commands.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Lateral {
+    /// Bank asked for, rad.
+    pub roll_rad: f64,
+    /// -1..=1, positive rolls right.
+    pub aileron: f64,
+    /// -1..=1, positive yaws right.
+    pub rudder: f64,
+}
+
+/// Heading → turn rate → bank → roll rate → aileron, and the rudder.
+#[derive(Clone, Debug)]
+pub struct HeadingLoop {
+    config: HeadingConfig,
+    roll_rate: Pid,
+    side_force: Pid,
+}
+
+impl HeadingLoop {
+    /// A loop at rest.
+    pub const fn new(config: HeadingConfig) -> Self {
+        Self {
+            config,
+            roll_rate: Pid::new(PidConfig {
+                kp: config.roll_rate_gain,
+                ki: config.roll_rate_integral_gain,
+                ..SURFACE
+            }),
+            side_force: Pid::new(PidConfig {
+                kp: config.side_force_gain,
+                ki: config.side_force_integral_gain,
+                ..SURFACE
+            }),
+        }
+    }
+
+    /// Takes over with the surfaces where they stand.
+    pub fn engage(&mut self, aileron: f64, rudder: f64) {
+        self.roll_rate.engage(aileron, 0.0, 0.0, 0.0);
+        self.side_force.engage(rudder, 0.0, 0.0, 0.0);
+    }
+
+    /// One step towards a heading (rad, counted on through full turns).
+    pub fn step(
+        &mut self,
+        heading_rad: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> Lateral {
+        let speed = estimate.true_airspeed_mps.max(1.0);
+        let turn_rate = GRAVITY_MPS2 / speed * tan(limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD));
+        let error = heading_rad - estimate.heading_rad - self.config.lead_s * turn_rate;
+        let profile = SquareRootProfile {
+            gain_per_s: self.config.heading_gain_per_s,
+            deceleration: GRAVITY_MPS2 / speed * self.config.rollout_rate_radps,
+        };
+        // Coordinated turn: tan φ = V ψ̇ / g.
+        let roll_rad = limit_abs(
+            atan(speed / GRAVITY_MPS2 * profile.speed(error)),
+            envelope.bank_limit_rad(),
+        );
+        self.hold_bank(roll_rad, estimate, schedule, dt_s)
+    }
+
+    /// One step towards a bank (rad), whatever the heading.
+    pub fn hold_bank(
+        &mut self,
+        roll_rad: f64,
+        estimate: &Estimate,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> Lateral {
+        let config = &self.config;
+        let roll_rate = limit_abs(
+            config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
+            config.max_roll_rate_radps,
+        );
+        let aileron = self.roll_rate.step_scheduled(
+            roll_rate,
+            estimate.body_rates.roll_radps,
+            schedule.rate * config.aileron_per_roll_rate * roll_rate,
+            schedule.moment,
+            dt_s,
+        );
+        // Yaw rate of a level coordinated turn: g/V sin φ cos θ.
+        let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
+            * sin(estimate.roll_rad)
+            * cos(estimate.pitch_rad);
+        let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
+        // A side force to the right asks for the nose to the left.
+        let rudder = self.side_force.step_scheduled(
+            0.0,
+            estimate.side_force_mps2,
+            config.rudder_per_aileron * aileron - schedule.moment * config.yaw_damping * excess,
+            schedule.moment,
+            dt_s,
+        );
+        Lateral {
+            roll_rad,
+            aileron,
+            rudder,
+        }
+    }
+
+    /// The aileron that the loop has found to fly with wings level.
+    pub const fn aileron_trim(&self) -> f64 {
+        self.roll_rate.integral()
+    }
+
+    /// The rudder that the loop has found to fly without sideslip.
+    pub const fn rudder_trim(&self) -> f64 {
+        self.side_force.integral()
+    }
+}

@@ -1,0 +1,41 @@
+//! Control: which surfaces and what throttle.
+//!
+//! Three loops, coupled where the aircraft couples them:
+//! - [`HeadingLoop`]: heading → turn rate → bank → roll rate → aileron, with
+//!   the rudder keeping the turn coordinated;
+//! - [`AltitudeLoop`]: altitude → climb rate → pitch → pitch rate → elevator,
+//!   knowing of the bank;
+//! - [`AirspeedLoop`]: airspeed → throttle, knowing of climb and bank.
+//!
+//! An [`Envelope`] bounds what the outer loops may ask of the inner ones.
+//! Gains hold at a reference airspeed; a surface's effect grows with dynamic
+//! pressure, so they are scaled by [`Schedule`].
+
+use crate::blocks::{AntiWindup, PidConfig};
+
+mod airspeed;
+mod altitude;
+mod envelope;
+mod heading;
+mod schedule;
+
+pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
+pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use envelope::Envelope;
+pub use heading::{HeadingConfig, HeadingLoop, Lateral};
+pub use schedule::Schedule;
+
+/// Beyond this bank a turn's load and rate are not followed any further, rad.
+const MAX_TURN_BANK_RAD: f64 = 1.05;
+
+/// A controller of a surface: no gains yet, -1..=1.
+const SURFACE: PidConfig = PidConfig {
+    kp: 0.0,
+    ki: 0.0,
+    kd: 0.0,
+    derivative_tau_s: 0.0,
+    output_min: -1.0,
+    output_max: 1.0,
+    output_rate_per_s: f64::INFINITY,
+    anti_windup: AntiWindup::Clamping,
+};

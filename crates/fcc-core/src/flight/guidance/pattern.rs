@@ -1,0 +1,118 @@
+//! The timed pattern of the thesis: no navigation needed.
+
+use core::f64::consts::FRAC_PI_2;
+
+use super::Targets;
+
+/// The timed pattern: hold, then legs that turn by a fixed angle and go up and
+/// back down in turn (thesis, section 6.3).
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct TimedPatternConfig {
+    /// How long to hold what was captured, s.
+    pub hold_s: f64,
+    /// How long each leg takes, s; positive.
+    pub leg_s: f64,
+    /// Turn at the beginning of each leg, rad, to the right if positive.
+    pub turn_rad: f64,
+    /// Climb of every odd leg, taken back in every even one, m.
+    pub climb_m: f64,
+}
+
+impl Default for TimedPatternConfig {
+    /// The thesis': 20 s, 20 s, 90° right, 150 ft.
+    fn default() -> Self {
+        Self {
+            hold_s: 20.0,
+            leg_s: 20.0,
+            turn_rad: FRAC_PI_2,
+            climb_m: 45.72,
+        }
+    }
+}
+
+/// The pattern in flight.
+#[derive(Clone, Copy, Debug)]
+pub struct TimedPattern {
+    config: TimedPatternConfig,
+    captured: Targets,
+    elapsed_s: f64,
+}
+
+/// Sums of ticks end this close to a whole second, s.
+const ROUNDING_S: f64 = 1e-6;
+
+impl TimedPattern {
+    /// Begins now, from what was captured.
+    pub const fn begin(config: TimedPatternConfig, captured: Targets) -> Self {
+        Self {
+            config,
+            captured,
+            elapsed_s: 0.0,
+        }
+    }
+
+    /// Which leg is flown: 0 while holding, then 1, 2, ...
+    pub fn leg(&self) -> u32 {
+        let into_legs = self.elapsed_s + ROUNDING_S - self.config.hold_s;
+        if into_legs < 0.0 {
+            0
+        } else {
+            // Saturates after 4 billion legs.
+            (into_legs / self.config.leg_s) as u32 + 1
+        }
+    }
+
+    /// The targets now; then `dt_s` seconds pass.
+    pub fn step(&mut self, dt_s: f64) -> Targets {
+        let leg = self.leg();
+        self.elapsed_s += dt_s;
+        Targets {
+            airspeed_mps: self.captured.airspeed_mps,
+            heading_rad: self.captured.heading_rad + f64::from(leg) * self.config.turn_rad,
+            altitude_m: self.captured.altitude_m
+                + if leg % 2 == 1 {
+                    self.config.climb_m
+                } else {
+                    0.0
+                },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Thesis, section 6.3, in its own units: (from s, heading change °,
+    /// altitude change ft).
+    const THESIS: [(f64, f64, f64); 5] = [
+        (0.0, 0.0, 0.0),
+        (20.0, 90.0, 150.0),
+        (40.0, 180.0, 0.0),
+        (60.0, 270.0, 150.0),
+        (80.0, 360.0, 0.0),
+    ];
+
+    #[test]
+    fn flies_the_thesis_pattern_to_the_tick() {
+        let captured = Targets {
+            airspeed_mps: 51.4,
+            heading_rad: 1.0,
+            altitude_m: 914.4,
+        };
+        let mut pattern = TimedPattern::begin(TimedPatternConfig::default(), captured);
+        for n in 0..4_000 {
+            let t = f64::from(n) * 0.025;
+            let targets = pattern.step(0.025);
+            let (_, turn_deg, climb_ft) = THESIS
+                .into_iter()
+                .rfind(|(from, ..)| t >= *from - 1e-9)
+                .unwrap();
+            let turned = (targets.heading_rad - 1.0).to_degrees();
+            let climbed = (targets.altitude_m - 914.4) / 0.304_8;
+            assert!((turned - turn_deg).abs() < 1e-9, "at {t} s: {turned}°");
+            assert!((climbed - climb_ft).abs() < 1e-9, "at {t} s: {climbed} ft");
+            assert!((targets.airspeed_mps - 51.4).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Indicated airspeed from the airspeed sensor and the accelerometers.
+
+use libm::{asin, cos, sin, sqrt};
+
+use super::attitude::Orientation;
+use super::vertical::VerticalState;
+use super::{Arrival, News, is_current};
+use crate::blocks::{Complementary, limit_abs};
+use crate::flight::Measurements;
+use crate::flight::atmosphere::{GRAVITY_MPS2, density_ratio};
+use crate::framework::Time;
+
+/// Complementary filter: the acceleration along the flight path in the short
+/// run, the airspeed sensor in the long. A gust that does not move the
+/// aircraft is not taken for a change of speed.
+#[derive(Clone, Debug)]
+pub struct AirspeedChannel {
+    airspeed: Complementary,
+    news: Arrival,
+}
+
+/// Below this the flight-path angle is not worked out, m/s.
+const MIN_AIRSPEED_MPS: f64 = 5.0;
+
+/// Larger angles of attack are not flight, rad.
+const MAX_ALPHA_RAD: f64 = 0.3;
+
+impl AirspeedChannel {
+    /// Time constant in s.
+    pub const fn new(tau_s: f64) -> Self {
+        Self {
+            airspeed: Complementary::new(tau_s),
+            news: Arrival::new(),
+        }
+    }
+
+    /// Takes the measurements; indicated airspeed in m/s.
+    pub fn step(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        orientation: &Orientation,
+        vertical: &VerticalState,
+        dt_s: f64,
+    ) -> f64 {
+        if is_current(&measurements.specific_force, now) {
+            let force = measurements.specific_force.value;
+            let sqrt_density = sqrt(density_ratio(vertical.altitude_m));
+            let true_airspeed = (self.airspeed.value() / sqrt_density).max(MIN_AIRSPEED_MPS);
+            let sin_path = limit_abs(vertical.climb_rate_mps / true_airspeed, 1.0);
+            // Angle of attack, the air taken as still.
+            let alpha = limit_abs(orientation.pitch_rad - asin(sin_path), MAX_ALPHA_RAD);
+            let along_path = force.x_mps2 * cos(alpha) + force.z_mps2 * sin(alpha);
+            self.airspeed
+                .predict((along_path - GRAVITY_MPS2 * sin_path) * sqrt_density, dt_s);
+        }
+        match self.news.of(&measurements.airspeed_mps) {
+            News::None => {}
+            News::First => self.airspeed.reset(measurements.airspeed_mps.value),
+            News::Next(since_s) => self
+                .airspeed
+                .correct(measurements.airspeed_mps.value, since_s),
+        }
+        self.airspeed.value()
+    }
+}

@@ -1,0 +1,95 @@
+//! Pitch, roll and heading from gyroscopes and what is measured outright.
+
+use libm::{cos, sin};
+
+use super::{Arrival, News, is_current};
+use crate::blocks::{Complementary, wrap_pi};
+use crate::flight::Measurements;
+use crate::framework::Time;
+
+/// Pitch, roll and heading; the heading counts on through full turns.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Orientation {
+    /// Right wing down, rad.
+    pub roll_rad: f64,
+    /// Nose up, rad.
+    pub pitch_rad: f64,
+    /// Clockwise from north, rad, unbounded.
+    pub heading_rad: f64,
+}
+
+/// Complementary filter over Euler angles (rates turned into angle rates as in
+/// Stevens, Lewis and Johnson 2016, equation 1.4-4).
+#[derive(Clone, Debug)]
+pub struct AttitudeChannel {
+    roll: Complementary,
+    pitch: Complementary,
+    heading: Complementary,
+    attitude_news: Arrival,
+    heading_news: Arrival,
+}
+
+/// Near the vertical the heading is undefined; the rates are not divided by
+/// less than this cosine (about 80°).
+const MIN_COS_PITCH: f64 = 0.17;
+
+impl AttitudeChannel {
+    /// Time constants in s: of pitch and roll, of the heading.
+    pub const fn new(attitude_tau_s: f64, heading_tau_s: f64) -> Self {
+        Self {
+            roll: Complementary::new(attitude_tau_s),
+            pitch: Complementary::new(attitude_tau_s),
+            heading: Complementary::new(heading_tau_s),
+            attitude_news: Arrival::new(),
+            heading_news: Arrival::new(),
+        }
+    }
+
+    /// Takes the measurements; the orientation.
+    pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) -> Orientation {
+        if is_current(&measurements.body_rates, now) {
+            let rates = measurements.body_rates.value;
+            let (sin_roll, cos_roll) = (sin(self.roll.value()), cos(self.roll.value()));
+            let (sin_pitch, cos_pitch) = (sin(self.pitch.value()), cos(self.pitch.value()));
+            let horizontal = (rates.pitch_radps * sin_roll + rates.yaw_radps * cos_roll)
+                / cos_pitch.max(MIN_COS_PITCH);
+            self.roll
+                .predict(rates.roll_radps + sin_pitch * horizontal, dt_s);
+            self.pitch.predict(
+                rates.pitch_radps * cos_roll - rates.yaw_radps * sin_roll,
+                dt_s,
+            );
+            self.heading.predict(horizontal, dt_s);
+        }
+        let attitude = measurements.attitude;
+        match self.attitude_news.of(&attitude) {
+            News::None => {}
+            News::First => {
+                self.roll.reset(attitude.value.roll_rad);
+                self.pitch.reset(attitude.value.pitch_rad);
+            }
+            News::Next(since_s) => {
+                let roll_error = wrap_pi(attitude.value.roll_rad - self.roll.value());
+                self.roll.lean(roll_error, since_s);
+                self.pitch.correct(attitude.value.pitch_rad, since_s);
+            }
+        }
+        match self.heading_news.of(&measurements.heading_rad) {
+            News::None => {}
+            News::First => {
+                // Keep counting turns from where the count was.
+                let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
+                self.heading.reset(self.heading.value() + error);
+            }
+            News::Next(since_s) => {
+                let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
+                self.heading.lean(error, since_s);
+            }
+        }
+        Orientation {
+            roll_rad: wrap_pi(self.roll.value()),
+            pitch_rad: self.pitch.value(),
+            heading_rad: self.heading.value(),
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Navigation: where we are and how we move.
+//!
+//! Each sensor is good at something: a gyroscope in the short run, gravity and
+//! the compass in the long; accelerometers in the short run, the barometer in
+//! the long. Each channel here blends one such pair, and predicts through
+//! ticks in which nothing new arrived.
+
+mod acceptance;
+mod air_data;
+mod attitude;
+mod vertical;
+
+use core::time::Duration;
+
+use super::{BodyRates, Measurements};
+use crate::blocks::LowPass;
+use crate::framework::{Reading, Time};
+
+pub(crate) use acceptance::accept;
+pub use air_data::AirspeedChannel;
+pub use attitude::AttitudeChannel;
+pub use vertical::VerticalChannel;
+
+/// Time constants of navigation's channels.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct NavigationConfig {
+    /// Above 1/this the gyroscopes say the attitude, below it the measured
+    /// pitch and roll, s.
+    pub attitude_tau_s: f64,
+    /// The same for the heading, s.
+    pub heading_tau_s: f64,
+    /// Above this the accelerometers say the climb rate, below it the
+    /// barometer, rad/s.
+    pub vertical_bandwidth_radps: f64,
+    /// Above 1/this the accelerometers say the airspeed, below it the
+    /// airspeed sensor, s.
+    pub airspeed_tau_s: f64,
+    /// Low pass on the side force, s.
+    pub side_force_tau_s: f64,
+}
+
+impl Default for NavigationConfig {
+    fn default() -> Self {
+        Self {
+            attitude_tau_s: 1.0,
+            heading_tau_s: 2.0,
+            vertical_bandwidth_radps: 0.5,
+            airspeed_tau_s: 1.5,
+            side_force_tau_s: 0.2,
+        }
+    }
+}
+
+/// What navigation makes of the measurements.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[repr(C)]
+pub struct Estimate {
+    /// Right wing down, rad.
+    pub roll_rad: f64,
+    /// Nose up, rad.
+    pub pitch_rad: f64,
+    /// Magnetic heading, rad, counted on through every full turn: 370° is 10°
+    /// after one turn to the right.
+    pub heading_rad: f64,
+    /// Turn rates about the body axes.
+    pub body_rates: BodyRates,
+    /// Indicated airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// True airspeed, m/s.
+    pub true_airspeed_mps: f64,
+    /// Barometric altitude, m.
+    pub altitude_m: f64,
+    /// Climb rate, m/s, up.
+    pub climb_rate_mps: f64,
+    /// Specific force to the right, m/s²: 0 in a coordinated turn.
+    pub side_force_mps2: f64,
+}
+
+/// Turns measurements into an [`Estimate`].
+#[derive(Clone, Debug)]
+pub struct Navigation {
+    attitude: AttitudeChannel,
+    vertical: VerticalChannel,
+    airspeed: AirspeedChannel,
+    side_force: LowPass,
+    estimate: Estimate,
+}
+
+impl Navigation {
+    /// Navigation that knows nothing yet.
+    pub const fn new(config: &NavigationConfig) -> Self {
+        Self {
+            attitude: AttitudeChannel::new(config.attitude_tau_s, config.heading_tau_s),
+            vertical: VerticalChannel::new(config.vertical_bandwidth_radps),
+            airspeed: AirspeedChannel::new(config.airspeed_tau_s),
+            side_force: LowPass::new(config.side_force_tau_s),
+            estimate: Estimate {
+                roll_rad: 0.0,
+                pitch_rad: 0.0,
+                heading_rad: 0.0,
+                body_rates: BodyRates {
+                    roll_radps: 0.0,
+                    pitch_radps: 0.0,
+                    yaw_radps: 0.0,
+                },
+                airspeed_mps: 0.0,
+                true_airspeed_mps: 0.0,
+                altitude_m: 0.0,
+                climb_rate_mps: 0.0,
+                side_force_mps2: 0.0,
+            },
+        }
+    }
+
+    /// Takes the measurements at `now`, `dt_s` seconds of the plant's time
+    /// after the last.
+    pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
+        let attitude = self.attitude.step(now, measurements, dt_s);
+        let force = measurements.specific_force;
+        let vertical = self.vertical.step(now, measurements, &attitude, dt_s);
+        let airspeed_mps = self
+            .airspeed
+            .step(now, measurements, &attitude, &vertical, dt_s);
+        if is_current(&force, now) {
+            self.side_force.step(force.value.y_mps2, dt_s);
+        }
+        self.estimate = Estimate {
+            roll_rad: attitude.roll_rad,
+            pitch_rad: attitude.pitch_rad,
+            heading_rad: attitude.heading_rad,
+            body_rates: measurements.body_rates.value,
+            airspeed_mps,
+            true_airspeed_mps: super::atmosphere::true_airspeed_mps(
+                airspeed_mps,
+                vertical.altitude_m,
+            ),
+            altitude_m: vertical.altitude_m,
+            climb_rate_mps: vertical.climb_rate_mps,
+            side_force_mps2: self.side_force.output(),
+        };
+    }
+
+    /// The latest estimate.
+    pub const fn estimate(&self) -> &Estimate {
+        &self.estimate
+    }
+
+    /// Forgets everything: the plant is not where it was.
+    pub fn reset(&mut self, config: &NavigationConfig) {
+        *self = Self::new(config);
+    }
+}
+
+/// A source that is silent for longer than this is not integrated any more,
+/// and when it returns, it is believed at once.
+const CURRENT: Duration = Duration::from_millis(500);
+
+fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
+    reading.is_fresh(now, CURRENT)
+}
+
+/// Tells a new value from one seen before, and how to take it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrival {
+    taken: Time,
+}
+
+enum News {
+    /// Nothing new.
+    None,
+    /// The first, or the first after a long silence: believe it at once.
+    First,
+    /// One more, this many seconds after the one before.
+    Next(f64),
+}
+
+impl Arrival {
+    const fn new() -> Self {
+        Self { taken: Time::NEVER }
+    }
+
+    fn of<T>(&mut self, reading: &Reading<T>) -> News {
+        if reading.is_never() || reading.taken <= self.taken {
+            return News::None;
+        }
+        let gap = reading.taken.since(self.taken);
+        self.taken = reading.taken;
+        if gap > CURRENT {
+            News::First
+        } else {
+            News::Next(gap.as_secs_f64())
+        }
+    }
+}
