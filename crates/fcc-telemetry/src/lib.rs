@@ -1,1 +1,14 @@
-//! To be written.
+//! What happened: a flight's score, a run's timing, and tables of both.
+//!
+//! Everything here runs outside the loop's thread, on the records that the
+//! loop left behind.
+
+mod flight;
+mod score;
+mod table;
+mod timing;
+
+pub use flight::FlightLog;
+pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
+pub use table::{flight_table, timing_table};
+pub use timing::{Lateness, Period, Realtime, RefusedWish, TimingReport};

@@ -304,7 +304,8 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
-        self.heading.engage(standing.aileron, standing.rudder);
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate);
         self.altitude.engage(standing.elevator, &estimate, schedule);
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);

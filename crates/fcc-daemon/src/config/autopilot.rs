@@ -221,6 +221,8 @@ section! {
         roll_gain_per_s => roll_gain_per_s * SI,
         /// Largest roll rate asked for.
         max_roll_rate_degps => max_roll_rate_radps * DEGREE_RAD,
+        /// Fastest change of the roll rate asked for.
+        max_roll_acceleration_degps2 => max_roll_acceleration_radps2 * DEGREE_RAD,
         /// Aileron that keeps up a roll rate.
         aileron_per_roll_rate => aileron_per_roll_rate * SI,
         /// Aileron per roll-rate error.

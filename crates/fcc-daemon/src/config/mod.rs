@@ -2,9 +2,102 @@
 //!
 //! TOML with units in the key names; unknown keys are refused. Inside is SI:
 //! each section has one struct in the file's units and one way into the
-//! core's.
+//! core's. What may be left out has a default; what is out of its range is
+//! refused with line, key and range.
 
 mod autopilot;
+mod built_in;
+mod error;
+mod ranges;
+mod runtime;
 mod units;
+mod x_plane;
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
 
 pub use autopilot::{AutopilotSection, CourseSection};
+pub use built_in::{BuiltInSection, GustsChoice};
+pub use error::{ConfigError, Problem};
+pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use x_plane::XPlaneSection;
+
+/// A whole configuration file.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Config {
+    /// Rate and timer.
+    #[serde(rename = "loop")]
+    pub tick: LoopSection,
+    /// What is asked of the kernel.
+    pub realtime: RealtimeSection,
+    /// The engage switch.
+    pub engage: EngageSection,
+    /// What happens when sensors fall silent.
+    pub failsafe: FailsafeSection,
+    /// What is flown.
+    pub course: CourseSection,
+    /// Gains and limits.
+    pub autopilot: AutopilotSection,
+    /// The aircraft is X-Plane's.
+    #[serde(rename = "x-plane", skip_serializing_if = "Option::is_none")]
+    pub x_plane: Option<XPlaneSection>,
+    /// The aircraft is the built-in one.
+    #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
+    pub built_in: Option<BuiltInSection>,
+}
+
+/// Which aircraft a configuration flies.
+#[derive(Clone, Copy, Debug)]
+pub enum Aircraft<'a> {
+    /// X-Plane's, over UDP.
+    XPlane(&'a XPlaneSection),
+    /// The built-in one.
+    BuiltIn(&'a BuiltInSection),
+}
+
+impl Config {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, is not TOML, has an unknown key or a value out
+    /// of range: every problem with its line.
+    pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
+            file: path.display().to_string(),
+            source,
+        })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    /// Checks a text; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// As [`Config::load`], but for reading.
+    pub fn parse(text: &str, file: &str) -> Result<Self, ConfigError> {
+        let config: Self =
+            toml::from_str(text).map_err(|error| ConfigError::syntax(file, text, &error))?;
+        let problems = ranges::check(&config, text);
+        if problems.is_empty() {
+            Ok(config)
+        } else {
+            Err(ConfigError::Invalid {
+                file: file.to_owned(),
+                problems,
+            })
+        }
+    }
+
+    /// The aircraft; the built-in one where a program did not say (a file has
+    /// to).
+    pub fn aircraft(&self) -> Aircraft<'_> {
+        static DEFAULT: std::sync::LazyLock<BuiltInSection> =
+            std::sync::LazyLock::new(BuiltInSection::default);
+        match (&self.x_plane, &self.built_in) {
+            (Some(section), _) => Aircraft::XPlane(section),
+            (None, Some(section)) => Aircraft::BuiltIn(section),
+            (None, None) => Aircraft::BuiltIn(&DEFAULT),
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use libm::{atan, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
-use crate::blocks::{Pid, PidConfig, SquareRootProfile, limit_abs};
+use crate::blocks::{Pid, PidConfig, RateLimit, SquareRootProfile, limit_abs};
 use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
 
@@ -20,6 +20,8 @@ pub struct HeadingConfig {
     pub roll_gain_per_s: f64,
     /// Largest roll rate asked for, rad/s.
     pub max_roll_rate_radps: f64,
+    /// Fastest change of the roll rate asked for, rad/s².
+    pub max_roll_acceleration_radps2: f64,
     /// Aileron that keeps up a roll rate, per rad/s.
     pub aileron_per_roll_rate: f64,
     /// Aileron per roll-rate error, per rad/s.
@@ -44,6 +46,7 @@ impl Default for HeadingConfig {
             lead_s: 0.3,
             roll_gain_per_s: 2.5,
             max_roll_rate_radps: 0.5,
+            max_roll_acceleration_radps2: 1.0,
             aileron_per_roll_rate: 0.6,
             roll_rate_gain: 0.4,
             roll_rate_integral_gain: 0.5,
@@ -70,6 +73,7 @@ pub struct Lateral {
 #[derive(Clone, Debug)]
 pub struct HeadingLoop {
     config: HeadingConfig,
+    roll_command: RateLimit,
     roll_rate: Pid,
     side_force: Pid,
 }
@@ -79,6 +83,7 @@ impl HeadingLoop {
     pub const fn new(config: HeadingConfig) -> Self {
         Self {
             config,
+            roll_command: RateLimit::new(config.max_roll_acceleration_radps2),
             roll_rate: Pid::new(PidConfig {
                 kp: config.roll_rate_gain,
                 ki: config.roll_rate_integral_gain,
@@ -93,7 +98,8 @@ impl HeadingLoop {
     }
 
     /// Takes over with the surfaces where they stand.
-    pub fn engage(&mut self, aileron: f64, rudder: f64) {
+    pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate) {
+        self.roll_command.reset(estimate.body_rates.roll_radps);
         self.roll_rate.engage(aileron, 0.0, 0.0, 0.0);
         self.side_force.engage(rudder, 0.0, 0.0, 0.0);
     }
@@ -131,10 +137,11 @@ impl HeadingLoop {
         dt_s: f64,
     ) -> Lateral {
         let config = &self.config;
-        let roll_rate = limit_abs(
+        let wanted = limit_abs(
             config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
             config.max_roll_rate_radps,
         );
+        let roll_rate = self.roll_command.step(wanted, dt_s);
         let aileron = self.roll_rate.step_scheduled(
             roll_rate,
             estimate.body_rates.roll_radps,

@@ -1,0 +1,94 @@
+# Two commands do everything on a fresh Debian machine with Rust, Python and a
+# C compiler: `make fly` and `make test`. Each installs what it lacks.
+
+AIRCRAFT ?= c172p
+LEGS     ?= 8
+SEED     ?= 1
+JSON     ?= target/fly-jsbsim-$(AIRCRAFT).json
+PLOT     ?= $(JSON:.json=.png)
+# Faults of network and sensors for fly-jsbsim, such as
+# HARSH="--loss 0.02 --duplicate 0.01 --reorder 0.01 --noise".
+HARSH    ?=
+
+# Where `cargo` puts what it builds.
+TARGET   := $(or $(CARGO_TARGET_DIR),target)
+FCCD     := $(TARGET)/release/fccd
+VENV     := .venv
+PYTHON   := $(VENV)/bin/python
+STAMPS   := .stamps
+
+.PHONY: help fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench doc build clean
+
+help: ## Show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+build:
+	cargo build --locked --release -p fcc-daemon
+
+fly: $(STAMPS)/rust build ## Fly the built-in aircraft through the timed pattern, in real time
+	$(FCCD) fly
+
+fly-jsbsim: $(STAMPS)/rust build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protocol (AIRCRAFT= LEGS= JSON= HARSH=)
+	@mkdir -p $(dir $(JSON))
+	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) \
+	    --fccd $(FCCD) --json $(JSON) --plot $(PLOT) $(HARSH)
+
+test: lint test-rust test-python ## Run every check and every test
+
+test-rust: $(STAMPS)/rust
+	cargo test --locked --workspace --exclude fcc-py --all-features
+	cargo build --locked -p fcc-core --no-default-features
+
+test-python: $(STAMPS)/rust build $(STAMPS)/python-module
+	FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil crates/fcc-py
+
+lint: lint-rust lint-python deny ## Check formatting, lints, licences
+
+lint-rust: $(STAMPS)/rust
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
+
+lint-python: $(STAMPS)/python
+	$(PYTHON) -m ruff check hil crates/fcc-py
+	$(PYTHON) -m ruff format --check hil crates/fcc-py
+	cd hil && ../$(PYTHON) -m mypy
+
+deny: $(STAMPS)/rust
+	@command -v cargo-deny >/dev/null || cargo install --locked cargo-deny
+	cargo deny --log-level error check bans licenses sources
+
+fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly toolchain)
+	@command -v cargo-fuzz >/dev/null || cargo install --locked cargo-fuzz
+	for target in $$(cargo +nightly fuzz list); do \
+	    cargo +nightly fuzz run $$target -- -max_total_time=60 || exit 1; \
+	done
+
+bench: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
+	$(PYTHON) -m fcc_hil bench
+
+doc: $(STAMPS)/rust ## Build the API documentation
+	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
+
+clean: ## Remove what was built
+	cargo clean
+	rm -rf $(VENV) $(STAMPS)
+
+# --- set-up ------------------------------------------------------------------
+
+# rustup reads rust-toolchain.toml and fetches what is missing at first use.
+$(STAMPS)/rust: rust-toolchain.toml
+	@command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs"; exit 1; }
+	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/python: hil/pyproject.toml
+	@python3 -c 'import ensurepip, venv' 2>/dev/null || ./scripts/apt-install python3-venv
+	python3 -m venv $(VENV)
+	$(PYTHON) -m pip install --quiet --editable './hil[dev]'
+	@mkdir -p $(STAMPS) && touch $@
+
+# The module `fcc` is built anew whenever its sources changed: cargo knows.
+.PHONY: $(STAMPS)/python-module
+$(STAMPS)/python-module: $(STAMPS)/python
+	cd crates/fcc-py && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet

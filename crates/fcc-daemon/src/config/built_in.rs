@@ -1,0 +1,61 @@
+//! `[built-in]`: the aircraft is the built-in one.
+
+use serde::{Deserialize, Serialize};
+
+/// `[built-in]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BuiltInSection {
+    /// At the start.
+    pub altitude_ft: f64,
+    /// Indicated, at the start.
+    pub airspeed_kt: f64,
+    /// At the start.
+    pub heading_deg: f64,
+    /// Where the wind comes from.
+    pub wind_from_deg: f64,
+    /// Steady wind.
+    pub wind_kt: f64,
+    /// Turbulence.
+    pub gusts: GustsChoice,
+    /// Whether the sensors are noisy, as a phone's are.
+    pub noise: bool,
+    /// How late the sensors are.
+    pub delay_ms: u32,
+    /// When the engage switch goes on.
+    pub engage_at_s: f64,
+    /// The same seed flies the same flight.
+    pub seed: u64,
+}
+
+/// How strong the gusts are (MIL-F-8785C).
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GustsChoice {
+    /// Still air.
+    #[default]
+    None,
+    /// Light.
+    Light,
+    /// Moderate.
+    Moderate,
+    /// Severe.
+    Severe,
+}
+
+impl Default for BuiltInSection {
+    fn default() -> Self {
+        Self {
+            altitude_ft: 3_000.0,
+            airspeed_kt: 100.0,
+            heading_deg: 0.0,
+            wind_from_deg: 0.0,
+            wind_kt: 0.0,
+            gusts: GustsChoice::None,
+            noise: true,
+            delay_ms: 0,
+            engage_at_s: 2.0,
+            seed: 1,
+        }
+    }
+}

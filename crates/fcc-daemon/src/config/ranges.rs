@@ -1,0 +1,233 @@
+//! What the numbers of a configuration may be.
+//!
+//! One table of ranges for all numeric keys; a test shows that no key is
+//! missing from it.
+
+use toml::de::DeTable;
+
+use super::error::line_of;
+use super::{Config, Problem};
+
+/// Key, smallest and largest value.
+const RANGES: &[(&str, f64, f64)] = &[
+    ("loop.rate_hz", 1.0, 2_000.0),
+    ("realtime.priority", 0.0, 99.0),
+    ("realtime.cpu", 0.0, 1_023.0),
+    ("realtime.stack_prefault_kib", 0.0, 4_096.0),
+    ("realtime.timer_slack_ns", 0.0, 1e9),
+    ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
+    ("failsafe.hold_s", 0.0, 600.0),
+    ("course.hold_s", 0.0, 86_400.0),
+    ("course.leg_s", 1.0, 86_400.0),
+    ("course.turn_deg", -179.0, 179.0),
+    ("course.climb_ft", -5_000.0, 5_000.0),
+    ("autopilot.reference_airspeed_kt", 15.0, 600.0),
+    ("autopilot.envelope.max_bank_deg", 5.0, 60.0),
+    ("autopilot.envelope.max_load_factor_g", 1.05, 6.0),
+    ("autopilot.envelope.max_pitch_deg", 2.0, 45.0),
+    ("autopilot.envelope.min_pitch_deg", -45.0, -2.0),
+    ("autopilot.envelope.min_airspeed_kt", 5.0, 400.0),
+    ("autopilot.envelope.max_airspeed_kt", 10.0, 600.0),
+    ("autopilot.envelope.max_climb_fpm", 10.0, 10_000.0),
+    ("autopilot.envelope.max_sink_fpm", 10.0, 10_000.0),
+    ("autopilot.envelope.airspeed_margin_kt", 0.5, 100.0),
+    ("autopilot.navigation.attitude_tau_s", 0.01, 100.0),
+    ("autopilot.navigation.heading_tau_s", 0.01, 100.0),
+    ("autopilot.navigation.vertical_bandwidth_radps", 0.01, 10.0),
+    ("autopilot.navigation.airspeed_tau_s", 0.01, 100.0),
+    ("autopilot.navigation.side_force_tau_s", 0.0, 10.0),
+    ("autopilot.heading.heading_gain_per_s", 0.01, 10.0),
+    ("autopilot.heading.rollout_rate_degps", 0.5, 180.0),
+    ("autopilot.heading.lead_s", 0.0, 5.0),
+    ("autopilot.heading.roll_gain_per_s", 0.1, 20.0),
+    ("autopilot.heading.max_roll_rate_degps", 1.0, 360.0),
+    ("autopilot.heading.max_roll_acceleration_degps2", 1.0, 3_600.0),
+    ("autopilot.heading.aileron_per_roll_rate", 0.0, 10.0),
+    ("autopilot.heading.roll_rate_gain", 0.0, 10.0),
+    ("autopilot.heading.roll_rate_integral_gain", 0.0, 50.0),
+    ("autopilot.heading.rudder_per_aileron", -2.0, 2.0),
+    ("autopilot.heading.rudder_per_side_g", 0.0, 100.0),
+    ("autopilot.heading.rudder_per_side_g_s", 0.0, 100.0),
+    ("autopilot.heading.yaw_damping", 0.0, 20.0),
+    ("autopilot.altitude.altitude_gain_per_s", 0.01, 5.0),
+    ("autopilot.altitude.capture_g", 0.002, 1.0),
+    ("autopilot.altitude.climb_acceleration_g", 0.002, 1.0),
+    ("autopilot.altitude.climb_rate_gain", 0.0, 20.0),
+    ("autopilot.altitude.climb_rate_integral_gain_per_s", 0.0, 20.0),
+    ("autopilot.altitude.angle_of_attack_per_g_deg", 0.0, 20.0),
+    ("autopilot.altitude.pitch_gain_per_s", 0.1, 20.0),
+    ("autopilot.altitude.max_pitch_rate_degps", 0.5, 90.0),
+    ("autopilot.altitude.pitch_rate_gain", 0.0, 20.0),
+    ("autopilot.altitude.pitch_rate_integral_gain", 0.0, 100.0),
+    ("autopilot.altitude.elevator_per_g", 0.0, 10.0),
+    ("autopilot.airspeed.airspeed_gain_per_s", 0.0, 10.0),
+    ("autopilot.airspeed.airspeed_integral_gain_per_s2", 0.0, 10.0),
+    ("autopilot.airspeed.throttle_per_g", 0.0, 100.0),
+    ("autopilot.airspeed.induced_drag_ratio", 0.0, 1.0),
+    ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
+    ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
+    ("x-plane.local_port", 0.0, 65_535.0),
+    ("x-plane.data_version", 9.0, 12.0),
+    ("x-plane.magnetic_heading_column", 2.0, 7.0),
+    ("x-plane.rate_hz", 1.0, 1_000.0),
+    ("x-plane.engines", 1.0, 8.0),
+    ("x-plane.resubscribe_s", 0.1, 3_600.0),
+    ("x-plane.silent_after_ms", 50.0, 60_000.0),
+    ("x-plane.datagrams_per_tick", 1.0, 1_000.0),
+    ("built-in.altitude_ft", 500.0, 20_000.0),
+    ("built-in.airspeed_kt", 50.0, 160.0),
+    ("built-in.heading_deg", 0.0, 360.0),
+    ("built-in.wind_from_deg", 0.0, 360.0),
+    ("built-in.wind_kt", 0.0, 60.0),
+    ("built-in.delay_ms", 0.0, 1_000.0),
+    ("built-in.engage_at_s", 0.1, 3_600.0),
+    ("built-in.seed", 0.0, 9.3e18),
+];
+
+/// Everything that is wrong with the values of a configuration.
+pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
+    let places = Places::of(text);
+    let mut problems = Vec::new();
+    let mut complain = |key: &str, message: String| {
+        problems.push(Problem {
+            line: places.line(key),
+            key: Some(key.to_owned()),
+            message,
+        });
+    };
+    match toml::Value::try_from(config) {
+        Ok(values) => {
+            for (key, least, most) in RANGES {
+                if let Some(value) = number_at(&values, key)
+                    && !(*least..=*most).contains(&value)
+                {
+                    complain(key, format!("is {value}: choose {least} to {most}"));
+                }
+            }
+        }
+        // TOML has no integers above i64.
+        Err(_) => complain(
+            "built-in.seed",
+            format!("is too large: choose 0 to {}", i64::MAX),
+        ),
+    }
+    relations(config, &mut complain);
+    problems
+}
+
+/// What one value means for another.
+fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
+    let envelope = &config.autopilot.envelope;
+    if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
+        complain(
+            "autopilot.envelope.min_airspeed_kt",
+            format!(
+                "is {}: choose less than max_airspeed_kt, {}",
+                envelope.min_airspeed_kt, envelope.max_airspeed_kt
+            ),
+        );
+    }
+    match (&config.x_plane, &config.built_in) {
+        (Some(_), Some(_)) => complain(
+            "built-in",
+            "stands beside [x-plane]: keep the section of the aircraft that is to be flown"
+                .to_owned(),
+        ),
+        (None, None) => complain(
+            "x-plane",
+            "or [built-in] is missing: add the section of the aircraft that is to be flown"
+                .to_owned(),
+        ),
+        _ => {}
+    }
+    if let Some(x_plane) = &config.x_plane
+        && let Err(error) = fcc_xplane::XPlaneConfig::from(x_plane).validate()
+    {
+        complain("x-plane", error.to_string());
+    }
+}
+
+fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
+    let value = key
+        .split('.')
+        .try_fold(values, |value, part| value.get(part))?;
+    value
+        .as_float()
+        .or_else(|| value.as_integer().map(|integer| integer as f64))
+}
+
+/// Where the keys of a text are.
+struct Places<'a> {
+    text: &'a str,
+    table: Option<toml::Spanned<DeTable<'a>>>,
+}
+
+impl<'a> Places<'a> {
+    fn of(text: &'a str) -> Self {
+        Self {
+            text,
+            table: DeTable::parse(text).ok(),
+        }
+    }
+
+    /// The line of a key, if the text says it.
+    fn line(&self, key: &str) -> Option<usize> {
+        let mut table = self.table.as_ref()?.get_ref();
+        let mut parts = key.split('.').peekable();
+        while let Some(part) = parts.next() {
+            let (name, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
+            if parts.peek().is_none() {
+                return Some(line_of(self.text, &name.span()));
+            }
+            table = value.get_ref().as_table()?;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{BuiltInSection, XPlaneSection};
+
+    /// A new key without a range would be a key whose nonsense is believed.
+    #[test]
+    fn every_number_has_a_range() {
+        let mut config = Config {
+            x_plane: Some(XPlaneSection::default()),
+            built_in: Some(BuiltInSection::default()),
+            ..Config::default()
+        };
+        config.realtime.cpu = Some(1);
+        let values = toml::Value::try_from(&config).unwrap();
+        let mut missing = Vec::new();
+        walk("", &values, &mut missing);
+        assert!(missing.is_empty(), "without a range: {missing:?}");
+    }
+
+    fn walk(prefix: &str, value: &toml::Value, missing: &mut Vec<String>) {
+        match value {
+            toml::Value::Table(table) => {
+                for (name, value) in table {
+                    let separator = if prefix.is_empty() { "" } else { "." };
+                    walk(&format!("{prefix}{separator}{name}"), value, missing);
+                }
+            }
+            toml::Value::Float(_) | toml::Value::Integer(_)
+                if !RANGES.iter().any(|(key, ..)| *key == prefix) =>
+            {
+                missing.push(prefix.to_owned());
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn the_defaults_are_in_range() {
+        let config = Config {
+            built_in: Some(BuiltInSection::default()),
+            ..Config::default()
+        };
+        assert_eq!(check(&config, ""), Vec::new());
+    }
+}

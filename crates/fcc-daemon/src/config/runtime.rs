@@ -1,0 +1,162 @@
+//! `[loop]`, `[realtime]`, `[engage]` and `[failsafe]`: the loop's part of the
+//! configuration.
+
+use std::time::Duration;
+
+use fcc_core::framework::SwitchOff;
+use fcc_runtime::AfterFailsafe;
+use fcc_timer::{RealtimeWishes, Strictness, TimerKind};
+use serde::{Deserialize, Serialize};
+
+/// `[loop]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LoopSection {
+    /// Ticks a second.
+    pub rate_hz: f64,
+    /// Which timer wakes the loop.
+    #[serde(with = "timer_name")]
+    pub timer: TimerKind,
+}
+
+impl Default for LoopSection {
+    fn default() -> Self {
+        Self {
+            rate_hz: 40.0,
+            timer: TimerKind::Timerfd,
+        }
+    }
+}
+
+impl LoopSection {
+    /// Time between ticks, to the nanosecond.
+    pub fn period(&self) -> Duration {
+        Duration::from_secs_f64(1.0 / self.rate_hz)
+    }
+}
+
+/// `[realtime]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RealtimeSection {
+    /// `SCHED_FIFO` priority of the loop's thread; 0 leaves it to the ordinary
+    /// scheduler.
+    pub priority: u8,
+    /// The CPU that the loop's thread is bound to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu: Option<usize>,
+    /// Whether to keep the process' memory from being paged out.
+    pub lock_memory: bool,
+    /// How much stack to touch before the first tick.
+    pub stack_prefault_kib: u32,
+    /// How late the kernel may make a wake-up to save power.
+    pub timer_slack_ns: u64,
+    /// Whether a refused wish ends the program at once.
+    pub strict: bool,
+}
+
+impl Default for RealtimeSection {
+    fn default() -> Self {
+        Self {
+            priority: 80,
+            cpu: None,
+            lock_memory: true,
+            stack_prefault_kib: 256,
+            timer_slack_ns: 1,
+            strict: false,
+        }
+    }
+}
+
+impl From<&RealtimeSection> for RealtimeWishes {
+    fn from(section: &RealtimeSection) -> Self {
+        Self {
+            priority: (section.priority > 0).then_some(section.priority),
+            cpu: section.cpu,
+            lock_memory: section.lock_memory,
+            stack_prefault_bytes: section.stack_prefault_kib as usize * 1_024,
+            timer_slack_ns: (section.timer_slack_ns > 0).then_some(section.timer_slack_ns),
+            strictness: if section.strict {
+                Strictness::Strict
+            } else {
+                Strictness::Warn
+            },
+        }
+    }
+}
+
+/// What comes next: watch on, or end the program.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Then {
+    /// Release the controls and watch on.
+    #[default]
+    Standby,
+    /// Release the controls and end the program.
+    Stop,
+}
+
+impl From<Then> for SwitchOff {
+    fn from(then: Then) -> Self {
+        match then {
+            Then::Standby => Self::Standby,
+            Then::Stop => Self::Stop,
+        }
+    }
+}
+
+impl From<Then> for AfterFailsafe {
+    fn from(then: Then) -> Self {
+        match then {
+            Then::Standby => Self::Standby,
+            Then::Stop => Self::Stop,
+        }
+    }
+}
+
+/// `[engage]`.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EngageSection {
+    /// What switching off means.
+    pub switch_off: Then,
+}
+
+/// `[failsafe]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FailsafeSection {
+    /// Readings older than this are a loss of their sensor.
+    pub sensor_max_age_ms: u64,
+    /// How long wings are held level before the controls are released.
+    pub hold_s: f64,
+    /// What comes after.
+    pub then: Then,
+}
+
+impl Default for FailsafeSection {
+    fn default() -> Self {
+        Self {
+            sensor_max_age_ms: 250,
+            hold_s: 5.0,
+            then: Then::Standby,
+        }
+    }
+}
+
+/// A timer by its name.
+mod timer_name {
+    use std::str::FromStr;
+
+    use fcc_timer::TimerKind;
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(kind: &TimerKind, out: S) -> Result<S::Ok, S::Error> {
+        out.collect_str(kind)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<TimerKind, D::Error> {
+        let name = String::deserialize(from)?;
+        TimerKind::from_str(&name).map_err(D::Error::custom)
+    }
+}

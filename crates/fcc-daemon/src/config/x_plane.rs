@@ -1,0 +1,138 @@
+//! `[x-plane]`: the aircraft is X-Plane's.
+
+use std::net::SocketAddrV4;
+use std::time::Duration;
+
+use fcc_xplane::{DataRows, Input, Output, RowsVersion, Simulator, XPlaneConfig};
+use serde::{Deserialize, Serialize};
+
+/// `[x-plane]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct XPlaneSection {
+    /// `beacon`, or IPv4 address and port.
+    #[serde(with = "simulator_text")]
+    pub simulator: Simulator,
+    /// UDP port to receive on; 0 for any that is free.
+    pub local_port: u16,
+    /// How measurements come.
+    pub input: InputChoice,
+    /// The version whose rows come, for `input = "data"`.
+    pub data_version: u8,
+    /// Column of the magnetic heading in the attitude row, for
+    /// `input = "data"`.
+    pub magnetic_heading_column: u8,
+    /// How surfaces go.
+    pub output: OutputChoice,
+    /// How often each dataref is asked for.
+    pub rate_hz: u16,
+    /// How many engines take the throttle.
+    pub engines: u8,
+    /// The dataref that engages: on from 0.5 up.
+    pub engage_switch: String,
+    /// After so long without a dataref's value it is asked for again.
+    pub resubscribe_s: f64,
+    /// After so long without a datagram the simulator counts as silent.
+    pub silent_after_ms: u64,
+    /// The most datagrams read in one tick.
+    pub datagrams_per_tick: u16,
+}
+
+/// How measurements come.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum InputChoice {
+    /// By subscribed datarefs.
+    Rref,
+    /// By rows of Data Output.
+    Data,
+}
+
+/// How surfaces go.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutputChoice {
+    /// By datarefs.
+    Dref,
+    /// By rows.
+    Data,
+}
+
+impl Default for XPlaneSection {
+    fn default() -> Self {
+        let core = XPlaneConfig::default();
+        Self {
+            simulator: core.simulator,
+            local_port: core.local_port,
+            input: InputChoice::Rref,
+            data_version: 12,
+            magnetic_heading_column: 3,
+            output: OutputChoice::Dref,
+            rate_hz: core.rate_hz,
+            engines: core.engines,
+            engage_switch: core.engage_switch,
+            resubscribe_s: core.resubscribe.as_secs_f64(),
+            silent_after_ms: core.silent_after.as_millis() as u64,
+            datagrams_per_tick: core.datagrams_per_tick,
+        }
+    }
+}
+
+impl From<&XPlaneSection> for XPlaneConfig {
+    fn from(section: &XPlaneSection) -> Self {
+        Self {
+            simulator: section.simulator,
+            local_port: section.local_port,
+            input: match section.input {
+                InputChoice::Rref => Input::Rref,
+                InputChoice::Data => Input::Data(DataRows {
+                    version: match section.data_version {
+                        9 => RowsVersion::XPlane9,
+                        10 | 11 => RowsVersion::XPlane10,
+                        _ => RowsVersion::XPlane12,
+                    },
+                    magnetic_heading_column: section.magnetic_heading_column,
+                }),
+            },
+            output: match section.output {
+                OutputChoice::Dref => Output::Dref,
+                OutputChoice::Data => Output::Data,
+            },
+            rate_hz: section.rate_hz,
+            engines: section.engines,
+            engage_switch: section.engage_switch.clone(),
+            resubscribe: Duration::from_secs_f64(section.resubscribe_s),
+            silent_after: Duration::from_millis(section.silent_after_ms),
+            datagrams_per_tick: section.datagrams_per_tick,
+            ..Self::default()
+        }
+    }
+}
+
+/// `beacon`, or IPv4 address and port.
+mod simulator_text {
+    use super::{Simulator, SocketAddrV4};
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub(super) fn serialize<S: Serializer>(at: &Simulator, out: S) -> Result<S::Ok, S::Error> {
+        match at {
+            Simulator::Beacon => out.serialize_str("beacon"),
+            Simulator::At(address) => out.collect_str(address),
+        }
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Simulator, D::Error> {
+        let text = String::deserialize(from)?;
+        if text == "beacon" {
+            return Ok(Simulator::Beacon);
+        }
+        text.parse::<SocketAddrV4>()
+            .map(Simulator::At)
+            .map_err(|_| {
+                D::Error::custom(format!(
+                    "\"{text}\" is neither \"beacon\" nor an IPv4 address with a port, \
+                     such as \"127.0.0.1:49000\""
+                ))
+            })
+    }
+}

@@ -1,0 +1,207 @@
+//! How well a flight kept to its legs.
+//!
+//! Angles are compared the short way round. A sample that lies on the border
+//! of two legs counts to the one that begins there.
+
+use serde::Serialize;
+
+/// What was flown at one instant, in the units of the score.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Sample {
+    /// On any clock, ascending.
+    pub time_s: f64,
+    /// Any number of turns.
+    pub heading_deg: f64,
+    /// Altitude.
+    pub altitude_ft: f64,
+    /// Indicated airspeed.
+    pub airspeed_kt: f64,
+    /// Specific force to the right over gravity.
+    pub lateral_g: f64,
+}
+
+/// One stretch of a flight with constant set points, and those it comes from;
+/// it covers `start_s <= time < end_s`.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Leg {
+    /// On the samples' clock.
+    pub start_s: f64,
+    /// On the samples' clock.
+    pub end_s: f64,
+    /// Set point before the leg.
+    pub heading_from_deg: f64,
+    /// Set point of the leg.
+    pub heading_deg: f64,
+    /// Set point before the leg.
+    pub altitude_from_ft: f64,
+    /// Set point of the leg.
+    pub altitude_ft: f64,
+    /// Set point of the leg.
+    pub airspeed_kt: f64,
+}
+
+/// The figures of one leg, or the worst of each over all legs.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct LegScore {
+    /// Time from the leg's start after which the heading stays within 2° to
+    /// the leg's end; none if it does not.
+    pub heading_settle_s: Option<f64>,
+    /// How far the heading goes past its set point in the turn's direction.
+    pub heading_overshoot_deg: f64,
+    /// Root mean square of the heading error in the last 3 s.
+    pub heading_rms_deg: f64,
+    /// The same as for the heading, within 10 ft.
+    pub altitude_settle_s: Option<f64>,
+    /// How far the altitude goes past its set point in the climb's direction.
+    pub altitude_overshoot_ft: f64,
+    /// Root mean square of the altitude error in the last 8 s.
+    pub altitude_rms_ft: f64,
+    /// How far the altitude falls below the lower of the two that the leg
+    /// joins: in a level turn, the height it loses.
+    pub turn_loss_ft: f64,
+    /// Largest airspeed error either way.
+    pub airspeed_error_kt: f64,
+    /// Largest lateral acceleration either way.
+    pub lateral_acceleration_g: f64,
+}
+
+/// A flight's figures.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct FlightScore {
+    /// By leg, in the order flown.
+    pub legs: Vec<LegScore>,
+    /// The worst of each figure; none where there is no whole leg.
+    pub worst: Option<LegScore>,
+}
+
+/// Why a flight could not be scored.
+#[derive(Clone, PartialEq, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScoreError {
+    /// A leg has no samples, or none near its end.
+    #[error("the leg from {start_s:.1} s to {end_s:.1} s was not flown to its end: fly longer")]
+    NotFlown {
+        /// When the leg was to begin.
+        start_s: f64,
+        /// When it was to end.
+        end_s: f64,
+    },
+}
+
+const HEADING_BAND_DEG: f64 = 2.0;
+const ALTITUDE_BAND_FT: f64 = 10.0;
+const HEADING_WINDOW_S: f64 = 3.0;
+const ALTITUDE_WINDOW_S: f64 = 8.0;
+/// Sums of ticks end this close to a leg's border.
+const ROUNDING_S: f64 = 1e-6;
+
+/// Scores a flight: samples in ascending time, one score per leg.
+///
+/// # Errors
+/// When a leg was not flown to its end.
+pub fn score(samples: &[Sample], legs: &[Leg]) -> Result<FlightScore, ScoreError> {
+    let legs = legs
+        .iter()
+        .map(|leg| score_leg(samples, leg))
+        .collect::<Result<Vec<_>, _>>()?;
+    let worst = legs.iter().copied().reduce(LegScore::worst);
+    Ok(FlightScore { legs, worst })
+}
+
+impl LegScore {
+    fn worst(self, other: Self) -> Self {
+        let later = |a: Option<f64>, b: Option<f64>| Some(a?.max(b?));
+        Self {
+            heading_settle_s: later(self.heading_settle_s, other.heading_settle_s),
+            heading_overshoot_deg: self.heading_overshoot_deg.max(other.heading_overshoot_deg),
+            heading_rms_deg: self.heading_rms_deg.max(other.heading_rms_deg),
+            altitude_settle_s: later(self.altitude_settle_s, other.altitude_settle_s),
+            altitude_overshoot_ft: self.altitude_overshoot_ft.max(other.altitude_overshoot_ft),
+            altitude_rms_ft: self.altitude_rms_ft.max(other.altitude_rms_ft),
+            turn_loss_ft: self.turn_loss_ft.max(other.turn_loss_ft),
+            airspeed_error_kt: self.airspeed_error_kt.max(other.airspeed_error_kt),
+            lateral_acceleration_g: self
+                .lateral_acceleration_g
+                .max(other.lateral_acceleration_g),
+        }
+    }
+}
+
+fn score_leg(samples: &[Sample], leg: &Leg) -> Result<LegScore, ScoreError> {
+    let from = samples.partition_point(|s| s.time_s < leg.start_s - ROUNDING_S);
+    let to = samples.partition_point(|s| s.time_s < leg.end_s - ROUNDING_S);
+    let flown = samples.get(from..to).unwrap_or_default();
+    let not_flown = ScoreError::NotFlown {
+        start_s: leg.start_s,
+        end_s: leg.end_s,
+    };
+
+    let heading: Vec<(f64, f64)> = flown
+        .iter()
+        .map(|s| (s.time_s, wrap_degrees(s.heading_deg - leg.heading_deg)))
+        .collect();
+    let altitude: Vec<(f64, f64)> = flown
+        .iter()
+        .map(|s| (s.time_s, s.altitude_ft - leg.altitude_ft))
+        .collect();
+    let floor_ft = leg.altitude_from_ft.min(leg.altitude_ft);
+    let largest =
+        |of: fn(&Sample, &Leg) -> f64| flown.iter().map(|s| of(s, leg).abs()).fold(0.0, f64::max);
+    Ok(LegScore {
+        heading_settle_s: settle(&heading, HEADING_BAND_DEG, leg),
+        heading_overshoot_deg: overshoot(
+            &heading,
+            wrap_degrees(leg.heading_deg - leg.heading_from_deg),
+        ),
+        heading_rms_deg: rms_at_end(&heading, HEADING_WINDOW_S, leg).ok_or(not_flown.clone())?,
+        altitude_settle_s: settle(&altitude, ALTITUDE_BAND_FT, leg),
+        altitude_overshoot_ft: overshoot(&altitude, leg.altitude_ft - leg.altitude_from_ft),
+        altitude_rms_ft: rms_at_end(&altitude, ALTITUDE_WINDOW_S, leg).ok_or(not_flown)?,
+        turn_loss_ft: flown
+            .iter()
+            .map(|s| floor_ft - s.altitude_ft)
+            .fold(0.0, f64::max),
+        airspeed_error_kt: largest(|s, leg| s.airspeed_kt - leg.airspeed_kt),
+        lateral_acceleration_g: largest(|s, _| s.lateral_g),
+    })
+}
+
+/// When the error comes to stay within the band, from the leg's start.
+fn settle(errors: &[(f64, f64)], band: f64, leg: &Leg) -> Option<f64> {
+    let settled = errors
+        .iter()
+        .rposition(|(_, error)| error.abs() > band)
+        .map_or(0, |last_outside| last_outside + 1);
+    errors
+        .get(settled)
+        .map(|(time_s, _)| (time_s - leg.start_s).max(0.0))
+}
+
+fn overshoot(errors: &[(f64, f64)], change: f64) -> f64 {
+    let past = |error: f64| {
+        if change == 0.0 {
+            error.abs()
+        } else {
+            error * change.signum()
+        }
+    };
+    errors
+        .iter()
+        .map(|(_, error)| past(*error))
+        .fold(0.0, f64::max)
+}
+
+fn rms_at_end(errors: &[(f64, f64)], window_s: f64, leg: &Leg) -> Option<f64> {
+    let last = errors
+        .iter()
+        .filter(|(time_s, _)| leg.end_s - time_s <= window_s + ROUNDING_S);
+    let (count, sum) = last.fold((0_u32, 0.0), |(count, sum), (_, error)| {
+        (count + 1, sum + error * error)
+    });
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
+}
+
+/// The same angle in -180..180.
+fn wrap_degrees(angle: f64) -> f64 {
+    (angle + 180.0).rem_euclid(360.0) - 180.0
+}

@@ -1,0 +1,161 @@
+//! Tables for people.
+
+use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
+use comfy_table::{CellAlignment, Table};
+
+use super::score::{FlightScore, LegScore};
+use super::timing::TimingReport;
+
+fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_HORIZONTAL_ONLY);
+    table.set_header(header);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
+/// it what the thesis did not measure.
+pub fn timing_table(reports: &[TimingReport]) -> String {
+    let mut header = vec![String::new()];
+    header.extend(
+        reports
+            .iter()
+            .map(|report| format!("{} Hz {}", report.rate_hz, report.timer)),
+    );
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut table = table(&header);
+    let mut row = |name: &str, value: &dyn Fn(&TimingReport) -> String| {
+        let mut cells = vec![name.to_owned()];
+        cells.extend(reports.iter().map(value));
+        table.add_row(cells);
+    };
+    row("Runtime", &|r| format!("{:.2} s", r.runtime_s));
+    row("Average", &|r| format!("{:.4} ms", r.period_ms.mean));
+    row("Median", &|r| format!("{:.3} ms", r.period_ms.median));
+    row("Min time", &|r| format!("{:.3} ms", r.period_ms.min));
+    row("Max time", &|r| format!("{:.3} ms", r.period_ms.max));
+    row("Range", &|r| format!("{:.3} ms", r.period_ms.range));
+    row("Missed", &|r| r.missed.to_string());
+    row("Within ±2 %", &|r| {
+        format!("{:.3} %", 100.0 * r.period_ms.within_2_percent)
+    });
+    row("Lateness p50", &|r| format!("{:.1} µs", r.lateness_us.p50));
+    row("Lateness p99", &|r| format!("{:.1} µs", r.lateness_us.p99));
+    row("Lateness p99.9", &|r| {
+        format!("{:.1} µs", r.lateness_us.p99_9)
+    });
+    row("Lateness max", &|r| format!("{:.1} µs", r.lateness_us.max));
+    row("CPU", &|r| format!("{:.2} %", r.cpu_percent));
+    row("Scheduling", &|r| match r.realtime.priority {
+        0 => r.realtime.policy.to_owned(),
+        priority => format!("{} {priority}", r.realtime.policy),
+    });
+    row("Memory locked", &|r| {
+        if r.realtime.memory_locked {
+            "yes"
+        } else {
+            "no"
+        }
+        .to_owned()
+    });
+    let mut text = table.to_string();
+    for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
+        text.push_str(&format!(
+            "\nnot granted: {} ({}): {}",
+            refused.wish, refused.reason, refused.remedy
+        ));
+    }
+    text
+}
+
+/// A row per leg and the worst of each column.
+pub fn flight_table(score: &FlightScore) -> String {
+    let mut table = table(&[
+        "Leg",
+        "≤2° s",
+        "overshoot °",
+        "hdg RMS °",
+        "≤10 ft s",
+        "overshoot ft",
+        "alt RMS ft",
+        "turn loss ft",
+        "airspeed kt",
+        "lateral g",
+    ]);
+    for (index, leg) in score.legs.iter().enumerate() {
+        table.add_row(cells((index + 1).to_string(), leg));
+    }
+    if let Some(worst) = &score.worst {
+        table.add_row(cells("worst".to_owned(), worst));
+    }
+    table.to_string()
+}
+
+fn cells(name: String, leg: &LegScore) -> Vec<String> {
+    let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
+    vec![
+        name,
+        settle(leg.heading_settle_s),
+        format!("{:.2}", leg.heading_overshoot_deg),
+        format!("{:.2}", leg.heading_rms_deg),
+        settle(leg.altitude_settle_s),
+        format!("{:.2}", leg.altitude_overshoot_ft),
+        format!("{:.2}", leg.altitude_rms_ft),
+        format!("{:.2}", leg.turn_loss_ft),
+        format!("{:.2}", leg.airspeed_error_kt),
+        format!("{:.3}", leg.lateral_acceleration_g),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::timing::{Lateness, Period, Realtime};
+    use super::*;
+
+    /// The thesis' table 6.1, its own figures through our table.
+    #[test]
+    fn prints_the_thesis_table_as_the_thesis_does() {
+        let report = TimingReport {
+            rate_hz: 40.0,
+            timer: "posix",
+            ticks: 2_716,
+            missed: 0,
+            runtime_s: 67.90,
+            period_ms: Period {
+                mean: 25.0001,
+                median: 24.994,
+                min: 16.785,
+                max: 32.593,
+                range: 32.593 - 16.785,
+                within_2_percent: 0.7,
+            },
+            lateness_us: Lateness {
+                p50: 1.0,
+                p99: 2.0,
+                p99_9: 3.0,
+                max: 4.0,
+            },
+            realtime: Realtime {
+                policy: "SCHED_OTHER",
+                priority: 0,
+                memory_locked: false,
+                refused: Vec::new(),
+            },
+            cpu_percent: 1.0,
+        };
+        let text = timing_table(&[report]);
+        for figure in [
+            "67.90 s",
+            "25.0001 ms",
+            "24.994 ms",
+            "16.785 ms",
+            "32.593 ms",
+            "15.808 ms",
+        ] {
+            assert!(text.contains(figure), "{figure} is not in\n{text}");
+        }
+    }
+}
