@@ -1,6 +1,16 @@
 //! `fccd`, the flight control computer's daemon: configuration, putting the
 //! parts together, commands for people.
 //!
+//! | module | what it does |
+//! |---|---|
+//! | [`config`] | reads and checks the configuration file |
+//! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
+//! | [`flight`] | makes a loop of a configuration, flies it and watches |
+//!
 //! The library is for the Python module, which reads the same configuration.
 
+pub mod cli;
+pub mod commands;
 pub mod config;
+pub mod exit;
+pub mod flight;

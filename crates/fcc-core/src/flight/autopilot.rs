@@ -305,7 +305,7 @@ impl Controller for Autopilot {
                 ..Surfaces::default()
             });
         self.heading
-            .engage(standing.aileron, standing.rudder, &estimate);
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
         self.altitude.engage(standing.elevator, &estimate, schedule);
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);

@@ -1,6 +1,10 @@
 //! `[built-in]`: the aircraft is the built-in one.
 
+use clap::ValueEnum;
+use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, Wind};
 use serde::{Deserialize, Serialize};
+
+use super::units::{FOOT_M, KNOT_MPS};
 
 /// `[built-in]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -21,7 +25,7 @@ pub struct BuiltInSection {
     /// Whether the sensors are noisy, as a phone's are.
     pub noise: bool,
     /// How late the sensors are.
-    pub delay_ms: u32,
+    pub delay_ms: u16,
     /// When the engage switch goes on.
     pub engage_at_s: f64,
     /// The same seed flies the same flight.
@@ -29,7 +33,7 @@ pub struct BuiltInSection {
 }
 
 /// How strong the gusts are (MIL-F-8785C).
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum GustsChoice {
     /// Still air.
@@ -56,6 +60,41 @@ impl Default for BuiltInSection {
             delay_ms: 0,
             engage_at_s: 2.0,
             seed: 1,
+        }
+    }
+}
+
+impl From<&BuiltInSection> for SimConfig {
+    fn from(section: &BuiltInSection) -> Self {
+        Self {
+            altitude_m: section.altitude_ft * FOOT_M,
+            indicated_airspeed_mps: section.airspeed_kt * KNOT_MPS,
+            heading_rad: section.heading_deg.to_radians(),
+            wind: Wind {
+                from_rad: section.wind_from_deg.to_radians(),
+                speed_mps: section.wind_kt * KNOT_MPS,
+            },
+            gusts: match section.gusts {
+                GustsChoice::None => None,
+                GustsChoice::Light => Some(Severity::Light),
+                GustsChoice::Moderate => Some(Severity::Moderate),
+                GustsChoice::Severe => Some(Severity::Severe),
+            },
+            sensors: SensorConfig {
+                noise: if section.noise {
+                    Channels::TYPICAL_NOISE
+                } else {
+                    Channels::default()
+                },
+                delay_ms: section.delay_ms,
+                ..SensorConfig::default()
+            },
+            switch: SwitchScript {
+                on_at_s: Some(section.engage_at_s),
+                off_at_s: None,
+            },
+            seed: section.seed,
+            ..Self::default()
         }
     }
 }

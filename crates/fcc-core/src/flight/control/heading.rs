@@ -98,10 +98,21 @@ impl HeadingLoop {
     }
 
     /// Takes over with the surfaces where they stand.
-    pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate) {
-        self.roll_command.reset(estimate.body_rates.roll_radps);
-        self.roll_rate.engage(aileron, 0.0, 0.0, 0.0);
-        self.side_force.engage(rudder, 0.0, 0.0, 0.0);
+    pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
+        let roll_rate = estimate.body_rates.roll_radps;
+        self.roll_command.reset(roll_rate);
+        self.roll_rate.engage(
+            aileron,
+            roll_rate,
+            roll_rate,
+            self.aileron_feed_forward(roll_rate, schedule),
+        );
+        self.side_force.engage(
+            rudder,
+            0.0,
+            estimate.side_force_mps2,
+            self.rudder_feed_forward(aileron, estimate, schedule),
+        );
     }
 
     /// One step towards a heading (rad, counted on through full turns).
@@ -145,20 +156,15 @@ impl HeadingLoop {
         let aileron = self.roll_rate.step_scheduled(
             roll_rate,
             estimate.body_rates.roll_radps,
-            schedule.rate * config.aileron_per_roll_rate * roll_rate,
+            self.aileron_feed_forward(roll_rate, schedule),
             schedule.moment,
             dt_s,
         );
-        // Yaw rate of a level coordinated turn: g/V sin φ cos θ.
-        let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
-            * sin(estimate.roll_rad)
-            * cos(estimate.pitch_rad);
-        let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
         // A side force to the right asks for the nose to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
-            config.rudder_per_aileron * aileron - schedule.moment * config.yaw_damping * excess,
+            self.rudder_feed_forward(aileron, estimate, schedule),
             schedule.moment,
             dt_s,
         );
@@ -167,6 +173,22 @@ impl HeadingLoop {
             aileron,
             rudder,
         }
+    }
+
+    /// The aileron that keeps up a roll rate.
+    fn aileron_feed_forward(&self, roll_rate_radps: f64, schedule: Schedule) -> f64 {
+        schedule.rate * self.config.aileron_per_roll_rate * roll_rate_radps
+    }
+
+    /// The rudder that goes with the aileron, and damps what yaw rate is not
+    /// the turn's own: g/V sin φ cos θ in a level coordinated turn.
+    fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
+        let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
+            * sin(estimate.roll_rad)
+            * cos(estimate.pitch_rad);
+        let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
+        self.config.rudder_per_aileron * aileron
+            - schedule.moment * self.config.yaw_damping * excess
     }
 
     /// The aileron that the loop has found to fly with wings level.

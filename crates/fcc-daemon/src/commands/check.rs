@@ -1,0 +1,55 @@
+//! `fccd check FILE`.
+
+use serde::Serialize;
+
+use super::print_json;
+use crate::cli::CheckArgs;
+use crate::config::{Aircraft, Config, Problem};
+use crate::exit::Exit;
+
+#[derive(Serialize)]
+struct Checked {
+    ok: bool,
+    problems: Vec<Problem>,
+}
+
+/// Checks a configuration file.
+pub(super) fn check(args: &CheckArgs) -> Exit {
+    let checked = Config::load(&args.file);
+    let exit = if checked.is_ok() {
+        Exit::Success
+    } else {
+        Exit::Usage
+    };
+    if args.json {
+        let problems = match &checked {
+            Ok(_) => Vec::new(),
+            Err(error) => error.problems(),
+        };
+        let printed = print_json(&Checked {
+            ok: checked.is_ok(),
+            problems,
+        });
+        return if printed == Exit::Success {
+            exit
+        } else {
+            printed
+        };
+    }
+    match checked {
+        Ok(config) => {
+            let aircraft = match config.aircraft() {
+                Aircraft::XPlane(_) => "X-Plane's aircraft",
+                Aircraft::BuiltIn(_) => "the built-in aircraft",
+            };
+            println!(
+                "{}: good: flies {aircraft} at {} Hz by {}",
+                args.file.display(),
+                config.tick.rate_hz,
+                config.tick.timer
+            );
+        }
+        Err(error) => eprintln!("{error}"),
+    }
+    exit
+}

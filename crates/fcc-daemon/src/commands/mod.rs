@@ -1,0 +1,47 @@
+//! What the commands do: each prints its result on standard output, speaks to
+//! people on standard error, and ends with a code that means something.
+
+mod check;
+mod fly;
+mod run;
+mod timing;
+
+use std::io;
+
+use clap::CommandFactory;
+use serde::Serialize;
+
+use crate::cli::{Cli, Command};
+use crate::exit::Exit;
+
+/// Carries out a command.
+pub fn run(cli: Cli) -> Exit {
+    match cli.command {
+        Command::Fly(args) => fly::fly(&args),
+        Command::Run(args) => run::run(&args),
+        Command::Timing(args) => timing::timing(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Completions { shell } => {
+            clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());
+            Exit::Success
+        }
+    }
+}
+
+/// Prints a result for other tools to read.
+fn print_json<T: Serialize>(value: &T) -> Exit {
+    let mut out = io::stdout().lock();
+    let printed = serde_json::to_writer_pretty(&mut out, value)
+        .map_err(io::Error::from)
+        .and_then(|()| io::Write::write_all(&mut out, b"\n"));
+    match printed {
+        Ok(()) => Exit::Success,
+        Err(error) => fail(&format!("the result could not be printed: {error}")),
+    }
+}
+
+/// Says what went wrong.
+fn fail(message: &str) -> Exit {
+    eprintln!("fccd: {message}");
+    Exit::Failure
+}

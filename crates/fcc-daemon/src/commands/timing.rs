@@ -1,0 +1,93 @@
+//! `fccd timing`: the experiment of the thesis (section 6.1).
+//!
+//! The whole loop runs, as it did there: at each rate the built-in aircraft is
+//! flown, and the times at which the loop woke are what is reported.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fcc_telemetry::{TimingReport, timing_table};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{fail, print_json};
+use crate::cli::TimingArgs;
+use crate::config::{BuiltInSection, Config, CourseSection, LoopSection};
+use crate::exit::Exit;
+use crate::flight::{Pace, Plan, assemble, fly};
+
+/// How long the aircraft flies before the switch engages the autopilot, s.
+const ENGAGE_AT_S: f64 = 0.1;
+
+/// Measures at each rate.
+pub(super) fn timing(args: &TimingArgs) -> Exit {
+    let mut reports = Vec::new();
+    for rate_hz in &args.rates {
+        match measure(args, *rate_hz) {
+            Ok(report) => reports.push(report),
+            Err(message) => return fail(&message),
+        }
+    }
+    if args.json {
+        return print_json(&reports);
+    }
+    println!("{}", timing_table(&reports));
+    Exit::Success
+}
+
+fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
+    let mut config = Config {
+        tick: LoopSection {
+            rate_hz,
+            timer: args.timer,
+        },
+        course: CourseSection::Hold,
+        built_in: Some(BuiltInSection {
+            engage_at_s: ENGAGE_AT_S,
+            ..BuiltInSection::default()
+        }),
+        ..Config::default()
+    };
+    config.realtime.priority = args.priority;
+    config.realtime.cpu = args.cpu;
+    let assembly = assemble(&config).map_err(|error| error.to_string())?;
+    let plan = Plan {
+        pace: Pace::RealTime,
+        seconds: Some(args.seconds),
+        quiet: true,
+        announce: false,
+    };
+    let progress = Progress::start(rate_hz, args.seconds);
+    let outcome = fly(assembly, &config.tick, plan).map_err(|error| error.to_string());
+    progress.stop();
+    Ok(outcome?.timing)
+}
+
+/// A bar that fills while a measurement runs; nothing where standard error is
+/// no terminal.
+struct Progress {
+    bar: ProgressBar,
+    ticker: thread::JoinHandle<()>,
+}
+
+impl Progress {
+    fn start(rate_hz: f64, seconds: f64) -> Self {
+        let bar = ProgressBar::new((seconds * 1e3) as u64).with_message(format!("{rate_hz} Hz"));
+        if let Ok(style) = ProgressStyle::with_template("{msg:>8} {wide_bar} {eta:>4} left") {
+            bar.set_style(style);
+        }
+        let moving = bar.clone();
+        let began = Instant::now();
+        let ticker = thread::spawn(move || {
+            while !moving.is_finished() {
+                moving.set_position(began.elapsed().as_millis() as u64);
+                thread::sleep(Duration::from_millis(200));
+            }
+        });
+        Self { bar, ticker }
+    }
+
+    fn stop(self) {
+        self.bar.finish_and_clear();
+        let _ = self.ticker.join();
+    }
+}

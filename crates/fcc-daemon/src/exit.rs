@@ -1,0 +1,40 @@
+//! Exit codes, each with one meaning.
+
+use std::process::ExitCode;
+
+/// How the program ends.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(u8)]
+pub enum Exit {
+    /// All went as it should.
+    Success = 0,
+    /// The operating system, the network or a part of the program failed.
+    Failure = 1,
+    /// The command line or the configuration is wrong.
+    Usage = 2,
+    /// The flight fell into failsafe.
+    Failsafe = 3,
+    /// A real-time wish was refused and `realtime.strict` is set.
+    RealtimeRefused = 4,
+    /// Control may still be held by this program's overrides.
+    NotReleased = 5,
+    /// A part of the loop panicked; the controls were released.
+    Panicked = 6,
+}
+
+/// For `--help`.
+pub const EXIT_CODES: &str = "\
+Exit codes:
+  0  all went as it should
+  1  the operating system, the network or a part of the program failed
+  2  the command line or the configuration is wrong
+  3  the flight fell into failsafe
+  4  a real-time wish was refused and realtime.strict is set
+  5  control may not have been released
+  6  a part of the loop panicked; the controls were released";
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}

@@ -1,0 +1,86 @@
+//! Puts sensors, autopilot and actuators together as a configuration says.
+
+use std::time::Duration;
+
+use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Surfaces};
+use fcc_core::framework::{Actuator, Sensor};
+use fcc_runtime::LoopConfig;
+use fcc_sim::{SimConfig, SimError, Simulation};
+use fcc_timer::RealtimeWishes;
+use fcc_xplane::{OpenError, XPlane, XPlaneConfig};
+
+use super::tap::{TruthReceiver, tap};
+use crate::config::{Aircraft, Config};
+
+/// A flight that is put together and lacks only its clock.
+pub struct Assembly {
+    /// Sampled in this order.
+    pub sensors: Vec<Box<dyn Sensor<Measurements>>>,
+    /// Navigation, guidance and control.
+    pub autopilot: Autopilot,
+    /// Driven in this order.
+    pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
+    /// What the loop is told.
+    pub loop_config: LoopConfig,
+    /// What is true of a simulated aircraft, tick by tick; none where only
+    /// sensors tell.
+    pub(super) truth: Option<TruthReceiver>,
+}
+
+/// Why a flight could not be put together.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum AssemblyError {
+    /// The built-in aircraft is impossible.
+    #[error("the built-in aircraft: {0}")]
+    BuiltIn(#[from] SimError),
+    /// The connection to X-Plane could not be opened.
+    #[error("X-Plane: {0}")]
+    XPlane(#[from] OpenError),
+}
+
+/// Puts a flight together.
+///
+/// # Errors
+/// When the aircraft cannot be had.
+pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
+    let autopilot = Autopilot::new(autopilot_config(config));
+    let loop_config = LoopConfig {
+        switch_off: config.engage.switch_off.into(),
+        failsafe_hold: Duration::from_secs_f64(config.failsafe.hold_s),
+        after_failsafe: config.failsafe.then.into(),
+        realtime: RealtimeWishes::from(&config.realtime),
+        ..LoopConfig::default()
+    };
+    match config.aircraft() {
+        Aircraft::BuiltIn(section) => {
+            let simulation = Simulation::new(&SimConfig::from(section))?;
+            let (sensor, truth) = tap(simulation.sensor, loop_config.messages_capacity);
+            Ok(Assembly {
+                sensors: vec![Box::new(sensor)],
+                autopilot,
+                actuators: vec![Box::new(simulation.actuator)],
+                loop_config,
+                truth: Some(truth),
+            })
+        }
+        Aircraft::XPlane(section) => {
+            let (sensor, actuator) = XPlane::open(&XPlaneConfig::from(section))?;
+            Ok(Assembly {
+                sensors: vec![Box::new(sensor)],
+                autopilot,
+                actuators: vec![Box::new(actuator)],
+                loop_config,
+                truth: None,
+            })
+        }
+    }
+}
+
+/// The core's configuration of a file.
+pub(crate) fn autopilot_config(config: &Config) -> AutopilotConfig {
+    config.autopilot.to_core(
+        &config.course,
+        Duration::from_millis(config.failsafe.sensor_max_age_ms),
+    )
+}

@@ -1,0 +1,141 @@
+//! How a flight ended, for people and for tools.
+
+use fcc_runtime::{Ending, LoopReport};
+use fcc_telemetry::{
+    FlightScore, Lateness, Period, Realtime, RefusedWish, TimingReport, flight_table, timing_table,
+};
+use fcc_timer::{RealtimeGrants, TimingSummary};
+use serde::Serialize;
+
+use crate::exit::Exit;
+
+/// How a flight ended.
+#[derive(Debug, Serialize)]
+pub struct Outcome {
+    /// How well the loop kept time.
+    pub timing: TimingReport,
+    /// How well the pattern was flown; none without a pattern.
+    pub flight: Option<FlightScore>,
+    /// What happened, in order.
+    pub events: Vec<EventEntry>,
+    /// Why the loop ended.
+    pub ending: String,
+    /// How often it fell into failsafe.
+    pub failsafes: u64,
+    /// Whether control was given back.
+    pub released: bool,
+    /// Records that nobody fetched in time.
+    pub records_dropped: u64,
+    /// What the program's exit code says.
+    #[serde(skip)]
+    pub exit: Exit,
+}
+
+/// Something that happened once.
+#[derive(Clone, Debug, Serialize)]
+pub struct EventEntry {
+    /// Since the loop's first tick.
+    pub time_s: f64,
+    /// In which tick.
+    pub tick: u64,
+    /// What it was, in words.
+    pub text: String,
+}
+
+impl Outcome {
+    pub(super) fn new(
+        timer: &'static str,
+        report: LoopReport,
+        events: Vec<EventEntry>,
+        flight: Option<FlightScore>,
+    ) -> Self {
+        let exit = match report.ending {
+            _ if !report.released => Exit::NotReleased,
+            Ending::Panicked(_) => Exit::Panicked,
+            Ending::TimerFailed(_) => Exit::Failure,
+            _ if report.failsafes > 0 => Exit::Failsafe,
+            _ => Exit::Success,
+        };
+        Self {
+            timing: timing_report(
+                timer,
+                &report.timing,
+                &report.grants.unwrap_or_default(),
+                report.cpu_time.as_secs_f64(),
+            ),
+            flight,
+            events,
+            ending: report.ending.to_string(),
+            failsafes: report.failsafes,
+            released: report.released,
+            records_dropped: report.records_dropped,
+            exit,
+        }
+    }
+
+    /// Tables for people.
+    pub fn to_text(&self) -> String {
+        let mut text = timing_table(std::slice::from_ref(&self.timing));
+        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+            text.push_str("\n\n");
+            text.push_str(&flight_table(flight));
+        }
+        text.push_str(&format!("\n\nended: {}", self.ending));
+        if self.failsafes > 0 {
+            text.push_str(&format!("; failsafe {} times", self.failsafes));
+        }
+        if !self.released {
+            text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
+        }
+        text
+    }
+}
+
+/// The timing of a loop as other tools read it.
+pub(crate) fn timing_report(
+    timer: &'static str,
+    summary: &TimingSummary,
+    grants: &RealtimeGrants,
+    cpu_s: f64,
+) -> TimingReport {
+    TimingReport {
+        rate_hz: summary.rate_hz,
+        timer,
+        ticks: summary.ticks,
+        missed: summary.missed,
+        runtime_s: summary.runtime_s,
+        period_ms: Period {
+            mean: summary.period_mean_ms,
+            median: summary.period_median_ms,
+            min: summary.period_min_ms,
+            max: summary.period_max_ms,
+            range: summary.period_range_ms,
+            within_2_percent: summary.period_within_2_percent,
+        },
+        lateness_us: Lateness {
+            p50: summary.lateness_p50_us,
+            p99: summary.lateness_p99_us,
+            p99_9: summary.lateness_p99_9_us,
+            max: summary.lateness_max_us,
+        },
+        realtime: Realtime {
+            policy: grants.policy,
+            priority: grants.priority,
+            memory_locked: grants.memory_locked,
+            refused: grants
+                .refused
+                .iter()
+                .map(|refusal| RefusedWish {
+                    wish: refusal.wish.clone(),
+                    reason: refusal.reason.clone(),
+                    remedy: refusal.remedy.clone(),
+                })
+                .collect(),
+        },
+        cpu_percent: if summary.runtime_s > 0.0 {
+            100.0 * cpu_s / summary.runtime_s
+        } else {
+            0.0
+        },
+    }
+}

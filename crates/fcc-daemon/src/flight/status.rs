@@ -1,0 +1,78 @@
+//! A line each second for who watches.
+
+use fcc_core::flight::Autopilot;
+use fcc_core::framework::{Controller, State};
+use fcc_runtime::Record;
+
+const M_FT: f64 = 1.0 / 0.304_8;
+const MPS_KT: f64 = 3_600.0 / 1_852.0;
+
+/// Prints a line each second of the loop's time, on standard error.
+#[derive(Default)]
+pub(super) struct Printer {
+    printed_s: Option<f64>,
+    worst_us: f64,
+    missed: u64,
+}
+
+impl Printer {
+    pub(super) fn record(
+        &mut self,
+        record: &Record<Autopilot>,
+        now_s: f64,
+        engaged_at_s: Option<f64>,
+    ) {
+        self.worst_us = self
+            .worst_us
+            .max(record.tick.lateness().as_secs_f64() * 1e6);
+        self.missed += record.tick.missed;
+        // A hair early, so that a sum of ticks does not skip a second.
+        if self.printed_s.is_none_or(|last| now_s - last >= 1.0 - 1e-6) {
+            self.printed_s = Some(now_s);
+            eprintln!("{}", self.line(record, now_s, engaged_at_s));
+            self.worst_us = 0.0;
+        }
+    }
+
+    fn line(&self, record: &Record<Autopilot>, now_s: f64, engaged_at_s: Option<f64>) -> String {
+        let measured = &record.measurements;
+        let timing = format!("late ≤{:6.1} µs  missed {}", self.worst_us, self.missed);
+        if measured.airspeed_mps.is_never() {
+            return format!(
+                "{now_s:8.2} s  {:<8}  no aircraft yet  {timing}",
+                record.state
+            );
+        }
+        let heading = measured.heading_rad.value.to_degrees().rem_euclid(360.0);
+        let altitude = measured.altitude_m.value * M_FT;
+        let airspeed = measured.airspeed_mps.value * MPS_KT;
+        let bank = measured.attitude.value.roll_rad.to_degrees();
+        let aims = &record.setpoints;
+        match record.state {
+            State::Engaged => {
+                let since = engaged_at_s.map_or(0.0, |at_s| now_s - at_s);
+                format!(
+                    "{now_s:8.2} s  engaged {since:5.0} s  \
+                     heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
+                     altitude {altitude:5.0} → {:5.0} ft  airspeed {airspeed:5.1} → {:5.1} kt  \
+                     throttle {:3.0} %  {timing}",
+                    aims.heading_rad.to_degrees(),
+                    aims.altitude_m * M_FT,
+                    aims.airspeed_mps * MPS_KT,
+                    record.outputs.throttle * 100.0,
+                )
+            }
+            state => {
+                let mut line = format!(
+                    "{now_s:8.2} s  {state:<13}  heading {heading:3.0}°  bank {bank:3.0}°  \
+                     altitude {altitude:5.0} ft  airspeed {airspeed:5.1} kt  {timing}"
+                );
+                for (n, bit) in record.blockers.iter().enumerate() {
+                    line.push_str(if n == 0 { "  not ready: " } else { ", " });
+                    line.push_str(Autopilot::flag_name(bit));
+                }
+                line
+            }
+        }
+    }
+}

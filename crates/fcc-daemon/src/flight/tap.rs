@@ -1,0 +1,60 @@
+//! What is true of the built-in aircraft, tick by tick, for scoring.
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::{Sensor, SensorFault, Tick};
+use fcc_sim::{SimSensor, Truth};
+use rtrb::{Consumer, Producer, RingBuffer};
+
+/// The built-in aircraft's sensor, which also leaves the truth of each tick in
+/// a ring. A full ring drops: scoring must not hold up a flight.
+pub(super) struct TappedSensor {
+    sensor: SimSensor,
+    truth: Producer<(u64, Truth)>,
+}
+
+/// The other end of the ring.
+pub(super) struct TruthReceiver {
+    truth: Consumer<(u64, Truth)>,
+}
+
+/// Taps a sensor; the ring holds `capacity` ticks.
+pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TappedSensor, TruthReceiver) {
+    let (producer, consumer) = RingBuffer::new(capacity);
+    (
+        TappedSensor {
+            sensor,
+            truth: producer,
+        },
+        TruthReceiver { truth: consumer },
+    )
+}
+
+impl Sensor<Measurements> for TappedSensor {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let sampled = self.sensor.sample(tick, into);
+        let _ = self
+            .truth
+            .push((tick.number, self.sensor.aircraft().truth()));
+        sampled
+    }
+
+    fn name(&self) -> &'static str {
+        self.sensor.name()
+    }
+}
+
+impl TruthReceiver {
+    /// The truth of a tick, if it was kept; earlier ones are passed over.
+    pub(super) fn of_tick(&mut self, number: u64) -> Option<Truth> {
+        while let Ok((tick, truth)) = self.truth.peek().copied() {
+            if tick > number {
+                return None;
+            }
+            let _ = self.truth.pop();
+            if tick == number {
+                return Some(truth);
+            }
+        }
+        None
+    }
+}

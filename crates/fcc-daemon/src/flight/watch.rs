@@ -1,0 +1,155 @@
+//! Takes what the loop tells, and keeps what matters later.
+
+use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_core::flight::{Autopilot, Course};
+use fcc_core::framework::State;
+use fcc_runtime::{Event, Message, Record};
+use fcc_sim::Truth;
+use fcc_telemetry::{FlightLog, Sample};
+
+use super::fly::Plan;
+use super::outcome::EventEntry;
+use super::status;
+use super::tap::TruthReceiver;
+
+const M_FT: f64 = 1.0 / 0.304_8;
+const MPS_KT: f64 = 3_600.0 / 1_852.0;
+const G_MPS2: f64 = 9.806_65;
+
+/// Takes what the loop tells, and keeps what matters later.
+pub(super) struct Watch {
+    truth: Option<TruthReceiver>,
+    log: Option<FlightLog>,
+    events: Vec<EventEntry>,
+    start_ns: Option<i64>,
+    engaged_at_s: Option<f64>,
+    now_s: f64,
+    failed: bool,
+    announce: bool,
+    status: Option<status::Printer>,
+}
+
+impl Watch {
+    /// Watches a flight along a course.
+    pub(super) fn new(course: &Course, truth: Option<TruthReceiver>, plan: Plan) -> Self {
+        Self {
+            truth,
+            log: pattern(course).map(FlightLog::new),
+            events: Vec::new(),
+            start_ns: None,
+            engaged_at_s: None,
+            now_s: 0.0,
+            failed: false,
+            announce: plan.announce,
+            status: (!plan.quiet).then(status::Printer::default),
+        }
+    }
+
+    /// Takes one message.
+    pub(super) fn take(&mut self, message: &Message<Autopilot>) {
+        match message {
+            Message::Tick(record) => self.record(record),
+            Message::Event(event) => self.event(event),
+        }
+    }
+
+    /// Seconds since the loop was engaged; none while it is not.
+    pub(super) fn engaged_for_s(&self) -> Option<f64> {
+        self.engaged_at_s.map(|at_s| self.now_s - at_s)
+    }
+
+    /// Whether the loop fell into failsafe.
+    pub(super) fn failed(&self) -> bool {
+        self.failed
+    }
+
+    /// What was kept: events, and the log of the flight.
+    pub(super) fn into_parts(self) -> (Vec<EventEntry>, Option<FlightLog>) {
+        (self.events, self.log)
+    }
+
+    fn record(&mut self, record: &Record<Autopilot>) {
+        self.now_s = self.seconds(record.tick.scheduled.as_nanos());
+        let truth = self
+            .truth
+            .as_mut()
+            .and_then(|truth| truth.of_tick(record.tick.number));
+        if record.state == State::Engaged {
+            if self.engaged_at_s.is_none() {
+                self.engaged_at_s = Some(self.now_s);
+                if let Some(log) = &mut self.log {
+                    log.clear();
+                }
+            }
+            let sample = match truth {
+                Some(truth) => true_sample(self.now_s, &truth),
+                None => measured_sample(self.now_s, record),
+            };
+            if let Some(log) = &mut self.log {
+                log.push(sample);
+            }
+        } else {
+            self.engaged_at_s = None;
+        }
+        if let Some(status) = &mut self.status {
+            status.record(record, self.now_s, self.engaged_at_s);
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        let entry = EventEntry {
+            time_s: self.seconds(event.time.as_nanos()),
+            tick: event.tick,
+            text: event.kind.words::<Autopilot>().to_string(),
+        };
+        self.failed |= matches!(
+            event.kind,
+            fcc_runtime::EventKind::StateChanged {
+                to: State::Failsafe(_),
+                ..
+            }
+        );
+        if self.announce {
+            eprintln!("{:8.2} s  {}", entry.time_s, entry.text);
+        }
+        self.events.push(entry);
+    }
+
+    /// Seconds since the first thing the loop told; an event before the first
+    /// tick is at 0.
+    fn seconds(&mut self, nanos: i64) -> f64 {
+        if nanos == i64::MIN {
+            return 0.0;
+        }
+        let start = *self.start_ns.get_or_insert(nanos);
+        (nanos - start) as f64 * 1e-9
+    }
+}
+
+fn pattern(course: &Course) -> Option<TimedPatternConfig> {
+    match course {
+        Course::TimedPattern(pattern) => Some(*pattern),
+        Course::Hold => None,
+    }
+}
+
+fn true_sample(time_s: f64, truth: &Truth) -> Sample {
+    Sample {
+        time_s,
+        heading_deg: truth.heading_rad.to_degrees(),
+        altitude_ft: truth.altitude_m * M_FT,
+        airspeed_kt: truth.indicated_airspeed_mps * MPS_KT,
+        lateral_g: truth.specific_force.y_mps2 / G_MPS2,
+    }
+}
+
+fn measured_sample(time_s: f64, record: &Record<Autopilot>) -> Sample {
+    let measured = &record.measurements;
+    Sample {
+        time_s,
+        heading_deg: measured.heading_rad.value.to_degrees(),
+        altitude_ft: measured.altitude_m.value * M_FT,
+        airspeed_kt: measured.airspeed_mps.value * MPS_KT,
+        lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
+    }
+}
