@@ -53,10 +53,17 @@ impl TimingSummary {
             if stats.periods() == 0 { f64::NAN } else { ns }
         };
         let of_ticks = |ns: f64| if stats.ticks == 0 { f64::NAN } else { ns };
+        // What a histogram cannot tell apart it gives as the middle, which may
+        // lie outside of the exact limits.
         let lateness_us = |quantile: f64| {
             let histogram = &stats.lateness;
             let value = histogram.median_equivalent(histogram.value_at_quantile(quantile));
-            of_ticks(value as f64) / NS_PER_US
+            of_ticks(value.min(stats.lateness_max_ns.unsigned_abs()) as f64) / NS_PER_US
+        };
+        let median_ns = |deviation_ns: f64| {
+            (nominal_ns as f64 + deviation_ns)
+                .max(stats.period_min_ns as f64)
+                .min(stats.period_max_ns as f64)
         };
         Self {
             rate_hz: NS_PER_S / nominal_ns as f64,
@@ -68,9 +75,7 @@ impl TimingSummary {
                 stats.last_woke_ns.saturating_sub(stats.began_ns) as f64 / NS_PER_S
             },
             period_mean_ms: of_periods(since_first_ns as f64) / stats.periods() as f64 / NS_PER_MS,
-            period_median_ms: stats.deviations.median().map_or(f64::NAN, |deviation_ns| {
-                (nominal_ns as f64 + deviation_ns) / NS_PER_MS
-            }),
+            period_median_ms: stats.deviations.median().map_or(f64::NAN, median_ns) / NS_PER_MS,
             period_min_ms: of_periods(stats.period_min_ns as f64) / NS_PER_MS,
             period_max_ms: of_periods(stats.period_max_ns as f64) / NS_PER_MS,
             period_range_ms: of_periods(

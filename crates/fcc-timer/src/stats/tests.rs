@@ -133,6 +133,14 @@ fn two_percent_of_25_ms_is_half_a_millisecond_and_counts_as_within() {
 }
 
 #[test]
+fn no_quantile_lies_outside_of_the_limits() {
+    let summary = recorded([1_520_711, 35_001, 1_520_711]);
+    assert_near(summary.lateness_p99_9_us, 1520.711, 0.0);
+    let summary = with_periods(NOMINAL, &[23_505_364; 3]);
+    assert_near(summary.period_median_ms, 23.505_364, 0.0);
+}
+
+#[test]
 fn misses_add_up() {
     let mut stats = TimingStats::new(NOMINAL).unwrap();
     for (number, missed) in [(1, 0), (4, 2), (5, 0), (10, 4)] {

@@ -19,6 +19,14 @@ extern "C" fn count(_: libc::c_int) {
     HANDLED.set(HANDLED.get() + 1);
 }
 
+struct OnDrop<F: Fn()>(F);
+
+impl<F: Fn()> Drop for OnDrop<F> {
+    fn drop(&mut self) {
+        (self.0)();
+    }
+}
+
 /// How many signals the calling thread handles while `work` runs. Without
 /// `SA_RESTART`, each of them ends a system call with EINTR.
 pub(crate) fn of_this_thread_during(work: impl FnOnce()) -> u64 {
@@ -40,8 +48,9 @@ pub(crate) fn of_this_thread_during(work: impl FnOnce()) -> u64 {
                 thread::sleep(Duration::from_millis(3));
             }
         });
+        // Also when the work panics, or the scope would wait for ever.
+        let _stop = OnDrop(|| done.store(true, Ordering::Release));
         work();
-        done.store(true, Ordering::Release);
     });
     HANDLED.get() - before
 }
