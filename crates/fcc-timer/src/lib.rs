@@ -1,9 +1,48 @@
 //! The clock of the loop.
 //!
-//! Three periodic timers behind one trait, [`Timer`]: timerfd, POSIX timer and
-//! `clock_nanosleep`, all on `CLOCK_MONOTONIC` with absolute deadlines, so
-//! that a late tick is late once and the phase is kept.
+//! Three periodic timers behind one trait, [`Timer`]: [`TimerFd`],
+//! [`PosixTimer`] and [`Nanosleep`], all on `CLOCK_MONOTONIC` with absolute
+//! deadlines, so that a late tick is late once and the phase is kept. A fourth,
+//! [`ManualTimer`], never waits: it drives a loop in lockstep with a simulator
+//! or a test.
+//!
+//! Around them, what a real-time thread needs of the kernel: [`realtime`] asks
+//! for scheduling, a CPU and locked memory and reads back what was granted,
+//! [`TimingStats`] counts periods and lateness in fixed memory, and the
+//! functions of [`usage`] tell the thread's CPU time and page faults.
+//!
+//! ```
+//! use fcc_timer::{TimerKind, TimingStats};
+//! use std::time::Duration;
+//!
+//! let period = Duration::from_millis(2);
+//! let mut timer = TimerKind::Timerfd.build(period)?;
+//! let mut stats = TimingStats::new(period)?;
+//! timer.start()?;
+//! for _ in 0..5 {
+//!     let expiry = timer.wait()?;
+//!     stats.record(&expiry);
+//! }
+//! assert_eq!(stats.summary().ticks, 5);
+//! # Ok::<(), fcc_timer::TimerError>(())
+//! ```
 
+mod deadlines;
+mod kind;
+mod manual;
+mod nanosleep;
+mod posix;
+pub mod realtime;
+mod stats;
 mod timer;
+mod timerfd;
+pub mod usage;
 
+pub use kind::{TimerKind, UnknownTimer};
+pub use manual::ManualTimer;
+pub use nanosleep::Nanosleep;
+pub use posix::PosixTimer;
+pub use realtime::{RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
+pub use stats::{TimingStats, TimingSummary};
 pub use timer::{Expiry, Timer, TimerError};
+pub use timerfd::TimerFd;

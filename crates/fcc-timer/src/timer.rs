@@ -4,21 +4,26 @@ use std::time::Duration;
 
 /// A periodic timer: deadlines at `start + n * period`, for n = 1, 2, 3, ...
 ///
-/// The phase never moves: a deadline that passed unserved is counted in
-/// [`Expiry::missed`], and the next wait ends at the next deadline of the same
-/// grid.
+/// The phase never moves. A wait that begins after deadlines have passed
+/// returns at once and serves the latest of them, late; the ones before it are
+/// counted in [`Expiry::missed`]. The wait after that ends at the next deadline
+/// of the same grid. So a tick of 1.1 periods makes the next one late and
+/// nothing missed, and a tick of 3.5 periods makes the next one late and two
+/// missed.
 pub trait Timer: Send {
-    /// Sets the grid of deadlines going, from now. To be called once, on the
-    /// thread that will wait.
+    /// Sets the grid of deadlines going, from now. To be called on the thread
+    /// that will wait; calling it again begins a new grid, with numbers from 1.
     ///
     /// # Errors
     /// When the operating system refuses.
     fn start(&mut self) -> Result<(), TimerError>;
 
-    /// Waits for the next deadline. Allocates nothing.
+    /// Waits for the next deadline, and never returns before it. Allocates
+    /// nothing.
     ///
     /// # Errors
-    /// When the operating system refuses; never for a signal that interrupts.
+    /// When the timer was not started, or when the operating system refuses;
+    /// never for a signal that interrupts.
     fn wait(&mut self) -> Result<Expiry, TimerError>;
 
     /// The time between deadlines.
@@ -44,6 +49,15 @@ pub struct Expiry {
     pub missed: u64,
 }
 
+impl Expiry {
+    /// How late the thread woke, ns after the deadline. Not to be mixed up
+    /// with the period, which is the time since it woke before.
+    #[must_use]
+    pub const fn lateness_ns(&self) -> i64 {
+        self.woke_ns.saturating_sub(self.scheduled_ns)
+    }
+}
+
 /// Why a timer could not be made, started or waited for.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
@@ -56,10 +70,16 @@ pub enum TimerError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The period is zero, or longer than the clock can count.
+    /// The period is outside what a timer can serve.
     #[error("a period of {0:?} cannot be timed: choose one between 10 µs and 1 hour")]
     Period(Duration),
     /// `wait` before `start`.
-    #[error("the timer was not started")]
+    #[error("the timer was not started: call start() on the thread that will wait")]
     NotStarted,
+    /// `wait` on another thread than `start`, where the expiries do not come.
+    #[error("the timer was started on another thread: call start() on the thread that waits")]
+    WrongThread,
+    /// Every real-time signal already belongs to a timer.
+    #[error("all real-time signals are taken: use fewer POSIX timers at a time, or a timerfd")]
+    NoSignal,
 }

@@ -1,0 +1,189 @@
+//! The grid of deadlines, and where on it a timer stands.
+//!
+//! Every timer asks the kernel to be woken at [`Deadlines::alarm_ns`] and
+//! hands the wake-up to [`Deadlines::woken`] or its sister: numbers, due
+//! times and misses are worked out here and nowhere else.
+
+use nix::errno::Errno;
+use nix::sys::time::TimeValLike as _;
+use nix::time::{ClockId, clock_gettime};
+use std::io;
+use std::time::Duration;
+
+use crate::{Expiry, TimerError};
+
+/// Below this, the wake-up alone takes longer than the period.
+const SHORTEST_PERIOD: Duration = Duration::from_micros(10);
+/// Above this it is no control loop, and nanoseconds stay far from overflow.
+const LONGEST_PERIOD: Duration = Duration::from_secs(3600);
+
+/// A period known to be within the range that timers serve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Period(Duration);
+
+impl Period {
+    pub(crate) fn new(period: Duration) -> Result<Self, TimerError> {
+        if (SHORTEST_PERIOD..=LONGEST_PERIOD).contains(&period) {
+            Ok(Self(period))
+        } else {
+            Err(TimerError::Period(period))
+        }
+    }
+
+    pub(crate) const fn duration(self) -> Duration {
+        self.0
+    }
+
+    pub(crate) const fn ns(self) -> i64 {
+        self.0.as_nanos() as i64
+    }
+}
+
+/// Deadlines at `start + n * period`, and the last one served.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadlines {
+    start_ns: i64,
+    period_ns: i64,
+    served: u64,
+}
+
+impl Deadlines {
+    pub(crate) const fn new(start_ns: i64, period: Period) -> Self {
+        Self {
+            start_ns,
+            period_ns: period.ns(),
+            served: 0,
+        }
+    }
+
+    /// The number of the next deadline.
+    pub(crate) const fn next(&self) -> u64 {
+        self.served.saturating_add(1)
+    }
+
+    /// When a deadline is due, ns on the clock that `start_ns` was read from.
+    pub(crate) const fn due_ns(&self, number: u64) -> i64 {
+        self.start_ns
+            .saturating_add(self.period_ns.saturating_mul(number as i64))
+    }
+
+    /// When the kernel shall wake the thread for the next deadline: at the
+    /// deadline. To wake early by a margin and spin the rest, the margin would
+    /// be taken off here, and the spin would take the place of the reading of
+    /// the clock with which each timer calls one of the two methods below.
+    pub(crate) const fn alarm_ns(&self) -> i64 {
+        self.due_ns(self.next())
+    }
+
+    /// Serves the latest deadline. To be called as soon as the kernel has
+    /// woken the thread, with the number of deadlines it says have passed since
+    /// the one served before.
+    pub(crate) fn woken(&mut self, passed: u64, woke_ns: i64) -> Expiry {
+        self.served = self.served.saturating_add(passed);
+        Expiry {
+            number: self.served,
+            scheduled_ns: self.due_ns(self.served),
+            woke_ns,
+            missed: passed.saturating_sub(1),
+        }
+    }
+
+    /// The same when nobody has counted: how many deadlines have passed is
+    /// worked out from the clock, which has reached the next one.
+    pub(crate) fn woken_uncounted(&mut self, woke_ns: i64) -> Expiry {
+        let since_start = woke_ns.saturating_sub(self.start_ns).max(0).unsigned_abs();
+        let latest = since_start / self.period_ns.unsigned_abs();
+        self.woken(latest.saturating_sub(self.served).max(1), woke_ns)
+    }
+}
+
+/// Now on `CLOCK_MONOTONIC`, ns. It is read without a system call.
+pub(crate) fn monotonic_ns() -> i64 {
+    // Linux always has this clock: there is no error to hand on.
+    clock_gettime(ClockId::CLOCK_MONOTONIC).map_or(0, |now| now.num_nanoseconds())
+}
+
+/// A time or length of time as the kernel wants it. Negative becomes 0.
+pub(crate) fn timespec(ns: i64) -> nix::sys::time::TimeSpec {
+    Duration::from_nanos(u64::try_from(ns).unwrap_or(0)).into()
+}
+
+/// Makes an error of the system's answer to `call`.
+pub(crate) fn refused(call: &'static str) -> impl FnOnce(Errno) -> TimerError {
+    move |errno| TimerError::Os {
+        call,
+        source: io::Error::from(errno),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn every_25_ms() -> Deadlines {
+        Deadlines::new(
+            1_000_000_000,
+            Period::new(Duration::from_millis(25)).unwrap(),
+        )
+    }
+
+    #[test]
+    fn forty_deadlines_of_25_ms_are_one_second() {
+        assert_eq!(every_25_ms().due_ns(40), 2_000_000_000);
+    }
+
+    #[test]
+    fn a_wake_up_three_and_a_half_periods_on_serves_the_third_deadline() {
+        let mut deadlines = every_25_ms();
+        let expiry = deadlines.woken_uncounted(1_087_500_000);
+        assert_eq!(expiry.number, 3);
+        assert_eq!(expiry.missed, 2);
+        assert_eq!(expiry.scheduled_ns, 1_075_000_000);
+        assert_eq!(deadlines.alarm_ns(), 1_100_000_000);
+    }
+
+    #[test]
+    fn a_wake_up_at_the_deadline_is_on_time() {
+        let on_time = every_25_ms().woken_uncounted(1_025_000_000);
+        assert_eq!((on_time.number, on_time.missed), (1, 0));
+        assert_eq!(on_time.lateness_ns(), 0);
+    }
+
+    #[test]
+    fn what_the_kernel_counted_is_served_but_for_one_missed() {
+        let mut deadlines = every_25_ms();
+        let expiry = deadlines.woken(5, 1_130_000_000);
+        assert_eq!((expiry.number, expiry.missed), (5, 4));
+        assert_eq!(expiry.scheduled_ns, 1_125_000_000);
+        assert_eq!(expiry.lateness_ns(), 5_000_000);
+        let expiry = deadlines.woken(1, 1_150_000_000);
+        assert_eq!((expiry.number, expiry.missed), (6, 0));
+    }
+
+    #[test]
+    fn periods_beyond_what_can_be_timed_are_refused() {
+        for bad in [
+            Duration::ZERO,
+            Duration::from_nanos(9_999),
+            Duration::from_nanos(3_600_000_000_001),
+            Duration::MAX,
+        ] {
+            assert!(
+                matches!(Period::new(bad), Err(TimerError::Period(_))),
+                "{bad:?}"
+            );
+        }
+        assert_eq!(Period::new(Duration::from_micros(10)).unwrap().ns(), 10_000);
+        assert_eq!(
+            Period::new(Duration::from_secs(3600)).unwrap().ns(),
+            3_600_000_000_000
+        );
+    }
+
+    #[test]
+    fn the_grid_does_not_drift_when_the_period_is_not_whole() {
+        // 60 Hz rounded to nanoseconds, for an hour: 216000 x 16666667 ns.
+        let period = Period::new(Duration::from_nanos(16_666_667)).unwrap();
+        assert_eq!(Deadlines::new(0, period).due_ns(216_000), 3_600_000_072_000);
+    }
+}

@@ -1,0 +1,75 @@
+//! What was granted and what was refused.
+
+use nix::errno::Errno;
+use std::fmt;
+
+/// What a thread has, as read back from the kernel.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct RealtimeGrants {
+    /// `SCHED_FIFO`, `SCHED_OTHER` or another of the kernel's policies.
+    pub policy: &'static str,
+    /// Priority under `SCHED_FIFO`, 1..=99; 0 under `SCHED_OTHER`.
+    pub priority: i32,
+    /// The CPU, if the thread may run on one only.
+    pub cpu: Option<usize>,
+    /// Whether all memory of the process that is in use is locked.
+    pub memory_locked: bool,
+    /// Whether the stack asked for is in memory: touching it again faults no
+    /// page.
+    pub stack_prefaulted: bool,
+    /// How late the kernel may make a sleep of the thread, ns.
+    pub timer_slack_ns: Option<u64>,
+    /// The wishes that were refused.
+    pub refused: Vec<Refusal>,
+}
+
+/// A wish that was refused.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Refusal {
+    /// What was asked for: `SCHED_FIFO priority 80`.
+    pub wish: String,
+    /// What the kernel said, or why it was not asked: `EPERM`.
+    pub reason: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+impl Refusal {
+    /// A refusal by the kernel.
+    pub(super) fn by_kernel(wish: String, errno: Errno, remedy: String) -> Self {
+        Self {
+            wish,
+            reason: format!("{errno:?}"),
+            remedy,
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} refused ({}): {}",
+            self.wish, self.reason, self.remedy
+        )
+    }
+}
+
+/// Something was refused that was asked for strictly.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct RealtimeRefused {
+    /// What the thread has now; never without a refusal.
+    pub grants: RealtimeGrants,
+}
+
+impl fmt::Display for RealtimeRefused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, refusal) in self.grants.refused.iter().enumerate() {
+            let separator = if index == 0 { "" } else { "; " };
+            write!(f, "{separator}{refusal}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for RealtimeRefused {}

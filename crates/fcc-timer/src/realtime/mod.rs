@@ -1,0 +1,123 @@
+//! What a real-time thread asks of the kernel, and what it gets.
+//!
+//! [`RealtimeWishes::apply`] is called once, by the loop's own thread, after
+//! everything the loop needs has been allocated and before its timer starts.
+//! Every wish is granted or refused by itself; the [`RealtimeGrants`] are read
+//! back from the kernel, so that a report shows what is and not what was asked.
+//!
+//! Scheduling, CPU and timer slack are set for the calling thread alone, and
+//! threads it makes later go back to `SCHED_OTHER` (they do inherit the CPU).
+//! Locked memory is the process' affair and there is no other way: see
+//! [`RealtimeWishes::lock_memory`].
+
+mod grants;
+mod memory;
+mod scheduling;
+mod slack;
+mod stack;
+
+pub use grants::{RealtimeGrants, RealtimeRefused, Refusal};
+
+/// What a thread would like to have.
+///
+/// ```
+/// use fcc_timer::RealtimeWishes;
+///
+/// let wishes = RealtimeWishes {
+///     priority: Some(80),
+///     timer_slack_ns: Some(1),
+///     ..RealtimeWishes::default()
+/// };
+/// let grants = wishes.apply()?;
+/// println!("{} {}", grants.policy, grants.priority);
+/// for refusal in &grants.refused {
+///     eprintln!("{refusal}");
+/// }
+/// # Ok::<(), fcc_timer::RealtimeRefused>(())
+/// ```
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct RealtimeWishes {
+    /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
+    /// threads are at 50.
+    pub priority: Option<u8>,
+    /// To run on this CPU only, counted from 0.
+    pub cpu: Option<usize>,
+    /// To have no page of the process swapped out or dropped. What is mapped
+    /// now is fetched and stays; what is mapped later stays from when it is
+    /// first touched, so that a thread's stack or a large file mapped by
+    /// others costs memory only where it is used. This concerns all threads.
+    ///
+    /// Under a limit (`RLIMIT_MEMLOCK`) that is not "unlimited", locking may
+    /// succeed now and make an allocation fail later, in any thread, when the
+    /// limit is reached. So this wish is refused then, unless the process may
+    /// exceed it (`CAP_IPC_LOCK`): all or nothing.
+    pub lock_memory: bool,
+    /// Bytes of the thread's stack, below the frame of `apply`, to have in
+    /// memory before they are needed. 0: none.
+    pub stack_prefault_bytes: usize,
+    /// How late the kernel may make a sleep of this thread so as to wake
+    /// several at once, ns, 1 or more. The kernel's default is 50 µs; threads
+    /// under `SCHED_FIFO` have none.
+    pub timer_slack_ns: Option<u64>,
+    /// What a refusal means.
+    pub strictness: Strictness,
+}
+
+/// What a refused wish means.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Strictness {
+    /// It is reported among the grants.
+    #[default]
+    Warn,
+    /// It is an error.
+    Strict,
+}
+
+impl RealtimeWishes {
+    /// Asks for each wish and reads back what the calling thread has now.
+    /// Without any wish it only reads. Allocates and reads files: not for use
+    /// in a tick.
+    ///
+    /// # Errors
+    /// When anything was refused under [`Strictness::Strict`]. What was
+    /// granted stays granted.
+    pub fn apply(&self) -> Result<RealtimeGrants, RealtimeRefused> {
+        let mut refused = Vec::new();
+        // The slack before the scheduling: a thread under SCHED_FIFO has none,
+        // but shall have the one asked for should it ever leave it. The
+        // scheduling last: fetching memory takes long, and others may run.
+        if let Some(slack_ns) = self.timer_slack_ns {
+            refused.extend(slack::set(slack_ns).err());
+        }
+        if let Some(cpu) = self.cpu {
+            refused.extend(scheduling::pin_to(cpu).err());
+        }
+        if self.lock_memory {
+            refused.extend(memory::lock().err());
+        }
+        let mut stack_prefaulted = false;
+        if self.stack_prefault_bytes > 0 {
+            match stack::prefault(self.stack_prefault_bytes) {
+                Ok(()) => stack_prefaulted = true,
+                Err(refusal) => refused.push(refusal),
+            }
+        }
+        if let Some(priority) = self.priority {
+            refused.extend(scheduling::become_fifo(priority).err());
+        }
+
+        let grants = RealtimeGrants {
+            policy: scheduling::policy(),
+            priority: scheduling::static_priority(),
+            cpu: scheduling::only_cpu(),
+            memory_locked: memory::is_locked(),
+            stack_prefaulted,
+            timer_slack_ns: slack::get(),
+            refused,
+        };
+        if self.strictness == Strictness::Strict && !grants.refused.is_empty() {
+            return Err(RealtimeRefused { grants });
+        }
+        Ok(grants)
+    }
+}

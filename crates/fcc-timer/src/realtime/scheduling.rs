@@ -1,0 +1,118 @@
+//! Policy, priority and CPU of the calling thread.
+//!
+//! The system calls are made directly: they concern one thread, and musl's
+//! functions of the same names, which POSIX wants to concern the process,
+//! always fail.
+#![allow(unsafe_code)]
+
+use nix::errno::Errno;
+use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
+use nix::unistd::Pid;
+
+use super::Refusal;
+
+/// The thread id that means the calling thread.
+const THIS_THREAD: libc::pid_t = 0;
+
+/// Puts the calling thread under `SCHED_FIFO`. Threads and processes it makes
+/// do not inherit that.
+pub(super) fn become_fifo(priority: u8) -> Result<(), Refusal> {
+    let wish = format!("SCHED_FIFO priority {priority}");
+    if !(1..=99).contains(&priority) {
+        return Err(Refusal {
+            wish,
+            reason: "EINVAL".to_owned(),
+            remedy: "choose a priority from 1 to 99".to_owned(),
+        });
+    }
+    // All that the kernel reads of a `sched_param`.
+    let param = libc::c_int::from(priority);
+    // SAFETY: the kernel reads one int through the pointer, during the call.
+    let answer = unsafe {
+        libc::syscall(
+            libc::SYS_sched_setscheduler,
+            THIS_THREAD,
+            libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK,
+            &raw const param,
+        )
+    };
+    let remedy = format!(
+        "give the service LimitRTPRIO={priority} (a shell: ulimit -r {priority}), \
+         or the program the right to: setcap cap_sys_nice+ep"
+    );
+    Errno::result(answer)
+        .map_err(|errno| Refusal::by_kernel(wish.clone(), errno, remedy.clone()))?;
+    if policy() == "SCHED_FIFO" && static_priority() == i32::from(priority) {
+        Ok(())
+    } else {
+        let reason = format!("reads back as {} {}", policy(), static_priority());
+        Err(Refusal {
+            wish,
+            reason,
+            remedy,
+        })
+    }
+}
+
+/// The policy that the calling thread is under.
+pub(super) fn policy() -> &'static str {
+    // SAFETY: the call takes no pointer.
+    let answer = unsafe { libc::syscall(libc::SYS_sched_getscheduler, THIS_THREAD) };
+    match answer as libc::c_int & !libc::SCHED_RESET_ON_FORK {
+        libc::SCHED_OTHER => "SCHED_OTHER",
+        libc::SCHED_FIFO => "SCHED_FIFO",
+        libc::SCHED_RR => "SCHED_RR",
+        libc::SCHED_BATCH => "SCHED_BATCH",
+        libc::SCHED_IDLE => "SCHED_IDLE",
+        libc::SCHED_DEADLINE => "SCHED_DEADLINE",
+        _ => "unknown",
+    }
+}
+
+/// The real-time priority of the calling thread, 0 if it has none.
+pub(super) fn static_priority() -> i32 {
+    let mut param: libc::c_int = 0;
+    // SAFETY: the kernel writes one int through the pointer, during the call.
+    // Should it refuse, the 0 stays.
+    unsafe { libc::syscall(libc::SYS_sched_getparam, THIS_THREAD, &raw mut param) };
+    param
+}
+
+/// Keeps the calling thread on one CPU.
+pub(super) fn pin_to(cpu: usize) -> Result<(), Refusal> {
+    let allowed = allowed_cpus();
+    let mut wished = CpuSet::new();
+    wished
+        .set(cpu)
+        .and_then(|()| sched_setaffinity(Pid::from_raw(THIS_THREAD), &wished))
+        .map_err(|errno| {
+            let allowed: Vec<String> = allowed.iter().map(ToString::to_string).collect();
+            Refusal::by_kernel(
+                format!("CPU {cpu}"),
+                errno,
+                format!(
+                    "choose a CPU that this thread may use: {}",
+                    allowed.join(", ")
+                ),
+            )
+        })
+}
+
+/// The CPU of the calling thread, if it may run on one only.
+pub(super) fn only_cpu() -> Option<usize> {
+    match allowed_cpus().as_slice() {
+        [cpu] => Some(*cpu),
+        _ => None,
+    }
+}
+
+fn allowed_cpus() -> Vec<usize> {
+    sched_getaffinity(Pid::from_raw(THIS_THREAD)).map_or_else(
+        |_| Vec::new(),
+        |set| {
+            (0..CpuSet::count())
+                .filter(|&cpu| set.is_set(cpu) == Ok(true))
+                .collect()
+        },
+    )
+}

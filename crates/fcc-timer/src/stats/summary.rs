@@ -1,0 +1,87 @@
+//! The figures that people and programs read.
+
+use super::TimingStats;
+
+const NS_PER_US: f64 = 1e3;
+const NS_PER_MS: f64 = 1e6;
+const NS_PER_S: f64 = 1e9;
+
+/// What [`TimingStats`] say, as plain numbers. The thesis' table of a control
+/// loop's timing (runtime, average, median, minimum, maximum, range, missed)
+/// and the lateness, which it did not measure.
+///
+/// Figures of periods are NaN before the second tick, those of lateness before
+/// the first.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct TimingSummary {
+    /// Nominal rate, Hz.
+    pub rate_hz: f64,
+    /// Deadlines served.
+    pub ticks: u64,
+    /// Deadlines passed unserved.
+    pub missed: u64,
+    /// From one period before the first deadline recorded to the last wake-up,
+    /// s: the time that the ticks and the misses stand for.
+    pub runtime_s: f64,
+    /// Mean period, ms.
+    pub period_mean_ms: f64,
+    /// Median period, ms.
+    pub period_median_ms: f64,
+    /// Shortest period, ms.
+    pub period_min_ms: f64,
+    /// Longest period, ms.
+    pub period_max_ms: f64,
+    /// Longest minus shortest period, ms.
+    pub period_range_ms: f64,
+    /// Fraction of the periods within ±2 % of the nominal one, 0..1.
+    pub period_within_2_percent: f64,
+    /// Lateness that half of the wake-ups stay within, µs.
+    pub lateness_p50_us: f64,
+    /// Lateness that 99 % of the wake-ups stay within, µs.
+    pub lateness_p99_us: f64,
+    /// Lateness that 99.9 % of the wake-ups stay within, µs.
+    pub lateness_p99_9_us: f64,
+    /// Lateness of the latest wake-up, µs.
+    pub lateness_max_us: f64,
+}
+
+impl TimingSummary {
+    pub(super) fn of(stats: &TimingStats) -> Self {
+        let nominal_ns = stats.period.ns();
+        let since_first_ns = stats.last_woke_ns.saturating_sub(stats.first_woke_ns);
+        let of_periods = |ns: f64| {
+            if stats.periods() == 0 { f64::NAN } else { ns }
+        };
+        let of_ticks = |ns: f64| if stats.ticks == 0 { f64::NAN } else { ns };
+        let lateness_us = |quantile: f64| {
+            let histogram = &stats.lateness;
+            let value = histogram.median_equivalent(histogram.value_at_quantile(quantile));
+            of_ticks(value as f64) / NS_PER_US
+        };
+        Self {
+            rate_hz: NS_PER_S / nominal_ns as f64,
+            ticks: stats.ticks,
+            missed: stats.missed,
+            runtime_s: if stats.ticks == 0 {
+                0.0
+            } else {
+                stats.last_woke_ns.saturating_sub(stats.began_ns) as f64 / NS_PER_S
+            },
+            period_mean_ms: of_periods(since_first_ns as f64) / stats.periods() as f64 / NS_PER_MS,
+            period_median_ms: stats.deviations.median().map_or(f64::NAN, |deviation_ns| {
+                (nominal_ns as f64 + deviation_ns) / NS_PER_MS
+            }),
+            period_min_ms: of_periods(stats.period_min_ns as f64) / NS_PER_MS,
+            period_max_ms: of_periods(stats.period_max_ns as f64) / NS_PER_MS,
+            period_range_ms: of_periods(
+                stats.period_max_ns.saturating_sub(stats.period_min_ns) as f64
+            ) / NS_PER_MS,
+            period_within_2_percent: of_periods(stats.within_2_percent as f64)
+                / stats.periods() as f64,
+            lateness_p50_us: lateness_us(0.5),
+            lateness_p99_us: lateness_us(0.99),
+            lateness_p99_9_us: lateness_us(0.999),
+            lateness_max_us: of_ticks(stats.lateness_max_ns as f64) / NS_PER_US,
+        }
+    }
+}

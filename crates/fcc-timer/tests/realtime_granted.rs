@@ -1,0 +1,177 @@
+//! Wishes that the kernel may grant: what is reported is what the kernel says,
+//! whether or not this user has the rights.
+#![cfg(test)]
+
+use std::fs;
+use std::sync::mpsc;
+use std::thread;
+
+use fcc_timer::usage::page_faults;
+use fcc_timer::{RealtimeGrants, RealtimeWishes};
+
+/// What the calling thread has.
+fn present() -> RealtimeGrants {
+    RealtimeWishes::default().apply().unwrap()
+}
+
+/// The policy as `proc_pid_stat(5)` has it, field 41, and not by the code's way: 1 is
+/// `SCHED_FIFO`, 0 is `SCHED_OTHER`.
+fn policy_in_proc() -> u32 {
+    let stat = fs::read_to_string("/proc/thread-self/stat").unwrap();
+    let after_name = stat.rsplit(')').next().unwrap();
+    after_name
+        .split_whitespace()
+        .nth(38)
+        .unwrap()
+        .parse()
+        .unwrap()
+}
+
+#[test]
+fn only_the_calling_thread_becomes_real_time() {
+    let (ask, asked) = mpsc::channel::<()>();
+    let bystander = thread::spawn(move || {
+        asked.recv().unwrap();
+        (present().policy, policy_in_proc())
+    });
+    thread::spawn(move || {
+        let wishes = RealtimeWishes {
+            priority: Some(10),
+            ..RealtimeWishes::default()
+        };
+        let grants = wishes.apply().unwrap();
+        if grants.refused.is_empty() {
+            assert_eq!((grants.policy, grants.priority), ("SCHED_FIFO", 10));
+            assert_eq!(policy_in_proc(), 1);
+        } else {
+            assert_eq!((grants.policy, grants.priority), ("SCHED_OTHER", 0));
+            assert_eq!(policy_in_proc(), 0);
+        }
+        // One that was there, and one that this thread makes.
+        ask.send(()).unwrap();
+        assert_eq!(bystander.join().unwrap(), ("SCHED_OTHER", 0));
+        let child = thread::spawn(|| (present().policy, policy_in_proc()));
+        assert_eq!(child.join().unwrap(), ("SCHED_OTHER", 0));
+    })
+    .join()
+    .unwrap();
+}
+
+#[test]
+fn the_thread_stays_on_the_cpu_it_asked_for() {
+    thread::spawn(|| {
+        // The first of the list that the kernel gives: `0-3` or `2,5`.
+        let status = fs::read_to_string("/proc/thread-self/status").unwrap();
+        let cpu = status
+            .lines()
+            .find_map(|line| line.strip_prefix("Cpus_allowed_list:"))
+            .and_then(|list| list.trim().split(['-', ',']).next())
+            .unwrap()
+            .parse()
+            .unwrap();
+        let wishes = RealtimeWishes {
+            cpu: Some(cpu),
+            ..RealtimeWishes::default()
+        };
+        let grants = wishes.apply().unwrap();
+        assert_eq!(grants.cpu, Some(cpu));
+        assert_eq!(grants.refused, []);
+        assert_eq!(nix::sched::sched_getcpu(), Ok(cpu));
+    })
+    .join()
+    .unwrap();
+}
+
+#[test]
+fn the_timer_slack_is_the_threads_own() {
+    // The kernel's default, prctl(2).
+    assert_eq!(present().timer_slack_ns, Some(50_000));
+    thread::spawn(|| {
+        let wishes = RealtimeWishes {
+            timer_slack_ns: Some(1),
+            ..RealtimeWishes::default()
+        };
+        assert_eq!(wishes.apply().unwrap().timer_slack_ns, Some(1));
+    })
+    .join()
+    .unwrap();
+    assert_eq!(present().timer_slack_ns, Some(50_000));
+}
+
+#[test]
+fn a_prefaulted_stack_faults_no_more() {
+    const BYTES: usize = 512 * 1024;
+
+    /// Uses half of it, in frames larger than a page.
+    #[inline(never)]
+    fn use_stack(frames: usize) -> usize {
+        const FRAME_BYTES: usize = 8 * 1024;
+        let mut frame = [1_u8; FRAME_BYTES];
+        std::hint::black_box(&mut frame);
+        let below = if frames * FRAME_BYTES < BYTES / 2 {
+            use_stack(frames + 1)
+        } else {
+            0
+        };
+        below + usize::from(std::hint::black_box(&frame)[FRAME_BYTES / 2])
+    }
+
+    thread::Builder::new()
+        .stack_size(4 * BYTES)
+        .spawn(|| {
+            let wishes = RealtimeWishes {
+                stack_prefault_bytes: BYTES,
+                ..RealtimeWishes::default()
+            };
+            let grants = wishes.apply().unwrap();
+            assert!(grants.stack_prefaulted, "{:?}", grants.refused);
+            let before = page_faults();
+            assert_eq!(use_stack(1), 32);
+            assert_eq!(page_faults(), before);
+        })
+        .unwrap()
+        .join()
+        .unwrap();
+}
+
+#[test]
+fn locked_memory_is_there_when_reported() {
+    let wishes = RealtimeWishes {
+        lock_memory: true,
+        ..RealtimeWishes::default()
+    };
+    let grants = wishes.apply().unwrap();
+    assert_eq!(grants.memory_locked, grants.refused.is_empty());
+    if grants.memory_locked {
+        // What is mapped later is locked as it is touched: no page of it
+        // before, all of it after (`Locked` of `proc_pid_smaps(5)`).
+        let mut later = vec![0_u8; 16 << 20];
+        let address = later.as_ptr().addr();
+        assert!(locked_kib(address) < 1024);
+        later.fill(1);
+        assert!(locked_kib(address) >= 16 << 10);
+    }
+}
+
+/// How much of the mapping around an address is locked in memory.
+fn locked_kib(address: usize) -> usize {
+    let smaps = fs::read_to_string("/proc/self/smaps").unwrap();
+    let mut inside = false;
+    for line in smaps.lines() {
+        let range = line
+            .split_whitespace()
+            .next()
+            .and_then(|word| word.split_once('-'));
+        if let Some((low, high)) = range
+            && let (Ok(low), Ok(high)) = (
+                usize::from_str_radix(low, 16),
+                usize::from_str_radix(high, 16),
+            )
+        {
+            inside = (low..high).contains(&address);
+        } else if inside && let Some(locked) = line.strip_prefix("Locked:") {
+            return locked.trim_end_matches("kB").trim().parse().unwrap();
+        }
+    }
+    panic!("no mapping holds the address");
+}
