@@ -1,1 +1,119 @@
-//! To be written.
+//! Runs a [`Controller`](fcc_core::framework::Controller) on a timer.
+//!
+//! Put the [`Parts`] together, make a [`Loop`] of them, and run it here or in
+//! a thread of its own. Once a tick, in one thread and in one direction:
+//!
+//! ```text
+//! timer ─► orders ─► sensors ─► estimate ─► decide ─► guide ─► control ─► actuators ─► record
+//! ```
+//!
+//! What the loop promises, whatever it runs:
+//!
+//! - Between the wake-up and the last actuator write it allocates nothing,
+//!   takes no lock and waits for nobody. Orders come in and messages go out by
+//!   one lock-free ring each; a full ring drops and counts.
+//! - The actuators are released on every way out: let go, switched off, the
+//!   failsafe's end, an order to stop, the stop flag, a timer that fails, a
+//!   panic in a part, the loop being dropped.
+//! - Outputs that the controller itself calls invalid are never sent.
+//! - It changes its state by [`State::after`](fcc_core::framework::State::after)
+//!   and by nothing else, and each change is an [`Event`].
+//!
+//! [`Machine`] is the loop without its thread: one call, one tick. The thread,
+//! tests and simulations faster than real time all run that same code.
+//!
+//! ```
+//! use std::time::Duration;
+//!
+//! use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, State, Tick};
+//! use fcc_runtime::{LoopConfig, Machine, Order, Parts};
+//! use fcc_timer::ManualTimer;
+//!
+//! /// A level that rises by 1 m/s.
+//! struct Gauge;
+//!
+//! impl Sensor<Reading<f64>> for Gauge {
+//!     fn sample(&mut self, tick: &Tick, into: &mut Reading<f64>) -> Result<(), SensorFault> {
+//!         *into = Reading::new(into.value + tick.dt_s, tick.woke);
+//!         Ok(())
+//!     }
+//!
+//!     fn name(&self) -> &'static str {
+//!         "gauge"
+//!     }
+//! }
+//!
+//! /// Opens a drain the more, the higher the level is.
+//! struct Drain;
+//!
+//! impl Controller for Drain {
+//!     type Measurements = Reading<f64>;
+//!     type Setpoints = ();
+//!     type Outputs = f64;
+//!     type Order = ();
+//!
+//!     fn estimate(&mut self, _: &Tick, _: &Reading<f64>) {}
+//!     fn blockers(&self, _: &Tick, level: &Reading<f64>) -> Flags {
+//!         Flags::NONE.with(Flags::bit(0), level.is_never())
+//!     }
+//!     fn faults(&self, tick: &Tick, level: &Reading<f64>) -> Flags {
+//!         self.blockers(tick, level)
+//!     }
+//!     fn flag_name(_: u32) -> &'static str {
+//!         "no level"
+//!     }
+//!     fn engage(&mut self, _: &Tick, _: &Reading<f64>) {}
+//!     fn control(&mut self, _: &Tick, level: &Reading<f64>) -> f64 {
+//!         0.1 * level.value
+//!     }
+//!     fn failsafe(&mut self, _: &Tick, _: &Reading<f64>) -> f64 {
+//!         1.0
+//!     }
+//!     fn setpoints(&self) {}
+//!     fn outputs_are_valid(&self, opening: &f64) -> bool {
+//!         (0.0..=1.0).contains(opening)
+//!     }
+//! }
+//!
+//! let parts = Parts {
+//!     timer: Box::new(ManualTimer::new(Duration::from_millis(500))?),
+//!     sensors: vec![Box::new(Gauge)],
+//!     controller: Drain,
+//!     actuators: Vec::new(),
+//! };
+//! let (mut machine, mut link) = Machine::new(parts, &LoopConfig::default())?;
+//! machine.start()?;
+//! link.orders.send(Order::Engage)?;
+//! assert_eq!(machine.step(), State::Engaged);
+//! assert_eq!(machine.record().outputs, 0.05);
+//! assert!(machine.finish().released);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod actuators;
+mod config;
+mod decide;
+mod event;
+mod faults;
+mod link;
+mod machine;
+mod orders;
+mod outbox;
+mod panics;
+mod record;
+mod report;
+mod run;
+mod sensors;
+mod stages;
+mod switch;
+
+pub use config::{AfterFailsafe, LoopConfig, Parts};
+pub use event::{Event, EventKind, EventWords};
+pub use link::{Link, MessageReceiver, OrderSender, OrdersFull, StopHandle};
+pub use machine::Machine;
+pub use orders::Order;
+pub use outbox::Message;
+pub use record::Record;
+pub use report::{Ending, LoopReport};
+pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};
+pub use stages::StageTimes;

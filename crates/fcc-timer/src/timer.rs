@@ -76,6 +76,9 @@ pub enum TimerError {
     /// `wait` before `start`.
     #[error("the timer was not started: call start() on the thread that will wait")]
     NotStarted,
+    /// No deadline is left: the timer of a run of known length is over.
+    #[error("the timer has no deadline left")]
+    Ended,
     /// `wait` on another thread than `start`, where the expiries do not come.
     #[error("the timer was started on another thread: call start() on the thread that waits")]
     WrongThread,

@@ -1,0 +1,95 @@
+//! The loop's actuators: driven, watched, and released whatever happens.
+
+use fcc_core::framework::{Actuator, ActuatorFault, Tick};
+
+use crate::event::EventKind;
+use crate::faults::{Change, Health};
+use crate::outbox::Events;
+use crate::panics;
+
+struct Watched<A> {
+    actuator: Box<dyn Actuator<A>>,
+    health: Health<ActuatorFault>,
+    /// It was told to release and did not.
+    owes_release: bool,
+}
+
+impl<A> Watched<A> {
+    fn note(
+        &mut self,
+        index: u16,
+        result: Result<(), ActuatorFault>,
+        tick: &Tick,
+        events: &mut Events,
+    ) {
+        match self.health.update(result) {
+            Some(Change::Fault(fault)) => {
+                events.push(tick, EventKind::ActuatorFault { index, fault });
+            }
+            Some(Change::Recovered) => events.push(tick, EventKind::ActuatorRecovered { index }),
+            None => {}
+        }
+    }
+}
+
+/// The loop's actuators.
+pub(crate) struct Actuators<A> {
+    all: Vec<Watched<A>>,
+    faults: u64,
+}
+
+impl<A> Actuators<A> {
+    pub(crate) fn new(actuators: Vec<Box<dyn Actuator<A>>>) -> Self {
+        let watched = |actuator| Watched {
+            actuator,
+            health: Health::new(),
+            owes_release: false,
+        };
+        Self {
+            all: actuators.into_iter().map(watched).collect(),
+            faults: 0,
+        }
+    }
+
+    /// Hands the outputs to every actuator, after one that fails too.
+    pub(crate) fn apply(&mut self, tick: &Tick, outputs: &A, events: &mut Events) {
+        for (index, watched) in (0..).zip(&mut self.all) {
+            let result = watched.actuator.apply(tick, outputs);
+            self.faults += u64::from(result.is_err());
+            watched.note(index, result, tick, events);
+        }
+    }
+
+    /// Tells every actuator to give control back. One that fails or panics
+    /// does not keep the others from being released.
+    ///
+    /// # Errors
+    /// The words of the first panic.
+    pub(crate) fn release(&mut self, tick: &Tick, events: &mut Events) -> Result<(), String> {
+        let mut panic = Ok(());
+        for (index, watched) in (0..).zip(&mut self.all) {
+            match panics::caught(|| watched.actuator.release()) {
+                Ok(result) => {
+                    watched.owes_release = result.is_err();
+                    self.faults += u64::from(result.is_err());
+                    watched.note(index, result, tick, events);
+                }
+                Err(words) => {
+                    watched.owes_release = true;
+                    panic = panic.and(Err(words));
+                }
+            }
+        }
+        panic
+    }
+
+    /// Whether no actuator owes a release.
+    pub(crate) fn are_released(&self) -> bool {
+        self.all.iter().all(|watched| !watched.owes_release)
+    }
+
+    /// Failed writes and releases since the start.
+    pub(crate) const fn faults(&self) -> u64 {
+        self.faults
+    }
+}

@@ -1,0 +1,65 @@
+//! What a loop is made of, and what it is told before it starts.
+
+use std::time::Duration;
+
+use fcc_core::framework::{Actuator, Controller, Sensor, SwitchOff};
+use fcc_timer::{RealtimeWishes, Timer};
+
+/// What a loop is made of.
+pub struct Parts<C: Controller> {
+    /// When to wake.
+    pub timer: Box<dyn Timer>,
+    /// Sampled in this order: where two write the same reading, the later wins.
+    pub sensors: Vec<Box<dyn Sensor<C::Measurements>>>,
+    /// What the loop runs.
+    pub controller: C,
+    /// Driven, and released, in this order.
+    pub actuators: Vec<Box<dyn Actuator<C::Outputs>>>,
+}
+
+/// What a loop is told before it starts.
+#[derive(Clone, Debug)]
+pub struct LoopConfig {
+    /// What switching off the engage switch means.
+    pub switch_off: SwitchOff,
+    /// A reading of the engage switch older than this is no reading. 1 s by
+    /// default.
+    pub switch_max_age: Duration,
+    /// How long failsafe holds the actuators before it releases them. 10 s by
+    /// default; zero releases at once.
+    pub failsafe_hold: Duration,
+    /// What comes when failsafe is over.
+    pub after_failsafe: AfterFailsafe,
+    /// How many orders may wait to be read; at least 1. 64 by default.
+    pub orders_capacity: usize,
+    /// How many ticks' records may wait to be fetched; at least 1. 4,096 by
+    /// default: 102 s at 40 Hz. Events have slots of their own beside these.
+    pub messages_capacity: usize,
+    /// What [`Loop::spawn`](crate::Loop::spawn) asks of the kernel for its
+    /// thread.
+    pub realtime: RealtimeWishes,
+}
+
+impl Default for LoopConfig {
+    fn default() -> Self {
+        Self {
+            switch_off: SwitchOff::Standby,
+            switch_max_age: Duration::from_secs(1),
+            failsafe_hold: Duration::from_secs(10),
+            after_failsafe: AfterFailsafe::Standby,
+            orders_capacity: 64,
+            messages_capacity: 4_096,
+            realtime: RealtimeWishes::default(),
+        }
+    }
+}
+
+/// What comes when failsafe is over and the actuators are released.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum AfterFailsafe {
+    /// Watch on, ready to engage again.
+    #[default]
+    Standby,
+    /// End the loop.
+    Stop,
+}

@@ -1,0 +1,177 @@
+//! The loop's changes of state: what leads to them, and what they lead to.
+
+use fcc_core::framework::{Cause, Controller, Flags, Input, State, Tick};
+
+use crate::config::AfterFailsafe;
+use crate::event::EventKind;
+use crate::machine::Machine;
+use crate::orders::Asked;
+use crate::report::Ending;
+use crate::switch::Thrown;
+
+impl<C: Controller> Machine<C> {
+    /// Decides in which state this tick goes on. Letting go is looked at
+    /// before taking over, so that of two hands the careful one wins.
+    pub(crate) fn decide(&mut self, tick: &Tick, asked: Asked) {
+        let before = self.state;
+        if !before.holds_control() && !self.actuators.are_released() {
+            self.release(tick, Telling::Success);
+        }
+        let measurements = &self.measurements;
+        if before.holds_control() {
+            self.record.faults = self.controller.faults(tick, measurements);
+        }
+        if before != State::Engaged {
+            self.record.blockers = self.controller.blockers(tick, measurements);
+        }
+        let switch = self.controller.switch(measurements);
+        let thrown = self.switch.watch(switch, tick.woke);
+
+        if self.stop.is_set() {
+            self.stop_for(Ending::StopFlag, tick);
+        } else if asked == Asked::Stop {
+            self.stop_for(Ending::StopOrder, tick);
+        }
+        if thrown == Some(Thrown::Off) {
+            self.put(Input::SwitchedOff, tick);
+            if self.state == State::Stopped {
+                self.end_by(Ending::SwitchedOff);
+            }
+        }
+        if asked == Asked::Disengage {
+            self.put(Input::Disengage, tick);
+        }
+        let faults = self.record.faults;
+        if self.state == State::Engaged && !faults.is_empty() {
+            self.fail(Cause::Faults(faults), tick);
+        }
+        let let_go = before.holds_control() && self.state != before;
+
+        if matches!(self.state, State::Failsafe(_))
+            && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
+        {
+            self.end_failsafe(tick);
+        }
+        if asked == Asked::Engage || thrown == Some(Thrown::On) {
+            self.attempt_to_engage(tick, let_go);
+        }
+    }
+
+    fn attempt_to_engage(&mut self, tick: &Tick, let_go: bool) {
+        if matches!(self.state, State::Engaged | State::Stopped) {
+            return;
+        }
+        let blockers = self.record.blockers;
+        if let_go || !blockers.is_empty() {
+            let kind = EventKind::EngageRefused { blockers };
+            self.outbox.events.push(tick, kind);
+        } else {
+            self.put(Input::Engage, tick);
+        }
+    }
+
+    /// Falls into failsafe.
+    pub(crate) fn fail(&mut self, cause: Cause, tick: &Tick) {
+        self.put(Input::Fault(cause), tick);
+    }
+
+    /// Leaves failsafe: its time is up, or there is nothing safe to send.
+    pub(crate) fn end_failsafe(&mut self, tick: &Tick) {
+        match self.after_failsafe {
+            AfterFailsafe::Standby => self.put(Input::FailsafeOver, tick),
+            AfterFailsafe::Stop => self.stop_for(Ending::FailsafeOver, tick),
+        }
+    }
+
+    fn stop_for(&mut self, ending: Ending, tick: &Tick) {
+        self.end_by(ending);
+        self.put(Input::Stop, tick);
+    }
+
+    /// Puts an input into the transition table, and does what the change of
+    /// state asks for.
+    fn put(&mut self, input: Input, tick: &Tick) {
+        let from = self.state;
+        let to = from.after(input, self.switch_off);
+        if to == from {
+            return;
+        }
+        self.enter(to, tick);
+        match to {
+            State::Engaged => {
+                self.record.blockers = Flags::NONE;
+                self.controller.engage(tick, &self.measurements);
+            }
+            State::Failsafe(cause) => {
+                self.failsafe_since = tick.scheduled;
+                self.failsafes += 1;
+                self.last_failsafe = Some(cause);
+            }
+            State::Standby | State::Stopped => {
+                self.release(tick, Telling::All);
+                if from.holds_control() {
+                    self.controller.disengage();
+                }
+            }
+        }
+    }
+
+    /// Ends the loop from outside a tick's decisions. Asks nothing of the
+    /// controller: it may be the part that panicked.
+    pub(crate) fn leave(&mut self, ending: Ending) {
+        let at = self.record.tick;
+        match ending {
+            Ending::Panicked(_) => self.outbox.events.push(&at, EventKind::Panicked),
+            Ending::TimerFailed(_) => self.outbox.events.push(&at, EventKind::TimerFailed),
+            _ => {}
+        }
+        self.end_by(ending);
+        self.enter(self.state.after(Input::Stop, self.switch_off), &at);
+        self.release(&at, Telling::All);
+    }
+
+    /// Keeps the first reason to end, but a panic on the way out says more.
+    fn end_by(&mut self, ending: Ending) {
+        let keep = match &self.ending {
+            None => false,
+            Some(Ending::Panicked(_)) => true,
+            Some(_) => !matches!(ending, Ending::Panicked(_)),
+        };
+        if !keep {
+            self.ending = Some(ending);
+        }
+    }
+
+    fn enter(&mut self, to: State, at: &Tick) {
+        if self.state != to {
+            let kind = EventKind::StateChanged {
+                from: self.state,
+                to,
+            };
+            self.outbox.events.push(at, kind);
+            self.state = to;
+        }
+    }
+
+    /// Tells every actuator to give control back.
+    pub(crate) fn release(&mut self, at: &Tick, telling: Telling) {
+        let panic = self.actuators.release(at, &mut self.outbox.events).err();
+        let ok = self.actuators.are_released();
+        if ok || telling == Telling::All {
+            self.outbox.events.push(at, EventKind::Released { ok });
+        }
+        if let Some(words) = panic {
+            self.outbox.events.push(at, EventKind::Panicked);
+            self.end_by(Ending::Panicked(words));
+            self.enter(State::Stopped, at);
+        }
+    }
+}
+
+/// Which outcome of a release is told.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Telling {
+    All,
+    /// Of asking again each tick until it works: that it failed was told.
+    Success,
+}

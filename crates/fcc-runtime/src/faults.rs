@@ -1,0 +1,32 @@
+//! Whether one sensor or actuator works, tick after tick.
+
+/// What changed for the people who watch.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Change<F> {
+    Fault(F),
+    Recovered,
+}
+
+/// The present fault of one part, so that only changes are told: a silent
+/// sensor would otherwise fill a recording with the same sentence.
+#[derive(Debug)]
+pub(crate) struct Health<F> {
+    present: Option<F>,
+}
+
+impl<F: Copy + PartialEq> Health<F> {
+    pub(crate) const fn new() -> Self {
+        Self { present: None }
+    }
+
+    /// Takes a tick's result.
+    pub(crate) fn update(&mut self, result: Result<(), F>) -> Option<Change<F>> {
+        let before = self.present;
+        self.present = result.err();
+        match (before, self.present) {
+            (Some(_), None) => Some(Change::Recovered),
+            (before, Some(fault)) if before != Some(fault) => Some(Change::Fault(fault)),
+            _ => None,
+        }
+    }
+}

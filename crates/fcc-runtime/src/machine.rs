@@ -1,0 +1,265 @@
+//! The loop without its thread: one call, one tick.
+
+use std::time::Duration;
+
+use fcc_core::framework::{Cause, Controller, State, SwitchOff, Tick, Time};
+use fcc_timer::{Expiry, Timer, TimerError, TimingStats, usage};
+use rtrb::{Consumer, RingBuffer};
+
+use crate::actuators::Actuators;
+use crate::config::{AfterFailsafe, LoopConfig, Parts};
+use crate::decide::Telling;
+use crate::link::{Link, MessageReceiver, OrderSender, StopHandle};
+use crate::orders::{self, Order};
+use crate::outbox::{EVENT_SLOTS, Outbox};
+use crate::panics;
+use crate::record::Record;
+use crate::report::{Ending, LoopReport};
+use crate::sensors::Sensors;
+use crate::stages::Stopwatch;
+use crate::switch::EngageSwitch;
+
+/// The loop without its thread.
+///
+/// [`Loop`](crate::Loop) runs one on a real clock. Hold one yourself to run in
+/// lockstep with a simulated plant: on a timer that never waits, each
+/// [`step`](Self::step) is a tick of the very same code. Dropping a machine
+/// releases the actuators.
+pub struct Machine<C: Controller> {
+    pub(crate) timer: Box<dyn Timer>,
+    pub(crate) period_s: f64,
+    pub(crate) sensors: Sensors<C::Measurements>,
+    pub(crate) controller: C,
+    pub(crate) actuators: Actuators<C::Outputs>,
+
+    pub(crate) switch_off: SwitchOff,
+    pub(crate) failsafe_hold: Duration,
+    pub(crate) after_failsafe: AfterFailsafe,
+
+    pub(crate) orders: Consumer<Order<C::Order>>,
+    pub(crate) outbox: Outbox<C>,
+    pub(crate) stop: StopHandle,
+
+    pub(crate) state: State,
+    pub(crate) switch: EngageSwitch,
+    pub(crate) measurements: C::Measurements,
+    pub(crate) failsafe_since: Time,
+    pub(crate) record: Record<C>,
+
+    pub(crate) timing: TimingStats,
+    pub(crate) ticks: u64,
+    pub(crate) failsafes: u64,
+    pub(crate) last_failsafe: Option<Cause>,
+    pub(crate) ending: Option<Ending>,
+    cpu_at_start_ns: i64,
+}
+
+impl<C: Controller> Machine<C> {
+    /// Puts the parts together, in [`State::Standby`]. Everything the loop
+    /// will ever allocate is allocated here.
+    ///
+    /// # Errors
+    /// When the timer's period cannot be kept statistics of.
+    pub fn new(parts: Parts<C>, config: &LoopConfig) -> Result<(Self, Link<C>), TimerError> {
+        let (orders_in, orders) = RingBuffer::new(config.orders_capacity.max(1));
+        let (messages, messages_out) =
+            RingBuffer::new(config.messages_capacity.max(1).saturating_add(EVENT_SLOTS));
+        let stop = StopHandle::default();
+        let link = Link {
+            orders: OrderSender::new(orders_in),
+            messages: MessageReceiver::new(messages_out),
+            stop: stop.clone(),
+        };
+        let period = parts.timer.period();
+        let machine = Self {
+            timer: parts.timer,
+            period_s: period.as_secs_f64(),
+            sensors: Sensors::new(parts.sensors),
+            controller: parts.controller,
+            actuators: Actuators::new(parts.actuators),
+            switch_off: config.switch_off,
+            failsafe_hold: config.failsafe_hold,
+            after_failsafe: config.after_failsafe,
+            orders,
+            outbox: Outbox::new(messages),
+            stop,
+            state: State::Standby,
+            switch: EngageSwitch::new(config.switch_max_age),
+            measurements: C::Measurements::default(),
+            failsafe_since: Time::NEVER,
+            record: Record::new(Tick::default(), State::Standby),
+            timing: TimingStats::new(period)?,
+            ticks: 0,
+            failsafes: 0,
+            last_failsafe: None,
+            ending: None,
+            cpu_at_start_ns: 0,
+        };
+        Ok((machine, link))
+    }
+
+    /// Starts the timer; to be called once, on the thread that will step.
+    ///
+    /// # Errors
+    /// What the timer says.
+    pub fn start(&mut self) -> Result<(), TimerError> {
+        self.cpu_at_start_ns = usage::thread_cpu_ns();
+        self.timer.start()
+    }
+
+    /// Waits for the timer and performs one tick; gives the state after it.
+    /// A timer that fails or ends stops the machine.
+    pub fn step(&mut self) -> State {
+        if self.state == State::Stopped {
+            return self.state;
+        }
+        match panics::caught(|| self.timer.wait()) {
+            Ok(Ok(expiry)) => return self.tick(expiry),
+            Ok(Err(TimerError::Ended)) => self.leave(Ending::TimerEnded),
+            Ok(Err(error)) => self.leave(Ending::TimerFailed(error)),
+            Err(words) => self.leave(Ending::Panicked(words)),
+        }
+        self.state
+    }
+
+    /// Performs the tick of a deadline; gives the state after it. Allocates
+    /// nothing and waits for nobody, but for a tick in which a part panics.
+    ///
+    /// A panic in a part stops the machine and releases the actuators; it does
+    /// not leave this call.
+    pub fn tick(&mut self, expiry: Expiry) -> State {
+        if self.state == State::Stopped {
+            return self.state;
+        }
+        let tick = Tick {
+            number: expiry.number,
+            scheduled: Time::from_nanos(expiry.scheduled_ns),
+            woke: Time::from_nanos(expiry.woke_ns),
+            missed: expiry.missed,
+            dt_s: self.period_s * (expiry.missed + 1) as f64,
+        };
+        self.record = Record::new(tick, self.state);
+        if let Err(words) = panics::caught(|| self.turn(&tick)) {
+            self.leave(Ending::Panicked(words));
+        }
+        self.ticks += 1;
+        self.timing.record(&expiry);
+        self.tell();
+        self.state
+    }
+
+    /// One turn, in one direction: all that happens between the wake-up and
+    /// the last actuator write.
+    fn turn(&mut self, tick: &Tick) {
+        let asked = orders::read(&mut self.orders, &mut self.controller);
+
+        let mut stopwatch = Stopwatch::start(&*self.timer);
+        self.sensors
+            .sample(tick, &mut self.measurements, &mut self.outbox.events);
+        self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
+
+        self.controller.estimate(tick, &self.measurements);
+        self.record.stages.navigation_ns = stopwatch.lap(&*self.timer);
+
+        self.decide(tick, asked);
+
+        stopwatch.lap(&*self.timer);
+        if let Some(outputs) = self.steer(tick, &mut stopwatch) {
+            self.record.stages.control_ns = stopwatch.lap(&*self.timer);
+            self.record.outputs = outputs;
+            self.record.sent = true;
+            self.actuators
+                .apply(tick, &outputs, &mut self.outbox.events);
+            self.record.stages.actuators_ns = stopwatch.lap(&*self.timer);
+        } else {
+            stopwatch.lap(&*self.timer);
+        }
+        self.record.stages.total_ns = stopwatch.since(tick.woke.as_nanos());
+        self.record.setpoints = self.controller.setpoints();
+    }
+
+    /// Works out the outputs for the present state; those that are not valid
+    /// never get out of here.
+    fn steer(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
+        if self.state == State::Engaged {
+            self.controller.guide(tick, &self.measurements);
+            self.record.stages.guidance_ns = stopwatch.lap(&*self.timer);
+            let outputs = self.controller.control(tick, &self.measurements);
+            if self.controller.outputs_are_valid(&outputs) {
+                return Some(outputs);
+            }
+            self.fail(Cause::InvalidOutput, tick);
+        }
+        if let State::Failsafe(_) = self.state {
+            let outputs = self.controller.failsafe(tick, &self.measurements);
+            if self.controller.outputs_are_valid(&outputs) {
+                return Some(outputs);
+            }
+            // Nothing safe is left to send: holding on would help nobody.
+            self.end_failsafe(tick);
+        }
+        None
+    }
+
+    /// Completes this tick's record and sends it off with the tick's events.
+    fn tell(&mut self) {
+        self.record.state = self.state;
+        self.record.measurements = self.measurements;
+        self.record.sensor_faults = self.sensors.faults();
+        self.record.actuator_faults = self.actuators.faults();
+        self.record.records_dropped = self.outbox.records_dropped();
+        self.outbox.send(&self.record);
+    }
+
+    /// The present state.
+    pub const fn state(&self) -> State {
+        self.state
+    }
+
+    /// The record of the last tick.
+    pub const fn record(&self) -> &Record<C> {
+        &self.record
+    }
+
+    /// What the loop runs.
+    pub const fn controller(&self) -> &C {
+        &self.controller
+    }
+
+    /// Ends the loop, if it has not ended, and gives the account of it.
+    pub fn finish(mut self) -> LoopReport {
+        self.close();
+        let cpu_ns = usage::thread_cpu_ns().saturating_sub(self.cpu_at_start_ns);
+        LoopReport {
+            ending: self.ending.take().unwrap_or(Ending::Finished),
+            ticks: self.ticks,
+            timer: self.timer.name(),
+            timing: self.timing.summary(),
+            failsafes: self.failsafes,
+            last_failsafe: self.last_failsafe,
+            released: self.actuators.are_released(),
+            sensor_faults: self.sensors.faults(),
+            actuator_faults: self.actuators.faults(),
+            records_dropped: self.outbox.records_dropped(),
+            events_dropped: self.outbox.events_dropped(),
+            cpu_time: Duration::from_nanos(u64::try_from(cpu_ns).unwrap_or(0)),
+            grants: None,
+        }
+    }
+
+    fn close(&mut self) {
+        let at = self.record.tick;
+        if self.state != State::Stopped {
+            self.leave(Ending::Finished);
+        } else if !self.actuators.are_released() {
+            self.release(&at, Telling::Success);
+        }
+        self.outbox.close(&at);
+    }
+}
+
+impl<C: Controller> Drop for Machine<C> {
+    fn drop(&mut self) {
+        self.close();
+    }
+}

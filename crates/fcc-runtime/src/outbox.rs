@@ -1,0 +1,178 @@
+//! What goes out of the loop: records and events, by a ring that never waits.
+
+use std::collections::VecDeque;
+use std::fmt;
+
+use fcc_core::framework::{Controller, Tick};
+use rtrb::Producer;
+
+use crate::event::{Event, EventKind};
+use crate::record::Record;
+
+/// What a loop tells of itself.
+pub enum Message<C: Controller> {
+    /// One tick, whole.
+    Tick(Record<C>),
+    /// Something that happened. It comes before the record of its tick.
+    Event(Event),
+}
+
+// By hand: derived, these would ask `Clone` and `Copy` of the controller.
+impl<C: Controller> Clone for Message<C> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<C: Controller> Copy for Message<C> {}
+
+impl<C: Controller> fmt::Debug for Message<C>
+where
+    Record<C>: fmt::Debug,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tick(record) => f.debug_tuple("Tick").field(record).finish(),
+            Self::Event(event) => f.debug_tuple("Event").field(event).finish(),
+        }
+    }
+}
+
+/// Slots of the ring that records may not take, so that events get through
+/// when nobody has fetched records for a while.
+pub(crate) const EVENT_SLOTS: usize = 64;
+
+/// What was lost between two things that were not.
+#[derive(Default)]
+struct Gap {
+    count: u64,
+    first: u64,
+    last: u64,
+}
+
+impl Gap {
+    fn widen(&mut self, tick: u64) {
+        if self.count == 0 {
+            self.first = tick;
+        }
+        self.count += 1;
+        self.last = tick;
+    }
+}
+
+/// Events of a tick, and those that found no room in the ring yet. Filled
+/// while the tick runs, emptied after its last actuator write.
+pub(crate) struct Events {
+    waiting: VecDeque<Event>,
+    lost: Gap,
+    dropped: u64,
+}
+
+impl Events {
+    fn new() -> Self {
+        Self {
+            waiting: VecDeque::with_capacity(EVENT_SLOTS),
+            lost: Gap::default(),
+            dropped: 0,
+        }
+    }
+
+    /// Keeps an event for the end of the tick; counts it if there is no room.
+    pub(crate) fn push(&mut self, tick: &Tick, kind: EventKind) {
+        // Never beyond its first size: growing would allocate.
+        if self.waiting.len() < EVENT_SLOTS {
+            self.waiting.push_back(Event {
+                tick: tick.number,
+                time: tick.woke,
+                kind,
+            });
+        } else {
+            self.lost.widen(tick.number);
+            self.dropped += 1;
+        }
+    }
+}
+
+/// The loop's end of the ring of messages.
+pub(crate) struct Outbox<C: Controller> {
+    ring: Producer<Message<C>>,
+    pub(crate) events: Events,
+    lost: Gap,
+    dropped: u64,
+}
+
+impl<C: Controller> Outbox<C> {
+    pub(crate) fn new(ring: Producer<Message<C>>) -> Self {
+        Self {
+            ring,
+            events: Events::new(),
+            lost: Gap::default(),
+            dropped: 0,
+        }
+    }
+
+    /// Sends what waits and this tick's record, or counts the record as lost.
+    pub(crate) fn send(&mut self, record: &Record<C>) {
+        self.send_events(&record.tick);
+        // A gap is told right before the record that ends it.
+        let needed = 1 + usize::from(self.lost.count > 0);
+        if self.ring.slots() >= EVENT_SLOTS + needed {
+            self.send_gap(&record.tick);
+            self.put(Message::Tick(*record));
+        } else {
+            self.lost.widen(record.tick.number);
+            self.dropped += 1;
+        }
+    }
+
+    /// Sends what waits and will have no record after it.
+    pub(crate) fn close(&mut self, tick: &Tick) {
+        self.send_events(tick);
+        self.send_gap(tick);
+        self.events.dropped += self.events.waiting.len() as u64;
+        self.events.waiting.clear();
+    }
+
+    /// Records that found no room, since the start.
+    pub(crate) const fn records_dropped(&self) -> u64 {
+        self.dropped
+    }
+
+    /// Events that found no room, since the start.
+    pub(crate) const fn events_dropped(&self) -> u64 {
+        self.events.dropped
+    }
+
+    fn send_events(&mut self, tick: &Tick) {
+        while let Some(event) = self.events.waiting.front() {
+            let event = *event;
+            if !self.put(Message::Event(event)) {
+                return;
+            }
+            self.events.waiting.pop_front();
+        }
+        let Gap { count, first, last } = self.events.lost;
+        if count > 0 && self.tell(tick, EventKind::EventsDropped { count, first, last }) {
+            self.events.lost = Gap::default();
+        }
+    }
+
+    fn send_gap(&mut self, tick: &Tick) {
+        let Gap { count, first, last } = self.lost;
+        if count > 0 && self.tell(tick, EventKind::RecordsDropped { count, first, last }) {
+            self.lost = Gap::default();
+        }
+    }
+
+    fn tell(&mut self, tick: &Tick, kind: EventKind) -> bool {
+        self.put(Message::Event(Event {
+            tick: tick.number,
+            time: tick.woke,
+            kind,
+        }))
+    }
+
+    fn put(&mut self, message: Message<C>) -> bool {
+        self.ring.push(message).is_ok()
+    }
+}

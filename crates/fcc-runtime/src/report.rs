@@ -1,0 +1,76 @@
+//! The account of a loop that is over.
+
+use std::fmt;
+use std::time::Duration;
+
+use fcc_core::framework::Cause;
+use fcc_timer::{RealtimeGrants, TimerError, TimingSummary};
+
+/// The account of a loop that is over.
+#[derive(Debug)]
+pub struct LoopReport {
+    /// Why it ended.
+    pub ending: Ending,
+    /// Ticks performed.
+    pub ticks: u64,
+    /// What the timer calls itself: `timerfd`, `posix`, ...
+    pub timer: &'static str,
+    /// How well the ticks kept time, missed ones included.
+    pub timing: TimingSummary,
+    /// How often it fell into failsafe.
+    pub failsafes: u64,
+    /// Why it did so the last time.
+    pub last_failsafe: Option<Cause>,
+    /// Whether every actuator gave control back. If not, it may still be held.
+    pub released: bool,
+    /// Failed samples of sensors.
+    pub sensor_faults: u64,
+    /// Failed writes and releases of actuators.
+    pub actuator_faults: u64,
+    /// Records that nobody fetched in time.
+    pub records_dropped: u64,
+    /// Events that nobody fetched in time.
+    pub events_dropped: u64,
+    /// CPU time that the loop's thread spent from the timer's start on.
+    pub cpu_time: Duration,
+    /// What the kernel granted the loop's thread; `None` if it had none of its
+    /// own.
+    pub grants: Option<RealtimeGrants>,
+}
+
+/// Why a loop ended.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Ending {
+    /// [`Order::Stop`](crate::Order::Stop) came.
+    StopOrder,
+    /// The stop flag was set: [`StopHandle`](crate::StopHandle).
+    StopFlag,
+    /// The engage switch went off, and that is configured to end the loop.
+    SwitchedOff,
+    /// Failsafe was over, and that is configured to end the loop.
+    FailsafeOver,
+    /// A part panicked, with these words.
+    Panicked(String),
+    /// The timer failed.
+    TimerFailed(TimerError),
+    /// The timer had no more deadlines to give.
+    TimerEnded,
+    /// Whoever stepped the [`Machine`](crate::Machine) finished it.
+    Finished,
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StopOrder => f.write_str("ordered to stop"),
+            Self::StopFlag => f.write_str("told to stop"),
+            Self::SwitchedOff => f.write_str("switched off"),
+            Self::FailsafeOver => f.write_str("failsafe was over"),
+            Self::Panicked(words) => write!(f, "a part panicked: {words}"),
+            Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
+            Self::TimerEnded => f.write_str("the timer ended"),
+            Self::Finished => f.write_str("finished"),
+        }
+    }
+}

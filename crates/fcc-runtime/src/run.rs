@@ -1,0 +1,183 @@
+//! The loop in a thread: this one or its own.
+
+use std::sync::mpsc::{self, SyncSender};
+use std::thread::{self, JoinHandle};
+use std::{io, panic};
+
+use fcc_core::framework::{Controller, State};
+use fcc_timer::{RealtimeGrants, RealtimeRefused, RealtimeWishes, TimerError};
+
+use crate::config::{LoopConfig, Parts};
+use crate::link::{Link, StopHandle};
+use crate::machine::Machine;
+use crate::panics;
+use crate::report::{Ending, LoopReport};
+
+/// The name of a loop's own thread, as `top -H` and panic messages show it.
+pub const THREAD_NAME: &str = "fcc-loop";
+
+/// A loop that is put together and has not started.
+///
+/// Once one runs, a panic in a tick is not printed by the process' panic hook,
+/// which may wait for a terminal or a pipe before the actuators are released;
+/// its words and its place are in the [`LoopReport`]. Other panics are printed
+/// as ever.
+pub struct Loop<C: Controller> {
+    machine: Machine<C>,
+    realtime: RealtimeWishes,
+    stop: StopHandle,
+}
+
+impl<C: Controller> Loop<C> {
+    /// Puts the parts together.
+    ///
+    /// # Errors
+    /// When the timer's period cannot be kept statistics of.
+    pub fn new(parts: Parts<C>, config: &LoopConfig) -> Result<(Self, Link<C>), TimerError> {
+        let (machine, link) = Machine::new(parts, config)?;
+        let this = Self {
+            machine,
+            realtime: config.realtime.clone(),
+            stop: link.stop.clone(),
+        };
+        Ok((this, link))
+    }
+
+    /// Runs in this thread until the loop stops or its timer ends. The thread
+    /// stays as it is: it is yours, and so are its real-time wishes.
+    pub fn run_here(mut self) -> LoopReport {
+        panics::keep_quiet();
+        if let Err(error) = self.machine.start() {
+            self.machine.leave(Ending::TimerFailed(error));
+        }
+        run(self.machine)
+    }
+
+    /// Runs in a thread of its own, once the kernel has granted or refused
+    /// each real-time wish and the timer has started.
+    ///
+    /// # Errors
+    /// When there is no thread to be had, when a wish that must be granted was
+    /// refused, or when the timer does not start. Nothing runs then.
+    pub fn spawn(self) -> Result<LoopHandle, SpawnError>
+    where
+        C: 'static,
+    {
+        panics::keep_quiet();
+        let (started, start) = mpsc::sync_channel(1);
+        let stop = self.stop.clone();
+        let thread = thread::Builder::new()
+            .name(THREAD_NAME.to_owned())
+            .spawn(move || self.run_there(&started))
+            .map_err(SpawnError::Thread)?;
+        match start.recv() {
+            Ok(Ok(grants)) => Ok(LoopHandle {
+                grants,
+                stop,
+                thread: Some(thread),
+            }),
+            Ok(Err(refused)) => Err(refused),
+            Err(mpsc::RecvError) => Err(SpawnError::Thread(io::Error::other(
+                "the loop's thread ended before it started the timer",
+            ))),
+        }
+    }
+
+    fn run_there(mut self, started: &SyncSender<Started>) -> LoopReport {
+        let ready = self
+            .realtime
+            .apply()
+            .map_err(SpawnError::Realtime)
+            .and_then(|grants| {
+                self.machine.start().map_err(SpawnError::Timer)?;
+                Ok(grants)
+            });
+        let grants = ready.as_ref().ok().cloned();
+        // The receiver waits in `spawn`.
+        let _ = started.send(ready);
+        if grants.is_none() {
+            return self.machine.finish();
+        }
+        LoopReport {
+            grants,
+            ..run(self.machine)
+        }
+    }
+}
+
+type Started = Result<RealtimeGrants, SpawnError>;
+
+fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
+    while machine.state() != State::Stopped {
+        machine.step();
+    }
+    machine.finish()
+}
+
+/// A loop that runs in a thread of its own. Dropping it stops the loop and
+/// waits for it, one period at most: nobody is left in control unwatched.
+#[derive(Debug)]
+pub struct LoopHandle {
+    grants: RealtimeGrants,
+    stop: StopHandle,
+    thread: Option<JoinHandle<LoopReport>>,
+}
+
+impl LoopHandle {
+    /// What the kernel granted the loop's thread.
+    pub const fn grants(&self) -> &RealtimeGrants {
+        &self.grants
+    }
+
+    /// Whether the loop is over.
+    pub fn is_finished(&self) -> bool {
+        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// Asks the loop to end at its next tick.
+    pub fn stop(&self) {
+        self.stop.stop();
+    }
+
+    /// Waits for the loop's end; does not cause it.
+    ///
+    /// # Panics
+    /// With a panic of this crate's own; one of a part is in the report.
+    #[expect(
+        clippy::expect_used,
+        reason = "the thread is taken here or in drop, and each ends the handle"
+    )]
+    pub fn join(mut self) -> LoopReport {
+        let thread = self.thread.take().expect("a handle joins once");
+        match thread.join() {
+            Ok(report) => report,
+            // The machine catches what its parts do; this is a fault of ours.
+            Err(payload) => panic::resume_unwind(payload),
+        }
+    }
+}
+
+impl Drop for LoopHandle {
+    fn drop(&mut self) {
+        if let Some(thread) = self.thread.take() {
+            self.stop.stop();
+            // Its report is lost with the handle.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Why a loop's own thread could not start.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum SpawnError {
+    /// The system gave no thread.
+    #[error("no thread for the loop: {0}")]
+    Thread(#[source] io::Error),
+    /// A real-time wish that must be granted was refused.
+    #[error(transparent)]
+    Realtime(RealtimeRefused),
+    /// The timer did not start.
+    #[error("the loop's timer did not start: {0}")]
+    Timer(#[source] TimerError),
+}

@@ -1,0 +1,51 @@
+//! The loop's sensors and how they do.
+
+use fcc_core::framework::{Sensor, SensorFault, Tick};
+
+use crate::event::EventKind;
+use crate::faults::{Change, Health};
+use crate::outbox::Events;
+
+struct Watched<M> {
+    sensor: Box<dyn Sensor<M>>,
+    health: Health<SensorFault>,
+}
+
+/// The loop's sensors and how they do.
+pub(crate) struct Sensors<M> {
+    all: Vec<Watched<M>>,
+    faults: u64,
+}
+
+impl<M> Sensors<M> {
+    pub(crate) fn new(sensors: Vec<Box<dyn Sensor<M>>>) -> Self {
+        let watched = |sensor| Watched {
+            sensor,
+            health: Health::new(),
+        };
+        Self {
+            all: sensors.into_iter().map(watched).collect(),
+            faults: 0,
+        }
+    }
+
+    /// Samples every sensor, one that fails included: the others go on.
+    pub(crate) fn sample(&mut self, tick: &Tick, into: &mut M, events: &mut Events) {
+        for (index, watched) in (0..).zip(&mut self.all) {
+            let result = watched.sensor.sample(tick, into);
+            self.faults += u64::from(result.is_err());
+            match watched.health.update(result) {
+                Some(Change::Fault(fault)) => {
+                    events.push(tick, EventKind::SensorFault { index, fault });
+                }
+                Some(Change::Recovered) => events.push(tick, EventKind::SensorRecovered { index }),
+                None => {}
+            }
+        }
+    }
+
+    /// Failed samples since the start.
+    pub(crate) const fn faults(&self) -> u64 {
+        self.faults
+    }
+}

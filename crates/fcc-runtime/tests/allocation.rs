@@ -1,0 +1,271 @@
+//! Ten thousand ticks and not one call of the allocator, shown by counting
+//! them.
+#![allow(unsafe_code, reason = "an allocator is unsafe to write")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "as in any test")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::time::Duration;
+
+use fcc_core::framework::{
+    Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, State, Switch, Tick,
+};
+use fcc_runtime::{Link, LoopConfig, Machine, Order, Parts};
+use fcc_timer::ManualTimer;
+
+/// Counts this thread's calls while told to; other tests have their own.
+struct Counting;
+
+thread_local! {
+    static WATCHED: Cell<bool> = const { Cell::new(false) };
+    static CALLS: Cell<u64> = const { Cell::new(0) };
+}
+
+fn count() {
+    if WATCHED.get() {
+        CALLS.set(CALLS.get() + 1);
+    }
+}
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
+        count();
+        // SAFETY: as above.
+        unsafe { System.dealloc(ptr, layout) }
+    }
+
+    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        // SAFETY: as above.
+        unsafe { System.realloc(ptr, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Calls of the allocator during `work`.
+fn allocator_calls<T>(work: impl FnOnce() -> T) -> (T, u64) {
+    CALLS.set(0);
+    WATCHED.set(true);
+    let result = work();
+    WATCHED.set(false);
+    (result, CALLS.get())
+}
+
+/// A plant that goes through everything by the tick's number alone.
+struct Plant;
+
+#[derive(Clone, Copy, Default)]
+struct Measured {
+    value: [f64; 16],
+    switch: Reading<Switch>,
+    faults: Flags,
+    blockers: Flags,
+}
+
+/// Whether tick `number` lies in the first part of a cycle.
+fn within(number: u64, part: u64, of: u64) -> bool {
+    number % of < part
+}
+
+impl Sensor<Measured> for Plant {
+    fn sample(&mut self, tick: &Tick, into: &mut Measured) -> Result<(), SensorFault> {
+        let n = tick.number;
+        into.value = [n as f64; 16];
+        let position = if within(n, 40, 100) {
+            Switch::Off
+        } else {
+            Switch::On
+        };
+        into.switch = Reading::new(position, tick.woke);
+        into.faults = Flags::NONE.with(Flags::bit(3), within(n, 1, 170));
+        into.blockers = Flags::NONE.with(Flags::bit(4), within(n, 60, 500));
+        if within(n, 3, 70) {
+            return Err(SensorFault::Io { errno: 5 });
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "plant"
+    }
+}
+
+/// A plant to which nothing happens.
+struct Steady;
+
+impl Sensor<Measured> for Steady {
+    fn sample(&mut self, tick: &Tick, into: &mut Measured) -> Result<(), SensorFault> {
+        into.value = [tick.number as f64; 16];
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "steady"
+    }
+}
+
+impl Actuator<[f64; 4]> for Plant {
+    fn apply(&mut self, tick: &Tick, _: &[f64; 4]) -> Result<(), ActuatorFault> {
+        if within(tick.number, 5, 90) {
+            return Err(ActuatorFault::Unconfirmed);
+        }
+        Ok(())
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "plant"
+    }
+}
+
+struct Copying {
+    invalid_every: u64,
+    number: u64,
+}
+
+impl Controller for Copying {
+    type Measurements = Measured;
+    type Setpoints = [f64; 6];
+    type Outputs = [f64; 4];
+    type Order = u64;
+
+    fn estimate(&mut self, tick: &Tick, _: &Measured) {
+        self.number = tick.number;
+    }
+
+    fn blockers(&self, _: &Tick, measured: &Measured) -> Flags {
+        measured.blockers
+    }
+
+    fn faults(&self, _: &Tick, measured: &Measured) -> Flags {
+        measured.faults
+    }
+
+    fn flag_name(_: u32) -> &'static str {
+        "scripted"
+    }
+
+    fn engage(&mut self, _: &Tick, _: &Measured) {}
+
+    fn control(&mut self, _: &Tick, measured: &Measured) -> [f64; 4] {
+        if within(self.number, 1, self.invalid_every) {
+            return [f64::NAN; 4];
+        }
+        [measured.value[0]; 4]
+    }
+
+    fn failsafe(&mut self, _: &Tick, _: &Measured) -> [f64; 4] {
+        [0.0; 4]
+    }
+
+    fn command(&mut self, order: &u64) {
+        self.number = *order;
+    }
+
+    fn setpoints(&self) -> [f64; 6] {
+        [0.0; 6]
+    }
+
+    fn outputs_are_valid(&self, outputs: &[f64; 4]) -> bool {
+        outputs.iter().all(|output| output.is_finite())
+    }
+
+    fn switch(&self, measured: &Measured) -> Reading<Switch> {
+        measured.switch
+    }
+}
+
+fn machine(
+    sensor: Box<dyn Sensor<Measured>>,
+    invalid_every: u64,
+    messages_capacity: usize,
+) -> (Machine<Copying>, Link<Copying>) {
+    let period = Duration::from_millis(25);
+    let parts = Parts {
+        timer: Box::new(ManualTimer::new(period).unwrap()),
+        sensors: vec![sensor],
+        controller: Copying {
+            invalid_every,
+            number: 0,
+        },
+        actuators: vec![Box::new(Plant)],
+    };
+    let config = LoopConfig {
+        failsafe_hold: 8 * period,
+        messages_capacity,
+        ..LoopConfig::default()
+    };
+    let (mut machine, link) = Machine::new(parts, &config).unwrap();
+    machine.start().unwrap();
+    (machine, link)
+}
+
+#[test]
+fn the_counter_counts() {
+    let ((), calls) = allocator_calls(|| drop(std::hint::black_box(Box::new(1_u64))));
+    assert_eq!(calls, 2);
+}
+
+#[test]
+fn ten_thousand_engaged_ticks_do_not_allocate() {
+    let (mut machine, mut link) = machine(Box::new(Steady), u64::MAX, 4_096);
+    link.orders.send(Order::Engage).unwrap();
+    let (engaged, calls) = allocator_calls(|| {
+        (0..10_000)
+            .filter(|_| {
+                let state = machine.step();
+                while link.messages.receive().is_some() {}
+                state == State::Engaged
+            })
+            .count()
+    });
+    assert_eq!(engaged, 10_000);
+    assert_eq!(calls, 0);
+}
+
+/// Switch on and off, refusals, faults, failsafe, invalid outputs, orders, and
+/// a ring that overflows because nobody fetches.
+#[test]
+fn nothing_that_happens_allocates() {
+    let (mut machine, mut link) = machine(Box::new(Plant), 330, 100);
+    let mut seen = [0_u32; 3];
+    let mut calls = 0;
+    for n in 0..10_000 {
+        let order = if within(n, 1, 230) {
+            Order::Engage
+        } else {
+            Order::Controller(n)
+        };
+        link.orders.send(order).unwrap();
+        let (state, during) = allocator_calls(|| machine.step());
+        calls += during;
+        match state {
+            State::Standby => seen[0] += 1,
+            State::Engaged => seen[1] += 1,
+            State::Failsafe(_) => seen[2] += 1,
+            State::Stopped => panic!("stopped at {n}"),
+        }
+        // Fetched now and then only, so that gaps of both kinds are told.
+        if within(n, 1, 3_000) {
+            while link.messages.receive().is_some() {}
+        }
+    }
+    assert_eq!(calls, 0);
+    assert!(seen.iter().all(|ticks| *ticks > 100), "{seen:?}");
+    let report = machine.finish();
+    assert!(report.failsafes > 10);
+    assert!(report.records_dropped > 1_000);
+    assert!(report.events_dropped > 10);
+}

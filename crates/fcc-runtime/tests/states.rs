@@ -1,0 +1,326 @@
+//! What changes the loop's state, and what does not.
+
+mod bench;
+
+use std::time::Duration;
+
+use bench::{Bench, PERIOD, RELEASED, change};
+use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
+use fcc_core::framework::{Cause, Flags, Switch, SwitchOff};
+use fcc_runtime::{AfterFailsafe, EventKind, LoopConfig, Order};
+
+const LOST: Flags = Flags::bit(1);
+const SENSORS_LOST: Cause = Cause::Faults(LOST);
+
+fn config() -> LoopConfig {
+    LoopConfig {
+        failsafe_hold: 4 * PERIOD,
+        switch_max_age: 2 * PERIOD,
+        ..LoopConfig::default()
+    }
+}
+
+fn refused(blockers: Flags) -> EventKind {
+    EventKind::EngageRefused { blockers }
+}
+
+#[test]
+fn standby_watches_and_touches_nothing() {
+    let mut bench = Bench::new();
+    for _ in 0..100 {
+        assert_eq!(bench.tick(|_| {}), Standby);
+    }
+    let log = bench.stage.log();
+    assert_eq!(log.calls.len(), 200, "sample and estimate only");
+    assert!(log.applied.is_empty());
+    let records = bench.records();
+    assert_eq!(records.len(), 100);
+    assert!(records.iter().all(|record| !record.sent));
+    assert_eq!(records[99].measurements.samples, 100);
+}
+
+#[test]
+fn a_tick_goes_in_one_direction() {
+    let mut bench = Bench::new();
+    bench.order(Order::Controller(7));
+    bench.order(Order::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+    assert_eq!(
+        bench.stage.log().calls,
+        [
+            "command", "sample", "estimate", "engage", "guide", "control", "apply"
+        ]
+    );
+    assert_eq!(bench.events(), [change(Standby, Engaged)]);
+    bench.stage.forget();
+    bench.tick(|_| {});
+    assert_eq!(
+        bench.stage.log().calls,
+        ["sample", "estimate", "guide", "control", "apply"]
+    );
+    assert_eq!(bench.stage.log().applied, [0.5]);
+}
+
+#[test]
+fn an_order_to_disengage_releases() {
+    let mut bench = Bench::engaged(&config());
+    assert_eq!(bench.stage.log().held, [true, true]);
+    bench.order(Order::Disengage);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    assert_eq!(
+        bench.stage.log().calls,
+        ["sample", "estimate", "release", "disengage"]
+    );
+    assert_eq!(bench.stage.log().held, [false, false]);
+    assert_eq!(bench.events(), [change(Engaged, Standby), RELEASED]);
+}
+
+#[test]
+fn a_blocked_order_is_one_refused_attempt() {
+    let mut bench = Bench::new();
+    bench.order(Order::Engage);
+    assert_eq!(bench.tick(|s| s.blockers = LOST), Standby);
+    assert_eq!(bench.machine.record().blockers, LOST);
+    // The obstacle gone, nothing happens until somebody asks again.
+    assert_eq!(bench.tick(|s| s.blockers = Flags::NONE), Standby);
+    assert_eq!(bench.events(), [refused(LOST)]);
+    bench.order(Order::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+}
+
+#[test]
+fn the_switch_engages_on_its_rising_edge_only() {
+    let mut bench = Bench::with(&config());
+    // On from the start: somebody left it on.
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Engaged);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(
+        bench.events(),
+        [change(Standby, Engaged), change(Engaged, Standby), RELEASED]
+    );
+}
+
+#[test]
+fn a_blocked_switch_must_be_thrown_again() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| {
+        s.switch = Some(Switch::On);
+        s.blockers = LOST;
+    });
+    assert_eq!(bench.tick(|s| s.blockers = Flags::NONE), Standby);
+    assert_eq!(bench.events(), [refused(LOST)]);
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Engaged);
+}
+
+#[test]
+fn after_a_silence_the_switch_must_be_seen_off_again() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    // Fresh for two periods, silent in the third.
+    for _ in 0..3 {
+        bench.tick(|s| s.switch = None);
+    }
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Engaged);
+}
+
+#[test]
+fn a_stale_switch_does_not_disengage() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| s.switch = Some(Switch::On));
+    for _ in 0..50 {
+        assert_eq!(bench.tick(|s| s.switch = None), Engaged);
+    }
+    // It was thrown while nobody heard: off is what it says.
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+}
+
+#[test]
+fn a_switch_that_is_off_does_not_undo_an_order() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.order(Order::Engage);
+    for _ in 0..10 {
+        assert_eq!(bench.tick(|_| {}), Engaged);
+    }
+}
+
+#[test]
+fn switching_off_stops_if_configured() {
+    let mut bench = Bench::with(&LoopConfig {
+        switch_off: SwitchOff::Stop,
+        ..config()
+    });
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| s.switch = Some(Switch::On));
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Stopped);
+    assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn letting_go_wins_over_taking_over() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| s.switch = Some(Switch::On));
+    bench.events();
+    bench.order(Order::Engage);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(
+        bench.events(),
+        [change(Engaged, Standby), RELEASED, refused(Flags::NONE)]
+    );
+}
+
+#[test]
+fn faults_lead_through_failsafe_to_standby() {
+    let mut bench = Bench::engaged(&config());
+    assert_eq!(bench.tick(|s| s.faults = LOST), Failsafe(SENSORS_LOST));
+    // Held for four periods of tick time: this tick and three more.
+    for _ in 0..3 {
+        assert_eq!(bench.tick(|_| {}), Failsafe(SENSORS_LOST));
+    }
+    assert_eq!(bench.stage.log().applied, [-0.25; 4]);
+    assert_eq!(bench.stage.log().held, [true, true]);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    assert_eq!(bench.stage.log().held, [false, false]);
+    assert_eq!(
+        bench.events(),
+        [
+            change(Engaged, Failsafe(SENSORS_LOST)),
+            change(Failsafe(SENSORS_LOST), Standby),
+            RELEASED
+        ]
+    );
+    let report = bench.machine.finish();
+    assert_eq!(report.failsafes, 1);
+    assert_eq!(report.last_failsafe, Some(SENSORS_LOST));
+}
+
+#[test]
+fn failsafe_lasts_by_the_schedule_and_not_by_ticks() {
+    let mut bench = Bench::engaged(&config());
+    bench.stage.set(|s| s.faults = LOST);
+    bench.machine.tick(bench::expiry(10));
+    assert_eq!(bench.machine.state(), Failsafe(SENSORS_LOST));
+    // Three deadlines were missed: four periods have passed in one tick.
+    assert_eq!(bench.machine.tick(bench::expiry(14)), Standby);
+}
+
+#[test]
+fn a_failsafe_of_no_length_releases_at_once() {
+    let mut bench = Bench::engaged(&LoopConfig {
+        failsafe_hold: Duration::ZERO,
+        ..config()
+    });
+    assert_eq!(bench.tick(|s| s.faults = LOST), Standby);
+    assert!(bench.stage.log().applied.is_empty());
+    assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn failsafe_can_be_left_by_every_hand() {
+    let failing = || {
+        let mut bench = Bench::with(&config());
+        bench.tick(|s| s.switch = Some(Switch::Off));
+        bench.tick(|s| s.switch = Some(Switch::On));
+        let state = bench.tick(|s| s.faults = LOST);
+        assert_eq!(state, Failsafe(SENSORS_LOST));
+        bench.stage.set(|s| s.faults = Flags::NONE);
+        bench
+    };
+    let mut bench = failing();
+    bench.order(Order::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+
+    let mut bench = failing();
+    bench.order(Order::Engage);
+    assert_eq!(
+        bench.tick(|s| s.blockers = LOST),
+        Failsafe(SENSORS_LOST),
+        "blocked"
+    );
+
+    let mut bench = failing();
+    bench.order(Order::Disengage);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    assert_eq!(bench.stage.log().held, [false, false]);
+
+    let mut bench = failing();
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(bench.stage.log().held, [false, false]);
+
+    let mut bench = failing();
+    bench.order(Order::Stop);
+    assert_eq!(bench.tick(|_| {}), Stopped);
+    assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn after_failsafe_the_loop_stops_if_configured() {
+    let mut bench = Bench::engaged(&LoopConfig {
+        after_failsafe: AfterFailsafe::Stop,
+        ..config()
+    });
+    bench.tick(|s| s.faults = LOST);
+    for _ in 0..3 {
+        bench.tick(|_| {});
+    }
+    assert_eq!(bench.tick(|_| {}), Stopped);
+    assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn invalid_outputs_are_never_sent() {
+    for invalid in [f64::NAN, f64::INFINITY, 1.000_001] {
+        let mut bench = Bench::engaged(&config());
+        let state = bench.tick(|s| s.output = invalid);
+        assert_eq!(state, Failsafe(Cause::InvalidOutput));
+        // The failsafe's outputs went out in that very tick.
+        assert_eq!(bench.stage.log().applied, [-0.25]);
+        let record = *bench.machine.record();
+        assert!(record.sent);
+        assert!((record.outputs + 0.25).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn when_failsafe_has_nothing_valid_either_control_is_given_back() {
+    let mut bench = Bench::engaged(&config());
+    let state = bench.tick(|s| {
+        s.output = f64::NAN;
+        s.failsafe_output = f64::NAN;
+    });
+    assert_eq!(state, Standby);
+    assert!(bench.stage.log().applied.is_empty());
+    assert_eq!(bench.stage.log().held, [false, false]);
+    assert!(!bench.machine.record().sent);
+    let failsafe = Failsafe(Cause::InvalidOutput);
+    assert_eq!(
+        bench.events(),
+        [
+            change(Engaged, failsafe),
+            change(failsafe, Standby),
+            RELEASED
+        ]
+    );
+}
+
+#[test]
+fn a_missed_deadline_makes_a_longer_step() {
+    let mut bench = Bench::new();
+    bench.machine.tick(fcc_timer::Expiry {
+        missed: 2,
+        ..bench::expiry(3)
+    });
+    let tick = bench.machine.record().tick;
+    assert_eq!((tick.number, tick.missed), (3, 2));
+    assert_eq!(tick.scheduled, bench::due(3));
+    assert!((tick.dt_s - 0.075).abs() < 1e-15);
+    assert_eq!(tick.lateness(), Duration::from_micros(40));
+}

@@ -1,0 +1,141 @@
+//! The loop in a thread of its own, on a real clock. What is asserted is what
+//! happens, never how fast.
+#![allow(clippy::unwrap_used, reason = "as in any test")]
+
+mod bench;
+
+use std::thread;
+use std::time::Duration;
+
+use bench::{Puppet, Stage, parts};
+use fcc_core::framework::State;
+use fcc_runtime::{Ending, Link, Loop, LoopConfig, LoopHandle, Message, Order, Parts, SpawnError};
+use fcc_timer::{RealtimeWishes, Strictness, TimerKind};
+
+/// 500 Hz.
+const PERIOD: Duration = Duration::from_millis(2);
+
+fn spawned(stage: &Stage) -> (LoopHandle, Link<Puppet>) {
+    let timed = Parts {
+        timer: TimerKind::Timerfd.build(PERIOD).unwrap(),
+        ..parts(stage)
+    };
+    let (this, link) = Loop::new(timed, &LoopConfig::default()).unwrap();
+    (this.spawn().unwrap(), link)
+}
+
+/// Fetches until a record shows this state.
+fn wait_for(link: &mut Link<Puppet>, state: State) {
+    loop {
+        match link.messages.receive() {
+            Some(Message::Tick(record)) if record.state == state => return,
+            Some(_) => {}
+            None => {
+                assert!(!link.messages.is_over(), "over before {state}");
+                thread::sleep(PERIOD);
+            }
+        }
+    }
+}
+
+#[test]
+fn orders_in_and_records_out() {
+    let stage = Stage::default();
+    let (handle, mut link) = spawned(&stage);
+    wait_for(&mut link, State::Standby);
+    link.orders.send(Order::Engage).unwrap();
+    wait_for(&mut link, State::Engaged);
+    assert!(!handle.is_finished());
+    link.orders.send(Order::Stop).unwrap();
+    wait_for(&mut link, State::Stopped);
+    let report = handle.join();
+    assert!(matches!(report.ending, Ending::StopOrder));
+    assert!(report.released);
+    assert!(report.grants.is_some());
+    assert_eq!(report.timer, "timerfd");
+    assert_eq!(stage.log().held, [false, false]);
+    assert_eq!(report.timing.ticks, report.ticks);
+    assert!(report.cpu_time > Duration::ZERO);
+}
+
+#[test]
+fn the_stop_flag_ends_it_from_another_thread() {
+    let stage = Stage::default();
+    let (handle, mut link) = spawned(&stage);
+    link.orders.send(Order::Engage).unwrap();
+    wait_for(&mut link, State::Engaged);
+    let stop = link.stop.clone();
+    thread::spawn(move || stop.stop()).join().unwrap();
+    assert!(matches!(handle.join().ending, Ending::StopFlag));
+    assert_eq!(stage.log().held, [false, false]);
+}
+
+#[test]
+fn a_dropped_handle_leaves_nobody_in_control() {
+    let stage = Stage::default();
+    let (handle, mut link) = spawned(&stage);
+    link.orders.send(Order::Engage).unwrap();
+    wait_for(&mut link, State::Engaged);
+    drop(handle);
+    assert_eq!(stage.log().held, [false, false]);
+    wait_for(&mut link, State::Stopped);
+    assert!(link.messages.receive().is_none());
+    assert!(link.messages.is_over());
+}
+
+#[test]
+fn a_panic_in_its_thread_is_in_the_report() {
+    let stage = Stage::default();
+    let (handle, mut link) = spawned(&stage);
+    link.orders.send(Order::Engage).unwrap();
+    wait_for(&mut link, State::Engaged);
+    stage.set(|s| s.panic_in = Some("control"));
+    let Ending::Panicked(words) = handle.join().ending else {
+        panic!("ended otherwise");
+    };
+    assert!(
+        words.starts_with("scripted panic in control (at ") && words.contains("bench/mod.rs:"),
+        "{words}"
+    );
+    assert_eq!(stage.log().held, [false, false]);
+}
+
+#[test]
+fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
+    let stage = Stage::default();
+    let config = LoopConfig {
+        realtime: RealtimeWishes {
+            // No machine has this many.
+            cpu: Some(1_000_000),
+            strictness: Strictness::Strict,
+            ..RealtimeWishes::default()
+        },
+        ..LoopConfig::default()
+    };
+    let (this, mut link) = Loop::new(parts(&stage), &config).unwrap();
+    let refused = this.spawn().unwrap_err();
+    assert!(matches!(refused, SpawnError::Realtime(_)), "{refused}");
+    assert!(!stage.log().calls.contains(&"sample"));
+    while let Some(message) = link.messages.receive() {
+        assert!(matches!(message, Message::Event(_)), "a tick was performed");
+    }
+}
+
+#[test]
+fn here_it_runs_until_the_timer_ends() {
+    let stage = Stage::default();
+    let (this, mut link) = Loop::new(parts(&stage), &LoopConfig::default()).unwrap();
+    link.orders.send(Order::Engage).unwrap();
+    let ender = stage.clone();
+    let end = thread::spawn(move || {
+        while ender.log().applied.is_empty() {
+            thread::sleep(PERIOD);
+        }
+        ender.set(|s| s.timer = Some(bench::TimerEnd::Ended));
+    });
+    let report = this.run_here();
+    end.join().unwrap();
+    assert!(matches!(report.ending, Ending::TimerEnded));
+    assert!(report.grants.is_none());
+    assert_eq!(stage.log().held, [false, false]);
+}

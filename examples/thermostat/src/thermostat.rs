@@ -1,0 +1,90 @@
+//! The controller: heats until the room is as warm as it was told.
+
+use std::time::Duration;
+
+use fcc_core::blocks::{Pid, PidConfig};
+use fcc_core::framework::{Controller, Flags, Reading, Tick};
+
+use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
+
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Measured {
+    pub(crate) room_c: Reading<f64>,
+}
+
+/// How fast the room shall follow, s of its own time.
+const RESPONSE_S: f64 = 600.0;
+const MAX_AGE: Duration = Duration::from_secs(1);
+const NO_TEMPERATURE: Flags = Flags::bit(0);
+
+pub(crate) struct Thermostat {
+    wanted_c: f64,
+    pid: Pid,
+}
+
+impl Thermostat {
+    pub(crate) fn new(wanted_c: f64) -> Self {
+        // Both poles of the closed loop at 1/RESPONSE_S (pole placement for
+        // a first-order plant: Åström and Hägglund 1995, chapter 4).
+        let gain_k = RESISTANCE_K_PER_W * HEATER_W;
+        let pole_per_s = 1.0 / RESPONSE_S;
+        let pid = Pid::new(PidConfig {
+            kp: (2.0 * pole_per_s * TIME_CONSTANT_S - 1.0) / gain_k,
+            ki: pole_per_s * pole_per_s * TIME_CONSTANT_S / gain_k,
+            output_min: 0.0,
+            output_max: 1.0,
+            ..PidConfig::default()
+        });
+        Self { wanted_c, pid }
+    }
+}
+
+impl Controller for Thermostat {
+    type Measurements = Measured;
+    type Setpoints = f64;
+    type Outputs = f64;
+    /// Another temperature, °C.
+    type Order = f64;
+
+    fn estimate(&mut self, _: &Tick, _: &Measured) {}
+
+    fn blockers(&self, tick: &Tick, measured: &Measured) -> Flags {
+        let known = measured.room_c.is_fresh(tick.woke, MAX_AGE);
+        Flags::NONE.with(NO_TEMPERATURE, !known)
+    }
+
+    fn faults(&self, tick: &Tick, measured: &Measured) -> Flags {
+        self.blockers(tick, measured)
+    }
+
+    fn flag_name(_: u32) -> &'static str {
+        "the temperature is not known"
+    }
+
+    fn engage(&mut self, _: &Tick, measured: &Measured) {
+        let room_c = measured.room_c.value;
+        self.pid.engage(0.0, room_c, room_c, 0.0);
+    }
+
+    fn control(&mut self, tick: &Tick, measured: &Measured) -> f64 {
+        let dt_s = tick.dt_s * TIME_SCALE;
+        self.pid.step(self.wanted_c, measured.room_c.value, dt_s)
+    }
+
+    /// Off: a cold room is safer than a burnt one.
+    fn failsafe(&mut self, _: &Tick, _: &Measured) -> f64 {
+        0.0
+    }
+
+    fn command(&mut self, wanted_c: &f64) {
+        self.wanted_c = *wanted_c;
+    }
+
+    fn setpoints(&self) -> f64 {
+        self.wanted_c
+    }
+
+    fn outputs_are_valid(&self, power: &f64) -> bool {
+        (0.0..=1.0).contains(power)
+    }
+}
