@@ -1,0 +1,145 @@
+//! X-Plane as an actuator.
+
+use core::time::Duration;
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+
+use fcc_core::flight::Surfaces;
+use fcc_core::framework::{Actuator, ActuatorFault, Tick, Time};
+
+use crate::config::XPlaneConfig;
+use crate::confirmation::Confirmation;
+use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
+use crate::link::{Control, Link, count};
+use crate::port::{Errno, Port, UdpPort};
+use crate::protocol::PathError;
+use crate::sensor::send;
+
+/// While control is held the overrides are set anew this often, for a lost
+/// datagram or a simulator that was restarted.
+const ASSERT_EVERY: Duration = Duration::from_secs(1);
+
+/// X-Plane as an actuator: takes the yoke and the throttles, writes them, and
+/// gives them back.
+///
+/// The first [`apply`](Actuator::apply) after a release sets the overrides,
+/// then writes. [`release`](Actuator::release) centres the surfaces and
+/// releases the overrides, three times over; dropping does the same. A sensor
+/// that goes on being sampled sees to it that the release took effect.
+#[derive(Debug)]
+pub struct XPlaneActuator<P: Port = UdpPort> {
+    port: Arc<P>,
+    link: Arc<Link>,
+    controls: Controls,
+    held: Option<Held>,
+}
+
+/// Control that was taken.
+#[derive(Debug)]
+struct Held {
+    /// Where: it is given back there, wherever a beacon points by then.
+    simulator: SocketAddrV4,
+    /// When the overrides were last set.
+    asserted: Time,
+    confirmation: Confirmation,
+}
+
+impl<P: Port> XPlaneActuator<P> {
+    pub(crate) fn new(
+        config: &XPlaneConfig,
+        port: Arc<P>,
+        link: Arc<Link>,
+    ) -> Result<Self, PathError> {
+        Ok(Self {
+            port,
+            link,
+            controls: Controls::new(config)?,
+            held: None,
+        })
+    }
+}
+
+impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
+    fn apply(&mut self, tick: &Tick, outputs: &Surfaces) -> Result<(), ActuatorFault> {
+        let now = tick.woke;
+        let (port, link) = (self.port.as_ref(), self.link.as_ref());
+        if link.control() != Control::Held {
+            // A release that could not be sent left it; it is taken anew.
+            self.held = None;
+        }
+        let held = match &mut self.held {
+            Some(held) => held,
+            none => {
+                let simulator = link.simulator().ok_or(ActuatorFault::NotConnected)?;
+                // Held from here on, before the first datagram leaves: what
+                // was perhaps taken must be given back.
+                link.set_control(Control::Held);
+                none.insert(Held {
+                    simulator,
+                    asserted: Time::NEVER,
+                    confirmation: Confirmation::begin(now),
+                })
+            }
+        };
+        let simulator = held.simulator;
+        let write = |datagram: &[u8]| {
+            count(&link.counters.writes);
+            send(port, link, datagram, simulator)
+        };
+
+        let mut sent = Ok(());
+        if now.since(held.asserted) >= ASSERT_EVERY {
+            held.asserted = now;
+            sent = self.controls.take(write);
+        }
+        sent = sent.and(self.controls.set(outputs, write));
+
+        held.confirmation.wrote(now, yoke_ratios(outputs));
+        let unconfirmed = held.confirmation.is_overdue(now, link);
+        link.set_unconfirmed(unconfirmed);
+        match sent {
+            Err(errno) => Err(ActuatorFault::Io { errno }),
+            Ok(()) if unconfirmed => Err(ActuatorFault::Unconfirmed),
+            Ok(()) => Ok(()),
+        }
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        let Some(held) = &self.held else {
+            return Ok(());
+        };
+        let (port, link, simulator) = (self.port.as_ref(), self.link.as_ref(), held.simulator);
+        let mut released = false;
+        let mut failed: Errno = 0;
+        for _ in 0..LET_GO_TIMES {
+            let round = self.controls.let_go(|datagram| {
+                count(&link.counters.writes);
+                send(port, link, datagram, simulator)
+            });
+            match round {
+                Ok(()) => released = true,
+                Err(errno) => failed = errno,
+            }
+        }
+        link.set_unconfirmed(false);
+        link.set_control(Control::LettingGo);
+        if released {
+            self.held = None;
+            Ok(())
+        } else {
+            // Perhaps still held, so that the next release tries again.
+            Err(ActuatorFault::Io { errno: failed })
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        "X-Plane"
+    }
+}
+
+impl<P: Port> Drop for XPlaneActuator<P> {
+    fn drop(&mut self) {
+        // Nobody is left to hear of a failure.
+        let _ = self.release();
+    }
+}

@@ -1,0 +1,317 @@
+//! The datagrams by which surfaces, throttles and overrides are written.
+//!
+//! Signs are the house's own: X-Plane's `yoke_pitch_ratio` is positive nose up,
+//! `yoke_roll_ratio` positive right, `yoke_heading_ratio` positive nose right,
+//! each -1..1, and so are the columns of row 8; throttles are 0..1.
+//!
+//! No override has a timeout: X-Plane would fly on with the last deflection for
+//! ever. So letting go is: centre the surfaces, then release the overrides, in
+//! this order. The throttle has no centre; it stays where it is until the
+//! released override gives it back to the lever in the cockpit.
+
+use fcc_core::flight::Surfaces;
+
+use crate::config::{Output, XPlaneConfig};
+use crate::port::Errno;
+use crate::protocol::{PathError, data, dref};
+use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
+use crate::quantity::{YOKE_HEADING, YOKE_PITCH, YOKE_ROLL};
+
+const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use";
+/// Rows of Data Output.
+const ROW_JOYSTICK: i32 = 8;
+const ROW_THROTTLES: i32 = 25;
+
+/// How often the letting go is sent back to back: datagrams get lost, and
+/// after the last there may be nobody left to repeat it.
+pub(crate) const LET_GO_TIMES: usize = 3;
+
+type Write = Box<[u8; dref::WRITE_BYTES]>;
+
+/// Made once, so that a tick only changes numbers in them.
+#[derive(Clone, Debug)]
+pub(crate) struct Controls {
+    overrides: [Write; 2],
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    Dref {
+        /// Elevator, aileron, rudder.
+        yoke: [Write; 3],
+        throttles: Vec<Write>,
+    },
+    Data {
+        engines: usize,
+        datagram: [u8; data::size(2)],
+    },
+}
+
+/// What to write; `None` leaves as it is.
+#[derive(Clone, Copy)]
+struct Deflections {
+    /// Elevator, aileron, rudder.
+    yoke: [Option<f32>; 3],
+    throttle: Option<f32>,
+}
+
+impl Deflections {
+    const CENTRED: Self = Self {
+        yoke: [Some(0.0); 3],
+        throttle: None,
+    };
+    const AS_THEY_ARE: Self = Self {
+        yoke: [None; 3],
+        throttle: None,
+    };
+
+    /// Within their ranges; what is not a number leaves as it is. The loop
+    /// checks its outputs, this is the last wall before the aircraft.
+    fn of(surfaces: &Surfaces) -> Self {
+        Self {
+            yoke: yoke_ratios(surfaces),
+            throttle: ratio(surfaces.throttle, 0.0),
+        }
+    }
+}
+
+fn ratio(value: f64, least: f64) -> Option<f32> {
+    (!value.is_nan()).then(|| value.clamp(least, 1.0) as f32)
+}
+
+/// What is written to the yoke for these surfaces: elevator, aileron, rudder.
+pub(crate) fn yoke_ratios(surfaces: &Surfaces) -> [Option<f32>; 3] {
+    [surfaces.elevator, surfaces.aileron, surfaces.rudder].map(|value| ratio(value, -1.0))
+}
+
+impl Controls {
+    pub(crate) fn new(config: &XPlaneConfig) -> Result<Self, PathError> {
+        let engines = usize::from(config.engines);
+        let way = match config.output {
+            Output::Dref => Way::Dref {
+                yoke: [
+                    write_to(YOKE_PITCH)?,
+                    write_to(YOKE_ROLL)?,
+                    write_to(YOKE_HEADING)?,
+                ],
+                throttles: (0..engines)
+                    .map(|engine| write_to(&format!("{THROTTLE}[{engine}]")))
+                    .collect::<Result<_, _>>()?,
+            },
+            Output::Data => Way::Data {
+                engines,
+                datagram: [0; data::size(2)],
+            },
+        };
+        Ok(Self {
+            overrides: [write_to(OVERRIDE_JOYSTICK)?, write_to(OVERRIDE_THROTTLES)?],
+            way,
+        })
+    }
+
+    /// Sets the overrides.
+    pub(crate) fn take(
+        &mut self,
+        mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        self.set_overrides(1.0, &mut send)
+    }
+
+    /// Writes surfaces and throttles.
+    pub(crate) fn set(
+        &mut self,
+        surfaces: &Surfaces,
+        mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        self.deflect(Deflections::of(surfaces), &mut send)
+    }
+
+    /// Centres, then releases the overrides, once.
+    pub(crate) fn let_go(
+        &mut self,
+        mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        let centred = self.deflect(Deflections::CENTRED, &mut send);
+        // By rows, "leave as it is" in every column also ends what the row
+        // itself may have taken over.
+        let left = match self.way {
+            Way::Dref { .. } => Ok(()),
+            Way::Data { .. } => self.deflect(Deflections::AS_THEY_ARE, &mut send),
+        };
+        let released = self.set_overrides(0.0, &mut send);
+        centred.and(left).and(released)
+    }
+
+    fn set_overrides(
+        &mut self,
+        value: f32,
+        send: &mut impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        let mut outcome = Ok(());
+        for write in &mut self.overrides {
+            dref::set_value(write, value);
+            outcome = outcome.and(send(write.as_slice()));
+        }
+        outcome
+    }
+
+    /// Sends every datagram even if one fails, and returns the first failure.
+    fn deflect(
+        &mut self,
+        to: Deflections,
+        send: &mut impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        let mut outcome = Ok(());
+        match &mut self.way {
+            Way::Dref { yoke, throttles } => {
+                let throttles = throttles.iter_mut().map(|write| (write, to.throttle));
+                for (write, value) in yoke.iter_mut().zip(to.yoke).chain(throttles) {
+                    if let Some(value) = value {
+                        dref::set_value(write, value);
+                        outcome = outcome.and(send(write.as_slice()));
+                    }
+                }
+            }
+            Way::Data { engines, datagram } => {
+                let [elevator, aileron, rudder] = to.yoke;
+                let joystick = [elevator, aileron, rudder, None, None, None, None, None];
+                let throttles =
+                    core::array::from_fn(|engine| to.throttle.filter(|_| engine < *engines));
+                let rows = [(ROW_JOYSTICK, joystick), (ROW_THROTTLES, throttles)]
+                    .map(|(index, columns)| data::Row { index, columns });
+                if let Some(datagram) = data::write(datagram, &rows) {
+                    outcome = send(datagram);
+                }
+            }
+        }
+        outcome
+    }
+}
+
+fn write_to(path: &str) -> Result<Write, PathError> {
+    let mut write = Box::new([0; dref::WRITE_BYTES]);
+    dref::write(&mut write, 0.0, path)?;
+    Ok(write)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is sent, as (path, value) of DREF or as raw rows.
+    fn sent(act: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), Errno>)) -> Vec<Vec<u8>> {
+        let mut datagrams = Vec::new();
+        act(&mut |datagram| {
+            datagrams.push(datagram.to_vec());
+            Ok(())
+        });
+        datagrams
+    }
+
+    fn named(datagrams: &[Vec<u8>]) -> Vec<(String, f32)> {
+        datagrams
+            .iter()
+            .map(|datagram| {
+                assert_eq!(datagram.len(), 509);
+                assert_eq!(&datagram[..5], b"DREF\0");
+                let value = f32::from_le_bytes(datagram[5..9].try_into().unwrap());
+                let path = datagram[9..].split(|byte| *byte == 0).next().unwrap();
+                (String::from_utf8(path.to_vec()).unwrap(), value)
+            })
+            .collect()
+    }
+
+    const SURFACES: Surfaces = Surfaces {
+        throttle: 0.75,
+        elevator: 0.5,
+        aileron: -0.25,
+        rudder: 0.125,
+    };
+
+    #[test]
+    fn each_surface_and_engine_is_a_write_of_its_own() {
+        let config = XPlaneConfig {
+            engines: 2,
+            ..XPlaneConfig::default()
+        };
+        let mut controls = Controls::new(&config).unwrap();
+        let writes = named(&sent(|send| controls.set(&SURFACES, send).unwrap()));
+        let expected = [
+            ("sim/joystick/yoke_pitch_ratio", 0.5),
+            ("sim/joystick/yoke_roll_ratio", -0.25),
+            ("sim/joystick/yoke_heading_ratio", 0.125),
+            ("sim/flightmodel/engine/ENGN_thro_use[0]", 0.75),
+            ("sim/flightmodel/engine/ENGN_thro_use[1]", 0.75),
+        ];
+        assert_eq!(writes, expected.map(|(path, v)| (path.to_owned(), v)));
+    }
+
+    #[test]
+    fn letting_go_centres_first_and_releases_last() {
+        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
+        sent(|send| controls.set(&SURFACES, send).unwrap());
+        let writes = named(&sent(|send| controls.let_go(send).unwrap()));
+        let expected = [
+            "sim/joystick/yoke_pitch_ratio",
+            "sim/joystick/yoke_roll_ratio",
+            "sim/joystick/yoke_heading_ratio",
+            "sim/operation/override/override_joystick",
+            "sim/operation/override/override_throttles",
+        ];
+        assert_eq!(writes, expected.map(|path| (path.to_owned(), 0.0)));
+    }
+
+    #[test]
+    fn by_rows_it_is_one_datagram_with_joystick_and_throttles() {
+        let config = XPlaneConfig {
+            output: Output::Data,
+            engines: 2,
+            ..XPlaneConfig::default()
+        };
+        let mut controls = Controls::new(&config).unwrap();
+        let datagrams = sent(|send| controls.set(&SURFACES, send).unwrap());
+        let mut expected = b"DATA\0\x08\0\0\0".to_vec();
+        for column in [
+            0.5_f32, -0.25, 0.125, -999.0, -999.0, -999.0, -999.0, -999.0,
+        ] {
+            expected.extend(column.to_le_bytes());
+        }
+        expected.extend([25, 0, 0, 0]);
+        for column in [
+            0.75_f32, 0.75, -999.0, -999.0, -999.0, -999.0, -999.0, -999.0,
+        ] {
+            expected.extend(column.to_le_bytes());
+        }
+        assert_eq!(datagrams, [expected]);
+    }
+
+    #[test]
+    fn what_is_not_in_range_never_leaves() {
+        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
+        let surfaces = Surfaces {
+            throttle: -3.0,
+            elevator: f64::NAN,
+            aileron: f64::INFINITY,
+            rudder: -7.0,
+        };
+        let writes = named(&sent(|send| controls.set(&surfaces, send).unwrap()));
+        let expected = [
+            ("sim/joystick/yoke_roll_ratio", 1.0),
+            ("sim/joystick/yoke_heading_ratio", -1.0),
+            ("sim/flightmodel/engine/ENGN_thro_use[0]", 0.0),
+        ];
+        assert_eq!(writes, expected.map(|(path, v)| (path.to_owned(), v)));
+    }
+
+    #[test]
+    fn one_refused_datagram_does_not_keep_back_the_others() {
+        let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
+        let mut tried = 0;
+        let outcome = controls.let_go(|_| {
+            tried += 1;
+            if tried == 1 { Err(11) } else { Ok(()) }
+        });
+        assert_eq!((outcome, tried), (Err(11), 5));
+    }
+}

@@ -1,0 +1,324 @@
+//! From datagrams to measurements.
+//!
+//! Datagrams of a tick are taken in one after the other, then what they
+//! completed is published. A measurement made of several quantities (pitch and
+//! roll, say) is published when each of them is new since the last time, and
+//! is as old as the oldest of them. X-Plane sends all values of a frame in one
+//! datagram, so they are of one instant; should it spread them over several,
+//! because subscriptions began in different frames, a measurement still comes
+//! together, at most one sending period apart.
+//!
+//! A datagram that carries an earlier flight time than the last one came late,
+//! was overtaken, and is dropped whole. One without the flight time in it
+//! (RPOS; rows sent one by one) cannot be judged: a late one then shows a
+//! state some milliseconds old for one tick.
+
+use fcc_core::flight::{
+    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Velocity,
+};
+use fcc_core::framework::{Reading, Switch, Time};
+
+use crate::config::DataRows;
+use crate::link::{Link, count};
+use crate::protocol::{Kind, Malformed, data, rpos, rref};
+use crate::quantity::Quantity;
+use crate::rows;
+use crate::simulator::{SimulatorClock, SimulatorState, Word};
+use crate::specific_force::specific_force;
+use crate::values::{Group, Values};
+
+/// Takes datagrams in and gives measurements out.
+#[derive(Debug)]
+pub(crate) struct Inbox {
+    /// The rows to read, if rows are the input.
+    rows: Option<DataRows>,
+    clock: SimulatorClock,
+    values: Values,
+    position: Reading<Position>,
+}
+
+impl Inbox {
+    pub(crate) fn new(rows: Option<DataRows>, silent_after: core::time::Duration) -> Self {
+        Self {
+            rows,
+            clock: SimulatorClock::new(silent_after),
+            values: Values::default(),
+            position: Reading::default(),
+        }
+    }
+
+    /// A new tick begins.
+    pub(crate) fn begin(&mut self) {
+        self.clock.begin();
+    }
+
+    /// When a value of this quantity last came.
+    pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
+        self.values.arrived(quantity)
+    }
+
+    /// When a position last came.
+    pub(crate) const fn position_arrived(&self) -> Time {
+        self.position.taken
+    }
+
+    /// When anything last came.
+    pub(crate) const fn heard(&self) -> Time {
+        self.clock.heard()
+    }
+
+    /// Takes in a datagram of the simulator.
+    pub(crate) fn accept(
+        &mut self,
+        datagram: &[u8],
+        now: Time,
+        link: &Link,
+    ) -> Result<(), Malformed> {
+        match Kind::of(datagram) {
+            Some(Kind::Rref) => self.accept_values(datagram, now, link),
+            Some(Kind::Rpos) => self.accept_position(datagram, now),
+            Some(Kind::Data) => match self.rows {
+                Some(rows) => self.accept_rows(rows, datagram, now, link),
+                // Data Output that the user has for somebody else.
+                None => Ok(()),
+            },
+            Some(Kind::Beacon) | None => {
+                count(&link.counters.unknown);
+                Ok(())
+            }
+        }
+    }
+
+    fn accept_values(&mut self, datagram: &[u8], now: Time, link: &Link) -> Result<(), Malformed> {
+        let with_rows = self.rows.is_some();
+        let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
+            let quantity = Quantity::from_index(index)?;
+            // Left over from a run by RREF: rows are what counts now.
+            let elsewhere = with_rows && quantity.comes_in_rows();
+            (!elsewhere).then_some((quantity, f64::from(value)))
+        });
+        let time_s = pairs
+            .clone()
+            .find(|(quantity, _)| *quantity == Quantity::FlightTime)
+            .and_then(|(quantity, value)| quantity.believe(value));
+        if self.is_late(now, time_s, link) {
+            return Ok(());
+        }
+        let mut word = Word {
+            time_s,
+            ..Word::default()
+        };
+        for (quantity, raw) in pairs {
+            self.take(quantity, raw, now, &mut word, link);
+        }
+        self.clock.hear(now, word);
+        Ok(())
+    }
+
+    fn accept_rows(
+        &mut self,
+        layout: DataRows,
+        datagram: &[u8],
+        now: Time,
+        link: &Link,
+    ) -> Result<(), Malformed> {
+        let rows = data::parse(datagram)?;
+        let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
+        if self.is_late(now, time_s, link) {
+            return Ok(());
+        }
+        let mut word = Word {
+            time_s,
+            ..Word::default()
+        };
+        for row in rows {
+            rows::quantities(layout, &row, |quantity, raw| {
+                self.take(quantity, raw, now, &mut word, link);
+            });
+            if let Some(position) = rows::position(&row) {
+                self.position = Reading::new(position, now);
+            }
+        }
+        self.clock.hear(now, word);
+        Ok(())
+    }
+
+    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<(), Malformed> {
+        let reply = rpos::parse(datagram)?;
+        if self.rows.is_none() {
+            let position = Position {
+                latitude_rad: reply.latitude_deg.to_radians(),
+                longitude_rad: reply.longitude_deg.to_radians(),
+                altitude_m: reply.elevation_m,
+            };
+            self.position = Reading::new(position, now);
+        }
+        self.clock.hear(now, Word::default());
+        Ok(())
+    }
+
+    fn is_late(&self, now: Time, time_s: Option<f64>, link: &Link) -> bool {
+        let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s));
+        if late {
+            count(&link.counters.late);
+        }
+        late
+    }
+
+    fn take(&mut self, quantity: Quantity, raw: f64, now: Time, word: &mut Word, link: &Link) {
+        let Some(value) = quantity.believe(raw) else {
+            count(&link.counters.unbelievable);
+            return;
+        };
+        self.values.set(quantity, value, now);
+        link.show(quantity, value, now);
+        match quantity {
+            Quantity::Paused => word.paused = Some(value >= 0.5),
+            Quantity::FramePeriod => word.frame_period_s = Some(value),
+            Quantity::OnGround => link.set_on_ground(value >= 0.5),
+            Quantity::Version => link.set_version(value as u32),
+            _ => {}
+        }
+    }
+
+    /// Writes what came together since the last time, and returns what the
+    /// simulator is doing.
+    pub(crate) fn publish(
+        &mut self,
+        now: Time,
+        into: &mut Measurements,
+        link: &Link,
+    ) -> SimulatorState {
+        self.publish_attitude(into);
+        self.publish_motion(into);
+        let values = &mut self.values;
+        if let Some(([airspeed], taken)) = values.whole(Group::Airspeed, [Quantity::Airspeed]) {
+            into.airspeed_mps = Reading::new(airspeed, taken);
+        }
+        if let Some(([altitude], taken)) = values.whole(Group::Altitude, [Quantity::Altitude]) {
+            into.altitude_m = Reading::new(altitude, taken);
+        }
+        if let Some(([angle], taken)) =
+            values.whole(Group::AngleOfAttack, [Quantity::AngleOfAttack])
+        {
+            into.angle_of_attack_rad = Reading::new(angle, taken);
+        }
+        if let Some(([switch], taken)) = values.whole(Group::Switch, [Quantity::EngageSwitch]) {
+            let switch = if switch >= 0.5 {
+                Switch::On
+            } else {
+                Switch::Off
+            };
+            into.engage_switch = Reading::new(switch, taken);
+        }
+        self.publish_plant(now, into, link)
+    }
+
+    fn publish_attitude(&mut self, into: &mut Measurements) {
+        let values = &mut self.values;
+        if let Some(([pitch_rad, roll_rad], taken)) =
+            values.whole(Group::Attitude, [Quantity::Pitch, Quantity::Roll])
+        {
+            let attitude = Attitude {
+                pitch_rad,
+                roll_rad,
+            };
+            into.attitude = Reading::new(attitude, taken);
+        }
+        if let Some(([heading], taken)) = values.whole(Group::Heading, [Quantity::MagneticHeading])
+        {
+            into.heading_rad = Reading::new(round(heading), taken);
+        }
+        if let Some(([roll_radps, pitch_radps, yaw_radps], taken)) = values.whole(
+            Group::Rates,
+            [Quantity::RollRate, Quantity::PitchRate, Quantity::YawRate],
+        ) {
+            let rates = BodyRates {
+                roll_radps,
+                pitch_radps,
+                yaw_radps,
+            };
+            into.body_rates = Reading::new(rates, taken);
+        }
+    }
+
+    fn publish_motion(&mut self, into: &mut Measurements) {
+        let values = &mut self.values;
+        if let Some(([east, up, south, heading, pitch, roll], taken)) = values.whole(
+            Group::Acceleration,
+            [
+                Quantity::AccelerationEast,
+                Quantity::AccelerationUp,
+                Quantity::AccelerationSouth,
+                Quantity::TrueHeading,
+                Quantity::Pitch,
+                Quantity::Roll,
+            ],
+        ) {
+            let force = specific_force([east, up, south], [heading, pitch, roll]);
+            into.specific_force = Reading::new(force, taken);
+        }
+        if let Some(([normal, axial, side], taken)) = values.whole(
+            Group::Loads,
+            [
+                Quantity::LoadNormal,
+                Quantity::LoadAxial,
+                Quantity::LoadSide,
+            ],
+        ) {
+            let force = SpecificForce {
+                x_mps2: axial,
+                y_mps2: side,
+                z_mps2: -normal,
+            };
+            into.specific_force = Reading::new(force, taken);
+        }
+        if let Some(([east, up, south], taken)) = values.whole(
+            Group::Velocity,
+            [
+                Quantity::VelocityEast,
+                Quantity::VelocityUp,
+                Quantity::VelocitySouth,
+            ],
+        ) {
+            let velocity = Velocity {
+                north_mps: -south,
+                east_mps: east,
+                down_mps: -up,
+            };
+            into.velocity = Reading::new(velocity, taken);
+        }
+        if self.position.taken > into.position.taken {
+            into.position = self.position;
+        }
+    }
+
+    /// The simulator's clock and condition: written in every tick in which it
+    /// spoke, once its clock is known.
+    fn publish_plant(&mut self, now: Time, into: &mut Measurements, link: &Link) -> SimulatorState {
+        let state = self.clock.state(now);
+        if state == SimulatorState::Jumped {
+            count(&link.counters.jumps);
+        }
+        if self.clock.heard() == now
+            && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
+        {
+            into.plant = Reading::new(Plant { time_s, state }, now);
+        }
+        state
+    }
+}
+
+/// An angle brought into 0..2π.
+fn round(angle_rad: f64) -> f64 {
+    let angle = angle_rad.rem_euclid(core::f64::consts::TAU);
+    // Rounding takes a tiny negative angle to 2π itself.
+    if angle < core::f64::consts::TAU {
+        angle
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests;

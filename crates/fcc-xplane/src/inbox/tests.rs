@@ -1,0 +1,222 @@
+use core::time::Duration;
+
+use super::*;
+use crate::config::RowsVersion;
+use fcc_core::flight::PlantState;
+
+const TICK: Duration = Duration::from_millis(25);
+
+struct Bench {
+    inbox: Inbox,
+    link: Link,
+    now: Time,
+    measurements: Measurements,
+}
+
+impl Bench {
+    fn new(rows: Option<DataRows>) -> Self {
+        Self {
+            inbox: Inbox::new(rows, Duration::from_millis(500)),
+            link: Link::new(None),
+            now: Time::from_nanos(1_000_000_000),
+            measurements: Measurements::default(),
+        }
+    }
+
+    /// A tick in which these datagrams come.
+    fn tick(&mut self, datagrams: &[Vec<u8>]) -> SimulatorState {
+        self.now = self.now + TICK;
+        self.inbox.begin();
+        for datagram in datagrams {
+            self.inbox.accept(datagram, self.now, &self.link).unwrap();
+        }
+        self.inbox
+            .publish(self.now, &mut self.measurements, &self.link)
+    }
+}
+
+fn values(pairs: &[(Quantity, f32)]) -> Vec<u8> {
+    let mut datagram = b"RREF,".to_vec();
+    for (quantity, value) in pairs {
+        datagram.extend((*quantity as i32).to_le_bytes());
+        datagram.extend(value.to_le_bytes());
+    }
+    datagram
+}
+
+fn row(index: i32, columns: [f32; 8]) -> Vec<u8> {
+    let mut row = index.to_le_bytes().to_vec();
+    for column in columns {
+        row.extend(column.to_le_bytes());
+    }
+    row
+}
+
+fn rows(rows: &[Vec<u8>]) -> Vec<u8> {
+    [b"DATA*".to_vec(), rows.concat()].concat()
+}
+
+fn assert_close(got: f64, expected: f64) {
+    assert!((got - expected).abs() < 1e-6, "{got} is not {expected}");
+}
+
+#[test]
+fn attitude_waits_for_both_pitch_and_roll() {
+    let mut bench = Bench::new(None);
+    bench.tick(&[values(&[(Quantity::Pitch, 10.0)])]);
+    assert!(bench.measurements.attitude.is_never());
+    let first = bench.now;
+    bench.tick(&[values(&[(Quantity::Roll, -20.0)])]);
+    let attitude = bench.measurements.attitude;
+    assert_eq!(attitude.taken, first, "as old as the older of the two");
+    // 1° is 0.017 453 292 5 rad (Abramowitz and Stegun 1964, table 1.1).
+    assert_close(attitude.value.pitch_rad, 0.174_532_925);
+    assert_close(attitude.value.roll_rad, -0.349_065_850);
+}
+
+#[test]
+fn an_overtaken_datagram_is_dropped_whole_and_a_doubled_one_is_harmless() {
+    let mut bench = Bench::new(None);
+    let frame = |time, knots| values(&[(Quantity::Airspeed, knots), (Quantity::FlightTime, time)]);
+    bench.tick(&[frame(50.00, 100.0), frame(50.02, 101.0)]);
+    let newest = bench.measurements;
+    bench.tick(&[frame(50.00, 100.0)]);
+    assert_eq!(bench.measurements, newest);
+    bench.tick(&[frame(50.02, 101.0), frame(50.02, 101.0)]);
+    // 101 kt are 51.958 888… m/s.
+    assert_close(bench.measurements.airspeed_mps.value, 51.958_888_888);
+}
+
+#[test]
+fn a_loaded_flight_is_seen_as_a_jump_and_followed() {
+    let mut bench = Bench::new(None);
+    bench.tick(&[values(&[(Quantity::FlightTime, 500.0)])]);
+    let state = bench.tick(&[values(&[(Quantity::FlightTime, 3.0)])]);
+    assert_eq!(state, SimulatorState::Jumped);
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Jumped);
+    assert_close(bench.measurements.plant.value.time_s, 3.0);
+}
+
+#[test]
+fn a_heading_just_west_of_north_stays_below_a_full_turn() {
+    let mut bench = Bench::new(None);
+    for (degrees, radians) in [(-90.0, 4.712_388_980), (360.0, 0.0), (-1e-30, 0.0)] {
+        bench.tick(&[values(&[(Quantity::MagneticHeading, degrees)])]);
+        assert_close(bench.measurements.heading_rad.value, radians);
+    }
+}
+
+#[test]
+fn what_is_not_a_number_leaves_the_reading_to_grow_old() {
+    let mut bench = Bench::new(None);
+    bench.tick(&[values(&[(Quantity::Altitude, 3_000.0)])]);
+    let before = bench.measurements.altitude_m;
+    assert_close(before.value, 914.4);
+    for garbled in [f32::NAN, f32::INFINITY, 1e30] {
+        bench.tick(&[values(&[(Quantity::Altitude, garbled)])]);
+        assert_eq!(bench.measurements.altitude_m, before);
+    }
+}
+
+#[test]
+fn rows_of_eleven_and_twelve_give_the_same_rates() {
+    // 0.1 rad/s are 5.729 578 deg/s.
+    let eleven = row(16, [0.1, 0.2, 0.3, -999.0, -999.0, -999.0, -999.0, -999.0]);
+    let twelve = row(
+        16,
+        [
+            11.459_156, 5.729_578, 17.188_734, -999.0, -999.0, -999.0, -999.0, -999.0,
+        ],
+    );
+    let nine = row(17, [0.1, 0.2, 0.3, -999.0, -999.0, -999.0, -999.0, -999.0]);
+    for (version, row) in [
+        (RowsVersion::XPlane9, nine),
+        (RowsVersion::XPlane10, eleven),
+        (RowsVersion::XPlane12, twelve),
+    ] {
+        let mut bench = Bench::new(Some(DataRows::of(version)));
+        bench.tick(&[rows(&[row])]);
+        let rates = bench.measurements.body_rates.value;
+        assert_close(rates.pitch_radps, 0.1);
+        assert_close(rates.roll_radps, 0.2);
+        assert_close(rates.yaw_radps, 0.3);
+    }
+}
+
+#[test]
+fn rows_fill_every_measurement_one_datagram_each_or_all_in_one() {
+    let gone = -999.0;
+    let all = [
+        row(1, [70.0, 65.0, 60.0, 0.0, gone, 12.0, 12.0, 1.0]),
+        row(3, [90.0, 91.0, 95.0, 94.0, gone, 103.6, 109.3, 108.2]),
+        row(4, [0.14, gone, 500.0, gone, 1.5, 0.1, -0.05, gone]),
+        row(16, [0.1, 0.2, 0.3, gone, gone, gone, gone, gone]),
+        row(17, [5.0, -15.0, 80.0, 90.0, gone, gone, gone, gone]),
+        row(18, [4.0, 0.5, 80.0, 1.0, gone, gone, gone, 0.1]),
+        row(
+            20,
+            [47.5, -122.25, 3_280.84, 900.0, 0.0, 3_000.0, 47.0, -122.0],
+        ),
+        row(21, [0.0, 0.0, 0.0, 10.0, 2.0, -40.0, 0.0, 0.0]),
+    ];
+    let single: Vec<_> = all
+        .iter()
+        .map(|row| rows(core::slice::from_ref(row)))
+        .collect();
+    for datagrams in [vec![rows(&all)], single] {
+        let mut bench = Bench::new(Some(DataRows::of(RowsVersion::XPlane10)));
+        bench.tick(&datagrams);
+        let m = &bench.measurements;
+        assert_close(m.plant.value.time_s, 60.0);
+        // 90 kt are 46.3 m/s; 3000 ft are 914.4 m; 3280.84 ft are 1 km.
+        assert_close(m.airspeed_mps.value, 46.3);
+        assert_close(m.altitude_m.value, 914.4);
+        assert!((m.position.value.altitude_m - 1_000.0).abs() < 1e-3);
+        assert_close(m.position.value.latitude_rad.to_degrees(), 47.5);
+        assert_close(m.position.value.longitude_rad.to_degrees(), -122.25);
+        assert_close(m.specific_force.value.x_mps2, 0.980_665);
+        assert_close(m.specific_force.value.y_mps2, -0.490_332_5);
+        assert_close(m.specific_force.value.z_mps2, -14.709_975);
+        assert_close(m.attitude.value.pitch_rad.to_degrees(), 5.0);
+        assert_close(m.attitude.value.roll_rad.to_degrees(), -15.0);
+        assert_close(m.heading_rad.value.to_degrees(), 90.0);
+        assert_close(m.angle_of_attack_rad.value.to_degrees(), 4.0);
+        assert_close(m.velocity.value.north_mps, 40.0);
+        assert_close(m.velocity.value.east_mps, 10.0);
+        assert_close(m.velocity.value.down_mps, -2.0);
+        assert_eq!(bench.link.on_ground(), Some(false));
+    }
+}
+
+#[test]
+fn magnetic_heading_is_read_from_the_configured_column() {
+    let mut layout = DataRows::of(RowsVersion::XPlane12);
+    layout.magnetic_heading_column = 4;
+    let mut bench = Bench::new(Some(layout));
+    bench.tick(&[rows(&[row(
+        17,
+        [1.0, 2.0, 100.0, -999.0, 85.0, -999.0, -999.0, -999.0],
+    )])]);
+    assert_close(bench.measurements.heading_rad.value.to_degrees(), 85.0);
+}
+
+#[test]
+fn rows_that_are_for_somebody_else_are_left_alone() {
+    let mut bench = Bench::new(None);
+    bench.tick(&[rows(&[row(17, [5.0; 8])])]);
+    assert_eq!(bench.measurements, Measurements::default());
+}
+
+#[test]
+fn the_switch_is_on_from_a_half_up() {
+    let mut bench = Bench::new(None);
+    for (value, switch) in [
+        (0.0, Switch::Off),
+        (0.49, Switch::Off),
+        (0.5, Switch::On),
+        (1.0, Switch::On),
+    ] {
+        bench.tick(&[values(&[(Quantity::EngageSwitch, value)])]);
+        assert_eq!(bench.measurements.engage_switch.value, switch);
+    }
+}

@@ -1,0 +1,160 @@
+//! Seeing to it that control that was given back is really back.
+//!
+//! The actuator sends its letting go three times and is then, as a rule, not
+//! called again. Should all three get lost, X-Plane would fly on with its yoke
+//! held. The sensor is still called, and sees the overrides: while one that was
+//! released still shows as set, it sends the letting go again.
+
+use core::time::Duration;
+
+use fcc_core::framework::Time;
+
+use crate::controls::Controls;
+use crate::link::{Control, Link};
+use crate::port::Errno;
+use crate::quantity::Quantity;
+
+/// What shows earlier than this after letting go may be from before.
+const SETTLED_AFTER: Duration = Duration::from_millis(200);
+/// Between one letting go and the next.
+const AGAIN_AFTER: Duration = Duration::from_millis(250);
+/// After so many (10 s) somebody else holds the override, and keeps it.
+const MOST_TIMES: u8 = 40;
+
+/// Watches the overrides after control was given back.
+#[derive(Debug)]
+pub(crate) struct LettingGo {
+    controls: Controls,
+    /// Since when control is being given back; never while it is not.
+    since: Time,
+    sent: Time,
+    times: u8,
+}
+
+impl LettingGo {
+    pub(crate) const fn new(controls: Controls) -> Self {
+        Self {
+            controls,
+            since: Time::NEVER,
+            sent: Time::NEVER,
+            times: 0,
+        }
+    }
+
+    /// Looks at the overrides, and sends the letting go again if one is still
+    /// set.
+    pub(crate) fn see_to_it(
+        &mut self,
+        now: Time,
+        link: &Link,
+        send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        if link.control() != Control::LettingGo {
+            self.since = Time::NEVER;
+            return Ok(());
+        }
+        if self.since.is_never() {
+            self.since = now;
+            self.sent = now;
+            self.times = 0;
+        }
+        let settled = self.since + SETTLED_AFTER;
+        let shown = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
+            .map(|quantity| link.shown(quantity).filter(|(_, at)| *at > settled));
+        let still_set = shown
+            .into_iter()
+            .flatten()
+            .any(|(value, at)| value >= 0.5 && at > self.sent);
+        if still_set {
+            if now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
+                self.sent = now;
+                self.times += 1;
+                return self.controls.let_go(send);
+            }
+        } else if let [Some((joystick, _)), Some((throttles, _))] = shown
+            && joystick < 0.5
+            && throttles < 0.5
+        {
+            link.set_free_if_letting_go();
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::XPlaneConfig;
+
+    const TICK: Duration = Duration::from_millis(25);
+
+    /// So many ticks in which the simulator shows its overrides; how many
+    /// datagrams were sent in each.
+    fn watch(
+        letting_go: &mut LettingGo,
+        link: &Link,
+        now: &mut Time,
+        ticks: u32,
+        overrides: [f64; 2],
+    ) -> usize {
+        let mut sent = 0;
+        for _ in 0..ticks {
+            *now = *now + TICK;
+            link.show(Quantity::OverrideJoystick, overrides[0], *now);
+            link.show(Quantity::OverrideThrottles, overrides[1], *now);
+            letting_go
+                .see_to_it(*now, link, |_| {
+                    sent += 1;
+                    Ok(())
+                })
+                .unwrap();
+        }
+        sent
+    }
+
+    fn bench() -> (LettingGo, Link, Time) {
+        let controls = Controls::new(&XPlaneConfig::default()).unwrap();
+        (
+            LettingGo::new(controls),
+            Link::new(None),
+            Time::from_nanos(1_000_000_000),
+        )
+    }
+
+    #[test]
+    fn an_override_that_is_not_ours_is_left_alone() {
+        let (mut letting_go, link, mut now) = bench();
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 400, [1.0, 1.0]), 0);
+        link.set_control(Control::Held);
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 400, [1.0, 1.0]), 0);
+    }
+
+    #[test]
+    fn released_and_seen_released_is_free_at_once() {
+        let (mut letting_go, link, mut now) = bench();
+        link.set_control(Control::LettingGo);
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 20, [0.0, 0.0]), 0);
+        assert_eq!(link.control(), Control::Free);
+    }
+
+    #[test]
+    fn one_that_still_shows_is_released_again_until_it_is() {
+        let (mut letting_go, link, mut now) = bench();
+        link.set_control(Control::LettingGo);
+        // Five datagrams each: three surfaces, two overrides.
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 12, [0.0, 1.0]), 5);
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 20, [0.0, 1.0]), 10);
+        assert_eq!(link.control(), Control::LettingGo);
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 2, [0.0, 0.0]), 0);
+        assert_eq!(link.control(), Control::Free);
+        assert_eq!(watch(&mut letting_go, &link, &mut now, 40, [1.0, 1.0]), 0);
+    }
+
+    #[test]
+    fn somebody_who_keeps_setting_it_wins_after_ten_seconds() {
+        let (mut letting_go, link, mut now) = bench();
+        link.set_control(Control::LettingGo);
+        let sent = watch(&mut letting_go, &link, &mut now, 2_000, [1.0, 1.0]);
+        assert_eq!(sent, 40 * 5);
+    }
+}

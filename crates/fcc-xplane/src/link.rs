@@ -1,0 +1,226 @@
+//! What the sensor, the actuator and who watches share: atomics, no lock.
+//!
+//! Sensor and actuator usually live in one thread and never race; the atomics
+//! are for watchers in other threads, and so that nothing breaks if the two
+//! are ever split.
+
+use core::sync::atomic::{AtomicBool, AtomicI64, AtomicU8, AtomicU32, AtomicU64, Ordering};
+use std::net::{Ipv4Addr, SocketAddrV4};
+
+use fcc_core::framework::Time;
+
+use crate::quantity::Quantity;
+use crate::simulator::SimulatorState;
+
+/// Who has the controls, as far as this side knows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(u8)]
+pub enum Control {
+    /// The simulator's pilot.
+    Free = 0,
+    /// The actuator: overrides are set.
+    Held = 1,
+    /// Given back, but X-Plane has not yet shown the overrides as released.
+    LettingGo = 2,
+}
+
+/// A value seen in the simulator and when.
+#[derive(Debug)]
+struct Seen {
+    bits: AtomicU32,
+    at: AtomicI64,
+}
+
+impl Seen {
+    const fn never() -> Self {
+        Self {
+            bits: AtomicU32::new(0),
+            at: AtomicI64::new(Time::NEVER.as_nanos()),
+        }
+    }
+}
+
+/// What is written to X-Plane and read back.
+pub(crate) const READ_BACK: [Quantity; 5] = [
+    Quantity::OverrideJoystick,
+    Quantity::OverrideThrottles,
+    Quantity::YokePitch,
+    Quantity::YokeRoll,
+    Quantity::YokeHeading,
+];
+
+/// Everything counted, since opening.
+#[derive(Debug, Default)]
+pub(crate) struct Counters {
+    pub(crate) received: AtomicU64,
+    pub(crate) foreign: AtomicU64,
+    pub(crate) malformed: AtomicU64,
+    pub(crate) unknown: AtomicU64,
+    pub(crate) late: AtomicU64,
+    pub(crate) unbelievable: AtomicU64,
+    pub(crate) jumps: AtomicU64,
+    pub(crate) requests: AtomicU64,
+    pub(crate) writes: AtomicU64,
+    pub(crate) refused: AtomicU64,
+}
+
+/// Adds one.
+pub(crate) fn count(counter: &AtomicU64) {
+    counter.fetch_add(1, Ordering::Relaxed);
+}
+
+#[derive(Debug)]
+pub(crate) struct Link {
+    /// IPv4 address and port in the low 48 bits; 0 while unknown.
+    simulator: AtomicU64,
+    state: AtomicU8,
+    control: AtomicU8,
+    unconfirmed: AtomicBool,
+    version: AtomicU32,
+    /// 0 not known, 1 in the air, 2 on the ground.
+    ground: AtomicU8,
+    read_back: [Seen; READ_BACK.len()],
+    pub(crate) counters: Counters,
+}
+
+impl Link {
+    pub(crate) fn new(simulator: Option<SocketAddrV4>) -> Self {
+        Self {
+            simulator: AtomicU64::new(simulator.map_or(0, pack)),
+            state: AtomicU8::new(SimulatorState::Silent as u8),
+            control: AtomicU8::new(Control::Free as u8),
+            unconfirmed: AtomicBool::new(false),
+            version: AtomicU32::new(0),
+            ground: AtomicU8::new(0),
+            read_back: [const { Seen::never() }; READ_BACK.len()],
+            counters: Counters::default(),
+        }
+    }
+
+    pub(crate) fn simulator(&self) -> Option<SocketAddrV4> {
+        match self.simulator.load(Ordering::Relaxed) {
+            0 => None,
+            packed => Some(unpack(packed)),
+        }
+    }
+
+    pub(crate) fn set_simulator(&self, address: SocketAddrV4) {
+        self.simulator.store(pack(address), Ordering::Relaxed);
+    }
+
+    pub(crate) fn state(&self) -> SimulatorState {
+        SimulatorState::from_number(self.state.load(Ordering::Relaxed))
+    }
+
+    pub(crate) fn set_state(&self, state: SimulatorState) {
+        self.state.store(state as u8, Ordering::Relaxed);
+    }
+
+    pub(crate) fn control(&self) -> Control {
+        match self.control.load(Ordering::Acquire) {
+            1 => Control::Held,
+            2 => Control::LettingGo,
+            _ => Control::Free,
+        }
+    }
+
+    pub(crate) fn set_control(&self, control: Control) {
+        self.control.store(control as u8, Ordering::Release);
+    }
+
+    /// `LettingGo` becomes `Free`, unless control was taken again meanwhile.
+    pub(crate) fn set_free_if_letting_go(&self) {
+        // Losing the exchange means there is nothing to do.
+        let _ = self.control.compare_exchange(
+            Control::LettingGo as u8,
+            Control::Free as u8,
+            Ordering::AcqRel,
+            Ordering::Acquire,
+        );
+    }
+
+    pub(crate) fn is_unconfirmed(&self) -> bool {
+        self.unconfirmed.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_unconfirmed(&self, unconfirmed: bool) {
+        self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
+    }
+
+    pub(crate) fn version(&self) -> Option<u32> {
+        match self.version.load(Ordering::Relaxed) {
+            0 => None,
+            version => Some(version),
+        }
+    }
+
+    pub(crate) fn set_version(&self, version: u32) {
+        self.version.store(version, Ordering::Relaxed);
+    }
+
+    pub(crate) fn on_ground(&self) -> Option<bool> {
+        match self.ground.load(Ordering::Relaxed) {
+            0 => None,
+            ground => Some(ground == 2),
+        }
+    }
+
+    pub(crate) fn set_on_ground(&self, on_ground: bool) {
+        self.ground
+            .store(1 + u8::from(on_ground), Ordering::Relaxed);
+    }
+
+    fn seen(&self, quantity: Quantity) -> Option<&Seen> {
+        let place = READ_BACK.iter().position(|of| *of == quantity)?;
+        self.read_back.get(place)
+    }
+
+    /// Stores what the simulator shows; quantities not read back are ignored.
+    pub(crate) fn show(&self, quantity: Quantity, value: f64, at: Time) {
+        if let Some(seen) = self.seen(quantity) {
+            seen.bits.store((value as f32).to_bits(), Ordering::Relaxed);
+            seen.at.store(at.as_nanos(), Ordering::Release);
+        }
+    }
+
+    /// What the simulator showed last, and when.
+    pub(crate) fn shown(&self, quantity: Quantity) -> Option<(f32, Time)> {
+        let seen = self.seen(quantity)?;
+        let at = Time::from_nanos(seen.at.load(Ordering::Acquire));
+        let value = f32::from_bits(seen.bits.load(Ordering::Relaxed));
+        (!at.is_never()).then_some((value, at))
+    }
+}
+
+fn pack(address: SocketAddrV4) -> u64 {
+    (u64::from(address.ip().to_bits()) << 16) | u64::from(address.port())
+}
+
+fn unpack(packed: u64) -> SocketAddrV4 {
+    let [_, _, a, b, c, d, high, low] = packed.to_be_bytes();
+    let port = u16::from_be_bytes([high, low]);
+    SocketAddrV4::new(Ipv4Addr::new(a, b, c, d), port)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_comes_back_as_it_was() {
+        let address: SocketAddrV4 = "192.168.250.7:49000".parse().unwrap();
+        assert_eq!(Link::new(Some(address)).simulator(), Some(address));
+        assert_eq!(Link::new(None).simulator(), None);
+    }
+
+    #[test]
+    fn what_is_shown_is_kept_with_its_time() {
+        let link = Link::new(None);
+        assert_eq!(link.shown(Quantity::YokeRoll), None);
+        link.show(Quantity::YokeRoll, -0.25, Time::from_nanos(7));
+        assert_eq!(
+            link.shown(Quantity::YokeRoll),
+            Some((-0.25, Time::from_nanos(7)))
+        );
+    }
+}

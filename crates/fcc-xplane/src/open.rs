@@ -1,0 +1,126 @@
+//! Opening a connection.
+
+use std::io;
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+
+use crate::actuator::XPlaneActuator;
+use crate::config::{ConfigError, Simulator, XPlaneConfig};
+use crate::controls::{Controls, LET_GO_TIMES};
+use crate::link::Link;
+use crate::port::{Port, UdpPort};
+use crate::protocol::PathError;
+use crate::sensor::XPlaneSensor;
+
+/// Opens connections to X-Plane.
+#[derive(Clone, Copy, Debug)]
+pub struct XPlane;
+
+/// Why a connection could not be opened.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum OpenError {
+    /// The configuration is refused.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// A dataref's path cannot be sent.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// The local port cannot be had.
+    #[error(
+        "cannot receive on UDP port {port}: {source}; choose another local_port, 0 for any that \
+         is free (a second program for X-Plane on this machine may have taken it)"
+    )]
+    Bind {
+        /// The port asked for.
+        port: u16,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// Beacons cannot be listened for.
+    #[error(
+        "cannot listen for X-Plane's beacon on {group}: {source}; give X-Plane's address instead"
+    )]
+    Beacon {
+        /// The multicast group and port.
+        group: SocketAddrV4,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The overrides cannot be released.
+    #[error("cannot send to X-Plane at {simulator} (errno {errno}): release the controls there")]
+    Send {
+        /// Where X-Plane is.
+        simulator: SocketAddrV4,
+        /// What the operating system said.
+        errno: i32,
+    },
+}
+
+impl XPlane {
+    /// Opens the sockets. Nothing is sent before the first tick, and X-Plane
+    /// need not run yet.
+    ///
+    /// # Errors
+    /// When the configuration is refused, or a port cannot be had.
+    pub fn open(config: &XPlaneConfig) -> Result<(XPlaneSensor, XPlaneActuator), OpenError> {
+        config.validate()?;
+        let port = bind(config.local_port)?;
+        let beacons = match config.simulator {
+            Simulator::At(_) => None,
+            Simulator::Beacon => {
+                let group = config.beacon;
+                let listen = UdpPort::listen(group);
+                Some(listen.map_err(|source| OpenError::Beacon { group, source })?)
+            }
+        };
+        Self::over(config, port, beacons)
+    }
+
+    /// The same over a port of the caller's own: for tests, and for networks
+    /// that are not UDP sockets.
+    ///
+    /// # Errors
+    /// When the configuration is refused.
+    pub fn over<P: Port>(
+        config: &XPlaneConfig,
+        port: P,
+        beacons: Option<P>,
+    ) -> Result<(XPlaneSensor<P>, XPlaneActuator<P>), OpenError> {
+        config.validate()?;
+        let port = Arc::new(port);
+        let link = Arc::new(Link::new(match config.simulator {
+            Simulator::At(address) => Some(address),
+            Simulator::Beacon => None,
+        }));
+        let sensor = XPlaneSensor::new(config, Arc::clone(&port), beacons, Arc::clone(&link))?;
+        let actuator = XPlaneActuator::new(config, port, link)?;
+        Ok((sensor, actuator))
+    }
+
+    /// Centres the surfaces and releases the overrides at `simulator`, whoever
+    /// set them. For whoever survives a process that was killed while it held
+    /// the controls: it could not give them back itself, and X-Plane never
+    /// takes them back on its own.
+    ///
+    /// # Errors
+    /// When the configuration is refused, or nothing can be sent.
+    pub fn release_after_crash(
+        config: &XPlaneConfig,
+        simulator: SocketAddrV4,
+    ) -> Result<(), OpenError> {
+        config.validate()?;
+        let port = bind(0)?;
+        let mut controls = Controls::new(config)?;
+        for _ in 0..LET_GO_TIMES {
+            controls
+                .let_go(|datagram| port.send(datagram, simulator))
+                .map_err(|errno| OpenError::Send { simulator, errno })?;
+        }
+        Ok(())
+    }
+}
+
+fn bind(port: u16) -> Result<UdpPort, OpenError> {
+    UdpPort::bind(port).map_err(|source| OpenError::Bind { port, source })
+}

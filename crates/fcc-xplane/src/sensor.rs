@@ -1,0 +1,214 @@
+//! X-Plane as a sensor.
+
+use core::time::Duration;
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
+
+use crate::config::{Input, XPlaneConfig};
+use crate::controls::Controls;
+use crate::inbox::Inbox;
+use crate::letting_go::LettingGo;
+use crate::link::{Control, Link, count};
+use crate::port::{Errno, Port, UdpPort};
+use crate::protocol::{PathError, beacon};
+use crate::simulator::SimulatorState;
+use crate::status::XPlaneStatus;
+use crate::subscriptions::Subscriptions;
+
+/// Longer than what X-Plane sends: 1,469 bytes of values, or 134 rows.
+const BUFFER_BYTES: usize = 8_192;
+/// X-Plane sends about one beacon a second.
+const BEACONS_PER_TICK: usize = 4;
+/// Beacons of a silent simulator start the asking anew this often at most.
+const RESTART_AFTER: Duration = Duration::from_secs(1);
+
+/// X-Plane as a sensor: reads what came, asks for what did not.
+///
+/// In a tick it makes system calls to receive (at most as many datagrams as
+/// configured) and to send (a few requests), none of which waits. Readings are
+/// stamped with the time of the tick in which they came. Only datagrams from
+/// the simulator's IP address count; from any port of it, since replies need
+/// not come from the one that X-Plane listens on.
+#[derive(Debug)]
+pub struct XPlaneSensor<P: Port = UdpPort> {
+    port: Arc<P>,
+    /// Where beacons come in, if the simulator is found by them.
+    beacons: Option<P>,
+    link: Arc<Link>,
+    inbox: Inbox,
+    subscriptions: Subscriptions,
+    letting_go: LettingGo,
+    datagrams_per_tick: usize,
+    silent_after: Duration,
+    /// The first tick: silence counts from here until something comes.
+    began: Time,
+    restarted: Time,
+    buffer: Box<[u8; BUFFER_BYTES]>,
+}
+
+impl<P: Port> XPlaneSensor<P> {
+    pub(crate) fn new(
+        config: &XPlaneConfig,
+        port: Arc<P>,
+        beacons: Option<P>,
+        link: Arc<Link>,
+    ) -> Result<Self, PathError> {
+        let rows = match config.input {
+            Input::Rref => None,
+            Input::Data(rows) => Some(rows),
+        };
+        Ok(Self {
+            port,
+            beacons,
+            link,
+            inbox: Inbox::new(rows, config.silent_after),
+            subscriptions: Subscriptions::new(config)?,
+            letting_go: LettingGo::new(Controls::new(config)?),
+            datagrams_per_tick: usize::from(config.datagrams_per_tick),
+            silent_after: config.silent_after,
+            began: Time::NEVER,
+            restarted: Time::NEVER,
+            buffer: Box::new([0; BUFFER_BYTES]),
+        })
+    }
+
+    /// What may be watched from any thread, also once the sensor is in a loop.
+    pub fn status(&self) -> XPlaneStatus {
+        XPlaneStatus::new(Arc::clone(&self.link))
+    }
+
+    /// Follows beacons: takes the first simulator that flies, stays with it
+    /// while it speaks or its controls are held, and asks anew when a silent
+    /// one is back.
+    fn listen_for_beacons(&mut self, now: Time) {
+        let Some(beacons) = &self.beacons else {
+            return;
+        };
+        for _ in 0..BEACONS_PER_TICK {
+            let Ok(Some((length, from))) = beacons.receive(self.buffer.as_mut_slice()) else {
+                break;
+            };
+            let datagram = self.buffer.get(..length).unwrap_or_default();
+            let Ok(beacon) = beacon::parse(datagram) else {
+                count(&self.link.counters.malformed);
+                continue;
+            };
+            let known = self.link.simulator();
+            let silent = now.since(self.inbox.heard()) > self.silent_after;
+            let address = SocketAddrV4::new(*from.ip(), beacon.port);
+            let stay = known.is_some_and(|known| {
+                known != address && (!silent || self.link.control() == Control::Held)
+            });
+            if !beacon.is_flyable() || stay {
+                continue;
+            }
+            self.link.set_simulator(address);
+            if silent && now.since(self.restarted) >= RESTART_AFTER {
+                self.restarted = now;
+                self.subscriptions.restart();
+            }
+        }
+    }
+
+    fn receive(&mut self, now: Time, simulator: Option<SocketAddrV4>) -> Result<(), SensorFault> {
+        let mut malformed = false;
+        for _ in 0..self.datagrams_per_tick {
+            let received = self.port.receive(self.buffer.as_mut_slice());
+            let (length, from) = match received {
+                Ok(Some(received)) => received,
+                Ok(None) => break,
+                Err(errno) => return Err(SensorFault::Io { errno }),
+            };
+            if simulator.is_none_or(|simulator| simulator.ip() != from.ip()) {
+                count(&self.link.counters.foreign);
+                continue;
+            }
+            count(&self.link.counters.received);
+            let datagram = self.buffer.get(..length).unwrap_or_default();
+            if self.inbox.accept(datagram, now, &self.link).is_err() {
+                count(&self.link.counters.malformed);
+                malformed = true;
+            }
+        }
+        if malformed {
+            Err(SensorFault::Malformed)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn ask(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+        let (port, link) = (&self.port, &self.link);
+        self.subscriptions.send_due(now, &self.inbox, |request| {
+            count(&link.counters.requests);
+            send(port.as_ref(), link, request, simulator)
+        })
+    }
+
+    fn see_to_letting_go(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+        let (port, link) = (&self.port, &self.link);
+        self.letting_go.see_to_it(now, link, |write| {
+            count(&link.counters.writes);
+            send(port.as_ref(), link, write, simulator)
+        })
+    }
+}
+
+/// Sends, and counts what the operating system refuses.
+pub(crate) fn send<P: Port>(
+    port: &P,
+    link: &Link,
+    datagram: &[u8],
+    to: SocketAddrV4,
+) -> Result<(), Errno> {
+    port.send(datagram, to)
+        .inspect_err(|_| count(&link.counters.refused))
+}
+
+impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let now = tick.woke;
+        if self.began.is_never() {
+            self.began = now;
+        }
+        self.listen_for_beacons(now);
+        let simulator = self.link.simulator();
+
+        self.inbox.begin();
+        let received = self.receive(now, simulator);
+        let state = self.inbox.publish(now, into, &self.link);
+        self.link.set_state(state);
+
+        let mut sent = Ok(());
+        if let Some(simulator) = simulator {
+            sent = self.ask(now, simulator);
+            sent = sent.and(self.see_to_letting_go(now, simulator));
+        }
+
+        let silent = state == SimulatorState::Silent && now.since(self.began) > self.silent_after;
+        match (received, sent) {
+            (Err(SensorFault::Io { errno }), _) | (_, Err(errno)) => Err(SensorFault::Io { errno }),
+            _ if silent => Err(SensorFault::Silent),
+            (received, Ok(())) => received,
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        "X-Plane"
+    }
+}
+
+impl<P: Port> Drop for XPlaneSensor<P> {
+    /// Ends the subscriptions, or X-Plane would send to nobody until it quits.
+    fn drop(&mut self) {
+        if let Some(simulator) = self.link.simulator() {
+            // Nobody is left to hear of a failure, and nothing hangs on it.
+            self.subscriptions.end(|request| {
+                let _ = self.port.send(request, simulator);
+            });
+        }
+    }
+}

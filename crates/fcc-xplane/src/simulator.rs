@@ -1,0 +1,267 @@
+//! What the simulator is doing, from its clock against ours.
+//!
+//! X-Plane slows its time below about 20 frames a second, stops it when paused
+//! or behind a dialog, and sets it back when a flight is loaded. Each is a
+//! state of its own here. Nothing in this file reads a clock: it is told the
+//! time of the tick and what the datagrams said.
+
+use core::time::Duration;
+
+use fcc_core::flight::PlantState;
+use fcc_core::framework::Time;
+
+/// Two datagrams of one flight are less than this apart when one overtakes
+/// the other; time that goes back further was set back.
+const LATE_S: f64 = 1.0;
+/// For so long an older time may be a datagram that came late. Nothing holds
+/// one back longer while newer ones get through.
+const LATE: Duration = Duration::from_secs(1);
+/// The simulator's clock gained this much on ours between two datagrams: it
+/// was set forward.
+const AHEAD_S: f64 = 1.0;
+/// The simulator speaks and is not paused, but its clock stood still for so
+/// long: five frames at 20 a second.
+const STALLED_AFTER: Duration = Duration::from_millis(250);
+/// The simulator's pace is taken over at least so long, at most twice so long:
+/// 25 ms of jitter at its end are then at most 2.5 %.
+const PACE_OVER: Duration = Duration::from_secs(1);
+/// Slow below this share of our time, until it is above [`PACE_REGAINED`].
+const PACE_LOST: f64 = 0.9;
+const PACE_REGAINED: f64 = 0.95;
+/// Slow above this frame period (20 frames a second, where X-Plane begins to
+/// slow its time), until it is below [`FRAME_REGAINED_S`] (22 a second).
+const FRAME_LOST_S: f64 = 1.0 / 20.0;
+const FRAME_REGAINED_S: f64 = 1.0 / 22.0;
+
+/// What the simulator is doing.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[repr(u8)]
+pub enum SimulatorState {
+    /// Nothing has come for the configured time.
+    #[default]
+    Silent = 0,
+    /// Time runs with ours.
+    Running = 1,
+    /// Paused by its user.
+    Paused = 2,
+    /// It speaks and does not say paused, but its clock has stood still for
+    /// 250 ms: a dialog, or loading.
+    Stalled = 3,
+    /// Its time runs at less than 90 % of ours over 1 to 2 s, or its frames
+    /// take more than 50 ms; until 95 % and 45 ms are regained.
+    Slow = 4,
+    /// In this very tick its clock went back by a second or more, or gained a
+    /// second on ours: a flight was loaded. One tick only: it is an event.
+    Jumped = 5,
+}
+
+impl SimulatorState {
+    /// The same in the framework's words; `None` for silence, which there is
+    /// told by the readings' age.
+    pub const fn plant_state(self) -> Option<PlantState> {
+        match self {
+            Self::Silent => None,
+            Self::Running => Some(PlantState::Running),
+            Self::Paused => Some(PlantState::Paused),
+            Self::Stalled => Some(PlantState::Stalled),
+            Self::Slow => Some(PlantState::Slow),
+            Self::Jumped => Some(PlantState::Jumped),
+        }
+    }
+
+    /// From the number stored.
+    pub(crate) const fn from_number(number: u8) -> Self {
+        match number {
+            1 => Self::Running,
+            2 => Self::Paused,
+            3 => Self::Stalled,
+            4 => Self::Slow,
+            5 => Self::Jumped,
+            _ => Self::Silent,
+        }
+    }
+}
+
+/// What one datagram says of the simulator itself; parts may be missing.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub(crate) struct Word {
+    /// The flight's time, s.
+    pub(crate) time_s: Option<f64>,
+    pub(crate) paused: Option<bool>,
+    /// The time a frame takes, s of our time.
+    pub(crate) frame_period_s: Option<f64>,
+}
+
+/// A time of the simulator and when it was seen.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mark {
+    time_s: f64,
+    seen: Time,
+}
+
+impl Mark {
+    /// The simulator's seconds for each of ours since an earlier mark.
+    fn pace_since(self, earlier: Self) -> f64 {
+        (self.time_s - earlier.time_s) / self.seen.since(earlier.seen).as_secs_f64()
+    }
+}
+
+/// Follows the simulator's clock.
+#[derive(Clone, Debug)]
+pub(crate) struct SimulatorClock {
+    silent_after: Duration,
+    heard: Time,
+    latest: Mark,
+    /// When the clock was last seen to advance, or had a reason not to.
+    advanced: Time,
+    paused: bool,
+    frame_period_s: f64,
+    /// Where the pace is measured from: the older one, until the younger is
+    /// [`PACE_OVER`] old.
+    marks: [Mark; 2],
+    slow: bool,
+    jumped: bool,
+}
+
+impl SimulatorClock {
+    pub(crate) fn new(silent_after: Duration) -> Self {
+        Self {
+            silent_after,
+            heard: Time::NEVER,
+            latest: Mark::default(),
+            advanced: Time::NEVER,
+            paused: false,
+            frame_period_s: 0.0,
+            marks: [Mark::default(); 2],
+            slow: false,
+            jumped: false,
+        }
+    }
+
+    /// A new tick begins.
+    pub(crate) fn begin(&mut self) {
+        self.jumped = false;
+    }
+
+    /// Whether a datagram of this flight time was overtaken by a newer one and
+    /// is to be dropped. An equal time is not: it is the same frame again, or
+    /// time stands still.
+    pub(crate) fn is_late(&self, now: Time, time_s: f64) -> bool {
+        let back_s = self.latest.time_s - time_s;
+        !self.latest.seen.is_never()
+            && back_s > 0.0
+            && back_s < LATE_S
+            && now.since(self.latest.seen) < LATE
+    }
+
+    /// Takes in what a datagram that was accepted says.
+    pub(crate) fn hear(&mut self, now: Time, word: Word) {
+        let was_silent = self.is_silent(now);
+        self.heard = now;
+        if let Some(paused) = word.paused {
+            if self.paused && !paused {
+                self.begin_pace(now);
+            }
+            self.paused = paused;
+        }
+        if let Some(period_s) = word.frame_period_s {
+            self.frame_period_s = period_s;
+        }
+        if let Some(time_s) = word.time_s {
+            self.read_clock(now, time_s, was_silent);
+        }
+        self.judge_pace(now);
+    }
+
+    fn read_clock(&mut self, now: Time, time_s: f64, was_silent: bool) {
+        let before = self.latest;
+        self.latest = Mark { time_s, seen: now };
+        if before.seen.is_never() {
+            self.begin_pace(now);
+            return;
+        }
+        let gained_s = time_s - before.time_s;
+        let ours_s = now.since(before.seen).as_secs_f64();
+        // What was late was dropped, so time that went back was set back.
+        if gained_s < 0.0 || gained_s - ours_s > AHEAD_S {
+            self.jumped = true;
+            self.begin_pace(now);
+        } else if was_silent {
+            self.begin_pace(now);
+        } else if gained_s > 0.0 {
+            if now.since(self.advanced) > STALLED_AFTER {
+                self.begin_pace(now);
+            }
+            self.advanced = now;
+        }
+    }
+
+    /// Forgets the pace so far: what follows is measured from here.
+    fn begin_pace(&mut self, now: Time) {
+        self.advanced = now;
+        self.marks = [self.latest; 2];
+        self.slow = false;
+    }
+
+    fn judge_pace(&mut self, now: Time) {
+        let [older, younger] = self.marks;
+        if self.paused || self.latest.seen.is_never() {
+            return;
+        }
+        if now.since(younger.seen) >= PACE_OVER {
+            self.marks = [younger, self.latest];
+        }
+        let measured = self.latest.seen.since(older.seen) >= PACE_OVER;
+        let pace = if measured {
+            self.latest.pace_since(older)
+        } else {
+            1.0
+        };
+        if pace < PACE_LOST || self.frame_period_s > FRAME_LOST_S {
+            self.slow = true;
+        } else if measured && pace > PACE_REGAINED && self.frame_period_s < FRAME_REGAINED_S {
+            self.slow = false;
+        }
+    }
+
+    /// Whether nothing has come for the configured time.
+    pub(crate) fn is_silent(&self, now: Time) -> bool {
+        now.since(self.heard) > self.silent_after
+    }
+
+    /// When something last came.
+    pub(crate) const fn heard(&self) -> Time {
+        self.heard
+    }
+
+    /// The simulator's time in s, once known.
+    pub(crate) fn time_s(&self) -> Option<f64> {
+        (!self.latest.seen.is_never()).then_some(self.latest.time_s)
+    }
+
+    /// Whether it spoke, but not of time passing: measured to the last word, so
+    /// that a gap between words is not taken for a clock that stands still.
+    fn stands_still(&self) -> bool {
+        !self.latest.seen.is_never() && self.heard.since(self.advanced) > STALLED_AFTER
+    }
+
+    /// What the simulator is doing.
+    pub(crate) fn state(&self, now: Time) -> SimulatorState {
+        if self.is_silent(now) {
+            SimulatorState::Silent
+        } else if self.jumped {
+            SimulatorState::Jumped
+        } else if self.paused {
+            SimulatorState::Paused
+        } else if self.stands_still() {
+            SimulatorState::Stalled
+        } else if self.slow {
+            SimulatorState::Slow
+        } else {
+            SimulatorState::Running
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,177 @@
+use super::*;
+
+const SILENT_AFTER: Duration = Duration::from_millis(500);
+
+/// A clock and our time, fed at 40 Hz.
+struct Bench {
+    clock: SimulatorClock,
+    now: Time,
+    time_s: f64,
+}
+
+impl Bench {
+    const TICK: Duration = Duration::from_millis(25);
+
+    fn new() -> Self {
+        Self {
+            clock: SimulatorClock::new(SILENT_AFTER),
+            now: Time::from_nanos(1_000_000_000),
+            time_s: 100.0,
+        }
+    }
+
+    fn tell(&mut self, word: Word) -> SimulatorState {
+        self.now = self.now + Self::TICK;
+        self.clock.begin();
+        self.clock.hear(self.now, word);
+        self.clock.state(self.now)
+    }
+
+    /// So many ticks in which the simulator's time runs at this pace.
+    fn fly(&mut self, ticks: u32, pace: f64) -> SimulatorState {
+        let mut state = SimulatorState::Silent;
+        for _ in 0..ticks {
+            self.time_s += 0.025 * pace;
+            state = self.tell(Word {
+                time_s: Some(self.time_s),
+                ..Word::default()
+            });
+        }
+        state
+    }
+}
+
+#[test]
+fn nothing_heard_is_silence_and_the_first_word_ends_it() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.clock.state(bench.now), SimulatorState::Silent);
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    let later = bench.now + SILENT_AFTER;
+    assert_eq!(bench.clock.state(later), SimulatorState::Running);
+    let later = later + Duration::from_nanos(1);
+    assert_eq!(bench.clock.state(later), SimulatorState::Silent);
+}
+
+#[test]
+fn paused_is_not_stalled_and_going_on_is_not_slow() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    let time_s = Some(bench.time_s);
+    let still = |paused| Word {
+        time_s,
+        paused: Some(paused),
+        ..Word::default()
+    };
+    for _ in 0..400 {
+        assert_eq!(bench.tell(still(true)), SimulatorState::Paused);
+    }
+    assert_eq!(bench.tell(still(false)), SimulatorState::Running);
+    assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
+}
+
+#[test]
+fn a_clock_that_stands_still_is_stalled_after_a_quarter_of_a_second() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    // A quarter of a second short of a second is slow before it is stalled.
+    assert_eq!(bench.fly(10, 0.0), SimulatorState::Slow);
+    assert_eq!(bench.fly(1, 0.0), SimulatorState::Stalled);
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+}
+
+#[test]
+fn time_at_eight_tenths_is_slow_and_recovers() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    assert_eq!(bench.fly(120, 0.8), SimulatorState::Slow);
+    assert_eq!(bench.fly(120, 0.93), SimulatorState::Slow, "hysteresis");
+    assert_eq!(bench.fly(160, 1.0), SimulatorState::Running);
+    assert_eq!(bench.fly(160, 0.93), SimulatorState::Running, "hysteresis");
+}
+
+#[test]
+fn accelerated_time_is_neither_slow_nor_a_jump() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.fly(400, 16.0), SimulatorState::Running);
+}
+
+#[test]
+fn frames_longer_than_a_twentieth_of_a_second_are_slow() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    let frames = |bench: &mut Bench, period_s| {
+        bench.time_s += 0.025;
+        bench.tell(Word {
+            time_s: Some(bench.time_s),
+            frame_period_s: Some(period_s),
+            ..Word::default()
+        })
+    };
+    assert_eq!(frames(&mut bench, 0.049), SimulatorState::Running);
+    assert_eq!(frames(&mut bench, 0.051), SimulatorState::Slow);
+    assert_eq!(
+        frames(&mut bench, 0.048),
+        SimulatorState::Slow,
+        "hysteresis"
+    );
+    assert_eq!(frames(&mut bench, 0.030), SimulatorState::Running);
+}
+
+#[test]
+fn a_loaded_flight_is_a_jump_for_one_tick() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    bench.time_s = 0.0;
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Jumped);
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    bench.time_s += 1.1;
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Jumped);
+    assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
+}
+
+#[test]
+fn a_datagram_overtaken_by_less_than_a_second_is_late() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    let (now, time_s) = (bench.now, bench.time_s);
+    assert!(bench.clock.is_late(now, time_s - 0.01));
+    assert!(bench.clock.is_late(now, time_s - 0.99));
+    assert!(!bench.clock.is_late(now, time_s), "the same frame again");
+    assert!(!bench.clock.is_late(now, time_s + 0.01));
+    assert!(!bench.clock.is_late(now, time_s - 1.0), "that is a jump");
+    // A flight loaded within its first second and paused there must not be
+    // taken for late for ever.
+    let later = now + LATE;
+    assert!(!bench.clock.is_late(later, time_s - 0.5));
+}
+
+#[test]
+fn silence_in_between_is_neither_a_jump_nor_slow() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    bench.now = bench.now + Duration::from_secs(10);
+    bench.time_s += 10.0;
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    // Ten seconds in which the simulator stood still.
+    bench.now = bench.now + Duration::from_secs(10);
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
+}
+
+#[test]
+fn a_tenth_of_the_datagrams_lost_changes_nothing() {
+    let mut bench = Bench::new();
+    for tick in 1..=800 {
+        bench.time_s += 0.025;
+        if tick % 10 == 0 {
+            bench.now = bench.now + Bench::TICK;
+            continue;
+        }
+        let time_s = Some(bench.time_s);
+        let word = Word {
+            time_s,
+            ..Word::default()
+        };
+        assert_eq!(bench.tell(word), SimulatorState::Running, "tick {tick}");
+    }
+}

@@ -1,0 +1,109 @@
+//! What accelerometers would feel, from X-Plane's accelerations.
+//!
+//! `local_ax/ay/az` are the acceleration of the aircraft over the ground in
+//! X-Plane's drawing axes (x east, y up, z south), gravity not in it: 0 in
+//! steady level flight. Specific force is that less gravity, in body axes:
+//! f = Rᵀ (a - g), with R the rotation from body to north-east-down.
+//!
+//! Not `g_axil` and `g_side`: sources do not say, or do not agree, which way
+//! those point and whether they hold the share of gravity along their axis.
+//! The definition above leaves nothing to choose. Rows of Data Output have
+//! only the load factors, so there they are used, see
+//! [`rows`](crate::rows).
+
+use fcc_core::flight::SpecificForce;
+
+use crate::units::GRAVITY_MPS2;
+
+/// Specific force from the acceleration over the ground in X-Plane's axes
+/// (east, up, south; m/s²) and the attitude (true heading, pitch, roll; rad).
+///
+/// The rotation is the z-y-x Euler sequence of Stevens and Lewis, Aircraft
+/// Control and Simulation (2nd ed. 2003), eq. 1.4-6.
+pub(crate) fn specific_force(
+    [east, up, south]: [f64; 3],
+    [heading_rad, pitch_rad, roll_rad]: [f64; 3],
+) -> SpecificForce {
+    let north = -south;
+    let down = -up - GRAVITY_MPS2;
+
+    let (sin_heading, cos_heading) = heading_rad.sin_cos();
+    let (sin_pitch, cos_pitch) = pitch_rad.sin_cos();
+    let (sin_roll, cos_roll) = roll_rad.sin_cos();
+
+    // One turn at a time: heading about z, pitch about y, roll about x.
+    let ahead = cos_heading * north + sin_heading * east;
+    let across = cos_heading * east - sin_heading * north;
+    let forward = cos_pitch * ahead - sin_pitch * down;
+    let below = sin_pitch * ahead + cos_pitch * down;
+    SpecificForce {
+        x_mps2: forward,
+        y_mps2: cos_roll * across + sin_roll * below,
+        z_mps2: cos_roll * below - sin_roll * across,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(force: SpecificForce, expected: [f64; 3]) {
+        let got = [force.x_mps2, force.y_mps2, force.z_mps2];
+        for (got, expected) in got.into_iter().zip(expected) {
+            assert!((got - expected).abs() < 1e-3, "{force:?} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn level_and_steady_feels_one_g_from_below() {
+        close(
+            specific_force([0.0; 3], [1.0, 0.0, 0.0]),
+            [0.0, 0.0, -9.80665],
+        );
+    }
+
+    /// A coordinated level turn at 60° of bank loads an aircraft with 2 g
+    /// (FAA-H-8083-3C, figure 5-3), along its own z axis and nowhere else. To
+    /// the right while heading north it accelerates east with g·tan 60° =
+    /// 16.986 m/s²; heading east, south.
+    #[test]
+    fn a_coordinated_turn_at_sixty_degrees_is_two_g() {
+        let bank = 60.0_f64.to_radians();
+        let two_g = [0.0, 0.0, -19.6133];
+        close(specific_force([16.9856, 0.0, 0.0], [0.0, 0.0, bank]), two_g);
+        let east = 90.0_f64.to_radians();
+        close(
+            specific_force([0.0, 0.0, 16.9856], [east, 0.0, bank]),
+            two_g,
+        );
+    }
+
+    /// At rest with the nose 30° up an accelerometer along x reads half a g
+    /// forward: sin 30° = 1/2.
+    #[test]
+    fn gravity_leans_on_a_raised_nose() {
+        let nose = 30.0_f64.to_radians();
+        close(
+            specific_force([0.0; 3], [2.0, nose, 0.0]),
+            [4.9033, 0.0, -8.4928],
+        );
+    }
+
+    #[test]
+    fn a_push_forward_is_felt_forward() {
+        // Heading south, 2 m/s² towards south.
+        let south = core::f64::consts::PI;
+        close(
+            specific_force([0.0, 0.0, 2.0], [south, 0.0, 0.0]),
+            [2.0, 0.0, -9.80665],
+        );
+    }
+
+    #[test]
+    fn free_fall_feels_nothing() {
+        close(
+            specific_force([0.0, -9.80665, 0.0], [0.3, -0.2, 1.0]),
+            [0.0; 3],
+        );
+    }
+}

@@ -1,0 +1,140 @@
+//! What people and other threads may know of the connection.
+
+use core::fmt;
+use core::sync::atomic::{AtomicU64, Ordering};
+use std::net::SocketAddrV4;
+use std::sync::Arc;
+
+use crate::link::{Control, Link};
+use crate::simulator::SimulatorState;
+
+/// Watches the connection to X-Plane from any thread, without a lock.
+#[derive(Clone, Debug)]
+pub struct XPlaneStatus(Arc<Link>);
+
+/// What was counted since opening.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counts {
+    /// Datagrams from the simulator.
+    pub received: u64,
+    /// Datagrams from elsewhere, dropped.
+    pub foreign: u64,
+    /// Datagrams with a wrong length or field, dropped.
+    pub malformed: u64,
+    /// Datagrams that are no message known here, dropped.
+    pub unknown: u64,
+    /// Datagrams overtaken by newer ones, dropped.
+    pub late: u64,
+    /// Single values outside what any aircraft does, left out.
+    pub unbelievable: u64,
+    /// Jumps of the simulator's clock.
+    pub jumps: u64,
+    /// Requests for datarefs and for the position.
+    pub requests: u64,
+    /// Datagrams that write controls and overrides.
+    pub writes: u64,
+    /// Datagrams that the operating system refused to send.
+    pub refused: u64,
+}
+
+impl XPlaneStatus {
+    pub(crate) const fn new(link: Arc<Link>) -> Self {
+        Self(link)
+    }
+
+    /// Where the simulator is; `None` until a beacon has told.
+    pub fn simulator(&self) -> Option<SocketAddrV4> {
+        self.0.simulator()
+    }
+
+    /// What the simulator was doing at the last tick.
+    pub fn state(&self) -> SimulatorState {
+        self.0.state()
+    }
+
+    /// Who has the controls.
+    pub fn control(&self) -> Control {
+        self.0.control()
+    }
+
+    /// Whether controls have been written for over a second without effect.
+    pub fn is_unconfirmed(&self) -> bool {
+        self.0.is_unconfirmed()
+    }
+
+    /// X-Plane's version, 115501 for 11.55r01, once it has told.
+    pub fn version(&self) -> Option<u32> {
+        self.0.version()
+    }
+
+    /// Whether a wheel is on the ground, once X-Plane has told.
+    pub fn on_ground(&self) -> Option<bool> {
+        self.0.on_ground()
+    }
+
+    /// What was counted since opening.
+    pub fn counts(&self) -> Counts {
+        let counters = &self.0.counters;
+        let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        Counts {
+            received: read(&counters.received),
+            foreign: read(&counters.foreign),
+            malformed: read(&counters.malformed),
+            unknown: read(&counters.unknown),
+            late: read(&counters.late),
+            unbelievable: read(&counters.unbelievable),
+            jumps: read(&counters.jumps),
+            requests: read(&counters.requests),
+            writes: read(&counters.writes),
+            refused: read(&counters.refused),
+        }
+    }
+
+    /// What is wrong with the connection now and what to do about it, for
+    /// people; `None` while nothing is.
+    pub fn trouble(&self) -> Option<Trouble> {
+        match self.simulator() {
+            None => Some(Trouble::NoBeacon),
+            Some(at) if self.state() == SimulatorState::Silent => Some(Trouble::Silent(at)),
+            Some(at) if self.is_unconfirmed() => Some(Trouble::Unconfirmed(at)),
+            Some(_) => None,
+        }
+    }
+}
+
+/// What can be wrong with the connection. Its text says what to do.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Trouble {
+    /// No beacon has been heard.
+    NoBeacon,
+    /// The simulator does not answer.
+    Silent(SocketAddrV4),
+    /// The simulator sends, but what is written to it has no effect.
+    Unconfirmed(SocketAddrV4),
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoBeacon => f.write_str(
+                "No X-Plane has announced itself on this network. Start X-Plane, or set its \
+                 address instead of looking for its beacon: some networks do not carry multicast.",
+            ),
+            Self::Silent(at) => write!(
+                f,
+                "X-Plane at {at} does not answer. Check that it runs there and has a flight \
+                 loaded; in X-Plane 12 that Settings > Network > Accept incoming connections is \
+                 on; and that no firewall on its machine blocks UDP port {}.",
+                at.port()
+            ),
+            Self::Unconfirmed(at) => write!(
+                f,
+                "X-Plane at {at} sends its data, but the controls written to it have no effect. \
+                 In X-Plane 12 switch on Settings > Network > Accept incoming connections; check \
+                 that a firewall on its machine lets UDP port {} in; and that no other program \
+                 or plugin holds the controls.",
+                at.port()
+            ),
+        }
+    }
+}

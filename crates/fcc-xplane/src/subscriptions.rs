@@ -1,0 +1,168 @@
+//! Asking X-Plane for what is needed, and asking again when it does not come.
+//!
+//! Requests get lost, X-Plane is restarted, and it forgets: so each dataref
+//! that has not come is asked for again, for itself. While the simulator is
+//! silent, or leaves a dataref unanswered for good (it may not have it), that
+//! is every [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe);
+//! while it answers others, the first few times after a second already, for
+//! then a single request was lost.
+//!
+//! X-Plane takes about 100 requests and then wants a pause of 100 ms. There are
+//! fewer than that in all, and they are spread over ticks.
+
+use core::time::Duration;
+
+use fcc_core::framework::Time;
+
+use crate::config::{Input, XPlaneConfig};
+use crate::inbox::Inbox;
+use crate::port::Errno;
+use crate::protocol::{PathError, rpos, rref};
+use crate::quantity::Quantity;
+
+/// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
+pub(crate) const REQUESTS_PER_TICK: usize = 8;
+/// What X-Plane takes without a pause.
+const REQUESTS_AT_ONCE: usize = 100;
+const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
+
+/// A lost request is repeated after so long, so many times.
+const LOST_AFTER: Duration = Duration::from_secs(1);
+const LOST_TIMES: u8 = 5;
+
+/// The position is for navigation, which does not need every frame of it.
+const POSITION_RATE_HZ: u16 = 20;
+
+#[derive(Debug)]
+enum Request {
+    Value(Quantity, Box<[u8; rref::REQUEST_BYTES]>),
+    Position([u8; rpos::REQUEST_BYTES], usize),
+}
+
+impl Request {
+    fn datagram(&self) -> &[u8] {
+        match self {
+            Self::Value(_, request) => request.as_slice(),
+            Self::Position(request, length) => request.get(..*length).unwrap_or_default(),
+        }
+    }
+
+    fn answered(&self, inbox: &Inbox) -> Time {
+        match self {
+            Self::Value(quantity, _) => inbox.arrived(*quantity),
+            Self::Position(..) => inbox.position_arrived(),
+        }
+    }
+}
+
+#[derive(Debug)]
+struct Subscription {
+    request: Request,
+    asked: Time,
+    /// How often it was asked since it last came.
+    unanswered: u8,
+}
+
+/// What is asked for, and when it was last.
+#[derive(Debug)]
+pub(crate) struct Subscriptions {
+    list: Vec<Subscription>,
+    resubscribe: Duration,
+}
+
+impl Subscriptions {
+    pub(crate) fn new(config: &XPlaneConfig) -> Result<Self, PathError> {
+        let by_rows = matches!(config.input, Input::Data(_));
+        let mut list = Vec::new();
+        for quantity in Quantity::all() {
+            let Some(path) = quantity.path(&config.engage_switch) else {
+                continue;
+            };
+            if by_rows && quantity.comes_in_rows() {
+                continue;
+            }
+            let mut request = Box::new([0; rref::REQUEST_BYTES]);
+            rref::request(&mut request, config.rate_hz, quantity.index(), &path)?;
+            list.push(Subscription::to(Request::Value(quantity, request)));
+        }
+        if !by_rows {
+            list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
+        }
+        Ok(Self {
+            list,
+            resubscribe: config.resubscribe,
+        })
+    }
+
+    /// Asks for everything anew, from the next tick on.
+    pub(crate) fn restart(&mut self) {
+        for subscription in &mut self.list {
+            subscription.asked = Time::NEVER;
+        }
+    }
+
+    /// Sends what is due, at most [`REQUESTS_PER_TICK`]. A request that could
+    /// not be sent counts as sent and lost.
+    pub(crate) fn send_due(
+        &mut self,
+        now: Time,
+        inbox: &Inbox,
+        mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
+    ) -> Result<(), Errno> {
+        let resubscribe = self.resubscribe;
+        let silent = now.since(inbox.heard()) >= LOST_AFTER;
+        let mut outcome = Ok(());
+        let mut budget = REQUESTS_PER_TICK;
+        for subscription in &mut self.list {
+            if budget == 0 {
+                break;
+            }
+            if now.since(subscription.request.answered(inbox)) < resubscribe {
+                subscription.unanswered = 0;
+                continue;
+            }
+            let lost = !silent && subscription.unanswered <= LOST_TIMES;
+            let wait = if lost {
+                resubscribe.min(LOST_AFTER)
+            } else {
+                resubscribe
+            };
+            if now.since(subscription.asked) >= wait {
+                subscription.asked = now;
+                subscription.unanswered = subscription.unanswered.saturating_add(1);
+                outcome = outcome.and(send(subscription.request.datagram()));
+                budget -= 1;
+            }
+        }
+        outcome
+    }
+
+    /// Ends everything, for shutting down.
+    pub(crate) fn end(&mut self, mut send: impl FnMut(&[u8])) {
+        for subscription in &mut self.list {
+            match &mut subscription.request {
+                Request::Value(_, request) => {
+                    rref::set_frequency(request, 0);
+                    send(request.as_slice());
+                }
+                Request::Position(..) => send(position_request(0).datagram()),
+            }
+        }
+    }
+}
+
+impl Subscription {
+    fn to(request: Request) -> Self {
+        Self {
+            request,
+            asked: Time::NEVER,
+            unanswered: 0,
+        }
+    }
+}
+
+fn position_request(frequency_hz: u16) -> Request {
+    let mut request = [0; rpos::REQUEST_BYTES];
+    let length = rpos::request(&mut request, frequency_hz).len();
+    Request::Position(request, length)
+}
