@@ -14,4 +14,3 @@ mod watch;
 pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Pace, Plan, fly};
 pub use outcome::{EventEntry, Outcome};
-pub(crate) use outcome::timing_report;

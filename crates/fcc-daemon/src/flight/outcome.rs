@@ -92,7 +92,7 @@ impl Outcome {
 }
 
 /// The timing of a loop as other tools read it.
-pub(crate) fn timing_report(
+fn timing_report(
     timer: &'static str,
     summary: &TimingSummary,
     grants: &RealtimeGrants,
