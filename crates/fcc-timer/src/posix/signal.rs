@@ -88,12 +88,12 @@ impl Drop for TimerSignal {
             tv_sec: 0,
             tv_nsec: 0,
         };
-        // One that is still queued would end the process when let through.
         // SAFETY: the set and the time are live; a null pointer says that the
         // signal's details are not wanted.
-        while unsafe { libc::sigtimedwait(&raw const mine, ptr::null_mut(), &raw const at_once) }
-            > 0
-        {}
+        let take_queued =
+            || unsafe { libc::sigtimedwait(&raw const mine, ptr::null_mut(), &raw const at_once) };
+        // One that is still queued would end the process when let through.
+        while take_queued() > 0 {}
         // Blocking it succeeded, with the same arguments: so does this.
         let _ = change_mask(libc::SIG_UNBLOCK, self.claim.0);
     }
