@@ -181,7 +181,7 @@ class Plant:
 
         JSBSim 1.3.3 mixes the wind up with an airspeed that is set beside it, so
         the velocity over the ground is given outright and the wind comes last.
-        Its wind direction is where the wind blows to, whatever the documentation says.
+        Its wind direction is where the wind blows to.
         """
         fdm = self.fdm
         air_fps = fdm["ic/vt-fps"]
