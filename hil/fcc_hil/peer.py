@@ -13,6 +13,7 @@ from __future__ import annotations
 from .pattern import TimedPattern
 from .plant import Plant
 from .score import Score, score
+from .state import Controls
 from .truth import STEPS_PER_ROW, Truth, row
 from .units import FT_TO_M
 
@@ -38,6 +39,15 @@ def fly_peer(
         fdm["ap/heading_setpoint"] = aim.heading_deg
         fdm["ap/altitude_setpoint"] = aim.altitude_ft + above_ground_ft
         plant.step(STEPS_PER_ROW)
-        rows.append(row(plant.state(), plant.controls))
+        rows.append(row(plant.state(), _commanded(plant)))
     truth = Truth(rows)
     return score(truth.trace(), pattern.legs(legs, engaged_at_s, captured)), truth
+
+
+def _commanded(plant: Plant) -> Controls:
+    """Return what the autopilot commands, which it adds to the pilot's centred controls."""
+    return Controls(
+        elevator=-plant.fdm["ap/elevator_cmd"],
+        aileron=plant.fdm["ap/aileron_cmd"],
+        throttle=plant.trim.throttle,
+    )

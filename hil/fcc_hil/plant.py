@@ -12,6 +12,7 @@ Everything is seeded: the same calls give the same bits on one machine.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import jsbsim
@@ -117,8 +118,11 @@ class Plant:
         """What was last written."""
         return self._controls
 
-    def write(self, controls: Controls) -> None:
-        """Command the controls; values beyond their range are clipped."""
+    def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
+        """Command the controls; values beyond their range are clipped.
+
+        `throttles`, one for each engine, takes the place of the common throttle.
+        """
         clipped = Controls(
             elevator=min(1.0, max(-1.0, controls.elevator)),
             aileron=min(1.0, max(-1.0, controls.aileron)),
@@ -130,8 +134,8 @@ class Plant:
         fdm["fcs/elevator-cmd-norm"] = -clipped.elevator
         fdm["fcs/aileron-cmd-norm"] = clipped.aileron
         fdm["fcs/rudder-cmd-norm"] = -clipped.rudder
-        for throttle in self._throttles:
-            fdm[throttle] = clipped.throttle
+        for index, path in enumerate(self._throttles):
+            fdm[path] = clipped.throttle if throttles is None else throttles[index]
         self._controls = clipped
 
     def step(self, steps: int = 1) -> None:
