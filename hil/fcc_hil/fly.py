@@ -141,8 +141,9 @@ def fly(order: Order, say: Callable[[str], None]) -> Flight:
             failures.append(f"the daemon ended with exit code {exit_code}")
         if report is None:
             failures.append("the daemon printed no JSON object")
-        truth = simulator.truth()
+        # The status first: handing the truth over takes longer than a frame.
         status = simulator.status()
+        truth = simulator.truth()
     figures = score(
         truth.trace(),
         order.pattern.legs(order.legs, engaged_at_s, truth.captured_at(engaged_at_s)),
