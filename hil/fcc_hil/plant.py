@@ -12,6 +12,7 @@ Everything is seeded: the same calls give the same bits on one machine.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -78,7 +79,7 @@ class Plant:
         fdm.set_debug_level(0)
         if not fdm.load_model(self.aircraft.name):
             raise ValueError(f"JSBSim has no aircraft '{self.aircraft.name}'")
-        fdm.disable_output()
+        self._silence_output()
         fdm.set_dt(STEP_S)
         fdm["simulation/randomseed"] = seed
         fdm["ic/terrain-elevation-ft"] = 0.0
@@ -179,6 +180,14 @@ class Plant:
             wind_down_mps=f["atmosphere/total-wind-down-fps"] * FT_TO_M,
             on_ground=f["gear/wow"] != 0.0,
         )
+
+    def _silence_output(self) -> None:
+        """Keep the model from writing its log files, which JSBSim opens even when disabled."""
+        index = 0
+        while self.fdm.get_output_filename(index):
+            self.fdm.set_output_filename(index, os.devnull)
+            index += 1
+        self.fdm.disable_output()
 
     def _set_wind(self, weather: Weather, heading_deg: float) -> None:
         """Set steady wind so that the aircraft starts at its airspeed with no sideslip.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -104,3 +105,13 @@ def test_controls_are_clipped_to_their_range() -> None:
     plant = Plant("c172p")
     plant.write(Controls(elevator=2.0, aileron=-3.0, rudder=1.5, throttle=-0.5))
     assert plant.controls == Controls(elevator=1.0, aileron=-1.0, rudder=1.0, throttle=0.0)
+
+
+@pytest.mark.parametrize("name", ["c172x", "global5000"])
+def test_no_log_files_are_left_behind(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Both models come with a log file that JSBSim opens in the working folder.
+    monkeypatch.chdir(tmp_path)
+    Plant(name).step(120)
+    assert list(tmp_path.iterdir()) == []
