@@ -1,0 +1,308 @@
+"""Commands for people: `python -m fcc_hil fly | standin | peer`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from .aircraft import AIRCRAFT
+from .daemon import DaemonError, command
+from .faults import Address, Faults
+from .fly import FlightError, Order, fly, peer_row, say_on_stderr, write_document
+from .pattern import TimedPattern
+from .peer import fly_peer
+from .plant import TrimError, Weather
+from .plot import plot_flight
+from .process import StandInError, StandInProcess
+from .standin import BEACON_GROUP, Mode, Settings
+from .table import table
+
+_LOOK_S = 0.05
+
+
+def _address(text: str) -> Address:
+    host, colon, port = text.rpartition(":")
+    if not colon or not port.isdigit() or not 0 < int(port) < 65_536:
+        raise argparse.ArgumentTypeError(f"'{text}': give HOST:PORT, as in 127.0.0.1:49001")
+    return host, int(port)
+
+
+def _rows(text: str) -> tuple[int, ...]:
+    try:
+        return tuple(int(number) for number in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}': give row numbers, as in 3,17,20") from None
+
+
+_ACTIONS: dict[str, Callable[[StandInProcess], None]] = {
+    "run": lambda simulator: simulator.set_mode(Mode.RUNNING),
+    "pause": lambda simulator: simulator.set_mode(Mode.PAUSED),
+    "stall": lambda simulator: simulator.set_mode(Mode.STALLED),
+    "freeze": lambda simulator: simulator.set_mode(Mode.FROZEN),
+    "restart": lambda simulator: simulator.restart_flight(),
+}
+
+
+def _appointment(text: str) -> tuple[float, str]:
+    seconds, _, action = text.partition(":")
+    try:
+        at_s = float(seconds)
+    except ValueError:
+        at_s = -1.0
+    if at_s < 0.0 or action not in (*_ACTIONS, "kill"):
+        raise argparse.ArgumentTypeError(f"'{text}': give SECONDS:ACTION, as in 30:pause")
+    return at_s, action
+
+
+def _simulator_options(parser: argparse.ArgumentParser) -> None:
+    default = Settings()
+    parser.add_argument(
+        "--aircraft",
+        default=default.aircraft,
+        choices=list(AIRCRAFT),
+        metavar="NAME",
+        help=f"one of {', '.join(AIRCRAFT)} (default %(default)s)",
+    )
+    parser.add_argument("--seed", type=int, default=default.seed, help="of every random sequence")
+    parser.add_argument("--host", default=default.host, help="address to listen on (%(default)s)")
+    parser.add_argument(
+        "--port",
+        type=int,
+        default=default.port,
+        help="UDP port to listen on, 0 for any free one (default %(default)s)",
+    )
+    parser.add_argument(
+        "--frame-rate",
+        type=float,
+        default=default.frame_rate_hz,
+        metavar="HZ",
+        help="frames a second; below 20 simulated time slows down (default %(default)s)",
+    )
+    parser.add_argument(
+        "--xplane-version",
+        type=int,
+        default=default.version,
+        metavar="N",
+        help="as X-Plane reports it: 101500, 115501, 121000 (default %(default)s)",
+    )
+    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="to begin with")
+    parser.add_argument(
+        "--variation",
+        type=float,
+        default=0.0,
+        metavar="DEG",
+        help="magnetic variation, positive to the east",
+    )
+    air = parser.add_argument_group("air and sensors")
+    air.add_argument("--noise", action="store_true", help="noise on the sensors")
+    air.add_argument("--wind-from", type=float, default=0.0, metavar="DEG", help="true direction")
+    air.add_argument("--wind", type=float, default=0.0, metavar="KT", help="steady wind")
+    air.add_argument(
+        "--turbulence",
+        type=int,
+        default=0,
+        choices=range(8),
+        metavar="0..7",
+        help="severity after MIL-F-8785C: 0 calm, 3 light, 4 moderate",
+    )
+    network = parser.add_argument_group("network faults, in both directions")
+    for name, what in (
+        ("loss", "lost"),
+        ("duplicate", "doubled"),
+        ("reorder", "overtaken by the next"),
+        ("truncate", "cut short"),
+    ):
+        network.add_argument(
+            f"--{name}", type=float, default=0.0, metavar="FRACTION", help=f"of datagrams {what}"
+        )
+    network.add_argument("--delay", type=float, default=0.0, metavar="MS", help="of every datagram")
+    network.add_argument("--jitter", type=float, default=0.0, metavar="MS", help="added, uniform")
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    faults = Faults(
+        loss=options.loss,
+        duplicate=options.duplicate,
+        reorder=options.reorder,
+        truncate=options.truncate,
+        delay_s=options.delay / 1e3,
+        jitter_s=options.jitter / 1e3,
+    )
+    return Settings(
+        aircraft=options.aircraft,
+        seed=options.seed,
+        host=options.host,
+        port=options.port,
+        frame_rate_hz=options.frame_rate,
+        version=options.xplane_version,
+        heading_deg=options.heading,
+        magnetic_variation_deg=options.variation,
+        weather=Weather(
+            wind_from_deg=options.wind_from,
+            wind_kt=options.wind,
+            turbulence_severity=options.turbulence,
+        ),
+        noise=options.noise,
+        inbound=faults,
+        outbound=faults,
+    )
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _fly(options: argparse.Namespace) -> int:
+    # Ended from outside, it still has a daemon and a stand-in to end.
+    signal.signal(signal.SIGTERM, _interrupt)
+    order = Order(command(options.fccd, options.config), _settings(options), options.legs)
+    flight = fly(order, say_on_stderr)
+    peer = peer_row(order)
+    print(
+        "\n"
+        + table(
+            [
+                (f"fccd, {order.settings.aircraft}", flight.figures),
+                ("JSBSim's c172x autopilot", peer),
+            ]
+        )
+    )
+    frames = flight.standin["frames"]
+    print(
+        f"stand-in: {frames['frames']} frames, {frames['slipped']} slipped, "
+        f"late {frames['lateness_us']['p99']:.0f} us at p99, "
+        f"work {frames['work_us']['p99']:.0f} us at p99"
+    )
+    if options.json:
+        write_document(options.json, flight.document(peer))
+    if options.plot:
+        plot_flight(
+            options.plot,
+            flight.truth,
+            order.pattern,
+            flight.engaged_at_s,
+            order.legs,
+            f"fccd flies JSBSim's {order.settings.aircraft} through the timed pattern",
+        )
+    for failure in flight.failures:
+        print(f"failed: {failure}", file=sys.stderr)
+    return 1 if flight.failures else 0
+
+
+def _standin(options: argparse.Namespace) -> int:
+    settings = replace(
+        _settings(options),
+        beacon=BEACON_GROUP if options.beacon else None,
+        data_target=options.data_target,
+        data_rows=options.data_rows,
+    )
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    with StandInProcess(settings) as simulator:
+        print(f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port}; Ctrl-C ends it")
+        sys.stdout.flush()
+        began_s = time.monotonic()
+        todo = sorted(options.at)
+        while not stop.wait(_LOOK_S):
+            ran_s = time.monotonic() - began_s
+            while todo and todo[0][0] <= ran_s:
+                action = todo.pop(0)[1]
+                print(f"{ran_s:.1f} s: {action}", flush=True)
+                if action == "kill":
+                    simulator.kill()
+                    return 0
+                _ACTIONS[action](simulator)
+            if options.seconds is not None and ran_s >= options.seconds:
+                break
+        status: dict[str, Any] = simulator.status()
+    print(json.dumps(status, indent=2))
+    return 0
+
+
+def _peer(options: argparse.Namespace) -> int:
+    climb_ft = 0.0 if options.level else TimedPattern().climb_ft
+    figures, truth = fly_peer(options.legs, options.seed, TimedPattern(climb_ft=climb_ft))
+    if options.json:
+        print(json.dumps(figures, indent=2))
+    else:
+        print(table([("JSBSim's c172x autopilot", figures)]))
+    if options.plot:
+        title = "JSBSim's own c172x autopilot on the timed pattern"
+        pattern = TimedPattern(climb_ft=climb_ft)
+        plot_flight(options.plot, truth, pattern, 0.0, options.legs, title)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m fcc_hil", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    flies = commands.add_parser(
+        "fly", help="fly the daemon through the timed pattern in real time and score it"
+    )
+    flies.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    flies.add_argument("--config", type=Path, help="the daemon's configuration")
+    flies.add_argument("--legs", type=int, default=8, help="of 20 s each (default %(default)s)")
+    flies.add_argument("--json", type=Path, metavar="FILE", help="write timing and score here")
+    flies.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
+    _simulator_options(flies)
+    flies.set_defaults(run=_fly)
+
+    serves = commands.add_parser("standin", help="stand in for X-Plane until Ctrl-C")
+    serves.add_argument("--beacon", action="store_true", help="send the beacon by multicast")
+    serves.add_argument(
+        "--data-target", type=_address, metavar="HOST:PORT", help="where Data Output goes"
+    )
+    serves.add_argument(
+        "--data-rows", type=_rows, default=(), metavar="N,N", help="its rows, as in 3,17,20"
+    )
+    serves.add_argument("--seconds", type=float, metavar="S", help="end after so many seconds")
+    serves.add_argument(
+        "--at",
+        type=_appointment,
+        action="append",
+        default=[],
+        metavar="S:ACTION",
+        help=f"S seconds after the start do one of {', '.join(_ACTIONS)}, kill; may be repeated",
+    )
+    _simulator_options(serves)
+    serves.set_defaults(run=_standin)
+
+    peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")
+    peer.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
+    peer.add_argument("--seed", type=int, default=1)
+    peer.add_argument("--level", action="store_true", help="turn without climbing")
+    peer.add_argument("--json", action="store_true", help="print the score as JSON")
+    peer.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
+    peer.set_defaults(run=_peer)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command; returns the exit code: 0 good, 1 failed, 2 asked wrongly."""
+    options = _parser().parse_args(arguments)
+    if getattr(options, "legs", 1) < 1:
+        print("error: --legs: give at least 1", file=sys.stderr)
+        return 2
+    try:
+        code: int = options.run(options)
+    except (FlightError, DaemonError, StandInError, TrimError, ValueError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

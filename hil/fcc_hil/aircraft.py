@@ -1,0 +1,57 @@
+"""Which of JSBSim's aircraft fly here, and at what speed and altitude they are trimmed.
+
+Speeds leave room to climb; retractable gear is up, without which half of these
+have not the power to hold the speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Aircraft:
+    """An aircraft of JSBSim's and its trimmed flight condition."""
+
+    name: str
+    """JSBSim's name of the model."""
+    airspeed_kt: float
+    """Calibrated airspeed."""
+    altitude_ft: float
+    """Above mean sea level."""
+    retractable_gear: bool = False
+    """Whether to raise the gear before trimming."""
+    trims: bool = True
+    """Whether JSBSim's trim finds a state that lasts. Where it does not, the
+    aircraft is flown to its state in closed loop (see `settle`)."""
+
+
+_TABLE = (
+    Aircraft("c172p", 100, 3_000),
+    Aircraft("c172x", 100, 3_000),
+    Aircraft("c172r", 100, 3_000),
+    Aircraft("J3Cub", 65, 3_000),
+    Aircraft("OV10", 160, 5_000, retractable_gear=True),
+    Aircraft("t6texan2", 200, 8_000, retractable_gear=True),
+    Aircraft("T37", 220, 10_000, retractable_gear=True),
+    Aircraft("T38", 260, 15_000, retractable_gear=True),
+    Aircraft("f16", 260, 15_000, retractable_gear=True),
+    Aircraft("737", 260, 15_000, retractable_gear=True),
+    Aircraft("A320", 260, 15_000, retractable_gear=True),
+    Aircraft("global5000", 260, 15_000, retractable_gear=True),
+    Aircraft("c182", 120, 3_000),
+    Aircraft("pa28", 85, 3_000),
+    Aircraft("c310", 130, 5_000, retractable_gear=True, trims=False),
+    Aircraft("pc7", 150, 5_000, retractable_gear=True, trims=False),
+)
+
+AIRCRAFT: dict[str, Aircraft] = {aircraft.name: aircraft for aircraft in _TABLE}
+
+
+def by_name(name: str) -> Aircraft:
+    """Return the aircraft of that name, or raise ValueError with the names there are."""
+    try:
+        return AIRCRAFT[name]
+    except KeyError:
+        known = ", ".join(AIRCRAFT)
+        raise ValueError(f"no aircraft '{name}' in the table; choose one of: {known}") from None

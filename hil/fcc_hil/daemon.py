@@ -1,0 +1,94 @@
+"""The flight control computer under test, as a subprocess: start, stop, read its report."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+_STOP_S = 5.0
+
+
+class DaemonError(RuntimeError):
+    """The daemon could not be started."""
+
+
+def command(fccd: Path, config: Path | None) -> list[str]:
+    """Return the command line that runs the daemon against a simulator and reports in JSON."""
+    words = [str(fccd), "run"]
+    if config is not None:
+        words += ["--config", str(config)]
+    return [*words, "--json"]
+
+
+class Daemon:
+    """A running daemon; a context manager that ends it on the way out."""
+
+    def __init__(self, words: Sequence[str]) -> None:
+        """Start it. What it says to people (stderr) goes where ours goes."""
+        # A file, not a pipe: nobody has to read while it runs, and it never blocks.
+        self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed in __exit__
+        try:
+            self._process = subprocess.Popen(
+                list(words), stdout=self._output, stdin=subprocess.DEVNULL
+            )
+        except OSError as error:
+            self._output.close()
+            raise DaemonError(
+                f"cannot start {words[0]}: {error.strerror}; build it with `cargo build --release` "
+                "or give its path with --fccd"
+            ) from error
+
+    def __enter__(self) -> Daemon:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+        self._output.close()
+
+    @property
+    def exit_code(self) -> int | None:
+        """Return its exit code, negative for a signal, or None while it runs."""
+        return self._process.poll()
+
+    @property
+    def pid(self) -> int:
+        """Return its process id."""
+        return self._process.pid
+
+    def stop(self, by: signal.Signals = signal.SIGTERM) -> int:
+        """Ask it to end and wait; after 5 s kill it. Returns its exit code."""
+        if self._process.poll() is None:
+            self._process.send_signal(by)
+            try:
+                self._process.wait(_STOP_S)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        return self._process.returncode
+
+    def report(self) -> dict[str, Any] | None:
+        """Return the JSON object on its standard output: all of it, or the last line that is one.
+
+        None if there is none.
+        """
+        self._output.seek(0)
+        text = self._output.read().decode("utf-8", "replace")
+        for candidate in (text, *reversed(text.splitlines())):
+            try:
+                found = json.loads(candidate)
+            except ValueError:
+                continue
+            if isinstance(found, dict):
+                return found
+        return None

@@ -1,0 +1,285 @@
+"""JSBSim as the plant: set up, trimmed, stepped in lockstep, in the project's units and signs.
+
+    plant = Plant("c172p", seed=1)
+    while plant.time_s < 60.0:
+        state = plant.state()
+        plant.write(controls_from(state))
+        plant.step(3)                       # 3 steps of 1/120 s: a 40 Hz loop
+
+Everything is seeded: the same calls give the same bits on one machine.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import jsbsim
+
+from .aircraft import Aircraft, by_name
+from .settle import SettlingPilot
+from .state import Controls, State
+from .units import FT_TO_M, KT_TO_MPS, PSF_TO_PA, RANKINE_TO_KELVIN, wrap_heading_rad
+
+STEPS_PER_SECOND = 120
+"""JSBSim's own rate, Hz: three steps to a tick of a 40 Hz loop."""
+
+STEP_S = 1.0 / STEPS_PER_SECOND
+
+_SETTLING_S = 60.0
+_SETTLING_MEAN_S = 5.0
+_MILSPEC_TURBULENCE = 3.0
+_TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
+
+# JSBSim greets on standard output and explains a failed trim there; the caller
+# gets the failure as a value.
+jsbsim.set_logger(jsbsim.DefaultLogger(jsbsim.LogLevel.FATAL))
+
+
+@dataclass(frozen=True)
+class Weather:
+    """The air that the aircraft flies in."""
+
+    wind_from_deg: float = 0.0
+    """Where the steady wind comes from, true."""
+    wind_kt: float = 0.0
+    turbulence_severity: int = 0
+    """0 calm; else the index of probability of exceedance of MIL-F-8785C, 3 light, 4 moderate."""
+    turbulence_wind_fps: float | None = None
+    """Wind at 20 ft that sets the gusts' strength; by default 25 for severity 3, 50 for 4."""
+
+
+class TrimError(RuntimeError):
+    """The aircraft could be neither trimmed nor flown to a steady state."""
+
+
+class Plant:
+    """One aircraft in flight."""
+
+    def __init__(
+        self,
+        aircraft: str | Aircraft,
+        *,
+        seed: int = 1,
+        heading_deg: float = 0.0,
+        weather: Weather | None = None,
+        latitude_deg: float = 0.0,
+        longitude_deg: float = 0.0,
+    ) -> None:
+        """Load and trim `aircraft`; it then flies straight and level, controls centred.
+
+        Raises ValueError for a name that is not in the table, and TrimError.
+        """
+        self.aircraft = by_name(aircraft) if isinstance(aircraft, str) else aircraft
+        self.seed = seed
+        weather = weather or Weather()
+        self.fdm = fdm = jsbsim.FGFDMExec(None)
+        fdm.set_debug_level(0)
+        if not fdm.load_model(self.aircraft.name):
+            raise ValueError(f"JSBSim has no aircraft '{self.aircraft.name}'")
+        self._silence_output()
+        fdm.set_dt(STEP_S)
+        fdm["simulation/randomseed"] = seed
+        fdm["ic/terrain-elevation-ft"] = 0.0
+        fdm["ic/lat-geod-deg"] = latitude_deg
+        fdm["ic/long-gc-deg"] = longitude_deg
+        fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft
+        fdm["ic/vc-kts"] = self.aircraft.airspeed_kt
+        fdm["ic/gamma-deg"] = 0.0
+        fdm["ic/psi-true-deg"] = heading_deg
+        if weather.wind_kt != 0.0:
+            self._set_wind(weather, heading_deg)
+        if self.aircraft.retractable_gear:
+            fdm["gear/gear-cmd-norm"] = 0.0
+            fdm["gear/gear-pos-norm"] = 0.0
+        fdm.run_ic()
+
+        self.engines: int = fdm.get_propulsion().get_num_engines()
+        self._throttles = [f"fcs/throttle-cmd-norm[{i}]" for i in range(self.engines)]
+        self._start_engines()
+        self.trimmed_by_jsbsim = self.aircraft.trims and self._trim()
+        if not self.trimmed_by_jsbsim:
+            self._fly_to_steady_state(heading_deg)
+        self.trim = Controls(throttle=float(fdm[self._throttles[0]]))
+        """The controls that hold the trimmed flight: surfaces centred, throttle as trimmed."""
+        self._controls = Controls(throttle=self.trim.throttle)
+        self._set_turbulence(weather)
+        self.steps = 0
+        """Steps of 1/120 s since the set-up was done."""
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since the set-up was done."""
+        return self.steps / STEPS_PER_SECOND
+
+    @property
+    def controls(self) -> Controls:
+        """What was last written."""
+        return self._controls
+
+    def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
+        """Command the controls; values beyond their range are clipped.
+
+        `throttles`, one for each engine, takes the place of the common throttle.
+        """
+        clipped = Controls(
+            elevator=min(1.0, max(-1.0, controls.elevator)),
+            aileron=min(1.0, max(-1.0, controls.aileron)),
+            rudder=min(1.0, max(-1.0, controls.rudder)),
+            throttle=min(1.0, max(0.0, controls.throttle)),
+        )
+        fdm = self.fdm
+        # JSBSim: a positive elevator lowers the nose, a positive rudder yaws left.
+        fdm["fcs/elevator-cmd-norm"] = -clipped.elevator
+        fdm["fcs/aileron-cmd-norm"] = clipped.aileron
+        fdm["fcs/rudder-cmd-norm"] = -clipped.rudder
+        for index, path in enumerate(self._throttles):
+            fdm[path] = clipped.throttle if throttles is None else throttles[index]
+        self._controls = clipped
+
+    def step(self, steps: int = 1) -> None:
+        """Advance by `steps` of 1/120 s with the controls as they are."""
+        run = self.fdm.run
+        for _ in range(steps):
+            run()
+        self.steps += steps
+
+    def state(self) -> State:
+        """Return the true state now."""
+        f = self.fdm
+        return State(
+            time_s=self.steps / STEPS_PER_SECOND,
+            pitch_rad=f["attitude/theta-rad"],
+            roll_rad=f["attitude/phi-rad"],
+            heading_rad=wrap_heading_rad(f["attitude/psi-rad"]),
+            roll_rate_radps=f["velocities/p-rad_sec"],
+            pitch_rate_radps=f["velocities/q-rad_sec"],
+            yaw_rate_radps=f["velocities/r-rad_sec"],
+            specific_force_x_mps2=f["accelerations/a-pilot-x-ft_sec2"] * FT_TO_M,
+            specific_force_y_mps2=f["accelerations/a-pilot-y-ft_sec2"] * FT_TO_M,
+            specific_force_z_mps2=f["accelerations/a-pilot-z-ft_sec2"] * FT_TO_M,
+            airspeed_mps=f["velocities/vc-kts"] * KT_TO_MPS,
+            true_airspeed_mps=f["velocities/vt-fps"] * FT_TO_M,
+            mach=f["velocities/mach"],
+            altitude_m=f["atmosphere/pressure-altitude"] * FT_TO_M,
+            pressure_pa=f["atmosphere/P-psf"] * PSF_TO_PA,
+            temperature_k=f["atmosphere/T-R"] * RANKINE_TO_KELVIN,
+            angle_of_attack_rad=f["aero/alpha-rad"],
+            sideslip_rad=f["aero/beta-rad"],
+            latitude_rad=f["position/lat-geod-rad"],
+            longitude_rad=f["position/long-gc-rad"],
+            elevation_m=f["position/h-sl-ft"] * FT_TO_M,
+            height_m=f["position/h-agl-ft"] * FT_TO_M,
+            north_mps=f["velocities/v-north-fps"] * FT_TO_M,
+            east_mps=f["velocities/v-east-fps"] * FT_TO_M,
+            down_mps=f["velocities/v-down-fps"] * FT_TO_M,
+            wind_north_mps=f["atmosphere/total-wind-north-fps"] * FT_TO_M,
+            wind_east_mps=f["atmosphere/total-wind-east-fps"] * FT_TO_M,
+            wind_down_mps=f["atmosphere/total-wind-down-fps"] * FT_TO_M,
+            on_ground=f["gear/wow"] != 0.0,
+        )
+
+    def _silence_output(self) -> None:
+        """Keep the model from writing its log files, which JSBSim opens even when disabled."""
+        index = 0
+        while self.fdm.get_output_filename(index):
+            self.fdm.set_output_filename(index, os.devnull)
+            index += 1
+        self.fdm.disable_output()
+
+    def _set_wind(self, weather: Weather, heading_deg: float) -> None:
+        """Set steady wind so that the aircraft starts at its airspeed with no sideslip.
+
+        JSBSim 1.3.3 mixes the wind up with an airspeed that is set beside it, so
+        the velocity over the ground is given outright and the wind comes last.
+        Its wind direction is where the wind blows to.
+        """
+        fdm = self.fdm
+        air_fps = fdm["ic/vt-fps"]
+        wind_fps = weather.wind_kt * KT_TO_MPS / FT_TO_M
+        heading_rad = math.radians(heading_deg)
+        to_rad = math.radians(weather.wind_from_deg) + math.pi
+        fdm["ic/vn-fps"] = air_fps * math.cos(heading_rad) + wind_fps * math.cos(to_rad)
+        fdm["ic/ve-fps"] = air_fps * math.sin(heading_rad) + wind_fps * math.sin(to_rad)
+        fdm["ic/vd-fps"] = 0.0
+        fdm["ic/psi-true-deg"] = heading_deg
+        fdm["ic/vw-mag-fps"] = wind_fps
+        fdm["ic/vw-dir-deg"] = math.degrees(to_rad) % 360.0
+
+    def _start_engines(self) -> None:
+        fdm = self.fdm
+        fdm["propulsion/magneto_cmd"] = 3
+        fdm["propulsion/set-running"] = -1
+        for i in range(self.engines):
+            fdm[f"fcs/mixture-cmd-norm[{i}]"] = 1.0
+
+    def _trim(self) -> bool:
+        fdm = self.fdm
+        try:
+            fdm["simulation/do_simple_trim"] = 1
+        except jsbsim.TrimFailureError:
+            return False
+        # The trim leaves the elevator in its trim property, but aileron and rudder
+        # in their commands, which the first write would wipe out.
+        self._move_to_trim("aileron", "roll")
+        self._move_to_trim("rudder", "yaw")
+        return True
+
+    def _move_to_trim(self, surface: str, axis: str) -> None:
+        command, trim = f"fcs/{surface}-cmd-norm", f"fcs/{axis}-trim-cmd-norm"
+        self.fdm[trim] = self.fdm[trim] + self.fdm[command]
+        self.fdm[command] = 0.0
+
+    def _fly_to_steady_state(self, heading_deg: float) -> None:
+        """Fly for a minute in closed loop, then keep the mean controls as the trim."""
+        fdm = self.fdm
+        self.steps = 0
+        pilot = SettlingPilot(
+            airspeed_mps=self.aircraft.airspeed_kt * KT_TO_MPS,
+            altitude_m=self.aircraft.altitude_ft * FT_TO_M,
+            heading_rad=math.radians(heading_deg),
+        )
+        fdm["propulsion/starter_cmd"] = 1
+        mean = Controls()
+        samples = 0
+        while self.time_s < _SETTLING_S:
+            state = self.state()
+            controls = pilot.step(state, 3 * STEP_S)
+            self.write(controls)
+            self.step(3)
+            if not math.isfinite(state.pitch_rad):
+                raise TrimError(
+                    f"{self.aircraft.name}: JSBSim's state is no longer finite while settling; "
+                    "choose another speed or altitude in the aircraft table"
+                )
+            if self.time_s > _SETTLING_S - _SETTLING_MEAN_S:
+                samples += 1
+                mean.elevator += (controls.elevator - mean.elevator) / samples
+                mean.aileron += (controls.aileron - mean.aileron) / samples
+                mean.throttle += (controls.throttle - mean.throttle) / samples
+        state = self.state()
+        if abs(math.degrees(state.roll_rad)) > 5.0 or abs(state.down_mps) > 2.0:
+            raise TrimError(
+                f"{self.aircraft.name}: no steady flight after {_SETTLING_S:.0f} s "
+                f"(roll {math.degrees(state.roll_rad):.1f} deg, climb {-state.down_mps:.1f} m/s); "
+                "choose another speed or altitude in the aircraft table"
+            )
+        self.write(mean)
+        self._move_to_trim("elevator", "pitch")
+        self._move_to_trim("aileron", "roll")
+
+    def _set_turbulence(self, weather: Weather) -> None:
+        severity = weather.turbulence_severity
+        if severity == 0:
+            return
+        if severity not in _TURBULENCE_WIND_FPS:
+            raise ValueError(f"turbulence severity {severity}: choose 0 (calm) to 7")
+        wind_fps = weather.turbulence_wind_fps
+        fdm = self.fdm
+        fdm["atmosphere/turb-type"] = _MILSPEC_TURBULENCE
+        fdm["atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps"] = (
+            _TURBULENCE_WIND_FPS[severity] if wind_fps is None else wind_fps
+        )
+        fdm["atmosphere/turbulence/milspec/severity"] = severity

@@ -1,0 +1,229 @@
+"""The stand-in in a process of its own, so that nothing else can hold a frame up.
+
+    with StandInProcess(Settings(port=0)) as simulator:
+        simulator.port                                # fly against it
+        simulator.write("sim/cockpit2/switches/generic_lights_switch[0]", 1.0)
+        simulator.set_mode(Mode.PAUSED)
+        truth = simulator.truth()
+
+Orders and answers go through a pipe that the stand-in looks at once a frame.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import multiprocessing
+import os
+import signal
+from multiprocessing.connection import Connection
+from types import TracebackType
+from typing import Any, cast
+
+from .cockpit import Release, Write
+from .standin import Mode, Progress, Settings, StandIn
+from .truth import Truth
+
+_START_S = 30.0
+_ANSWER_S = 10.0
+_STOP_S = 5.0
+
+# Above everything that has no real-time wish, below any flight control computer.
+_PRIORITY = 5
+
+
+class StandInError(RuntimeError):
+    """The stand-in's process could not start, or is gone."""
+
+
+class _Orders:
+    """What may be asked of the stand-in, by name, in its own process."""
+
+    def __init__(self, simulator: StandIn, scheduling: str) -> None:
+        self.simulator = simulator
+        self.scheduling = scheduling
+        self.running = True
+
+    def read(self, path: str) -> float | None:
+        return self.simulator.read(path)
+
+    def write(self, path: str, value: float) -> float:
+        return self.simulator.write(path, value)
+
+    def progress(self) -> Progress:
+        return self.simulator.progress()
+
+    def status(self) -> dict[str, Any]:
+        return {**self.simulator.status(), "scheduling": self.scheduling}
+
+    def truth(self) -> Truth:
+        return Truth(self.simulator.truth)
+
+    def journal(self) -> list[Write]:
+        return self.simulator.cockpit.journal
+
+    def releases(self) -> list[Release]:
+        return self.simulator.cockpit.releases
+
+    def set_mode(self, mode: Mode) -> None:
+        self.simulator.mode = mode
+
+    def set_frame_rate(self, rate_hz: float) -> None:
+        self.simulator.clock.set_rate(rate_hz)
+
+    def restart_flight(self) -> None:
+        self.simulator.restart_flight()
+
+    def jump(self, seconds: float) -> None:
+        self.simulator.jump(seconds)
+
+    def stop(self) -> None:
+        self.running = False
+
+
+def _wish_for_real_time() -> str:
+    """Ask for a real-time priority; return what was granted."""
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
+    except OSError as error:
+        return f"SCHED_OTHER (SCHED_FIFO refused: {error.strerror})"
+    return f"SCHED_FIFO {_PRIORITY}"
+
+
+def _serve(settings: Settings, pipe: Connection) -> None:
+    # Ctrl-C reaches the whole group; whoever started this process ends it in order.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        simulator = StandIn(settings)
+    except Exception as error:
+        pipe.send(error)
+        return
+    pipe.send(simulator.port)
+    orders = _Orders(simulator, _wish_for_real_time())
+
+    def each_frame() -> bool:
+        try:
+            while orders.running and pipe.poll():
+                name, arguments = pipe.recv()
+                try:
+                    pipe.send(getattr(orders, name)(*arguments))
+                except (ValueError, RuntimeError) as error:
+                    pipe.send(error)
+        except (EOFError, OSError):
+            return False
+        return orders.running
+
+    # A collection in the middle of a flight would hold a frame up, and there is
+    # no garbage in cycles here to collect.
+    gc.freeze()
+    gc.disable()
+    simulator.run(each_frame)
+    simulator.close()
+
+
+class StandInProcess:
+    """A running stand-in; a context manager that stops it on the way out."""
+
+    def __init__(self, settings: Settings) -> None:
+        """Start it and wait until it listens. Raises StandInError in words if it cannot."""
+        self.settings = settings
+        context = multiprocessing.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(
+            target=_serve, args=(settings, theirs), name="standin", daemon=True
+        )
+        self._process.start()
+        theirs.close()
+        try:
+            self.port = cast(int, self._receive(_START_S))
+        except StandInError:
+            self.kill()
+            raise
+
+    def __enter__(self) -> StandInProcess:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    def read(self, path: str) -> float | None:
+        """Return a dataref as a client would see it now, without noise; None if unknown."""
+        return cast("float | None", self._ask("read", path))
+
+    def write(self, path: str, value: float) -> float:
+        """Set a dataref from inside the simulator; returns the simulated time of it, s."""
+        return cast(float, self._ask("write", path, value))
+
+    def progress(self) -> Progress:
+        """Return how far the flight is."""
+        return cast(Progress, self._ask("progress"))
+
+    def status(self) -> dict[str, Any]:
+        """Return who listens, what came in, what was refused and how the frames went."""
+        return cast("dict[str, Any]", self._ask("status"))
+
+    def truth(self) -> Truth:
+        """Return what was flown so far, 40 rows to a second of simulated time."""
+        return cast(Truth, self._ask("truth"))
+
+    def journal(self) -> list[Write]:
+        """Return every write to a dataref so far."""
+        return cast("list[Write]", self._ask("journal"))
+
+    def releases(self) -> list[Release]:
+        """Return every release of an override so far, with the controls at that moment."""
+        return cast("list[Release]", self._ask("releases"))
+
+    def set_mode(self, mode: Mode) -> None:
+        """Pause, stall, freeze or run."""
+        self._ask("set_mode", mode)
+
+    def set_frame_rate(self, rate_hz: float) -> None:
+        """Change the frame rate; below 20 a second simulated time slows down."""
+        self._ask("set_frame_rate", rate_hz)
+
+    def restart_flight(self) -> None:
+        """Put the aircraft back to where it began."""
+        self._ask("restart_flight")
+
+    def jump(self, seconds: float) -> None:
+        """Move the simulator's clock without flying."""
+        self._ask("jump", seconds)
+
+    def stop(self) -> None:
+        """End it in order; does nothing if it is gone."""
+        if self._process.is_alive():
+            with contextlib.suppress(StandInError):
+                self._ask("stop")
+            self._process.join(_STOP_S)
+        self.kill()
+
+    def kill(self) -> None:
+        """End it at once, as a crash does: not a word to its clients."""
+        if self._process.is_alive():
+            self._process.kill()
+        self._process.join(_STOP_S)
+        self._pipe.close()
+
+    def _ask(self, name: str, *arguments: object) -> object:
+        try:
+            self._pipe.send((name, arguments))
+        except OSError as error:
+            raise StandInError("the stand-in's process is gone") from error
+        return self._receive(_ANSWER_S)
+
+    def _receive(self, timeout_s: float) -> object:
+        try:
+            if not self._pipe.poll(timeout_s):
+                raise StandInError(f"the stand-in has not answered for {timeout_s:.0f} s")
+            answer = self._pipe.recv()
+        except (EOFError, OSError) as error:
+            raise StandInError("the stand-in's process is gone") from error
+        if isinstance(answer, Exception):
+            raise StandInError(str(answer)) from answer
+        return cast(object, answer)

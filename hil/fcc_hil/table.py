@@ -1,0 +1,45 @@
+"""Scores as a table for people: one row for each flight, mean and worst over its legs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .score import LegScore, Score
+
+_COLUMNS: tuple[tuple[str, str, int], ...] = (
+    ("heading_settle_s", "≤2° s", 1),
+    ("heading_overshoot_deg", "overshoot °", 1),
+    ("heading_rms_deg", "hdg RMS °", 2),
+    ("altitude_settle_s", "≤10 ft s", 1),
+    ("altitude_overshoot_ft", "alt overshoot ft", 1),
+    ("altitude_rms_ft", "alt RMS ft", 2),
+    ("turn_loss_ft", "height lost ft", 1),
+    ("airspeed_error_kt", "dV kt", 1),
+    ("lateral_acceleration_g", "lateral g", 3),
+)
+
+
+def _cell(legs: Sequence[LegScore], name: str, digits: int) -> str:
+    values = [dict(leg)[name] for leg in legs]
+    known = [value for value in values if isinstance(value, float)]
+    if len(known) < len(values):
+        return f"{len(known)} of {len(values)} legs"
+    return f"{sum(known) / len(known):.{digits}f}/{max(known):.{digits}f}"
+
+
+def table(flights: Sequence[tuple[str, Score]]) -> str:
+    """Return the flights as a Markdown table; each cell is mean/worst over the legs.
+
+    A time to settle that not every leg has is given as the number of legs that have it.
+    """
+    rows = [["mean/worst", *(title for _, title, _ in _COLUMNS)]]
+    for name, flight in flights:
+        cells = [_cell(flight["legs"], column, digits) for column, _, digits in _COLUMNS]
+        rows.append([name, *cells])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = [
+        "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |"
+        for row in rows
+    ]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)

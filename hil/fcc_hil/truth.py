@@ -1,0 +1,78 @@
+"""What the plant truly did, one row per tick of a 40 Hz grid of simulated time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .pattern import SetPoints
+from .plant import STEPS_PER_SECOND
+from .score import Trace
+from .state import Controls, State
+from .units import FT_TO_M, KT_TO_MPS, STANDARD_GRAVITY_MPS2
+
+TRUTH_HZ = 40
+STEPS_PER_ROW = STEPS_PER_SECOND // TRUTH_HZ
+
+COLUMNS = (
+    "time_s",
+    "heading_deg",
+    "altitude_ft",
+    "airspeed_kt",
+    "lateral_g",
+    "roll_deg",
+    "pitch_deg",
+    "climb_fpm",
+    "elevator",
+    "aileron",
+    "rudder",
+    "throttle",
+)
+
+Row = tuple[float, ...]
+
+
+def row(state: State, controls: Controls) -> Row:
+    """Return one row in the order of COLUMNS, in the units that people read."""
+    return (
+        state.time_s,
+        math.degrees(state.heading_rad),
+        state.elevation_m / FT_TO_M,
+        state.airspeed_mps / KT_TO_MPS,
+        state.specific_force_y_mps2 / STANDARD_GRAVITY_MPS2,
+        math.degrees(state.roll_rad),
+        math.degrees(state.pitch_rad),
+        -state.down_mps / FT_TO_M * 60.0,
+        controls.elevator,
+        controls.aileron,
+        controls.rudder,
+        controls.throttle,
+    )
+
+
+class Truth:
+    """The rows of a flight by column."""
+
+    def __init__(self, rows: Sequence[Row]) -> None:
+        """Take rows as `row` makes them, at least one."""
+        self._table: npt.NDArray[np.float64] = np.array(rows, dtype=np.float64)
+
+    def __getitem__(self, column: str) -> npt.NDArray[np.float64]:
+        """Return a column by its name in COLUMNS."""
+        return self._table[:, COLUMNS.index(column)]
+
+    def trace(self) -> Trace:
+        """Return what the score looks at."""
+        return Trace(*(self[name] for name in COLUMNS[:5]))
+
+    def captured_at(self, time_s: float) -> SetPoints:
+        """Return what an autopilot that engages at `time_s` captures."""
+        index = min(int(np.searchsorted(self["time_s"], time_s)), len(self._table) - 1)
+        return SetPoints(
+            heading_deg=float(self["heading_deg"][index]),
+            altitude_ft=float(self["altitude_ft"][index]),
+            airspeed_kt=float(self["airspeed_kt"][index]),
+        )

@@ -1,0 +1,31 @@
+"""Conversions between SI, which everything here computes in, and the edges' units."""
+
+import math
+
+FT_TO_M = 0.3048
+KT_TO_MPS = 1852.0 / 3600.0
+STANDARD_GRAVITY_MPS2 = 9.80665
+PSF_TO_PA = 47.880258980336
+INHG_TO_PA = 3386.389
+RANKINE_TO_KELVIN = 5.0 / 9.0
+CELSIUS_ZERO_K = 273.15
+SEA_LEVEL_PRESSURE_PA = 101_325.0
+SEA_LEVEL_DENSITY_KGPM3 = 1.225
+DRY_AIR_GAS_CONSTANT = 287.053
+
+
+def wrap_degrees(angle_deg: float) -> float:
+    """Return the same angle in -180 <= angle < 180."""
+    return (angle_deg + 180.0) % 360.0 - 180.0
+
+
+def wrap_heading(heading_deg: float) -> float:
+    """Return the same heading in 0 <= heading < 360."""
+    wrapped = heading_deg % 360.0
+    return 0.0 if wrapped >= 360.0 else wrapped
+
+
+def wrap_heading_rad(heading_rad: float) -> float:
+    """Return the same heading in 0 <= heading < 2 pi."""
+    wrapped = heading_rad % math.tau
+    return 0.0 if wrapped >= math.tau else wrapped
