@@ -1,1 +1,68 @@
-//! To be written.
+//! The built-in aircraft: what the loop flies when there is no simulator.
+//!
+//! A rigid body with six degrees of freedom, a light single's published
+//! derivatives, a stall, an engine with a fixed-pitch propeller, actuators,
+//! the standard atmosphere, wind, gusts and sensor errors. It advances by the
+//! ticks it is sampled with: in real time under a loop, or in lockstep some
+//! thousand times faster. The same seed flies the same flight to the last bit
+//! on every machine: transcendental functions and random numbers are `libm`'s
+//! and this crate's own.
+//!
+//! ```
+//! use fcc_core::flight::{Measurements, Surfaces};
+//! use fcc_core::framework::{Actuator, Sensor, Tick};
+//! use fcc_sim::{SimConfig, Simulation};
+//!
+//! let mut sim = Simulation::new(&SimConfig::default())?;
+//! let tick = Tick { dt_s: 0.025, ..Tick::default() };
+//! let mut measured = Measurements::default();
+//! for _ in 0..40 {
+//!     sim.sensor.sample(&tick, &mut measured)?;
+//!     sim.actuator.apply(&tick, &Surfaces {
+//!         throttle: sim.trim.throttle,
+//!         aileron: 0.2,
+//!         ..Surfaces::default()
+//!     })?;
+//! }
+//! assert!(measured.attitude.value.roll_rad > 0.05);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | module | what it knows |
+//! |---|---|
+//! | [`airframe`] | mass, size, derivatives: data, with sources |
+//! | [`atmosphere`] | standard air, airspeeds |
+//! | [`aerodynamics`] | forces and moments of air and propeller |
+//! | [`motion`] | the equations of motion and their integration |
+//! | [`turbulence`] | Dryden gusts |
+//!
+//! Left out: the ground, flaps, the engine's speed, torque, gyroscopic effect
+//! and slipstream, ice, fuel burn (mass is constant), Mach number, and the
+//! wing that drops at the stall: rolling stays damped.
+#![forbid(unsafe_code)]
+
+pub mod aerodynamics;
+mod aircraft;
+pub mod airframe;
+pub mod atmosphere;
+mod config;
+pub mod gauss;
+mod link;
+pub mod motion;
+mod sensing;
+pub mod servos;
+mod simulation;
+mod trim;
+mod truth;
+pub mod turbulence;
+pub mod units;
+
+pub use aircraft::{Aircraft, LONGEST_STEP_S};
+pub use airframe::Airframe;
+pub use config::{SimConfig, SimError, SwitchScript, Wind};
+pub use link::{SwitchHandle, TruthHandle};
+pub use sensing::{Channels, LONGEST_DELAY_MS, SensorConfig};
+pub use simulation::{SimActuator, SimSensor, Simulation};
+pub use trim::{Trim, TrimError, trim};
+pub use truth::Truth;
+pub use turbulence::Severity;

@@ -1,0 +1,209 @@
+//! Forces and moments of the air and the propeller on the airframe.
+//!
+//! Linear derivatives, as published, with two non-linear curves where flight
+//! needs them: lift through the stall and drag over lift. Derivatives are
+//! taken to hold in body axes; the source's stability axes coincide with them
+//! at its reference of zero angle of attack.
+
+use libm::{asin, atan2, exp, sincos, sqrt};
+use nalgebra::Vector3;
+
+use crate::airframe::{Airframe, Drag, LateralRow, Lift, Propulsion};
+use crate::atmosphere::Air;
+
+/// How sharply the wing stalls, 1/rad: lift crosses from one curve to the
+/// other within some ±2° of the stall.
+const STALL_SHARPNESS: f64 = 50.0;
+/// Below this airspeed, m/s, rates are made dimensionless as if at it: dynamic
+/// pressure is nothing there, and 1/V must stay finite.
+const SLOWEST_MPS: f64 = 1.0;
+
+/// What the controls do right now. Signs are the source's: see each field.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Deflections {
+    /// Elevator, rad, positive trailing edge down: nose down.
+    pub elevator_rad: f64,
+    /// Aileron, rad, positive rolls right.
+    pub aileron_rad: f64,
+    /// Rudder, rad, positive trailing edge left: nose left.
+    pub rudder_rad: f64,
+    /// Share of the torque the engine has at this density, 0..=1.
+    pub throttle: f64,
+}
+
+/// Forces in N and moments in N·m, in body axes; and how much more of them
+/// each rad/s of angle-of-attack rate brings.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Loads {
+    /// Force of air and propeller, without the part of `alpha_rate`.
+    pub force_n: Vector3<f64>,
+    /// Moment, without the part of `alpha_rate`.
+    pub moment_nm: Vector3<f64>,
+    /// Lift per angle-of-attack rate, N·s/rad.
+    pub lift_per_alpha_rate: f64,
+    /// Pitching moment per angle-of-attack rate, N·m·s/rad.
+    pub pitch_per_alpha_rate: f64,
+}
+
+/// Flow past the aircraft.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Flow {
+    /// True airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// Airspeed within the plane of symmetry, m/s.
+    pub symmetric_mps: f64,
+    /// Angle of attack, rad.
+    pub alpha_rad: f64,
+    /// Its sine and cosine, had for a division.
+    pub sin_cos_alpha: (f64, f64),
+    /// Sideslip, rad, positive when the air comes from the right.
+    pub beta_rad: f64,
+}
+
+impl Flow {
+    /// From the velocity through the air, body axes, m/s.
+    pub fn of(velocity: &Vector3<f64>) -> Self {
+        let symmetric_mps = sqrt(velocity.x * velocity.x + velocity.z * velocity.z);
+        let airspeed_mps = sqrt(symmetric_mps * symmetric_mps + velocity.y * velocity.y);
+        let side = velocity.y / airspeed_mps.max(SLOWEST_MPS);
+        let sin_cos_alpha = if symmetric_mps > 0.0 {
+            (velocity.z / symmetric_mps, velocity.x / symmetric_mps)
+        } else {
+            (0.0, 1.0)
+        };
+        Self {
+            airspeed_mps,
+            symmetric_mps,
+            alpha_rad: atan2(velocity.z, velocity.x),
+            sin_cos_alpha,
+            beta_rad: asin(side.clamp(-1.0, 1.0)),
+        }
+    }
+}
+
+/// Loads at a flow, turn rates relative to the air in rad/s (body axes),
+/// deflections and air.
+pub fn loads(
+    airframe: &Airframe,
+    flow: &Flow,
+    rates: &Vector3<f64>,
+    deflections: &Deflections,
+    air: &Air,
+) -> Loads {
+    let speed = flow.airspeed_mps.max(SLOWEST_MPS);
+    let pressure_area =
+        0.5 * air.density_kgpm3 * flow.airspeed_mps * flow.airspeed_mps * airframe.wing_area_m2;
+    let half_chord_time = airframe.chord_m / (2.0 * speed);
+    let half_span_time = airframe.wing_span_m / (2.0 * speed);
+    let pitch = &airframe.pitch;
+
+    let (static_lift, drag) = coefficients(
+        &airframe.lift,
+        &airframe.drag,
+        flow.alpha_rad,
+        flow.sin_cos_alpha,
+    );
+    let lift = static_lift
+        + pitch.lift_per_pitch_rate * rates.y * half_chord_time
+        + pitch.lift_per_elevator * deflections.elevator_rad;
+    let pitching = pitch.zero
+        + pitch.per_alpha * flow.alpha_rad
+        + pitch.per_pitch_rate * rates.y * half_chord_time
+        + pitch.per_elevator * deflections.elevator_rad;
+    let lateral = |row: &LateralRow| {
+        row.per_beta * flow.beta_rad
+            + (row.per_roll_rate * rates.x + row.per_yaw_rate * rates.z) * half_span_time
+            + row.per_aileron * deflections.aileron_rad
+            + row.per_rudder * deflections.rudder_rad
+    };
+
+    let (sin_alpha, cos_alpha) = flow.sin_cos_alpha;
+    let thrust = thrust_n(
+        &airframe.propulsion,
+        deflections.throttle,
+        flow.airspeed_mps,
+        air,
+    );
+    Loads {
+        force_n: Vector3::new(
+            pressure_area * (lift * sin_alpha - drag * cos_alpha) + thrust,
+            pressure_area * lateral(&airframe.lateral.side),
+            pressure_area * (-lift * cos_alpha - drag * sin_alpha),
+        ),
+        moment_nm: Vector3::new(
+            pressure_area * airframe.wing_span_m * lateral(&airframe.lateral.roll),
+            pressure_area * airframe.chord_m * pitching,
+            pressure_area * airframe.wing_span_m * lateral(&airframe.lateral.yaw),
+        ),
+        lift_per_alpha_rate: pressure_area * half_chord_time * pitch.lift_per_alpha_rate,
+        pitch_per_alpha_rate: pressure_area
+            * airframe.chord_m
+            * half_chord_time
+            * pitch.per_alpha_rate,
+    }
+}
+
+/// Lift and drag coefficients over angle of attack, neutral elevator.
+///
+/// Below the stall a line and a parabola; beyond it the curves of Viterna and
+/// Corrigan (NASA CP-2230, 1982), which go on to 90°; the sigmoid in Beard's
+/// *Small Unmanned Aircraft* (2012, eq. 4.10) leads from one to the
+/// other, so that both stay smooth.
+pub fn lift_and_drag(lift: &Lift, drag: &Drag, alpha_rad: f64) -> (f64, f64) {
+    coefficients(lift, drag, alpha_rad, sincos(alpha_rad))
+}
+
+fn coefficients(
+    lift: &Lift,
+    drag: &Drag,
+    alpha_rad: f64,
+    (sin_alpha, cos_alpha): (f64, f64),
+) -> (f64, f64) {
+    let attached_lift = lift.zero + lift.per_alpha * alpha_rad;
+    let attached_drag = drag.zero + drag.induced * attached_lift * attached_lift;
+
+    let (sin_stall, cos_stall) = sincos(lift.stall_alpha_rad);
+    let stall_drag = drag.zero + drag.induced * lift.stall * lift.stall;
+    let plate = 1.11 + 0.018 * lift.aspect_ratio;
+    let lift_rest =
+        (lift.stall - plate * sin_stall * cos_stall) * sin_stall / (cos_stall * cos_stall);
+    let drag_rest = (stall_drag - plate * sin_stall * sin_stall) / cos_stall;
+
+    let square = sin_alpha * sin_alpha;
+    // The published curve has cos²/sin, which is meant for beyond the stall.
+    let separated_lift = plate * sin_alpha * cos_alpha
+        + lift_rest * cos_alpha * cos_alpha * sin_alpha / square.max(sin_stall * sin_stall);
+    let separated_drag = plate * square + drag_rest * cos_alpha.abs();
+
+    let above = exp(-STALL_SHARPNESS * (alpha_rad - lift.stall_alpha_rad));
+    let below = exp(STALL_SHARPNESS * (alpha_rad + lift.stall_alpha_rad));
+    let separated = (1.0 + above + below) / ((1.0 + above) * (1.0 + below));
+    (
+        attached_lift + separated * (separated_lift - attached_lift),
+        attached_drag + separated * (separated_drag - attached_drag),
+    )
+}
+
+/// Thrust along body x, N, at a true airspeed in m/s. Negative where a slow
+/// engine lets the propeller windmill.
+pub fn thrust_n(propulsion: &Propulsion, throttle: f64, airspeed_mps: f64, air: &Air) -> f64 {
+    full_thrust_n(propulsion, air) * throttle + windmill_n(propulsion, airspeed_mps, air)
+}
+
+/// The part of the thrust that the engine's torque makes at full throttle, N.
+pub(crate) fn full_thrust_n(propulsion: &Propulsion, air: &Air) -> f64 {
+    let torque_nm = propulsion.rated_torque_nm * torque_ratio(propulsion, air);
+    core::f64::consts::TAU * propulsion.polar_slope * torque_nm / propulsion.diameter_m
+}
+
+/// The part that depends on airspeed, N; negative.
+pub(crate) fn windmill_n(propulsion: &Propulsion, airspeed_mps: f64, air: &Air) -> f64 {
+    let disc = propulsion.diameter_m * airspeed_mps;
+    propulsion.polar_intercept * air.density_kgpm3 * disc * disc
+}
+
+/// Torque at full throttle relative to sea level.
+pub fn torque_ratio(propulsion: &Propulsion, air: &Air) -> f64 {
+    let share = propulsion.friction_share;
+    ((air.density_ratio() - share) / (1.0 - share)).max(0.0)
+}

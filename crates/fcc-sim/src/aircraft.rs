@@ -1,0 +1,248 @@
+//! The plant: an aircraft in its air, stepped by surfaces and time.
+
+use fcc_core::flight::{BodyRates, SpecificForce, Surfaces, Velocity};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::aerodynamics::{Deflections, Flow};
+use crate::airframe::Airframe;
+use crate::atmosphere::Air;
+use crate::config::{SimConfig, SimError};
+use crate::motion::{self, AirMotion, State};
+use crate::servos::{Servos, deflections};
+use crate::trim::{Trim, trim};
+use crate::truth::{Truth, turn};
+use crate::turbulence::Dryden;
+
+/// The most time one step simulates, s. A loop that was halted for longer, by
+/// a debugger or a laptop's lid, must not then wait for hours of flight.
+pub const LONGEST_STEP_S: f64 = 1.0;
+
+/// An aircraft in flight.
+///
+/// It starts trimmed, with the elevator's trim tab holding the nose: surfaces
+/// all zero and the throttle at [`Trim::throttle`] fly on straight and level.
+#[derive(Clone, Debug)]
+pub struct Aircraft {
+    airframe: Airframe,
+    servos: Servos,
+    trim: Trim,
+    state: State,
+    positions: Surfaces,
+    /// The last commands that were valid.
+    commands: Surfaces,
+    motion: AirMotion,
+    gusts: Option<Dryden>,
+    substep_s: f64,
+    time_s: f64,
+    diverged: bool,
+}
+
+impl Aircraft {
+    /// The aircraft as configured, trimmed for level flight.
+    ///
+    /// # Errors
+    /// [`SimError`] if a number is out of range or there is no trim.
+    pub fn new(config: &SimConfig) -> Result<Self, SimError> {
+        config.validate()?;
+        let trim = trim(
+            &config.airframe,
+            config.indicated_airspeed_mps,
+            config.altitude_m,
+        )?;
+        let (sin_wind, cos_wind) = libm::sincos(config.wind.from_rad);
+        let wind_mps = Vector3::new(-cos_wind, -sin_wind, 0.0) * config.wind.speed_mps;
+        let (sin_heading, cos_heading) = libm::sincos(config.heading_rad);
+        let through_air = Vector3::new(cos_heading, sin_heading, 0.0) * trim.true_airspeed_mps;
+        let hands_off = hands_off(&trim);
+        Ok(Self {
+            airframe: config.airframe,
+            servos: config.servos,
+            trim,
+            state: State {
+                position_m: Vector3::new(0.0, 0.0, -config.altitude_m),
+                velocity_mps: through_air + wind_mps,
+                attitude: UnitQuaternion::from_euler_angles(
+                    0.0,
+                    trim.alpha_rad,
+                    config.heading_rad,
+                ),
+                rates_radps: Vector3::zeros(),
+            },
+            positions: hands_off,
+            commands: hands_off,
+            motion: AirMotion {
+                wind_mps,
+                ..AirMotion::CALM
+            },
+            gusts: config
+                .gusts
+                .map(|severity| Dryden::new(severity, config.seed)),
+            substep_s: config.substep_s,
+            time_s: 0.0,
+            diverged: false,
+        })
+    }
+
+    /// Flies on for `dt_s` under these commands, at most [`LONGEST_STEP_S`],
+    /// in equal sub-steps no longer than configured. Returns the time that
+    /// passed in the simulation, s. Commands that are not valid are left, and
+    /// the last valid ones held.
+    pub fn step(&mut self, commands: &Surfaces, dt_s: f64) -> f64 {
+        self.step_watched(commands, dt_s, |_| ())
+    }
+
+    /// [`step`](Self::step), showing the aircraft after each sub-step.
+    pub fn step_watched(
+        &mut self,
+        commands: &Surfaces,
+        dt_s: f64,
+        mut watch: impl FnMut(&Self),
+    ) -> f64 {
+        /// A tick of three whole sub-steps may come out of its division as
+        /// three and a last digit.
+        const ROUNDING: f64 = 1e-6;
+        if commands.is_valid() {
+            self.commands = *commands;
+        }
+        if dt_s.is_nan() || dt_s <= 0.0 || self.diverged {
+            return 0.0;
+        }
+        let dt_s = dt_s.min(LONGEST_STEP_S);
+        let count = libm::ceil(dt_s / self.substep_s - ROUNDING).max(1.0);
+        let substep_s = dt_s / count;
+        for _ in 0..count as u32 {
+            self.substep(substep_s);
+            watch(self);
+        }
+        dt_s
+    }
+
+    fn substep(&mut self, dt_s: f64) {
+        let air = Air::at(self.state.altitude_m());
+        self.positions = self.servos.follow(&self.positions, &self.commands, dt_s);
+        if let Some(gusts) = &mut self.gusts {
+            let flow = Flow::of(&self.state.air_velocity_mps(&self.motion));
+            let gust = gusts.step(
+                dt_s,
+                flow.airspeed_mps,
+                self.state.altitude_m(),
+                self.airframe.wing_span_m,
+            );
+            self.motion.gust_mps = gust.velocity_mps;
+            self.motion.gust_rates_radps = gust.rates_radps;
+        }
+        // The air's density changes by less than a millionth within a step.
+        let next = self.state.after(
+            dt_s,
+            &self.airframe,
+            &self.deflections(),
+            &self.motion,
+            &air,
+        );
+        if next.is_finite() {
+            self.state = next;
+        } else {
+            self.diverged = true;
+        }
+        self.time_s += dt_s;
+    }
+
+    /// Simulated time, s.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Whether the equations ran away and the aircraft stands still since.
+    pub fn has_diverged(&self) -> bool {
+        self.diverged
+    }
+
+    /// The trim that the flight began with.
+    pub fn trim(&self) -> &Trim {
+        &self.trim
+    }
+
+    /// The commands of a pilot who takes the hands off: trim.
+    pub fn hands_off(&self) -> Surfaces {
+        hands_off(&self.trim)
+    }
+
+    /// The airframe.
+    pub fn airframe(&self) -> &Airframe {
+        &self.airframe
+    }
+
+    /// The rigid body's state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Puts the rigid body somewhere else; for experiments.
+    pub fn set_state(&mut self, state: State) {
+        self.state = state;
+    }
+
+    /// How the air moves now.
+    pub fn air_motion(&self) -> &AirMotion {
+        &self.motion
+    }
+
+    /// The control surfaces and the throttle as they stand.
+    pub fn deflections(&self) -> Deflections {
+        deflections(
+            &self.airframe.travel,
+            &self.positions,
+            self.trim.elevator_rad,
+        )
+    }
+
+    /// What is true now.
+    pub fn truth(&self) -> Truth {
+        let state = &self.state;
+        let deflections = self.deflections();
+        let air = Air::at(state.altitude_m());
+        let flow = Flow::of(&state.air_velocity_mps(&self.motion));
+        let slope = motion::derivative(&self.airframe, state, &deflections, &self.motion, &air);
+        let (roll_rad, pitch_rad, heading_rad) = state.euler_rad();
+        let force = slope.specific_force_mps2;
+        Truth {
+            time_s: self.time_s,
+            roll_rad,
+            pitch_rad,
+            heading_rad: turn(heading_rad),
+            rates: BodyRates {
+                roll_radps: state.rates_radps.x,
+                pitch_radps: state.rates_radps.y,
+                yaw_radps: state.rates_radps.z,
+            },
+            specific_force: SpecificForce {
+                x_mps2: force.x,
+                y_mps2: force.y,
+                z_mps2: force.z,
+            },
+            true_airspeed_mps: flow.airspeed_mps,
+            indicated_airspeed_mps: air.indicated_mps(flow.airspeed_mps),
+            angle_of_attack_rad: flow.alpha_rad,
+            sideslip_rad: flow.beta_rad,
+            north_m: state.position_m.x,
+            east_m: state.position_m.y,
+            altitude_m: state.altitude_m(),
+            velocity: Velocity {
+                north_mps: state.velocity_mps.x,
+                east_mps: state.velocity_mps.y,
+                down_mps: state.velocity_mps.z,
+            },
+            throttle: deflections.throttle,
+            elevator_rad: deflections.elevator_rad,
+            aileron_rad: deflections.aileron_rad,
+            rudder_rad: deflections.rudder_rad,
+        }
+    }
+}
+
+fn hands_off(trim: &Trim) -> Surfaces {
+    Surfaces {
+        throttle: trim.throttle,
+        ..Surfaces::default()
+    }
+}

@@ -1,0 +1,267 @@
+//! What an aircraft is: mass, size, derivatives, engine. Data, with sources.
+
+use crate::units::{
+    DEGREE_RAD, FOOT_M, FOOT_POUND_NM, POUND_KG, SLUG_FT2_KGM2, STANDARD_GRAVITY_MPS2,
+};
+
+/// A rigid, symmetric, propeller-driven aircraft.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Airframe {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Moments of inertia about the body axes.
+    pub inertia: Inertia,
+    /// Wing area, m².
+    pub wing_area_m2: f64,
+    /// Wing span, m.
+    pub wing_span_m: f64,
+    /// Mean aerodynamic chord, m.
+    pub chord_m: f64,
+    /// Lift over angle of attack.
+    pub lift: Lift,
+    /// Drag over lift.
+    pub drag: Drag,
+    /// Pitching moment, and what pitching and the elevator do.
+    pub pitch: PitchDerivatives,
+    /// Side force, roll and yaw.
+    pub lateral: LateralDerivatives,
+    /// How far the control surfaces go.
+    pub travel: Travel,
+    /// Engine and propeller.
+    pub propulsion: Propulsion,
+}
+
+/// Moments of inertia about the body axes, kg·m².
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Inertia {
+    /// About x.
+    pub xx: f64,
+    /// About y.
+    pub yy: f64,
+    /// About z.
+    pub zz: f64,
+    /// Product of x and z.
+    pub xz: f64,
+}
+
+/// Lift over angle of attack, of the whole aircraft with neutral elevator.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Lift {
+    /// `C_L` at zero angle of attack.
+    pub zero: f64,
+    /// `C_Lα`, 1/rad.
+    pub per_alpha: f64,
+    /// Angle of attack of the stall, rad.
+    pub stall_alpha_rad: f64,
+    /// `C_L` of the stalled wing at that angle.
+    pub stall: f64,
+    /// Aspect ratio, for the drag of the stalled wing.
+    pub aspect_ratio: f64,
+}
+
+/// The drag polar `C_D = C_D0 + K·C_L²` of the wing that is not stalled.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Drag {
+    /// `C_D0`.
+    pub zero: f64,
+    /// `K`, 1/(π e A).
+    pub induced: f64,
+}
+
+/// Derivatives of pitch and of lift other than `C_Lα`. Rates are made
+/// dimensionless by `c/2V`; the elevator is positive trailing edge down.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct PitchDerivatives {
+    /// `C_Lα̇`.
+    pub lift_per_alpha_rate: f64,
+    /// `C_Lq`.
+    pub lift_per_pitch_rate: f64,
+    /// `C_Lδe`, 1/rad.
+    pub lift_per_elevator: f64,
+    /// `C_m` at zero angle of attack and neutral elevator.
+    pub zero: f64,
+    /// `C_mα`, 1/rad.
+    pub per_alpha: f64,
+    /// `C_mα̇`.
+    pub per_alpha_rate: f64,
+    /// `C_mq`.
+    pub per_pitch_rate: f64,
+    /// `C_mδe`, 1/rad.
+    pub per_elevator: f64,
+}
+
+/// One row of lateral derivatives: of side force, roll or yaw.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct LateralRow {
+    /// Over sideslip, positive when the air comes from the right, 1/rad.
+    pub per_beta: f64,
+    /// Over roll rate, by `b/2V`.
+    pub per_roll_rate: f64,
+    /// Over yaw rate, by `b/2V`.
+    pub per_yaw_rate: f64,
+    /// Over aileron, positive rolls right, 1/rad.
+    pub per_aileron: f64,
+    /// Over rudder, positive trailing edge left, 1/rad.
+    pub per_rudder: f64,
+}
+
+/// Derivatives of side force, rolling and yawing moment.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct LateralDerivatives {
+    /// `C_y`: towards the right.
+    pub side: LateralRow,
+    /// `C_l`: right wing down.
+    pub roll: LateralRow,
+    /// `C_n`: nose right.
+    pub yaw: LateralRow,
+}
+
+/// How far the control surfaces go from neutral, rad, all positive.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Travel {
+    /// Elevator trailing edge up: the nose rises.
+    pub elevator_up_rad: f64,
+    /// Elevator trailing edge down.
+    pub elevator_down_rad: f64,
+    /// Mean of the two ailerons, either way.
+    pub aileron_rad: f64,
+    /// Rudder, either way.
+    pub rudder_rad: f64,
+}
+
+/// A normally aspirated engine with a fixed-pitch propeller, after Lowry's
+/// bootstrap approach (Performance of Light Aircraft, AIAA, 1999, ch. 7): the
+/// propeller polar `C_T/J² = m·C_P/J² + b` is a straight line, and at full
+/// throttle the torque depends on density alone, so that thrust is
+/// `2πm·M/d + b·ρd²V²` whatever the engine's speed.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Propulsion {
+    /// Torque at full throttle at sea level, N·m.
+    pub rated_torque_nm: f64,
+    /// Share of the power that friction takes, in Gagg and Farrar's relation
+    /// (1934): torque falls with density ratio as `(σ - C)/(1 - C)`.
+    pub friction_share: f64,
+    /// Propeller diameter, m.
+    pub diameter_m: f64,
+    /// Slope `m` of the propeller polar.
+    pub polar_slope: f64,
+    /// Intercept `b` of the propeller polar.
+    pub polar_intercept: f64,
+}
+
+impl Airframe {
+    /// A light high-wing single with 160 hp: a Cessna 172P in size, weight and
+    /// performance, flying by the derivatives that are published for its
+    /// sister with the same wing and tail, the 182.
+    ///
+    /// | what | source |
+    /// |---|---|
+    /// | area, span, chord, inertia, all derivatives, `C_L0`, `C_m0` | Roskam, *Airplane Flight Dynamics and Automatic Flight Controls* I (1995), app. B, airplane A, cruise, pp. 480-482; the same in Napolitano, *Aircraft Dynamics* (2012), app. B, Cessna 182 |
+    /// | mass: 2,400 lb | Cessna, *Pilot's Operating Handbook 172P* (1981) |
+    /// | `C_D0` 0.0319, e 0.75, A 7.32 | Loftin, *Quest for Performance*, NASA SP-468 (1985), Skyhawk |
+    /// | lift at the stall: 1.6 | NACA 2412: Abbott and von Doenhoff, *Theory of Wing Sections* (1959) |
+    /// | surface travel | FAA type certificate data sheet 3A12, model 172 |
+    /// | torque, diameter, propeller polar | Lowry, *Performance of Light Aircraft* (1999), Cessna 172's data plate |
+    ///
+    /// The 182 weighs more, so its inertia is on the high side here.
+    pub const SKYHAWK: Self = Self {
+        mass_kg: 2400.0 * POUND_KG,
+        lift: Lift {
+            aspect_ratio: 7.32,
+            ..ROSKAM_A_LIFT
+        },
+        drag: Drag {
+            zero: 0.0319,
+            induced: 1.0 / (core::f64::consts::PI * 0.75 * 7.32),
+        },
+        propulsion: CESSNA_172_PROPULSION,
+        ..Self::ROSKAM_A
+    };
+
+    /// Roskam's airplane A (1995, app. B) in cruise: 2,650 lb, 5,000 ft,
+    /// 220.1 ft/s. Drag reproduces the tabled `C_D1` 0.032 and `C_Dα` 0.121.
+    /// The engine is the 182's, 230 hp at 2,400 rpm, with the 172's propeller
+    /// polar for want of its own.
+    pub const ROSKAM_A: Self = Self {
+        mass_kg: 2650.0 * POUND_KG,
+        inertia: Inertia {
+            xx: 948.0 * SLUG_FT2_KGM2,
+            yy: 1346.0 * SLUG_FT2_KGM2,
+            zz: 1967.0 * SLUG_FT2_KGM2,
+            xz: 0.0,
+        },
+        wing_area_m2: 174.0 * FOOT_M * FOOT_M,
+        wing_span_m: 36.0 * FOOT_M,
+        chord_m: 4.9 * FOOT_M,
+        lift: ROSKAM_A_LIFT,
+        drag: Drag {
+            zero: 0.032 - 0.121 / (2.0 * 0.307 * 4.41) * 0.307 * 0.307,
+            induced: 0.121 / (2.0 * 0.307 * 4.41),
+        },
+        pitch: PitchDerivatives {
+            lift_per_alpha_rate: 1.7,
+            lift_per_pitch_rate: 3.9,
+            lift_per_elevator: 0.43,
+            zero: 0.04,
+            per_alpha: -0.613,
+            per_alpha_rate: -7.27,
+            per_pitch_rate: -12.4,
+            per_elevator: -1.122,
+        },
+        lateral: LateralDerivatives {
+            side: LateralRow {
+                per_beta: -0.393,
+                per_roll_rate: -0.075,
+                per_yaw_rate: 0.214,
+                per_aileron: 0.0,
+                per_rudder: 0.187,
+            },
+            roll: LateralRow {
+                per_beta: -0.0923,
+                per_roll_rate: -0.484,
+                per_yaw_rate: 0.0798,
+                per_aileron: 0.229,
+                per_rudder: 0.0147,
+            },
+            yaw: LateralRow {
+                per_beta: 0.0587,
+                per_roll_rate: -0.0278,
+                per_yaw_rate: -0.0937,
+                per_aileron: -0.0216,
+                per_rudder: -0.0645,
+            },
+        },
+        travel: Travel {
+            elevator_up_rad: 28.0 * DEGREE_RAD,
+            elevator_down_rad: 23.0 * DEGREE_RAD,
+            aileron_rad: 17.5 * DEGREE_RAD,
+            rudder_rad: 16.0 * DEGREE_RAD,
+        },
+        propulsion: Propulsion {
+            rated_torque_nm: 503.3 * FOOT_POUND_NM,
+            ..CESSNA_172_PROPULSION
+        },
+    };
+
+    /// Weight, N.
+    pub fn weight_n(&self) -> f64 {
+        self.mass_kg * STANDARD_GRAVITY_MPS2
+    }
+}
+
+/// 160 hp at 2,700 rpm on a propeller of 75 inches.
+const CESSNA_172_PROPULSION: Propulsion = Propulsion {
+    rated_torque_nm: 311.2 * FOOT_POUND_NM,
+    friction_share: 0.12,
+    diameter_m: 6.25 * FOOT_M,
+    polar_slope: 1.70,
+    polar_intercept: -0.0564,
+};
+
+const ROSKAM_A_LIFT: Lift = Lift {
+    zero: 0.307,
+    per_alpha: 4.41,
+    stall_alpha_rad: 0.30,
+    stall: 1.60,
+    aspect_ratio: 36.0 * 36.0 / 174.0,
+};

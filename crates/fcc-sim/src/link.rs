@@ -1,0 +1,147 @@
+//! What sensor, actuator and onlookers of one simulation share.
+//!
+//! The loop owns sensor and actuator in two boxes and calls them in turn on
+//! one thread, and neither may wait: commands go through atomics, the truth
+//! through a sequence lock, whose writer never waits either.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering, fence};
+
+use fcc_core::flight::Surfaces;
+use fcc_core::framework::Switch;
+
+use crate::truth::{NUMBERS, Truth};
+
+/// What sensor, actuator and onlookers share.
+#[derive(Debug, Default)]
+pub(crate) struct Link {
+    /// Bits of throttle, elevator, aileron and rudder.
+    commands: [AtomicU64; 4],
+    /// Whether the actuator holds the controls.
+    held: AtomicBool,
+    /// 0 by the script, otherwise 1 off, 2 on.
+    switch: AtomicU8,
+    /// Odd while the truth is being written.
+    sequence: AtomicU64,
+    truth: [AtomicU64; NUMBERS],
+}
+
+impl Link {
+    /// Holds the controls at these commands. Someone who reads from another
+    /// thread in this very moment may see old and new commands mixed.
+    pub(crate) fn command(&self, surfaces: &Surfaces) {
+        let values = [
+            surfaces.throttle,
+            surfaces.elevator,
+            surfaces.aileron,
+            surfaces.rudder,
+        ];
+        for (place, value) in self.commands.iter().zip(values) {
+            place.store(value.to_bits(), Ordering::Relaxed);
+        }
+        self.held.store(true, Ordering::Release);
+    }
+
+    /// Lets the controls go.
+    pub(crate) fn release(&self) {
+        self.held.store(false, Ordering::Release);
+    }
+
+    /// The commands, if the actuator holds the controls.
+    pub(crate) fn commands(&self) -> Option<Surfaces> {
+        if !self.held.load(Ordering::Acquire) {
+            return None;
+        }
+        let [throttle, elevator, aileron, rudder] = self
+            .commands
+            .each_ref()
+            .map(|place| f64::from_bits(place.load(Ordering::Relaxed)));
+        Some(Surfaces {
+            throttle,
+            elevator,
+            aileron,
+            rudder,
+        })
+    }
+
+    /// The position of the switch, if a hand is on it.
+    pub(crate) fn switch(&self) -> Option<Switch> {
+        match self.switch.load(Ordering::Relaxed) {
+            1 => Some(Switch::Off),
+            2 => Some(Switch::On),
+            _ => None,
+        }
+    }
+
+    fn set_switch(&self, switch: Option<Switch>) {
+        let code = match switch {
+            None => 0,
+            Some(Switch::Off) => 1,
+            Some(Switch::On) => 2,
+        };
+        self.switch.store(code, Ordering::Relaxed);
+    }
+
+    /// Shows a truth to the onlookers. One writer only.
+    pub(crate) fn show(&self, truth: &Truth) {
+        let sequence = self.sequence.load(Ordering::Relaxed);
+        self.sequence
+            .store(sequence.wrapping_add(1), Ordering::Relaxed);
+        fence(Ordering::Release);
+        for (place, number) in self.truth.iter().zip(truth.to_array()) {
+            place.store(number.to_bits(), Ordering::Relaxed);
+        }
+        self.sequence
+            .store(sequence.wrapping_add(2), Ordering::Release);
+    }
+
+    fn truth(&self) -> Truth {
+        loop {
+            let before = self.sequence.load(Ordering::Acquire);
+            let numbers = self
+                .truth
+                .each_ref()
+                .map(|place| f64::from_bits(place.load(Ordering::Relaxed)));
+            fence(Ordering::Acquire);
+            let after = self.sequence.load(Ordering::Relaxed);
+            if before == after && before.is_multiple_of(2) {
+                return Truth::from_array(numbers);
+            }
+            std::hint::spin_loop();
+        }
+    }
+}
+
+/// A hand on the engage switch of a running simulation. Clones move the same
+/// switch, from any thread.
+#[derive(Clone, Debug)]
+pub struct SwitchHandle(Arc<Link>);
+
+impl SwitchHandle {
+    pub(crate) fn new(link: Arc<Link>) -> Self {
+        Self(link)
+    }
+
+    /// Moves the switch, whatever its script says; `None` gives it back to
+    /// the script.
+    pub fn set(&self, switch: Option<Switch>) {
+        self.0.set_switch(switch);
+    }
+}
+
+/// A view of the truth of a running simulation, from any thread: for scoring a
+/// flight, never for flying it.
+#[derive(Clone, Debug)]
+pub struct TruthHandle(Arc<Link>);
+
+impl TruthHandle {
+    pub(crate) fn new(link: Arc<Link>) -> Self {
+        Self(link)
+    }
+
+    /// The truth after the last sample. Tries again while one is being
+    /// written, some ten nanoseconds.
+    pub fn get(&self) -> Truth {
+        self.0.truth()
+    }
+}

@@ -1,0 +1,326 @@
+//! Sensors: what they make of the truth.
+//!
+//! A measurement is the truth some milliseconds ago, plus a bias, plus noise,
+//! rounded to the sensor's resolution. The reading is stamped with the tick
+//! that received it: as on a real bus, the loop does not know of the delay.
+
+use fcc_core::flight::{Attitude, BodyRates, Measurements, Position, SpecificForce, Velocity};
+use fcc_core::framework::{Reading, Time};
+use libm::{cos, round, sin, sqrt};
+
+use crate::config::{SimConfig, SimError, within};
+use crate::gauss::{Gauss, Stream};
+use crate::truth::{Truth, half_turn, turn};
+use crate::units::{DEGREE_RAD, FOOT_M, KNOT_MPS};
+
+/// The longest delay of the sensors, ms.
+pub const LONGEST_DELAY_MS: u16 = 1000;
+
+/// Errors and delay of the sensors; the default has none.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct SensorConfig {
+    /// One standard deviation of the noise on each sample.
+    pub noise: Channels,
+    /// Added to every sample.
+    pub bias: Channels,
+    /// Steps in which the sensors speak; 0 for as fine as it gets.
+    pub resolution: Channels,
+    /// Age of what is measured, ms, 0..=1000.
+    pub delay_ms: u16,
+}
+
+/// One number for each kind of measurement; where there are several axes, the
+/// same for each.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Channels {
+    /// Pitch and roll, rad.
+    pub attitude_rad: f64,
+    /// Heading, rad.
+    pub heading_rad: f64,
+    /// Turn rates, rad/s.
+    pub rates_radps: f64,
+    /// Specific force, m/s².
+    pub specific_force_mps2: f64,
+    /// Indicated airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// Barometric altitude, m.
+    pub altitude_m: f64,
+    /// Angle of attack, rad.
+    pub angle_of_attack_rad: f64,
+    /// Position north, east and up, m.
+    pub position_m: f64,
+    /// Velocity over the ground, m/s.
+    pub velocity_mps: f64,
+}
+
+impl Channels {
+    /// Noise of a phone's or a hobbyist's sensors: 0.2° of attitude, 0.4° of
+    /// heading, 0.3°/s, 0.6 ft/s², 0.7 kt, 2.5 ft, 0.3° of angle of attack,
+    /// with 2 m and 0.1 m/s of satellite navigation.
+    pub const TYPICAL_NOISE: Self = Self {
+        attitude_rad: 0.2 * DEGREE_RAD,
+        heading_rad: 0.4 * DEGREE_RAD,
+        rates_radps: 0.3 * DEGREE_RAD,
+        specific_force_mps2: 0.6 * FOOT_M,
+        airspeed_mps: 0.7 * KNOT_MPS,
+        altitude_m: 2.5 * FOOT_M,
+        angle_of_attack_rad: 0.3 * DEGREE_RAD,
+        position_m: 2.0,
+        velocity_mps: 0.1,
+    };
+
+    fn validate(&self, prefix: Prefix, low: f64) -> Result<(), SimError> {
+        let names = prefix.names();
+        let values = [
+            self.attitude_rad,
+            self.heading_rad,
+            self.rates_radps,
+            self.specific_force_mps2,
+            self.airspeed_mps,
+            self.altitude_m,
+            self.angle_of_attack_rad,
+            self.position_m,
+            self.velocity_mps,
+        ];
+        for (field, value) in names.into_iter().zip(values) {
+            within(field, value, low, f64::MAX, prefix.allowed())?;
+        }
+        Ok(())
+    }
+}
+
+/// Which set of channels an error message speaks of.
+#[derive(Clone, Copy)]
+enum Prefix {
+    Noise,
+    Bias,
+    Resolution,
+}
+
+impl Prefix {
+    fn allowed(self) -> &'static str {
+        match self {
+            Self::Bias => "a finite number",
+            Self::Noise | Self::Resolution => "0 or more",
+        }
+    }
+
+    fn names(self) -> [&'static str; 9] {
+        macro_rules! names {
+            ($set:literal) => {
+                [
+                    concat!("sensors.", $set, ".attitude_rad"),
+                    concat!("sensors.", $set, ".heading_rad"),
+                    concat!("sensors.", $set, ".rates_radps"),
+                    concat!("sensors.", $set, ".specific_force_mps2"),
+                    concat!("sensors.", $set, ".airspeed_mps"),
+                    concat!("sensors.", $set, ".altitude_m"),
+                    concat!("sensors.", $set, ".angle_of_attack_rad"),
+                    concat!("sensors.", $set, ".position_m"),
+                    concat!("sensors.", $set, ".velocity_mps"),
+                ]
+            };
+        }
+        match self {
+            Self::Noise => names!("noise"),
+            Self::Bias => names!("bias"),
+            Self::Resolution => names!("resolution"),
+        }
+    }
+}
+
+impl SensorConfig {
+    pub(crate) fn validate(&self) -> Result<(), SimError> {
+        self.noise.validate(Prefix::Noise, 0.0)?;
+        self.bias.validate(Prefix::Bias, -f64::MAX)?;
+        self.resolution.validate(Prefix::Resolution, 0.0)?;
+        within(
+            "sensors.delay_ms",
+            f64::from(self.delay_ms),
+            0.0,
+            f64::from(LONGEST_DELAY_MS),
+            "0..=1000 ms",
+        )
+    }
+}
+
+/// The sensors of one aircraft.
+#[derive(Clone, Debug)]
+pub(crate) struct Sensors {
+    config: SensorConfig,
+    gauss: Gauss,
+    earth: LocalEarth,
+    magnetic_variation_rad: f64,
+}
+
+impl Sensors {
+    pub(crate) fn new(config: &SimConfig) -> Self {
+        Self {
+            config: config.sensors,
+            gauss: Gauss::new(config.seed, Stream::Sensors),
+            earth: LocalEarth::new(config.latitude_rad, config.longitude_rad),
+            magnetic_variation_rad: config.magnetic_variation_rad,
+        }
+    }
+
+    /// Measures a truth, stamping it `taken`.
+    pub(crate) fn measure(&mut self, truth: &Truth, taken: Time, into: &mut Measurements) {
+        let SensorConfig {
+            noise,
+            bias,
+            resolution,
+            ..
+        } = self.config;
+        let gauss = &mut self.gauss;
+        let mut seen = |value: f64, kind: fn(&Channels) -> f64| {
+            let sigma = kind(&noise);
+            let mut value = value + kind(&bias);
+            if sigma > 0.0 {
+                value += sigma * gauss.draw();
+            }
+            let step = kind(&resolution);
+            if step > 0.0 {
+                value = step * round(value / step);
+            }
+            value
+        };
+        into.attitude = Reading::new(
+            Attitude {
+                pitch_rad: seen(truth.pitch_rad, |c| c.attitude_rad),
+                roll_rad: half_turn(seen(truth.roll_rad, |c| c.attitude_rad)),
+            },
+            taken,
+        );
+        let magnetic = truth.heading_rad - self.magnetic_variation_rad;
+        into.heading_rad = Reading::new(turn(seen(magnetic, |c| c.heading_rad)), taken);
+        into.body_rates = Reading::new(
+            BodyRates {
+                roll_radps: seen(truth.rates.roll_radps, |c| c.rates_radps),
+                pitch_radps: seen(truth.rates.pitch_radps, |c| c.rates_radps),
+                yaw_radps: seen(truth.rates.yaw_radps, |c| c.rates_radps),
+            },
+            taken,
+        );
+        into.specific_force = Reading::new(
+            SpecificForce {
+                x_mps2: seen(truth.specific_force.x_mps2, |c| c.specific_force_mps2),
+                y_mps2: seen(truth.specific_force.y_mps2, |c| c.specific_force_mps2),
+                z_mps2: seen(truth.specific_force.z_mps2, |c| c.specific_force_mps2),
+            },
+            taken,
+        );
+        let airspeed_mps = seen(truth.indicated_airspeed_mps, |c| c.airspeed_mps);
+        into.airspeed_mps = Reading::new(airspeed_mps.max(0.0), taken);
+        into.altitude_m = Reading::new(seen(truth.altitude_m, |c| c.altitude_m), taken);
+        into.angle_of_attack_rad = Reading::new(
+            seen(truth.angle_of_attack_rad, |c| c.angle_of_attack_rad),
+            taken,
+        );
+        let north_m = seen(truth.north_m, |c| c.position_m);
+        let east_m = seen(truth.east_m, |c| c.position_m);
+        let height_m = seen(truth.altitude_m, |c| c.position_m);
+        into.position = Reading::new(self.earth.position(north_m, east_m, height_m), taken);
+        into.velocity = Reading::new(
+            Velocity {
+                north_mps: seen(truth.velocity.north_mps, |c| c.velocity_mps),
+                east_mps: seen(truth.velocity.east_mps, |c| c.velocity_mps),
+                down_mps: seen(truth.velocity.down_mps, |c| c.velocity_mps),
+            },
+            taken,
+        );
+    }
+}
+
+/// The flat earth, laid on the WGS 84 ellipsoid where the flight begins.
+#[derive(Clone, Copy, Debug)]
+struct LocalEarth {
+    latitude_rad: f64,
+    longitude_rad: f64,
+    north_radius_m: f64,
+    /// Of the circle of latitude.
+    east_radius_m: f64,
+}
+
+impl LocalEarth {
+    fn new(latitude_rad: f64, longitude_rad: f64) -> Self {
+        /// WGS 84: semi-major axis, m, and first eccentricity squared.
+        const EQUATOR_M: f64 = 6_378_137.0;
+        const ECCENTRICITY_2: f64 = 6.694_379_990_14e-3;
+        let sine = sin(latitude_rad);
+        let shape = 1.0 - ECCENTRICITY_2 * sine * sine;
+        Self {
+            latitude_rad,
+            longitude_rad,
+            north_radius_m: EQUATOR_M * (1.0 - ECCENTRICITY_2) / (shape * sqrt(shape)),
+            east_radius_m: EQUATOR_M / sqrt(shape) * cos(latitude_rad),
+        }
+    }
+
+    fn position(&self, north_m: f64, east_m: f64, altitude_m: f64) -> Position {
+        Position {
+            latitude_rad: self.latitude_rad + north_m / self.north_radius_m,
+            longitude_rad: half_turn(self.longitude_rad + east_m / self.east_radius_m),
+            altitude_m,
+        }
+    }
+}
+
+/// The truths of the last while, so that sensors can be late.
+#[derive(Clone, Debug)]
+pub(crate) struct History {
+    truths: Box<[Truth]>,
+    newest: usize,
+    delay_s: f64,
+}
+
+/// Truths are kept at least this far apart, s: then one more than the delay
+/// has milliseconds reach back far enough, however short the sub-steps are.
+const SPACING_S: f64 = 0.000_999;
+
+impl History {
+    /// `None` if nothing is late.
+    pub(crate) fn new(delay_ms: u16, start: &Truth) -> Option<Self> {
+        (delay_ms > 0).then(|| Self {
+            truths: vec![*start; usize::from(delay_ms) + 3].into_boxed_slice(),
+            newest: 0,
+            delay_s: f64::from(delay_ms) * 1e-3,
+        })
+    }
+
+    /// Keeps a truth.
+    pub(crate) fn keep(&mut self, truth: &Truth) {
+        let since_s = truth.time_s - self.at(0).time_s;
+        if since_s < SPACING_S {
+            return;
+        }
+        self.newest = (self.newest + 1) % self.truths.len();
+        if let Some(place) = self.truths.get_mut(self.newest) {
+            *place = *truth;
+        }
+    }
+
+    /// The truth as it was the delay before `now`.
+    pub(crate) fn late(&self, now: &Truth) -> Truth {
+        let wanted_s = now.time_s - self.delay_s;
+        let mut after = *now;
+        for age in 0..self.truths.len() {
+            let before = self.at(age);
+            if before.time_s <= wanted_s {
+                let span_s = after.time_s - before.time_s;
+                if span_s <= 0.0 {
+                    return before;
+                }
+                return before.towards(&after, (wanted_s - before.time_s) / span_s);
+            }
+            after = before;
+        }
+        after
+    }
+
+    /// The truth kept `age` places ago.
+    fn at(&self, age: usize) -> Truth {
+        let length = self.truths.len();
+        let index = (self.newest + length - age) % length;
+        self.truths.get(index).copied().unwrap_or_default()
+    }
+}

@@ -1,0 +1,102 @@
+//! From commands to deflections: actuators that lag and have a top speed.
+
+use fcc_core::flight::Surfaces;
+use libm::exp;
+
+use crate::aerodynamics::Deflections;
+use crate::airframe::Travel;
+
+/// How an actuator follows its command.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Servo {
+    /// First-order lag, s; 0 follows at once.
+    pub lag_s: f64,
+    /// Top speed, in units of the command per second.
+    pub rate_per_s: f64,
+}
+
+/// The actuators of an aircraft.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Servos {
+    /// Of elevator, aileron and rudder.
+    pub surfaces: Servo,
+    /// Of the throttle, with the engine's own lag.
+    pub throttle: Servo,
+}
+
+impl Default for Servos {
+    /// Surfaces with 50 ms and half the travel in 0.4 s; an engine that takes
+    /// half a second to follow.
+    fn default() -> Self {
+        Self {
+            surfaces: Servo {
+                lag_s: 0.05,
+                rate_per_s: 2.5,
+            },
+            throttle: Servo {
+                lag_s: 0.5,
+                rate_per_s: 1.0,
+            },
+        }
+    }
+}
+
+impl Servos {
+    /// Where the actuators are after `dt_s` on the way to `commands`.
+    #[must_use]
+    pub fn follow(&self, positions: &Surfaces, commands: &Surfaces, dt_s: f64) -> Surfaces {
+        let surface = self.surfaces.prepared(dt_s);
+        Surfaces {
+            throttle: self
+                .throttle
+                .prepared(dt_s)
+                .follow(positions.throttle, commands.throttle),
+            elevator: surface.follow(positions.elevator, commands.elevator),
+            aileron: surface.follow(positions.aileron, commands.aileron),
+            rudder: surface.follow(positions.rudder, commands.rudder),
+        }
+    }
+}
+
+impl Servo {
+    fn prepared(&self, dt_s: f64) -> Prepared {
+        Prepared {
+            share: if self.lag_s > 0.0 {
+                1.0 - exp(-dt_s / self.lag_s)
+            } else {
+                1.0
+            },
+            most: self.rate_per_s * dt_s,
+        }
+    }
+}
+
+/// A servo's step of one length, so that the exponential is taken once.
+struct Prepared {
+    share: f64,
+    most: f64,
+}
+
+impl Prepared {
+    fn follow(&self, position: f64, command: f64) -> f64 {
+        position + ((command - position) * self.share).clamp(-self.most, self.most)
+    }
+}
+
+/// Deflections from actuator positions -1..=1 and the elevator's trim in rad,
+/// within the travel. +elevator raises the nose, +aileron rolls right, +rudder
+/// yaws right; the derivatives' own signs differ for elevator and rudder.
+pub fn deflections(travel: &Travel, positions: &Surfaces, elevator_trim_rad: f64) -> Deflections {
+    let elevator_travel = if positions.elevator >= 0.0 {
+        travel.elevator_up_rad
+    } else {
+        travel.elevator_down_rad
+    };
+    Deflections {
+        elevator_rad: (elevator_trim_rad - positions.elevator * elevator_travel)
+            .clamp(-travel.elevator_up_rad, travel.elevator_down_rad),
+        aileron_rad: positions.aileron * travel.aileron_rad,
+        rudder_rad: -positions.rudder * travel.rudder_rad,
+        throttle: positions.throttle,
+    }
+}

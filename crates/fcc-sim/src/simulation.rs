@@ -1,0 +1,163 @@
+//! The simulated aircraft as the loop's sensor and actuator.
+
+use std::sync::Arc;
+
+use fcc_core::flight::{Measurements, Plant, PlantState, Surfaces};
+use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Switch, Tick};
+
+use crate::aircraft::Aircraft;
+use crate::config::{SimConfig, SimError, SwitchScript};
+use crate::link::{Link, SwitchHandle, TruthHandle};
+use crate::sensing::{History, Sensors};
+use crate::trim::Trim;
+
+/// One simulated aircraft, in the parts that a loop and its onlookers hold.
+#[derive(Debug)]
+pub struct Simulation {
+    /// Owns the aircraft and flies it on when sampled.
+    pub sensor: SimSensor,
+    /// Moves the aircraft's controls.
+    pub actuator: SimActuator,
+    /// A hand on the engage switch.
+    pub switch: SwitchHandle,
+    /// A view of the truth.
+    pub truth: TruthHandle,
+    /// The trim that the flight begins with.
+    pub trim: Trim,
+}
+
+impl Simulation {
+    /// Builds an aircraft as configured.
+    ///
+    /// # Errors
+    /// [`SimError`] if a number is out of range or there is no trim.
+    pub fn new(config: &SimConfig) -> Result<Self, SimError> {
+        let aircraft = Aircraft::new(config)?;
+        let start = aircraft.truth();
+        let trim = *aircraft.trim();
+        let link = Arc::new(Link::default());
+        link.show(&start);
+        Ok(Self {
+            switch: SwitchHandle::new(Arc::clone(&link)),
+            truth: TruthHandle::new(Arc::clone(&link)),
+            actuator: SimActuator {
+                link: Arc::clone(&link),
+            },
+            sensor: SimSensor {
+                aircraft,
+                sensors: Sensors::new(config),
+                history: History::new(config.sensors.delay_ms, &start),
+                script: config.switch,
+                link,
+            },
+            trim,
+        })
+    }
+}
+
+/// The aircraft's sensors, and the aircraft: each sample flies it on by the
+/// tick's time under the last commands, then measures.
+///
+/// Simulated time follows the ticks, so that the same simulation runs in real
+/// time under a loop's timer and in lockstep as fast as it computes. A tick
+/// that comes late or after missed ones flies on by what really passed, up to
+/// [`LONGEST_STEP_S`](crate::LONGEST_STEP_S); past that the plant's state is
+/// `Slow`.
+#[derive(Debug)]
+pub struct SimSensor {
+    aircraft: Aircraft,
+    sensors: Sensors,
+    history: Option<History>,
+    script: SwitchScript,
+    link: Arc<Link>,
+}
+
+impl SimSensor {
+    /// The aircraft as it is.
+    pub fn aircraft(&self) -> &Aircraft {
+        &self.aircraft
+    }
+
+    fn switch(&self) -> Switch {
+        if let Some(switch) = self.link.switch() {
+            return switch;
+        }
+        let reached = |time: Option<f64>| time.is_some_and(|at_s| self.aircraft.time_s() >= at_s);
+        if reached(self.script.on_at_s) && !reached(self.script.off_at_s) {
+            Switch::On
+        } else {
+            Switch::Off
+        }
+    }
+}
+
+impl Sensor<Measurements> for SimSensor {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let commands = self
+            .link
+            .commands()
+            .unwrap_or_else(|| self.aircraft.hands_off());
+        let history = &mut self.history;
+        let passed_s = self
+            .aircraft
+            .step_watched(&commands, tick.dt_s, |aircraft| {
+                if let Some(history) = history {
+                    history.keep(&aircraft.truth());
+                }
+            });
+        if self.aircraft.has_diverged() {
+            return Err(SensorFault::Silent);
+        }
+        let truth = self.aircraft.truth();
+        self.link.show(&truth);
+
+        let taken = tick.woke;
+        let measured = self
+            .history
+            .as_ref()
+            .map_or(truth, |history| history.late(&truth));
+        self.sensors.measure(&measured, taken, into);
+        into.engage_switch = Reading::new(self.switch(), taken);
+        let state = if passed_s < tick.dt_s {
+            PlantState::Slow
+        } else {
+            PlantState::Running
+        };
+        into.plant = Reading::new(
+            Plant {
+                time_s: truth.time_s,
+                state,
+            },
+            taken,
+        );
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "built-in aircraft"
+    }
+}
+
+/// The aircraft's controls. Released, they go back to a pilot who holds the
+/// trim: surfaces to where they were when the flight began, hands off, and no
+/// one levels the wings.
+#[derive(Debug)]
+pub struct SimActuator {
+    link: Arc<Link>,
+}
+
+impl Actuator<Surfaces> for SimActuator {
+    fn apply(&mut self, _tick: &Tick, outputs: &Surfaces) -> Result<(), ActuatorFault> {
+        self.link.command(outputs);
+        Ok(())
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        self.link.release();
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "built-in aircraft"
+    }
+}
