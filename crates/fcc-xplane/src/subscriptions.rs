@@ -61,6 +61,8 @@ struct Subscription {
     asked: Time,
     /// How often it was asked since it last came.
     unanswered: u8,
+    /// To be asked whatever came: the simulator is a new one.
+    anew: bool,
 }
 
 /// What is asked for, and when it was last.
@@ -97,7 +99,7 @@ impl Subscriptions {
     /// Asks for everything anew, from the next tick on.
     pub(crate) fn restart(&mut self) {
         for subscription in &mut self.list {
-            subscription.asked = Time::NEVER;
+            subscription.anew = true;
         }
     }
 
@@ -117,7 +119,8 @@ impl Subscriptions {
             if budget == 0 {
                 break;
             }
-            if now.since(subscription.request.answered(inbox)) < resubscribe {
+            let answered = now.since(subscription.request.answered(inbox)) < resubscribe;
+            if answered && !subscription.anew {
                 subscription.unanswered = 0;
                 continue;
             }
@@ -127,7 +130,8 @@ impl Subscriptions {
             } else {
                 resubscribe
             };
-            if now.since(subscription.asked) >= wait {
+            if subscription.anew || now.since(subscription.asked) >= wait {
+                subscription.anew = false;
                 subscription.asked = now;
                 subscription.unanswered = subscription.unanswered.saturating_add(1);
                 outcome = outcome.and(send(subscription.request.datagram()));
@@ -157,6 +161,7 @@ impl Subscription {
             request,
             asked: Time::NEVER,
             unanswered: 0,
+            anew: false,
         }
     }
 }

@@ -1,0 +1,162 @@
+//! Keeping up with an X-Plane that is paused, slowed, killed and restarted: its
+//! states, and the subscriptions that follow it.
+
+mod support;
+
+use fcc_core::flight::PlantState;
+use fcc_core::framework::SensorFault;
+use fcc_xplane::SimulatorState;
+use support::bench::Bench;
+use support::{FLIGHT_TIME, P, PAUSED};
+
+#[test]
+fn requests_are_spread_over_ticks() {
+    let mut bench = Bench::new();
+    let mut before = 0;
+    for _ in 0..10 {
+        let _ = bench.sample();
+        bench.simulator.listen();
+        assert!(bench.simulator.requests - before <= 8);
+        before = bench.simulator.requests;
+    }
+    assert_eq!(before, bench.simulator.subscribed.len() + 1);
+}
+
+#[test]
+fn a_request_that_got_lost_is_sent_again_after_a_second() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.simulator.listen();
+    let theta = format!("{P}theta");
+    bench.simulator.subscribed.retain(|_, path| *path != theta);
+    // It had come until now, so five seconds pass first.
+    for _ in 0..201 {
+        bench.watch().unwrap();
+    }
+    bench.simulator.listen();
+    assert!(
+        bench
+            .simulator
+            .subscribed
+            .values()
+            .any(|path| *path == theta)
+    );
+}
+
+#[test]
+fn a_first_request_that_got_lost_delays_a_second_not_five() {
+    let mut bench = Bench::new();
+    // Every request of the first tick is lost.
+    let _ = bench.sample();
+    bench.simulator.listen();
+    bench.simulator.subscribed.clear();
+    for _ in 0..45 {
+        let _ = bench.watch();
+    }
+    assert!(!bench.measurements.attitude.is_never());
+    assert!(!bench.measurements.plant.is_never());
+}
+
+#[test]
+fn silence_is_a_fault_and_ends_with_a_new_subscription() {
+    let mut bench = Bench::new();
+    bench.settle();
+    // Killed: half a second is borne, then it is silent.
+    let faults: Vec<_> = (0..40).map(|_| bench.sample().err()).collect();
+    let first = faults.iter().position(Option::is_some);
+    assert_eq!(first, Some(20));
+    assert_eq!(faults[20], Some(SensorFault::Silent));
+    assert_eq!(bench.status.state(), SimulatorState::Silent);
+    let words = bench.status.trouble().unwrap().to_string();
+    assert!(words.contains("does not answer"));
+    let last = bench.measurements.attitude.taken;
+
+    // Restarted, with another flight: within 5 s it is asked again.
+    bench.simulator.listen();
+    bench.simulator.restart();
+    bench.simulator.requests = 0;
+    bench.simulator.set(FLIGHT_TIME, 0.0);
+    let mut jumped = false;
+    for _ in 0..220 {
+        let _ = bench.watch();
+        jumped |= bench.status.state() == SimulatorState::Jumped;
+    }
+    assert!(jumped, "the clock of the new flight starts from 0");
+    assert!(bench.measurements.attitude.taken > last);
+    assert_eq!(bench.status.state(), SimulatorState::Running);
+    assert_eq!(
+        bench.simulator.requests,
+        bench.simulator.subscribed.len() + 1
+    );
+}
+
+#[test]
+fn a_simulator_that_never_answers_is_asked_every_five_seconds() {
+    let mut bench = Bench::new();
+    let mut asked = Vec::new();
+    for second in 0..21 {
+        for _ in 0..40 {
+            let _ = bench.sample();
+        }
+        bench.simulator.listen();
+        if core::mem::take(&mut bench.simulator.requests) > 0 {
+            asked.push(second);
+        }
+    }
+    assert_eq!(asked, [0, 5, 10, 15, 20]);
+}
+
+#[test]
+fn a_pause_is_a_state_and_readings_stay_fresh() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.simulator.set(PAUSED, 1.0);
+    for _ in 0..400 {
+        bench.simulator.live(0.0);
+        bench.sample().unwrap();
+        assert_eq!(bench.measurements.plant.value.state, PlantState::Paused);
+    }
+    assert_eq!(bench.measurements.attitude.taken, bench.ticks.now);
+    bench.simulator.set(PAUSED, 0.0);
+    bench.watch().unwrap();
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Running);
+}
+
+#[test]
+fn a_jump_is_an_event_of_one_tick() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.simulator.set(FLIGHT_TIME, 0.5);
+    bench.watch().unwrap();
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Jumped);
+    bench.watch().unwrap();
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Running);
+    assert_eq!(bench.status.counts().jumps, 1);
+}
+
+#[test]
+fn a_stalled_and_a_slow_clock_are_states_of_their_own() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..20 {
+        bench.simulator.live(0.0);
+        bench.sample().unwrap();
+    }
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Stalled);
+    for _ in 0..120 {
+        bench.simulator.live(0.015);
+        bench.sample().unwrap();
+    }
+    assert_eq!(bench.measurements.plant.value.state, PlantState::Slow);
+}
+
+#[test]
+fn dropping_the_sensor_ends_the_subscriptions() {
+    let mut bench = Bench::new();
+    bench.settle();
+    assert!(!bench.simulator.subscribed.is_empty());
+    drop(bench.sensor);
+    bench.simulator.listen();
+    assert!(bench.simulator.subscribed.is_empty());
+    assert_eq!(bench.simulator.position_hz.as_deref(), Some("0"));
+}

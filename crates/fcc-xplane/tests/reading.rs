@@ -1,0 +1,206 @@
+//! What a minimal X-Plane on the loopback interface sends, and what of it is
+//! measured.
+
+mod support;
+
+use std::net::{SocketAddrV4, UdpSocket};
+use std::time::Duration;
+
+use fcc_core::flight::PlantState;
+use fcc_core::framework::{SensorFault, Switch};
+use fcc_xplane::{DataRows, Input, RowsVersion};
+use support::bench::{Bench, close};
+use support::{FLIGHT_TIME, OVERRIDE_JOYSTICK, P, SWITCH, free_port};
+
+#[test]
+fn everything_subscribed_arrives_in_si_units() {
+    let mut bench = Bench::new();
+    bench.settle();
+    assert_eq!(bench.simulator.position_hz.as_deref(), Some("20"));
+    bench.simulator.position = [-122.309_308_12, 47.463_620_45, 1_234.5];
+    bench.watch().unwrap();
+
+    let (m, now) = (&bench.measurements, bench.ticks.now);
+    close(m.attitude.value.pitch_rad.to_degrees(), 2.5);
+    close(m.attitude.value.roll_rad.to_degrees(), -20.0);
+    close(m.heading_rad.value.to_degrees(), 270.0);
+    assert!((m.body_rates.value.roll_radps - 0.01).abs() < 1e-8);
+    assert!((m.body_rates.value.pitch_radps + 0.02).abs() < 1e-8);
+    assert!((m.body_rates.value.yaw_radps - 0.03).abs() < 1e-8);
+    // 100 kt are 185.2 km/h; 3000 ft are 914.4 m.
+    close(m.airspeed_mps.value, 185.2 / 3.6);
+    close(m.altitude_m.value, 914.4);
+    close(m.angle_of_attack_rad.value.to_degrees(), 3.0);
+    // South and up there are north and down here.
+    close(m.velocity.value.north_mps, -4.0);
+    close(m.velocity.value.east_mps, -50.0);
+    close(m.velocity.value.down_mps, -1.0);
+    // Not accelerated: one g, whatever the attitude.
+    let f = m.specific_force.value;
+    close(f.x_mps2.hypot(f.y_mps2).hypot(f.z_mps2), 9.80665);
+    // A millimetre of latitude is 1e-8 deg: it must survive.
+    assert!((m.position.value.latitude_rad.to_degrees() - 47.463_620_45).abs() < 1e-12);
+    assert!((m.position.value.longitude_rad.to_degrees() + 122.309_308_12).abs() < 1e-12);
+    close(m.position.value.altitude_m, 1_234.5);
+    assert_eq!(m.engage_switch.value, Switch::Off);
+    assert_eq!(m.plant.value.state, PlantState::Running);
+    for taken in [
+        m.attitude.taken,
+        m.heading_rad.taken,
+        m.body_rates.taken,
+        m.specific_force.taken,
+        m.airspeed_mps.taken,
+        m.altitude_m.taken,
+        m.angle_of_attack_rad.taken,
+        m.position.taken,
+        m.velocity.taken,
+        m.engage_switch.taken,
+        m.plant.taken,
+    ] {
+        assert_eq!(taken, now);
+    }
+    assert_eq!(bench.status.version(), Some(115_501));
+    assert_eq!(bench.status.on_ground(), Some(false));
+    assert_eq!(bench.status.trouble(), None);
+}
+
+#[test]
+fn the_switch_of_the_users_choice_engages() {
+    let mut bench = Bench::with(|config| config.engage_switch = "my/plugin/engage[2]".into());
+    bench.simulator.set("my/plugin/engage[2]", 1.0);
+    bench.settle();
+    assert_eq!(bench.measurements.engage_switch.value, Switch::On);
+    assert!(
+        !bench
+            .simulator
+            .subscribed
+            .values()
+            .any(|path| path == SWITCH)
+    );
+}
+
+#[test]
+fn a_foreign_sender_is_counted_and_ignored() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let before = bench.measurements;
+    // The whole of 127.0.0.0/8 is this machine on Linux.
+    let foreigner = UdpSocket::bind("127.0.0.2:0").unwrap();
+    bench.simulator.listen();
+    bench
+        .simulator
+        .set(&format!("{P}indicated_airspeed"), 400.0);
+    let client = bench.simulator.client.unwrap();
+    foreigner.send_to(&bench.simulator.frame(), client).unwrap();
+    bench.sample().unwrap();
+    assert_eq!(bench.measurements, before);
+    assert_eq!(bench.status.counts().foreign, 1);
+}
+
+#[test]
+fn another_port_of_the_simulator_is_the_simulator() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.simulator.listen();
+    bench.simulator.set(&format!("{P}indicated_airspeed"), 50.0);
+    let other_port = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let client = bench.simulator.client.unwrap();
+    other_port
+        .send_to(&bench.simulator.frame(), client)
+        .unwrap();
+    bench.sample().unwrap();
+    close(bench.measurements.airspeed_mps.value, 92.6 / 3.6);
+}
+
+#[test]
+fn a_tick_reads_no_more_datagrams_than_configured() {
+    let mut bench = Bench::with(|config| config.datagrams_per_tick = 5);
+    bench.settle();
+    let before = bench.status.counts().received;
+    for _ in 0..12 {
+        bench.simulator.send_frame();
+    }
+    for expected in [5, 10, 12] {
+        bench.sample().unwrap();
+        assert_eq!(bench.status.counts().received - before, expected);
+    }
+}
+
+#[test]
+fn lost_doubled_and_reordered_datagrams_disturb_nothing() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let mut held_back: Option<Vec<u8>> = None;
+    for frame in 0..2_000_u32 {
+        bench.simulator.listen();
+        let time = bench.simulator.value(FLIGHT_TIME) + 0.025;
+        bench.simulator.set(FLIGHT_TIME, time);
+        let datagram = bench.simulator.frame();
+        match frame % 50 {
+            7 => {}
+            21 => held_back = Some(datagram),
+            33 => {
+                bench.simulator.send(&datagram);
+                bench.simulator.send(&datagram);
+            }
+            _ => {
+                bench.simulator.send(&datagram);
+                if let Some(old) = held_back.take() {
+                    bench.simulator.send(&old);
+                }
+            }
+        }
+        let before = bench.measurements.plant.value.time_s;
+        bench.sample().unwrap();
+        let plant = bench.measurements.plant.value;
+        assert!(plant.time_s >= before, "time went back in frame {frame}");
+        assert_eq!(plant.state, PlantState::Running, "frame {frame}");
+        assert!(
+            bench.ticks.now.since(bench.measurements.attitude.taken) <= Duration::from_millis(25)
+        );
+    }
+    assert_eq!(bench.status.counts().late, 40);
+    assert_eq!(bench.status.counts().malformed, 0);
+}
+
+#[test]
+fn a_cut_datagram_is_reported_and_left_out() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let before = bench.measurements;
+    let frame = bench.simulator.frame();
+    bench.simulator.send(&frame[..frame.len() - 3]);
+    assert_eq!(bench.sample(), Err(SensorFault::Malformed));
+    assert_eq!(bench.measurements, before);
+    assert_eq!(bench.status.counts().malformed, 1);
+}
+
+#[test]
+fn rows_of_data_output_fly_as_well() {
+    let free = free_port();
+    let mut bench = Bench::with(|config| {
+        config.local_port = free;
+        config.input = Input::Data(DataRows::of(RowsVersion::XPlane12));
+    });
+    bench.settle();
+    // Only what has no row is subscribed.
+    let subscribed: Vec<_> = bench.simulator.subscribed.values().cloned().collect();
+    assert!(subscribed.iter().any(|path| path == SWITCH));
+    assert!(subscribed.iter().any(|path| path == OVERRIDE_JOYSTICK));
+    assert!(!subscribed.iter().any(|path| path.starts_with(P)));
+    assert!(!subscribed.iter().any(|path| path == FLIGHT_TIME));
+
+    let mut datagram = b"DATA*".to_vec();
+    datagram.extend(17_i32.to_le_bytes());
+    for column in [5.0_f32, 10.0, 95.0, 90.0, -999.0, -999.0, -999.0, -999.0] {
+        datagram.extend(column.to_le_bytes());
+    }
+    let to = SocketAddrV4::new([127, 0, 0, 1].into(), free);
+    bench.simulator.socket.send_to(&datagram, to).unwrap();
+    bench.sample().unwrap();
+    close(
+        bench.measurements.attitude.value.roll_rad.to_degrees(),
+        10.0,
+    );
+    close(bench.measurements.heading_rad.value.to_degrees(), 90.0);
+}

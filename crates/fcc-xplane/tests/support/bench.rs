@@ -1,0 +1,106 @@
+//! Sensor and actuator, a minimal X-Plane on the loopback interface, and a loop
+//! between them.
+//!
+//! Loopback delivers before `send` returns, and the ticks' time is the test's
+//! own, so minutes of flight pass in milliseconds and nothing depends on how
+//! fast this machine is.
+
+use fcc_core::flight::{Measurements, Surfaces};
+use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault};
+use fcc_xplane::{XPlane, XPlaneActuator, XPlaneConfig, XPlaneSensor, XPlaneStatus};
+
+use super::{
+    FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, Ticks, YOKE_HEADING, YOKE_PITCH, YOKE_ROLL,
+};
+
+pub const SURFACES: Surfaces = Surfaces {
+    throttle: 0.8,
+    elevator: 0.1,
+    aileron: -0.2,
+    rudder: 0.05,
+};
+
+/// Both ends and a loop between them.
+pub struct Bench {
+    pub simulator: FakeXPlane,
+    pub sensor: XPlaneSensor,
+    pub actuator: Option<XPlaneActuator>,
+    pub status: XPlaneStatus,
+    pub ticks: Ticks,
+    pub measurements: Measurements,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        Self::with(|_| {})
+    }
+
+    pub fn with(change: impl FnOnce(&mut XPlaneConfig)) -> Self {
+        let simulator = FakeXPlane::new();
+        let mut config = simulator.config();
+        change(&mut config);
+        let (sensor, actuator) = XPlane::open(&config).unwrap();
+        Self {
+            simulator,
+            status: sensor.status(),
+            sensor,
+            actuator: Some(actuator),
+            ticks: Ticks::new(),
+            measurements: Measurements::default(),
+        }
+    }
+
+    pub fn sample(&mut self) -> Result<(), SensorFault> {
+        let tick = self.ticks.next();
+        self.sensor.sample(&tick, &mut self.measurements)
+    }
+
+    /// A tick in which the simulator lives and the loop only watches.
+    pub fn watch(&mut self) -> Result<(), SensorFault> {
+        self.simulator.live(0.025);
+        self.sample()
+    }
+
+    /// A tick in which the loop also writes.
+    pub fn fly(&mut self) -> Result<(), ActuatorFault> {
+        self.simulator.live(0.025);
+        let tick = self.ticks.next();
+        self.sensor.sample(&tick, &mut self.measurements).unwrap();
+        self.actuator.as_mut().unwrap().apply(&tick, &SURFACES)
+    }
+
+    /// Watches until the subscriptions have settled.
+    pub fn settle(&mut self) {
+        for _ in 0..8 {
+            // Silent in the first of them.
+            let _ = self.watch();
+        }
+        self.watch().unwrap();
+    }
+
+    pub fn assert_released(&mut self) {
+        self.simulator.writes.clear();
+        self.simulator.listen();
+        for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
+            self.simulator.assert_shows(path, 0.0);
+        }
+        for path in [YOKE_PITCH, YOKE_ROLL, YOKE_HEADING] {
+            self.simulator.assert_shows(path, 0.0);
+        }
+        // Three times over, each time the surfaces before the overrides.
+        let writes = &self.simulator.writes;
+        assert_eq!(writes.len(), 15);
+        for round in writes.chunks(5) {
+            assert!(round[..3].iter().all(|(path, _)| path.contains("yoke_")));
+            assert!(
+                round[3..]
+                    .iter()
+                    .all(|(path, _)| path.contains("override_"))
+            );
+        }
+    }
+}
+
+pub fn close(got: f64, expected: f64) {
+    assert!((got - expected).abs() < 1e-6, "{got} is not {expected}");
+}

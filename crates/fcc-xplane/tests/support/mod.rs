@@ -1,0 +1,320 @@
+//! What the tests share: a minimal X-Plane on a loopback socket, written from
+//! the layouts and not from the crate's own builders, and a clock of ticks.
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "each test file is a crate of its own and uses its part"
+)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::indexing_slicing,
+    clippy::panic,
+    clippy::unreachable,
+    reason = "a test fails by panicking, in what it shares too"
+)]
+
+pub mod bench;
+
+use std::collections::{HashMap, VecDeque};
+use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
+use std::sync::Mutex;
+use std::time::Duration;
+
+use fcc_core::framework::{Tick, Time};
+use fcc_xplane::{Errno, Port, Simulator, XPlaneConfig};
+
+pub const P: &str = "sim/flightmodel/position/";
+pub const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[0]";
+pub const OVERRIDE_JOYSTICK: &str = "sim/operation/override/override_joystick";
+pub const OVERRIDE_THROTTLES: &str = "sim/operation/override/override_throttles";
+pub const YOKE_PITCH: &str = "sim/joystick/yoke_pitch_ratio";
+pub const YOKE_ROLL: &str = "sim/joystick/yoke_roll_ratio";
+pub const YOKE_HEADING: &str = "sim/joystick/yoke_heading_ratio";
+pub const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use[0]";
+pub const FLIGHT_TIME: &str = "sim/time/total_flight_time_sec";
+pub const PAUSED: &str = "sim/time/paused";
+
+/// A minimal X-Plane: keeps what it is asked and told, sends when told to.
+pub struct FakeXPlane {
+    pub socket: UdpSocket,
+    /// Who asked last.
+    pub client: Option<SocketAddr>,
+    /// Index -> path.
+    pub subscribed: HashMap<i32, String>,
+    /// Requests of every kind, in all.
+    pub requests: usize,
+    pub position_hz: Option<String>,
+    /// Longitude, latitude (deg), elevation (m).
+    pub position: [f64; 3],
+    pub values: HashMap<String, f32>,
+    /// Every write in its order.
+    pub writes: Vec<(String, f32)>,
+    /// Whether writes take effect: off is a firewall.
+    pub accepts_writes: bool,
+}
+
+impl FakeXPlane {
+    pub fn new() -> Self {
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        socket.set_nonblocking(true).unwrap();
+        let mut values: HashMap<String, f32> = [
+            (PAUSED, 0.0),
+            (FLIGHT_TIME, 100.0),
+            ("sim/time/framerate_period", 0.02),
+            (SWITCH, 0.0),
+            (OVERRIDE_JOYSTICK, 0.0),
+            (OVERRIDE_THROTTLES, 0.0),
+            (YOKE_PITCH, 0.0),
+            (YOKE_ROLL, 0.0),
+            (YOKE_HEADING, 0.0),
+            ("sim/cockpit2/gauges/indicators/altitude_ft_pilot", 3_000.0),
+            ("sim/flightmodel/failures/onground_any", 0.0),
+            ("sim/version/xplane_internal_version", 115_501.0),
+        ]
+        .map(|(path, value)| (path.to_owned(), value))
+        .into();
+        for (name, value) in [
+            ("theta", 2.5),
+            ("phi", -20.0),
+            ("psi", 275.0),
+            ("mag_psi", 270.0),
+            ("Prad", 0.01),
+            ("Qrad", -0.02),
+            ("Rrad", 0.03),
+            ("local_ax", 0.0),
+            ("local_ay", 0.0),
+            ("local_az", 0.0),
+            ("local_vx", -50.0),
+            ("local_vy", 1.0),
+            ("local_vz", 4.0),
+            ("indicated_airspeed", 100.0),
+            ("alpha", 3.0),
+        ] {
+            values.insert(format!("{P}{name}"), value);
+        }
+        Self {
+            socket,
+            client: None,
+            subscribed: HashMap::new(),
+            requests: 0,
+            position_hz: None,
+            position: [8.5, 47.4, 1_000.0],
+            values,
+            writes: Vec::new(),
+            accepts_writes: true,
+        }
+    }
+
+    pub fn address(&self) -> SocketAddrV4 {
+        match self.socket.local_addr().unwrap() {
+            SocketAddr::V4(address) => address,
+            SocketAddr::V6(_) => unreachable!("bound to IPv4"),
+        }
+    }
+
+    pub fn config(&self) -> XPlaneConfig {
+        XPlaneConfig {
+            simulator: Simulator::At(self.address()),
+            ..XPlaneConfig::default()
+        }
+    }
+
+    /// Forgets whom to send to, as a restarted X-Plane.
+    pub fn restart(&mut self) {
+        self.subscribed.clear();
+        self.client = None;
+        self.position_hz = None;
+        for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
+            self.set(path, 0.0);
+        }
+    }
+
+    pub fn set(&mut self, path: &str, value: f32) {
+        self.values.insert(path.to_owned(), value);
+    }
+
+    pub fn value(&self, path: &str) -> f32 {
+        self.values[path]
+    }
+
+    /// Takes in all that came.
+    pub fn listen(&mut self) {
+        let mut buffer = [0; 2_048];
+        while let Ok((length, from)) = self.socket.recv_from(&mut buffer) {
+            self.take(&buffer[..length], from);
+        }
+    }
+
+    fn take(&mut self, datagram: &[u8], from: SocketAddr) {
+        let i32_at = |at: usize| i32::from_le_bytes(datagram[at..at + 4].try_into().unwrap());
+        match &datagram[..5] {
+            b"RREF\0" => {
+                assert_eq!(datagram.len(), 413);
+                self.requests += 1;
+                self.client = Some(from);
+                let path = text(&datagram[13..]);
+                if i32_at(5) == 0 {
+                    self.subscribed.remove(&i32_at(9));
+                } else {
+                    self.subscribed.insert(i32_at(9), path);
+                }
+            }
+            b"RPOS\0" => {
+                self.requests += 1;
+                self.client = Some(from);
+                self.position_hz = Some(text(&datagram[5..]));
+            }
+            b"DREF\0" => {
+                assert_eq!(datagram.len(), 509);
+                let value = f32::from_le_bytes(datagram[5..9].try_into().unwrap());
+                self.write(text(&datagram[9..]), value);
+            }
+            b"DATA\0" => {
+                assert_eq!((datagram.len() - 5) % 36, 0);
+                for row in datagram[5..].chunks(36) {
+                    self.write_row(row);
+                }
+            }
+            other => panic!("not a message to X-Plane: {other:?}"),
+        }
+    }
+
+    fn write_row(&mut self, row: &[u8]) {
+        let columns: Vec<_> = row[4..]
+            .chunks(4)
+            .map(|column| f32::from_le_bytes(column.try_into().unwrap()))
+            .collect();
+        let paths: &[&str] = match row[0] {
+            8 => &[YOKE_PITCH, YOKE_ROLL, YOKE_HEADING],
+            25 => &[THROTTLE],
+            other => panic!("row {other} is not written"),
+        };
+        for (path, column) in paths.iter().zip(columns) {
+            if column > -998.0 {
+                self.write((*path).to_owned(), column);
+            }
+        }
+    }
+
+    fn write(&mut self, path: String, value: f32) {
+        self.writes.push((path.clone(), value));
+        if self.accepts_writes {
+            self.values.insert(path, value);
+        }
+    }
+
+    pub fn assert_shows(&self, path: &str, expected: f32) {
+        let shown = self.value(path);
+        assert!((shown - expected).abs() < 1e-6, "{path} shows {shown}");
+    }
+
+    /// Sends a frame: every subscribed value that exists, in one datagram.
+    pub fn send_frame(&self) {
+        self.send(&self.frame());
+    }
+
+    pub fn frame(&self) -> Vec<u8> {
+        let mut datagram = b"RREF,".to_vec();
+        for (index, path) in &self.subscribed {
+            if let Some(value) = self.values.get(path) {
+                datagram.extend(index.to_le_bytes());
+                datagram.extend(value.to_le_bytes());
+            }
+        }
+        datagram
+    }
+
+    pub fn send(&self, datagram: &[u8]) {
+        if let Some(client) = self.client {
+            self.socket.send_to(datagram, client).unwrap();
+        }
+    }
+
+    /// One tick of its life: listens, lets time pass, sends a frame.
+    pub fn live(&mut self, seconds: f32) {
+        self.listen();
+        let time = self.value(FLIGHT_TIME) + seconds;
+        self.set(FLIGHT_TIME, time);
+        self.send_frame();
+        if self.position_hz.is_some() {
+            self.send(&position_reply(self.position));
+        }
+    }
+}
+
+/// Up to the NUL, after which there may only be more of them.
+fn text(field: &[u8]) -> String {
+    let end = field.iter().position(|byte| *byte == 0).expect("no NUL");
+    assert!(field[end..].iter().all(|byte| *byte == 0), "not padded");
+    String::from_utf8(field[..end].to_vec()).unwrap()
+}
+
+/// A port of this machine that is free now.
+pub fn free_port() -> u16 {
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    socket.local_addr().unwrap().port()
+}
+
+/// A reply to RPOS, typed from the layout.
+pub fn position_reply(place: [f64; 3]) -> Vec<u8> {
+    let mut datagram = b"RPOS4".to_vec();
+    for field in place {
+        datagram.extend(field.to_le_bytes());
+    }
+    for field in [
+        900.0_f32, 2.5, 275.0, -20.0, -50.0, 1.0, 4.0, 0.01, -0.02, 0.03,
+    ] {
+        datagram.extend(field.to_le_bytes());
+    }
+    datagram
+}
+
+/// Ticks at 40 Hz on a clock of the test's own: nothing waits.
+pub struct Ticks {
+    number: u64,
+    pub now: Time,
+}
+
+impl Ticks {
+    pub fn new() -> Self {
+        Self {
+            number: 0,
+            now: Time::from_nanos(1_000_000_000_000),
+        }
+    }
+
+    pub fn next(&mut self) -> Tick {
+        self.number += 1;
+        self.now = self.now + Duration::from_millis(25);
+        Tick {
+            number: self.number,
+            scheduled: self.now,
+            woke: self.now,
+            missed: 0,
+            dt_s: 0.025,
+        }
+    }
+}
+
+/// Datagrams handed in without a socket, all from one address; what is sent is
+/// forgotten.
+pub struct Scripted {
+    pub from: SocketAddrV4,
+    pub datagrams: Mutex<VecDeque<Vec<u8>>>,
+}
+
+impl Port for Scripted {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+        let next = self.datagrams.lock().unwrap().pop_front();
+        Ok(next.map(|datagram| {
+            let length = datagram.len().min(into.len());
+            into[..length].copy_from_slice(&datagram[..length]);
+            (length, self.from)
+        }))
+    }
+
+    fn send(&self, _: &[u8], _: SocketAddrV4) -> Result<(), Errno> {
+        Ok(())
+    }
+}

@@ -1,0 +1,209 @@
+//! Taking the controls of a minimal X-Plane on the loopback interface, writing
+//! them, and giving them back on every way out.
+
+mod support;
+
+use fcc_core::framework::{Actuator, ActuatorFault};
+use fcc_xplane::{Control, Output, Trouble, XPlane};
+use support::bench::Bench;
+use support::{
+    FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING, YOKE_PITCH,
+    YOKE_ROLL,
+};
+
+#[test]
+fn control_is_taken_written_and_confirmed() {
+    let mut bench = Bench::new();
+    bench.settle();
+    assert_eq!(bench.status.control(), Control::Free);
+    for tick in 0..400 {
+        assert_eq!(bench.fly(), Ok(()), "tick {tick}");
+    }
+    bench.simulator.listen();
+    assert_eq!(bench.status.control(), Control::Held);
+    // The overrides come first, and again every second: 40 ticks of 4 writes
+    // and 2 more.
+    let paths: Vec<_> = bench
+        .simulator
+        .writes
+        .iter()
+        .map(|w| w.0.as_str())
+        .collect();
+    assert_eq!(&paths[..2], &[OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES]);
+    let asserted = paths
+        .iter()
+        .filter(|path| **path == OVERRIDE_JOYSTICK)
+        .count();
+    assert_eq!(asserted, 10);
+    assert_eq!(paths.len(), 400 * 4 + 10 * 2);
+    bench.simulator.assert_shows(YOKE_PITCH, 0.1);
+    bench.simulator.assert_shows(YOKE_ROLL, -0.2);
+    bench.simulator.assert_shows(YOKE_HEADING, 0.05);
+    bench.simulator.assert_shows(THROTTLE, 0.8);
+}
+
+#[test]
+fn an_override_that_got_lost_is_set_again_within_a_second() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..10 {
+        bench.fly().unwrap();
+    }
+    bench.simulator.set(OVERRIDE_JOYSTICK, 0.0);
+    for _ in 0..41 {
+        bench.fly().unwrap();
+    }
+    bench.simulator.listen();
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+}
+
+#[test]
+fn release_centres_and_lets_go() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..40 {
+        bench.fly().unwrap();
+    }
+    bench.simulator.listen();
+    bench.actuator.as_mut().unwrap().release().unwrap();
+    bench.assert_released();
+    assert_eq!(bench.status.control(), Control::LettingGo);
+    for _ in 0..20 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.control(), Control::Free);
+    // Again, and at the end: there is nothing left to give back.
+    bench.simulator.writes.clear();
+    bench.actuator.as_mut().unwrap().release().unwrap();
+    drop(bench.actuator.take());
+    bench.simulator.listen();
+    assert_eq!(bench.simulator.writes, []);
+}
+
+#[test]
+fn dropping_lets_go() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..40 {
+        bench.fly().unwrap();
+    }
+    bench.simulator.listen();
+    drop(bench.actuator.take());
+    bench.assert_released();
+}
+
+#[test]
+fn unwinding_lets_go() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.fly().unwrap();
+    bench.simulator.listen();
+    let actuator = bench.actuator.take();
+    let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(move || {
+        let _actuator = actuator;
+        std::panic::resume_unwind(Box::new("a controller failed"));
+    }));
+    assert!(panicked.is_err());
+    bench.assert_released();
+}
+
+#[test]
+fn what_was_never_taken_is_not_let_go() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.actuator.as_mut().unwrap().release().unwrap();
+    drop(bench.actuator.take());
+    bench.simulator.listen();
+    assert_eq!(bench.simulator.writes, []);
+}
+
+#[test]
+fn a_release_that_got_lost_is_sent_again_by_the_sensor() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..40 {
+        bench.fly().unwrap();
+    }
+    bench.simulator.listen();
+    bench.simulator.accepts_writes = false;
+    drop(bench.actuator.take());
+    bench.simulator.listen();
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+    bench.simulator.accepts_writes = true;
+    for _ in 0..20 {
+        bench.watch().unwrap();
+    }
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 0.0);
+    bench.simulator.assert_shows(OVERRIDE_THROTTLES, 0.0);
+    bench.simulator.assert_shows(YOKE_PITCH, 0.0);
+    assert_eq!(bench.status.control(), Control::Free);
+}
+
+#[test]
+fn control_may_be_taken_again_after_a_release() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..3 {
+        for _ in 0..40 {
+            bench.fly().unwrap();
+        }
+        bench.actuator.as_mut().unwrap().release().unwrap();
+        bench.watch().unwrap();
+        bench.fly().unwrap();
+        bench.simulator.listen();
+        bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+        assert_eq!(bench.status.control(), Control::Held);
+    }
+}
+
+#[test]
+fn writing_into_a_firewall_is_unconfirmed_and_says_which_setting() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.simulator.accepts_writes = false;
+    let faults: Vec<_> = (0..60).map(|_| bench.fly().err()).collect();
+    let first = faults.iter().position(Option::is_some);
+    // After more than a second: 41 ticks of 25 ms.
+    assert_eq!(first, Some(41));
+    assert_eq!(faults[59], Some(ActuatorFault::Unconfirmed));
+    let trouble = bench.status.trouble().unwrap();
+    assert_eq!(trouble, Trouble::Unconfirmed(bench.simulator.address()));
+    let words = trouble.to_string();
+    assert!(words.contains("Settings > Network > Accept incoming connections"));
+    assert!(words.contains("firewall"));
+
+    bench.simulator.accepts_writes = true;
+    for _ in 0..41 {
+        let _ = bench.fly();
+    }
+    assert_eq!(bench.fly(), Ok(()));
+    assert_eq!(bench.status.trouble(), None);
+}
+
+#[test]
+fn after_a_crash_the_controls_can_be_released_from_outside() {
+    let mut simulator = FakeXPlane::new();
+    simulator.set(OVERRIDE_JOYSTICK, 1.0);
+    simulator.set(YOKE_PITCH, -0.5);
+    XPlane::release_after_crash(&simulator.config(), simulator.address()).unwrap();
+    simulator.listen();
+    simulator.assert_shows(OVERRIDE_JOYSTICK, 0.0);
+    simulator.assert_shows(YOKE_PITCH, 0.0);
+}
+
+#[test]
+fn by_rows_it_is_written_confirmed_and_let_go_just_the_same() {
+    let mut bench = Bench::with(|config| config.output = Output::Data);
+    bench.settle();
+    for tick in 0..100 {
+        assert_eq!(bench.fly(), Ok(()), "tick {tick}");
+    }
+    bench.simulator.listen();
+    bench.simulator.assert_shows(YOKE_PITCH, 0.1);
+    bench.simulator.assert_shows(YOKE_ROLL, -0.2);
+    bench.simulator.assert_shows(YOKE_HEADING, 0.05);
+    bench.simulator.assert_shows(THROTTLE, 0.8);
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+    drop(bench.actuator.take());
+    bench.assert_released();
+}
