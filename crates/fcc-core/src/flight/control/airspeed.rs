@@ -27,10 +27,10 @@ pub struct AirspeedConfig {
 impl Default for AirspeedConfig {
     fn default() -> Self {
         Self {
-            airspeed_gain_per_s: 0.5,
-            airspeed_integral_gain_per_s2: 0.06,
-            throttle_per_mps2: 0.45,
-            induced_drag_ratio: 0.025,
+            airspeed_gain_per_s: 0.62,
+            airspeed_integral_gain_per_s2: 0.052,
+            throttle_per_mps2: 0.37,
+            induced_drag_ratio: 0.035,
             max_throttle_rate_per_s: 1.0,
             trim_throttle: 0.65,
         }

@@ -37,17 +37,17 @@ pub struct AltitudeConfig {
 impl Default for AltitudeConfig {
     fn default() -> Self {
         Self {
-            altitude_gain_per_s: 0.5,
-            capture_mps2: 0.8,
-            climb_acceleration_mps2: 1.5,
-            climb_rate_gain: 1.0,
-            climb_rate_integral_gain_per_s: 0.4,
-            angle_of_attack_per_g_rad: 0.08,
-            pitch_gain_per_s: 2.5,
-            max_pitch_rate_radps: 0.15,
-            pitch_rate_gain: 0.6,
-            pitch_rate_integral_gain: 1.5,
-            elevator_per_g: 0.2,
+            altitude_gain_per_s: 1.07,
+            capture_mps2: 1.11,
+            climb_acceleration_mps2: 3.3,
+            climb_rate_gain: 1.67,
+            climb_rate_integral_gain_per_s: 0.39,
+            angle_of_attack_per_g_rad: 0.0386,
+            pitch_gain_per_s: 6.2,
+            max_pitch_rate_radps: 0.175,
+            pitch_rate_gain: 0.86,
+            pitch_rate_integral_gain: 2.76,
+            elevator_per_g: 0.30,
         }
     }
 }

@@ -38,8 +38,8 @@ impl Default for Envelope {
             min_pitch_rad: -15.0_f64.to_radians(),
             min_airspeed_mps: 33.0,
             max_airspeed_mps: 70.0,
-            max_climb_mps: 6.0,
-            max_sink_mps: 6.0,
+            max_climb_mps: 4.9,
+            max_sink_mps: 4.9,
             airspeed_margin_mps: 4.0,
         }
     }
@@ -100,6 +100,6 @@ mod tests {
         assert!(envelope.climb_limits(30.0).max_mps < 0.0);
         assert!(envelope.climb_limits(73.0).min_mps > 0.0);
         let cruise = envelope.climb_limits(51.4);
-        assert_eq!((cruise.min_mps, cruise.max_mps), (-6.0, 6.0));
+        assert_eq!((cruise.min_mps, cruise.max_mps), (-4.9, 4.9));
     }
 }

@@ -41,19 +41,19 @@ pub struct HeadingConfig {
 impl Default for HeadingConfig {
     fn default() -> Self {
         Self {
-            heading_gain_per_s: 0.8,
-            rollout_rate_radps: 0.30,
-            lead_s: 0.3,
-            roll_gain_per_s: 2.5,
-            max_roll_rate_radps: 0.5,
-            max_roll_acceleration_radps2: 1.0,
-            aileron_per_roll_rate: 0.6,
-            roll_rate_gain: 0.4,
-            roll_rate_integral_gain: 0.5,
-            rudder_per_aileron: 0.1,
-            side_force_gain: 0.03,
-            side_force_integral_gain: 0.03,
-            yaw_damping: 0.2,
+            heading_gain_per_s: 0.84,
+            rollout_rate_radps: 0.37,
+            lead_s: 0.28,
+            roll_gain_per_s: 3.1,
+            max_roll_rate_radps: 0.70,
+            max_roll_acceleration_radps2: 1.2,
+            aileron_per_roll_rate: 0.27,
+            roll_rate_gain: 0.38,
+            roll_rate_integral_gain: 0.40,
+            rudder_per_aileron: 0.76,
+            side_force_gain: 0.060,
+            side_force_integral_gain: 0.054,
+            yaw_damping: 0.96,
         }
     }
 }
@@ -197,7 +197,7 @@ impl HeadingLoop {
     }
 
     /// The rudder that the loop has found to fly without sideslip.
-    pub const fn rudder_trim(&self) -> f64 {
-        self.side_force.integral()
+    pub fn rudder_trim(&self) -> f64 {
+        self.side_force.integral() + self.config.rudder_per_aileron * self.aileron_trim()
     }
 }

@@ -42,11 +42,11 @@ pub struct NavigationConfig {
 impl Default for NavigationConfig {
     fn default() -> Self {
         Self {
-            attitude_tau_s: 1.0,
-            heading_tau_s: 2.0,
-            vertical_bandwidth_radps: 0.5,
-            airspeed_tau_s: 1.5,
-            side_force_tau_s: 0.2,
+            attitude_tau_s: 1.36,
+            heading_tau_s: 1.44,
+            vertical_bandwidth_radps: 0.446,
+            airspeed_tau_s: 0.89,
+            side_force_tau_s: 0.19,
         }
     }
 }
