@@ -133,7 +133,9 @@ pub struct Travel {
 /// bootstrap approach (Performance of Light Aircraft, AIAA, 1999, ch. 7): the
 /// propeller polar `C_T/J² = m·C_P/J² + b` is a straight line, and at full
 /// throttle the torque depends on density alone, so that thrust is
-/// `2πm·M/d + b·ρd²V²` whatever the engine's speed.
+/// `2πm·M/d + b·ρd²V²` whatever the engine's speed. Throttle is a share of that
+/// torque: at 0 the engine is dead weight on a windmilling propeller, which
+/// brakes harder than a real engine's idle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Propulsion {
     /// Torque at full throttle at sea level, N·m.
@@ -157,7 +159,7 @@ impl Airframe {
     /// | what | source |
     /// |---|---|
     /// | area, span, chord, inertia, all derivatives, `C_L0`, `C_m0` | Roskam, *Airplane Flight Dynamics and Automatic Flight Controls* I (1995), app. B, airplane A, cruise, pp. 480-482; the same in Napolitano, *Aircraft Dynamics* (2012), app. B, Cessna 182 |
-    /// | mass: 2,400 lb | Cessna, *Pilot's Operating Handbook 172P* (1981) |
+    /// | mass: 2,400 lb, its greatest | Cessna, *Pilot's Operating Handbook 172P* (1981) |
     /// | `C_D0` 0.0319, e 0.75, A 7.32 | Loftin, *Quest for Performance*, NASA SP-468 (1985), Skyhawk |
     /// | lift at the stall: 1.6 | NACA 2412: Abbott and von Doenhoff, *Theory of Wing Sections* (1959) |
     /// | surface travel | FAA type certificate data sheet 3A12, model 172 |

@@ -7,11 +7,11 @@ use crate::sensing::SensorConfig;
 use crate::servos::Servos;
 use crate::trim::TrimError;
 use crate::turbulence::Severity;
-use crate::units::{FOOT_M, KNOT_MPS};
+use crate::units::{FOOT_M, KNOT_MPS, POUND_KG};
 
-/// What a simulation starts from. The default: a light single at 3,000 ft and
-/// 100 kt indicated, heading north, trimmed, in calm air, with perfect
-/// sensors, and an engage switch that goes on after 2 s.
+/// What a simulation starts from. The default: a light single with two aboard
+/// and full tanks at 3,000 ft and 100 kt indicated, heading north, trimmed, in
+/// calm air, with perfect sensors, and an engage switch that goes on after 2 s.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SimConfig {
     /// The aircraft.
@@ -68,7 +68,11 @@ pub struct SwitchScript {
 impl Default for SimConfig {
     fn default() -> Self {
         Self {
-            airframe: Airframe::SKYHAWK,
+            airframe: Airframe {
+                // 1,414 lb empty, 340 lb of people, 40 gal of fuel.
+                mass_kg: 2_000.0 * POUND_KG,
+                ..Airframe::SKYHAWK
+            },
             servos: Servos::default(),
             altitude_m: 3000.0 * FOOT_M,
             indicated_airspeed_mps: 100.0 * KNOT_MPS,
@@ -118,6 +122,7 @@ impl SimConfig {
         const ANGLE: &str = "-6.284..=6.284 rad";
         let inertia = &self.airframe.inertia;
         let airframe = &self.airframe;
+        let travel = &airframe.travel;
         for (field, value) in [
             ("airframe.mass_kg", airframe.mass_kg),
             ("airframe.inertia.xx", inertia.xx),
@@ -130,6 +135,13 @@ impl SimConfig {
                 "airframe.propulsion.diameter_m",
                 airframe.propulsion.diameter_m,
             ),
+            ("airframe.travel.elevator_up_rad", travel.elevator_up_rad),
+            (
+                "airframe.travel.elevator_down_rad",
+                travel.elevator_down_rad,
+            ),
+            ("airframe.travel.aileron_rad", travel.aileron_rad),
+            ("airframe.travel.rudder_rad", travel.rudder_rad),
             (
                 "servos.surfaces.rate_per_s",
                 self.servos.surfaces.rate_per_s,
@@ -141,6 +153,14 @@ impl SimConfig {
         ] {
             within(field, value, f64::MIN_POSITIVE, f64::MAX, "more than 0")?;
         }
+        let largest_xz = libm::sqrt(inertia.xx * inertia.zz);
+        within(
+            "airframe.inertia.xz",
+            inertia.xz.abs(),
+            0.0,
+            0.999 * largest_xz,
+            "smaller than √(xx·zz)",
+        )?;
         for (field, value) in [
             ("servos.surfaces.lag_s", self.servos.surfaces.lag_s),
             ("servos.throttle.lag_s", self.servos.throttle.lag_s),

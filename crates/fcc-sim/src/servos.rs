@@ -79,7 +79,8 @@ struct Prepared {
 
 impl Prepared {
     fn follow(&self, position: f64, command: f64) -> f64 {
-        position + ((command - position) * self.share).clamp(-self.most, self.most)
+        let way = (command - position) * self.share;
+        position + way.max(-self.most).min(self.most)
     }
 }
 
@@ -94,7 +95,8 @@ pub fn deflections(travel: &Travel, positions: &Surfaces, elevator_trim_rad: f64
     };
     Deflections {
         elevator_rad: (elevator_trim_rad - positions.elevator * elevator_travel)
-            .clamp(-travel.elevator_up_rad, travel.elevator_down_rad),
+            .max(-travel.elevator_up_rad)
+            .min(travel.elevator_down_rad),
         aileron_rad: positions.aileron * travel.aileron_rad,
         rudder_rad: -positions.rudder * travel.rudder_rad,
         throttle: positions.throttle,

@@ -61,6 +61,7 @@ fn cruise_at_8000_ft_is_as_fast_as_in_the_handbook() {
 #[test]
 fn it_climbs_as_in_the_handbook() {
     let mut aircraft = Aircraft::new(&SimConfig {
+        airframe: Airframe::SKYHAWK,
         altitude_m: 0.0,
         indicated_airspeed_mps: 76.0 * KNOT_MPS,
         ..SimConfig::default()
