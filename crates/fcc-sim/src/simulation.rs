@@ -117,6 +117,7 @@ impl Sensor<Measurements> for SimSensor {
             .as_ref()
             .map_or(truth, |history| history.late(&truth));
         self.sensors.measure(&measured, taken, into);
+        into.surfaces = Reading::new(commands, taken);
         into.engage_switch = Reading::new(self.switch(), taken);
         let state = if passed_s < tick.dt_s {
             PlantState::Slow

@@ -1,14 +1,19 @@
 //! Tables for people.
 
-use comfy_table::presets::UTF8_HORIZONTAL_ONLY;
-use comfy_table::{CellAlignment, Table};
+use std::fmt::Write as _;
+
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
 use super::score::{FlightScore, LegScore};
 use super::timing::TimingReport;
 
+/// One line under the header, and no other.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
-    table.load_style(UTF8_HORIZONTAL_ONLY);
+    table.load_style(STYLE);
     table.set_header(header);
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
@@ -63,10 +68,11 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     });
     let mut text = table.to_string();
     for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
-        text.push_str(&format!(
+        let _ = write!(
+            text,
             "\nnot granted: {} ({}): {}",
             refused.wish, refused.reason, refused.remedy
-        ));
+        );
     }
     text
 }

@@ -151,6 +151,7 @@ mod timer_name {
     use fcc_timer::TimerKind;
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
     pub(super) fn serialize<S: Serializer>(kind: &TimerKind, out: S) -> Result<S::Ok, S::Error> {
         out.collect_str(kind)
     }

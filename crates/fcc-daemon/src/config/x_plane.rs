@@ -114,6 +114,7 @@ mod simulator_text {
     use super::{Simulator, SocketAddrV4};
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
     pub(super) fn serialize<S: Serializer>(at: &Simulator, out: S) -> Result<S::Ok, S::Error> {
         match at {
             Simulator::Beacon => out.serialize_str("beacon"),

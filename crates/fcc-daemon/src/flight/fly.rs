@@ -4,15 +4,14 @@ use std::io;
 use std::thread;
 use std::time::Duration;
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-use super::Outcome;
 use super::assemble::Assembly;
 use super::watch::Watch;
+use super::{Outcome, Pilot};
 use crate::config::LoopSection;
 
 /// How fast time passes.
@@ -74,7 +73,7 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let parts = Parts {
         timer,
         sensors: assembly.sensors,
-        controller: assembly.autopilot,
+        controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
     let report = match plan.pace {
@@ -106,8 +105,8 @@ fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError
 }
 
 fn run_in_lockstep(
-    mut machine: Machine<Autopilot>,
-    link: &mut Link<Autopilot>,
+    mut machine: Machine<Pilot>,
+    link: &mut Link<Pilot>,
     watch: &mut Watch,
     plan: Plan,
 ) -> Result<LoopReport, FlyError> {
@@ -121,7 +120,7 @@ fn run_in_lockstep(
 }
 
 /// Fetches all there is, and stops the loop when its time is up.
-fn drain(link: &mut Link<Autopilot>, watch: &mut Watch, plan: Plan) {
+fn drain(link: &mut Link<Pilot>, watch: &mut Watch, plan: Plan) {
     while let Some(message) = link.messages.receive() {
         watch.take(&message);
         let time_is_up = plan
@@ -137,7 +136,7 @@ fn drain(link: &mut Link<Autopilot>, watch: &mut Watch, plan: Plan) {
 
 /// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
 /// safely do; the loop releases the controls in its next tick.
-fn catch_signals(link: &Link<Autopilot>) -> Result<(), FlyError> {
+fn catch_signals(link: &Link<Pilot>) -> Result<(), FlyError> {
     for signal in [SIGTERM, SIGINT, SIGHUP] {
         signal_hook::flag::register(signal, link.stop.flag()).map_err(FlyError::Signals)?;
     }

@@ -6,6 +6,8 @@
 
 mod assemble;
 mod fly;
+#[cfg(feature = "fault-injection")]
+mod injection;
 mod outcome;
 mod status;
 mod tap;
@@ -14,3 +16,20 @@ mod watch;
 pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Pace, Plan, fly};
 pub use outcome::{EventEntry, Outcome};
+
+/// What the loop runs.
+#[cfg(not(feature = "fault-injection"))]
+pub type Pilot = fcc_core::flight::Autopilot;
+/// What the loop runs: an autopilot that goes wrong when it is told to.
+#[cfg(feature = "fault-injection")]
+pub type Pilot = injection::Faulty;
+
+#[cfg(not(feature = "fault-injection"))]
+fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
+    autopilot
+}
+
+#[cfg(feature = "fault-injection")]
+fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
+    injection::Faulty::new(autopilot)
+}

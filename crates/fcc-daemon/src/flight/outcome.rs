@@ -1,5 +1,7 @@
 //! How a flight ended, for people and for tools.
 
+use std::fmt::Write as _;
+
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{
     FlightScore, Lateness, Period, Realtime, RefusedWish, TimingReport, flight_table, timing_table,
@@ -80,9 +82,9 @@ impl Outcome {
             text.push_str("\n\n");
             text.push_str(&flight_table(flight));
         }
-        text.push_str(&format!("\n\nended: {}", self.ending));
+        let _ = write!(text, "\n\nended: {}", self.ending);
         if self.failsafes > 0 {
-            text.push_str(&format!("; failsafe {} times", self.failsafes));
+            let _ = write!(text, "; failsafe {} times", self.failsafes);
         }
         if !self.released {
             text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");

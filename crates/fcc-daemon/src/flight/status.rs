@@ -1,8 +1,9 @@
 //! A line each second for who watches.
 
-use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, State};
 use fcc_runtime::Record;
+
+use super::Pilot;
 
 const M_FT: f64 = 1.0 / 0.304_8;
 const MPS_KT: f64 = 3_600.0 / 1_852.0;
@@ -16,12 +17,7 @@ pub(super) struct Printer {
 }
 
 impl Printer {
-    pub(super) fn record(
-        &mut self,
-        record: &Record<Autopilot>,
-        now_s: f64,
-        engaged_at_s: Option<f64>,
-    ) {
+    pub(super) fn record(&mut self, record: &Record<Pilot>, now_s: f64, engaged_at_s: Option<f64>) {
         self.worst_us = self
             .worst_us
             .max(record.tick.lateness().as_secs_f64() * 1e6);
@@ -34,7 +30,7 @@ impl Printer {
         }
     }
 
-    fn line(&self, record: &Record<Autopilot>, now_s: f64, engaged_at_s: Option<f64>) -> String {
+    fn line(&self, record: &Record<Pilot>, now_s: f64, engaged_at_s: Option<f64>) -> String {
         let measured = &record.measurements;
         let timing = format!("late ≤{:6.1} µs  missed {}", self.worst_us, self.missed);
         if measured.airspeed_mps.is_never() {
@@ -69,7 +65,7 @@ impl Printer {
                 );
                 for (n, bit) in record.blockers.iter().enumerate() {
                     line.push_str(if n == 0 { "  not ready: " } else { ", " });
-                    line.push_str(Autopilot::flag_name(bit));
+                    line.push_str(Pilot::flag_name(bit));
                 }
                 line
             }

@@ -1,12 +1,13 @@
 //! Takes what the loop tells, and keeps what matters later.
 
+use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::flight::{Autopilot, Course};
 use fcc_core::framework::State;
 use fcc_runtime::{Event, Message, Record};
 use fcc_sim::Truth;
 use fcc_telemetry::{FlightLog, Sample};
 
+use super::Pilot;
 use super::fly::Plan;
 use super::outcome::EventEntry;
 use super::status;
@@ -46,7 +47,7 @@ impl Watch {
     }
 
     /// Takes one message.
-    pub(super) fn take(&mut self, message: &Message<Autopilot>) {
+    pub(super) fn take(&mut self, message: &Message<Pilot>) {
         match message {
             Message::Tick(record) => self.record(record),
             Message::Event(event) => self.event(event),
@@ -68,7 +69,7 @@ impl Watch {
         (self.events, self.log)
     }
 
-    fn record(&mut self, record: &Record<Autopilot>) {
+    fn record(&mut self, record: &Record<Pilot>) {
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
         let truth = self
             .truth
@@ -100,7 +101,7 @@ impl Watch {
         let entry = EventEntry {
             time_s: self.seconds(event.time.as_nanos()),
             tick: event.tick,
-            text: event.kind.words::<Autopilot>().to_string(),
+            text: event.kind.words::<Pilot>().to_string(),
         };
         self.failed |= matches!(
             event.kind,
@@ -143,7 +144,7 @@ fn true_sample(time_s: f64, truth: &Truth) -> Sample {
     }
 }
 
-fn measured_sample(time_s: f64, record: &Record<Autopilot>) -> Sample {
+fn measured_sample(time_s: f64, record: &Record<Pilot>) -> Sample {
     let measured = &record.measurements;
     Sample {
         time_s,
