@@ -59,23 +59,23 @@ impl LettingGo {
             self.times = 0;
         }
         let settled = self.since + SETTLED_AFTER;
+        // An override that never showed is one that this simulator lacks.
         let shown = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
-            .map(|quantity| link.shown(quantity).filter(|(_, at)| *at > settled));
+            .map(|quantity| link.shown(quantity));
+        let shown = shown.iter().flatten();
         let still_set = shown
-            .into_iter()
-            .flatten()
-            .any(|(value, at)| value >= 0.5 && at > self.sent);
-        if still_set {
-            if now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
-                self.sent = now;
-                self.times += 1;
-                return self.controls.let_go(send);
-            }
-        } else if let [Some((joystick, _)), Some((throttles, _))] = shown
-            && joystick < 0.5
-            && throttles < 0.5
-        {
+            .clone()
+            .any(|(value, at)| *value >= 0.5 && *at > settled && *at > self.sent);
+        let all_clear = shown.clone().count() > 0
+            && shown
+                .clone()
+                .all(|(value, at)| *value < 0.5 && *at > settled);
+        if all_clear {
             link.set_free_if_letting_go();
+        } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
+            self.sent = now;
+            self.times += 1;
+            return self.controls.let_go(send);
         }
         Ok(())
     }

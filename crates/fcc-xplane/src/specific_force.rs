@@ -18,8 +18,8 @@ use crate::units::GRAVITY_MPS2;
 /// Specific force from the acceleration over the ground in X-Plane's axes
 /// (east, up, south; m/s²) and the attitude (true heading, pitch, roll; rad).
 ///
-/// The rotation is the z-y-x Euler sequence of Stevens and Lewis, Aircraft
-/// Control and Simulation (2nd ed. 2003), eq. 1.4-6.
+/// The rotation is the z-y-x Euler sequence (Stevens, Lewis and Johnson,
+/// Aircraft Control and Simulation, 3rd ed. 2016, section 1.3).
 pub(crate) fn specific_force(
     [east, up, south]: [f64; 3],
     [heading_rad, pitch_rad, roll_rad]: [f64; 3],
@@ -63,7 +63,7 @@ mod tests {
     }
 
     /// A coordinated level turn at 60° of bank loads an aircraft with 2 g
-    /// (FAA-H-8083-3C, figure 5-3), along its own z axis and nowhere else. To
+    /// (FAA-H-8083-25C, chapter 5), along its own z axis and nowhere else. To
     /// the right while heading north it accelerates east with g·tan 60° =
     /// 16.986 m/s²; heading east, south.
     #[test]

@@ -37,7 +37,7 @@ mod tests {
 
     #[test]
     fn conversions_are_the_published_ones() {
-        // FAA-H-8083-25C, and ISO 2533: 11 000 m are 36 089.24 ft.
+        // The tropopause of ISO 2533, 11 000 m, is at 36 089.24 ft.
         assert!((Unit::Feet.to_si(36_089.238_845) - 11_000.0).abs() < 1e-6);
         // 100 kt are 185.2 km/h.
         assert!((Unit::Knots.to_si(100.0) * 3.6 - 185.2).abs() < 1e-12);
