@@ -85,7 +85,7 @@ $(STAMPS)/rust: rust-toolchain.toml
 $(STAMPS)/python: hil/pyproject.toml
 	@python3 -c 'import ensurepip, venv' 2>/dev/null || ./scripts/apt-install python3-venv
 	python3 -m venv $(VENV)
-	$(PYTHON) -m pip install --quiet --editable './hil[dev]'
+	$(PYTHON) -m pip install --quiet --editable './hil[test]'
 	@mkdir -p $(STAMPS) && touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.

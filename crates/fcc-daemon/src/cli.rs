@@ -29,6 +29,10 @@ pub enum Command {
     Timing(TimingArgs),
     /// Check a configuration file
     Check(CheckArgs),
+    /// Give X-Plane's controls back if the daemon is killed; started by the
+    /// daemon itself
+    #[command(hide = true)]
+    Guard,
     /// Print a completion script for a shell
     Completions {
         /// Which shell

@@ -14,7 +14,7 @@
 //! state some milliseconds old for one tick.
 
 use fcc_core::flight::{
-    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Velocity,
+    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{Reading, Switch, Time};
 
@@ -202,6 +202,23 @@ impl Inbox {
             values.whole(Group::AngleOfAttack, [Quantity::AngleOfAttack])
         {
             into.angle_of_attack_rad = Reading::new(angle, taken);
+        }
+        if let Some(([throttle, elevator, aileron, rudder], taken)) = values.whole(
+            Group::Surfaces,
+            [
+                Quantity::Throttle,
+                Quantity::YokePitch,
+                Quantity::YokeRoll,
+                Quantity::YokeHeading,
+            ],
+        ) {
+            let surfaces = Surfaces {
+                throttle,
+                elevator,
+                aileron,
+                rudder,
+            };
+            into.surfaces = Reading::new(surfaces, taken);
         }
         if let Some(([switch], taken)) = values.whole(Group::Switch, [Quantity::EngageSwitch]) {
             let switch = if switch >= 0.5 {

@@ -11,6 +11,7 @@
 //! | `sim/cockpit2/gauges/indicators/altitude_ft_pilot` | `altitude_m` |
 //! | P`alpha` | `angle_of_attack_rad` |
 //! | P`local_vx/vy/vz` | `velocity` |
+//! | the first engine's `ENGN_thro_use`, the three `yoke_*_ratio` | `surfaces` |
 //! | the configured switch | `engage_switch` |
 //! | `sim/time/total_flight_time_sec`, `paused`, `framerate_period` | `plant` |
 //! | `onground_any`, `xplane_internal_version` | [`XPlaneStatus`](crate::XPlaneStatus) |
@@ -64,6 +65,7 @@ pub(crate) enum Quantity {
     YokePitch,
     YokeRoll,
     YokeHeading,
+    Throttle,
     LoadNormal,
     LoadAxial,
     LoadSide,
@@ -124,13 +126,14 @@ const TABLE: [Entry; Quantity::COUNT] = [
     Entry(Quantity::YokePitch, Dataref(YOKE_PITCH), Unit::Si, -1e3, 1e3),
     Entry(Quantity::YokeRoll, Dataref(YOKE_ROLL), Unit::Si, -1e3, 1e3),
     Entry(Quantity::YokeHeading, Dataref(YOKE_HEADING), Unit::Si, -1e3, 1e3),
+    Entry(Quantity::Throttle, Dataref("sim/flightmodel/engine/ENGN_thro_use[0]"), Unit::Si, 0.0, 1.0),
     Entry(Quantity::LoadNormal, Row, Unit::Gravities, -100.0, 100.0),
     Entry(Quantity::LoadAxial, Row, Unit::Gravities, -100.0, 100.0),
     Entry(Quantity::LoadSide, Row, Unit::Gravities, -100.0, 100.0),
 ];
 
 impl Quantity {
-    pub(crate) const COUNT: usize = 30;
+    pub(crate) const COUNT: usize = 31;
 
     /// All of them, in the order of their numbers.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
@@ -197,7 +200,7 @@ mod tests {
 
     #[test]
     fn an_index_of_somebody_else_is_nothing_of_ours() {
-        for index in [-1, i32::MIN, 30, 1_000, i32::MAX] {
+        for index in [-1, i32::MIN, 31, 1_000, i32::MAX] {
             assert_eq!(Quantity::from_index(index), None);
         }
     }

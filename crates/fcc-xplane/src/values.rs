@@ -17,11 +17,12 @@ pub(crate) enum Group {
     Airspeed,
     Altitude,
     AngleOfAttack,
+    Surfaces,
     Switch,
 }
 
 impl Group {
-    const COUNT: usize = 10;
+    const COUNT: usize = 11;
 }
 
 #[derive(Clone, Copy, Debug, Default)]

@@ -3,6 +3,7 @@
 
 mod check;
 mod fly;
+mod guard;
 mod run;
 mod timing;
 
@@ -21,6 +22,7 @@ pub fn run(cli: Cli) -> Exit {
         Command::Run(args) => run::run(&args),
         Command::Timing(args) => timing::timing(&args),
         Command::Check(args) => check::check(&args),
+        Command::Guard => guard::guard(),
         Command::Completions { shell } => {
             clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());
             Exit::Success

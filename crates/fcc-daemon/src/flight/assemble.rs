@@ -7,10 +7,10 @@ use fcc_core::framework::{Actuator, Sensor};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_timer::RealtimeWishes;
-use fcc_xplane::{OpenError, XPlane, XPlaneConfig};
+use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::tap::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config};
+use crate::config::{Aircraft, Config, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -25,6 +25,8 @@ pub struct Assembly {
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
+    /// X-Plane, if it is that.
+    pub(super) x_plane: Option<(XPlaneStatus, XPlaneSection)>,
 }
 
 /// Why a flight could not be put together.
@@ -62,16 +64,19 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
                 truth: Some(truth),
+                x_plane: None,
             })
         }
         Aircraft::XPlane(section) => {
             let (sensor, actuator) = XPlane::open(&XPlaneConfig::from(section))?;
+            let status = sensor.status();
             Ok(Assembly {
                 sensors: vec![Box::new(sensor)],
                 autopilot,
                 actuators: vec![Box::new(actuator)],
                 loop_config,
                 truth: None,
+                x_plane: Some((status, section.clone())),
             })
         }
     }

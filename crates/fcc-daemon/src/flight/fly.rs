@@ -10,7 +10,8 @@ use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
-use super::watch::Watch;
+use super::connection::Connection;
+use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
 
@@ -69,7 +70,12 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     };
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
-    let mut watch = Watch::new(&course, assembly.truth, plan);
+    let names = Names::of(&assembly);
+    let mut watch = Watch::new(&course, assembly.truth, plan, names);
+    // Before the loop's thread exists, so that nothing real-time is inherited.
+    let mut connection = assembly
+        .x_plane
+        .map(|(status, section)| Connection::watch(status, &section));
     let parts = Parts {
         timer,
         sensors: assembly.sensors,
@@ -83,6 +89,9 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
             let handle = flight_loop.spawn()?;
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, plan);
+                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                    watch.remark(words);
+                }
                 thread::sleep(FETCH_EVERY);
             }
             drain(&mut link, &mut watch, plan);
@@ -94,6 +103,9 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
             run_in_lockstep(machine, &mut link, &mut watch, plan)?
         }
     };
+    if let Some(connection) = connection {
+        connection.end(report.released);
+    }
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());

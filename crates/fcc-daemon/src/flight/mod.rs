@@ -5,7 +5,9 @@
 //! the outcome.
 
 mod assemble;
+mod connection;
 mod fly;
+mod guard;
 #[cfg(feature = "fault-injection")]
 mod injection;
 mod outcome;
@@ -15,6 +17,7 @@ mod watch;
 
 pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Pace, Plan, fly};
+pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
 
 /// What the loop runs.

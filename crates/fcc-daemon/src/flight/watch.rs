@@ -3,11 +3,12 @@
 use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::State;
-use fcc_runtime::{Event, Message, Record};
+use fcc_runtime::{Event, EventKind, Message, Record};
 use fcc_sim::Truth;
 use fcc_telemetry::{FlightLog, Sample};
 
 use super::Pilot;
+use super::assemble::Assembly;
 use super::fly::Plan;
 use super::outcome::EventEntry;
 use super::status;
@@ -19,12 +20,14 @@ const G_MPS2: f64 = 9.806_65;
 
 /// Takes what the loop tells, and keeps what matters later.
 pub(super) struct Watch {
+    names: Names,
     truth: Option<TruthReceiver>,
     log: Option<FlightLog>,
     events: Vec<EventEntry>,
     start_ns: Option<i64>,
     engaged_at_s: Option<f64>,
     now_s: f64,
+    tick: u64,
     failed: bool,
     announce: bool,
     status: Option<status::Printer>,
@@ -32,14 +35,21 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Watches a flight along a course.
-    pub(super) fn new(course: &Course, truth: Option<TruthReceiver>, plan: Plan) -> Self {
+    pub(super) fn new(
+        course: &Course,
+        truth: Option<TruthReceiver>,
+        plan: Plan,
+        names: Names,
+    ) -> Self {
         Self {
+            names,
             truth,
             log: pattern(course).map(FlightLog::new),
             events: Vec::new(),
             start_ns: None,
             engaged_at_s: None,
             now_s: 0.0,
+            tick: 0,
             failed: false,
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
@@ -71,6 +81,7 @@ impl Watch {
 
     fn record(&mut self, record: &Record<Pilot>) {
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
+        self.tick = record.tick.number;
         let truth = self
             .truth
             .as_mut()
@@ -101,15 +112,28 @@ impl Watch {
         let entry = EventEntry {
             time_s: self.seconds(event.time.as_nanos()),
             tick: event.tick,
-            text: event.kind.words::<Pilot>().to_string(),
+            text: self.names.words(event.kind),
         };
         self.failed |= matches!(
             event.kind,
-            fcc_runtime::EventKind::StateChanged {
+            EventKind::StateChanged {
                 to: State::Failsafe(_),
                 ..
             }
         );
+        self.keep(entry);
+    }
+
+    /// Something that the loop itself does not know.
+    pub(super) fn remark(&mut self, text: String) {
+        self.keep(EventEntry {
+            time_s: self.now_s,
+            tick: self.tick,
+            text,
+        });
+    }
+
+    fn keep(&mut self, entry: EventEntry) {
         if self.announce {
             eprintln!("{:8.2} s  {}", entry.time_s, entry.text);
         }
@@ -124,6 +148,41 @@ impl Watch {
         }
         let start = *self.start_ns.get_or_insert(nanos);
         (nanos - start) as f64 * 1e-9
+    }
+}
+
+/// What sensors and actuators are called: the loop knows them by their places.
+pub(super) struct Names {
+    sensors: Vec<&'static str>,
+    actuators: Vec<&'static str>,
+}
+
+impl Names {
+    pub(super) fn of(assembly: &Assembly) -> Self {
+        Self {
+            sensors: assembly.sensors.iter().map(|s| s.name()).collect(),
+            actuators: assembly.actuators.iter().map(|a| a.name()).collect(),
+        }
+    }
+
+    fn words(&self, kind: EventKind) -> String {
+        let sensor = |index: u16| self.sensors.get(usize::from(index)).unwrap_or(&"?");
+        let actuator = |index: u16| self.actuators.get(usize::from(index)).unwrap_or(&"?");
+        match kind {
+            EventKind::SensorFault { index, fault } => {
+                format!("sensor {}: {fault}", sensor(index))
+            }
+            EventKind::SensorRecovered { index } => {
+                format!("sensor {}: works again", sensor(index))
+            }
+            EventKind::ActuatorFault { index, fault } => {
+                format!("actuator {}: {fault}", actuator(index))
+            }
+            EventKind::ActuatorRecovered { index } => {
+                format!("actuator {}: works again", actuator(index))
+            }
+            kind => kind.words::<Pilot>().to_string(),
+        }
     }
 }
 
