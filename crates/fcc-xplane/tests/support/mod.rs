@@ -68,6 +68,7 @@ impl FakeXPlane {
             (YOKE_PITCH, 0.0),
             (YOKE_ROLL, 0.0),
             (YOKE_HEADING, 0.0),
+            (THROTTLE, 0.65),
             ("sim/cockpit2/gauges/indicators/altitude_ft_pilot", 3_000.0),
             ("sim/flightmodel/failures/onground_any", 0.0),
             ("sim/version/xplane_internal_version", 115_501.0),
