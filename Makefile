@@ -13,11 +13,13 @@ HARSH    ?=
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
+# The same with faults on purpose, for tests.
+FAULTY   := $(TARGET)/release/fccd-faulty
 VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
 
-.PHONY: help fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench doc build clean
+.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -31,7 +33,7 @@ fly: $(STAMPS)/rust build ## Fly the built-in aircraft through the timed pattern
 fly-jsbsim: $(STAMPS)/rust build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protocol (AIRCRAFT= LEGS= JSON= HARSH=)
 	@mkdir -p $(dir $(JSON))
 	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) \
-	    --fccd $(FCCD) --json $(JSON) --plot $(PLOT) $(HARSH)
+	    --fccd $(FCCD) --config config/x-plane.toml --json $(JSON) --plot $(PLOT) $(HARSH)
 
 test: lint test-rust test-python ## Run every check and every test
 
@@ -39,8 +41,12 @@ test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
 
-test-python: $(STAMPS)/rust build $(STAMPS)/python-module
-	FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil crates/fcc-py
+test-python: $(STAMPS)/rust faulty build $(STAMPS)/python-module $(STAMPS)/strace
+	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
+
+faulty: $(STAMPS)/rust
+	cargo build --locked --release -p fcc-daemon --features fault-injection
+	cp $(FCCD) $(FAULTY)
 
 lint: lint-rust lint-python deny ## Check formatting, lints, licences
 
@@ -49,9 +55,9 @@ lint-rust: $(STAMPS)/rust
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
 
-lint-python: $(STAMPS)/python
-	$(PYTHON) -m ruff check hil crates/fcc-py
-	$(PYTHON) -m ruff format --check hil crates/fcc-py
+lint-python: $(STAMPS)/python-module
+	$(PYTHON) -m ruff check hil
+	$(PYTHON) -m ruff format --check hil
 	cd hil && ../$(PYTHON) -m mypy
 
 deny: $(STAMPS)/rust
@@ -86,6 +92,10 @@ $(STAMPS)/python: hil/pyproject.toml
 	@python3 -c 'import ensurepip, venv' 2>/dev/null || ./scripts/apt-install python3-venv
 	python3 -m venv $(VENV)
 	$(PYTHON) -m pip install --quiet --editable './hil[test]'
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/strace:
+	@command -v strace >/dev/null || ./scripts/apt-install strace
 	@mkdir -p $(STAMPS) && touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.

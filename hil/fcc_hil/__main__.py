@@ -1,4 +1,4 @@
-"""Commands for people: `python -m fcc_hil fly | standin | peer`."""
+"""Commands for people: `python -m fcc_hil fly | standin | peer | bench`."""
 
 from __future__ import annotations
 
@@ -242,6 +242,20 @@ def _peer(options: argparse.Namespace) -> int:
     return 0
 
 
+def _bench(options: argparse.Namespace) -> int:
+    from .bench import run  # noqa: PLC0415 - needs the module fcc, which the others do not
+
+    flights = []
+    for name, figures in run(options.legs):
+        flights.append((name, figures))
+        print(f"  flown: {name}", file=sys.stderr, flush=True)
+    if options.json:
+        print(json.dumps(dict(flights), indent=2))
+    else:
+        print(table(flights))
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m fcc_hil", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -284,6 +298,13 @@ def _parser() -> argparse.ArgumentParser:
     peer.add_argument("--json", action="store_true", help="print the score as JSON")
     peer.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
     peer.set_defaults(run=_peer)
+
+    bench = commands.add_parser(
+        "bench", help="fly our autopilot and JSBSim's own in lockstep, side by side"
+    )
+    bench.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
+    bench.add_argument("--json", action="store_true", help="print the scores as JSON")
+    bench.set_defaults(run=_bench)
     return parser
 
 

@@ -14,7 +14,9 @@ mod units;
 mod x_plane;
 
 use std::path::Path;
+use std::time::Duration;
 
+use fcc_core::flight::AutopilotConfig;
 use serde::{Deserialize, Serialize};
 
 pub use autopilot::{AutopilotSection, CourseSection};
@@ -76,17 +78,43 @@ impl Config {
     /// # Errors
     /// As [`Config::load`], but for reading.
     pub fn parse(text: &str, file: &str) -> Result<Self, ConfigError> {
-        let config: Self =
-            toml::from_str(text).map_err(|error| ConfigError::syntax(file, text, &error))?;
-        let problems = ranges::check(&config, text);
-        if problems.is_empty() {
-            Ok(config)
-        } else {
-            Err(ConfigError::Invalid {
-                file: file.to_owned(),
-                problems,
-            })
+        Self::read(text, file)?.checked(text, file)
+    }
+
+    /// The autopilot's part of a text, for who flies an aircraft of their own:
+    /// no `[x-plane]` and no `[built-in]` is needed.
+    ///
+    /// # Errors
+    /// As [`Config::parse`].
+    pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
+        let mut config = Self::read(text, file)?;
+        if config.x_plane.is_none() {
+            config.built_in.get_or_insert_default();
         }
+        Ok(config.checked(text, file)?.autopilot_config())
+    }
+
+    fn read(text: &str, file: &str) -> Result<Self, ConfigError> {
+        toml::from_str(text).map_err(|error| ConfigError::syntax(file, text, &error))
+    }
+
+    fn checked(self, text: &str, file: &str) -> Result<Self, ConfigError> {
+        let problems = ranges::check(&self, text);
+        if problems.is_empty() {
+            return Ok(self);
+        }
+        Err(ConfigError::Invalid {
+            file: file.to_owned(),
+            problems,
+        })
+    }
+
+    /// The core's configuration.
+    pub fn autopilot_config(&self) -> AutopilotConfig {
+        self.autopilot.to_core(
+            &self.course,
+            Duration::from_millis(self.failsafe.sensor_max_age_ms),
+        )
     }
 
     /// The aircraft; the built-in one where a program did not say (a file has

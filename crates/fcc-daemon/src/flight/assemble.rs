@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Surfaces};
+use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
@@ -46,7 +46,7 @@ pub enum AssemblyError {
 /// # Errors
 /// When the aircraft cannot be had.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
-    let autopilot = Autopilot::new(autopilot_config(config));
+    let autopilot = Autopilot::new(config.autopilot_config());
     let loop_config = LoopConfig {
         switch_off: config.engage.switch_off.into(),
         failsafe_hold: Duration::from_secs_f64(config.failsafe.hold_s),
@@ -80,12 +80,4 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             })
         }
     }
-}
-
-/// The core's configuration of a file.
-pub(crate) fn autopilot_config(config: &Config) -> AutopilotConfig {
-    config.autopilot.to_core(
-        &config.course,
-        Duration::from_millis(config.failsafe.sensor_max_age_ms),
-    )
 }

@@ -1,0 +1,101 @@
+"""The autopilot and JSBSim in lockstep: no clock, no network, as fast as both compute.
+
+The same autopilot as in the daemon, through the module `fcc`. Each tick reads the
+sensors, steps the autopilot, writes the controls and steps the plant; a delay of n
+ticks hands it the measurements of n ticks before.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import fcc
+
+from .noise import SensorNoise
+from .pattern import TimedPattern
+from .plant import Plant, Weather
+from .score import Score, score
+from .state import Controls, State
+from .truth import STEPS_PER_ROW, TRUTH_HZ, Truth, row
+
+_SETTLING_S = 5.0
+"""Sensors are watched for so long before engaging, as the daemon does in standby."""
+_CALM = Weather()
+_THESIS_PATTERN = TimedPattern()
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What is flown, and what is in its way."""
+
+    aircraft: str = "c172p"
+    legs: int = 8
+    seed: int = 1
+    noise: bool = False
+    delay_ticks: int = 0
+    """Age of what the autopilot is told, in ticks of 25 ms."""
+    weather: Weather = _CALM
+    pattern: TimedPattern = _THESIS_PATTERN
+    config: str = ""
+    """Text of a configuration; the gains as they stand if empty."""
+
+
+def measurements(state: State) -> fcc.Measurements:
+    """Return what faultless sensors say of a state."""
+    return fcc.Measurements(
+        pitch_rad=state.pitch_rad,
+        roll_rad=state.roll_rad,
+        heading_rad=state.heading_rad,
+        roll_rate_radps=state.roll_rate_radps,
+        pitch_rate_radps=state.pitch_rate_radps,
+        yaw_rate_radps=state.yaw_rate_radps,
+        specific_force_x_mps2=state.specific_force_x_mps2,
+        specific_force_y_mps2=state.specific_force_y_mps2,
+        specific_force_z_mps2=state.specific_force_z_mps2,
+        airspeed_mps=state.airspeed_mps,
+        altitude_m=state.altitude_m,
+    )
+
+
+class _Sensors:
+    """Noise and delay between a plant and the autopilot."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._noise = SensorNoise(scenario.seed) if scenario.noise else None
+        self._waiting: deque[fcc.Measurements] = deque(maxlen=scenario.delay_ticks + 1)
+
+    def read(self, state: State) -> fcc.Measurements:
+        self._waiting.append(measurements(self._noise.apply(state) if self._noise else state))
+        return self._waiting[0]
+
+
+def fly(scenario: Scenario) -> tuple[Score, Truth]:
+    """Fly a scenario to its end; return its score and what was flown."""
+    plant = Plant(scenario.aircraft, seed=scenario.seed, weather=scenario.weather)
+    autopilot = fcc.Autopilot(scenario.config)
+    sensors = _Sensors(scenario)
+    for _ in range(round(_SETTLING_S * TRUTH_HZ)):
+        autopilot.observe(sensors.read(plant.state()), 1 / TRUTH_HZ)
+        plant.step(STEPS_PER_ROW)
+    autopilot.engage(sensors.read(plant.state()), 1 / TRUTH_HZ, throttle=plant.controls.throttle)
+
+    engaged_at_s = plant.time_s
+    rows = [row(plant.state(), plant.controls)]
+    for _ in range(round(scenario.pattern.duration_s(scenario.legs) * TRUTH_HZ)):
+        plant.step(STEPS_PER_ROW)
+        state = plant.state()
+        surfaces = autopilot.step(sensors.read(state), 1 / TRUTH_HZ)
+        plant.write(
+            Controls(
+                elevator=surfaces.elevator,
+                aileron=surfaces.aileron,
+                rudder=surfaces.rudder,
+                throttle=surfaces.throttle,
+            )
+        )
+        rows.append(row(state, plant.controls))
+    truth = Truth(rows)
+    captured = truth.captured_at(engaged_at_s)
+    legs = scenario.pattern.legs(scenario.legs, engaged_at_s, captured)
+    return score(truth.trace(), legs), truth
