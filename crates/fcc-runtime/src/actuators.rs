@@ -1,8 +1,7 @@
 //! The loop's actuators: driven, watched, and released whatever happens.
 
-use fcc_core::framework::{Actuator, ActuatorFault, Tick};
+use fcc_core::framework::{Actuator, ActuatorFault, EventKind, Tick};
 
-use crate::event::EventKind;
 use crate::faults::{Change, Health};
 use crate::outbox::Events;
 use crate::panics;
@@ -15,12 +14,12 @@ struct Watched<A> {
 }
 
 impl<A> Watched<A> {
-    fn note(
+    fn note<O>(
         &mut self,
         index: u16,
         result: Result<(), ActuatorFault>,
         tick: &Tick,
-        events: &mut Events,
+        events: &mut Events<O>,
     ) {
         match self.health.update(result) {
             Some(Change::Fault(fault)) => {
@@ -52,7 +51,7 @@ impl<A> Actuators<A> {
     }
 
     /// Hands the outputs to every actuator, after one that fails too.
-    pub(crate) fn apply(&mut self, tick: &Tick, outputs: &A, events: &mut Events) {
+    pub(crate) fn apply<O>(&mut self, tick: &Tick, outputs: &A, events: &mut Events<O>) {
         for (index, watched) in (0..).zip(&mut self.all) {
             let result = watched.actuator.apply(tick, outputs);
             self.faults += u64::from(result.is_err());
@@ -65,7 +64,7 @@ impl<A> Actuators<A> {
     ///
     /// # Errors
     /// The words of the first panic.
-    pub(crate) fn release(&mut self, tick: &Tick, events: &mut Events) -> Result<(), String> {
+    pub(crate) fn release<O>(&mut self, tick: &Tick, events: &mut Events<O>) -> Result<(), String> {
         let mut panic = Ok(());
         for (index, watched) in (0..).zip(&mut self.all) {
             match panics::caught(|| watched.actuator.release()) {

@@ -1,9 +1,8 @@
 //! The loop's changes of state: what leads to them, and what they lead to.
 
-use fcc_core::framework::{Cause, Controller, Flags, Input, State, Tick};
+use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tick};
 
 use crate::config::AfterFailsafe;
-use crate::event::EventKind;
 use crate::machine::Machine;
 use crate::orders::Asked;
 use crate::report::Ending;

@@ -93,27 +93,25 @@
 mod actuators;
 mod config;
 mod decide;
-mod event;
 mod faults;
 mod link;
 mod machine;
 mod orders;
 mod outbox;
 mod panics;
-mod record;
 mod report;
 mod run;
 mod sensors;
-mod stages;
+mod stopwatch;
 mod switch;
 
+// The words a loop is spoken with, so that its users need no other crate.
+pub use fcc_core::framework::{
+    Event, EventKind, EventOf, EventWords, Message, MessageOf, Order, Record, RecordOf, StageTimes,
+};
+
 pub use config::{AfterFailsafe, LoopConfig, Parts};
-pub use event::{Event, EventKind, EventWords};
 pub use link::{Link, MessageReceiver, OrderSender, OrdersFull, StopHandle};
 pub use machine::Machine;
-pub use orders::Order;
-pub use outbox::Message;
-pub use record::Record;
 pub use report::{Ending, LoopReport};
 pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};
-pub use stages::StageTimes;

@@ -3,11 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fcc_core::framework::Controller;
+use fcc_core::framework::{Controller, MessageOf, Order};
 use rtrb::{Consumer, Producer};
-
-use crate::orders::Order;
-use crate::outbox::Message;
 
 /// How the world outside speaks with a loop.
 pub struct Link<C: Controller> {
@@ -50,16 +47,16 @@ pub struct OrdersFull<O>(pub Order<O>);
 
 /// Fetches what a loop tells of itself; never waits.
 pub struct MessageReceiver<C: Controller> {
-    ring: Consumer<Message<C>>,
+    ring: Consumer<MessageOf<C>>,
 }
 
 impl<C: Controller> MessageReceiver<C> {
-    pub(crate) const fn new(ring: Consumer<Message<C>>) -> Self {
+    pub(crate) const fn new(ring: Consumer<MessageOf<C>>) -> Self {
         Self { ring }
     }
 
     /// The next message, if there is one.
-    pub fn receive(&mut self) -> Option<Message<C>> {
+    pub fn receive(&mut self) -> Option<MessageOf<C>> {
         self.ring.pop().ok()
     }
 

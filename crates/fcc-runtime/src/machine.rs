@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::{Cause, Controller, State, SwitchOff, Tick, Time};
+use fcc_core::framework::{
+    Cause, Controller, Order, Record, RecordOf, State, SwitchOff, Tick, Time,
+};
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, usage};
 use rtrb::{Consumer, RingBuffer};
 
@@ -10,13 +12,12 @@ use crate::actuators::Actuators;
 use crate::config::{AfterFailsafe, LoopConfig, Parts};
 use crate::decide::Telling;
 use crate::link::{Link, MessageReceiver, OrderSender, StopHandle};
-use crate::orders::{self, Order};
+use crate::orders;
 use crate::outbox::{EVENT_SLOTS, Outbox};
 use crate::panics;
-use crate::record::Record;
 use crate::report::{Ending, LoopReport};
 use crate::sensors::Sensors;
-use crate::stages::Stopwatch;
+use crate::stopwatch::Stopwatch;
 use crate::switch::EngageSwitch;
 
 /// The loop without its thread.
@@ -44,7 +45,7 @@ pub struct Machine<C: Controller> {
     pub(crate) switch: EngageSwitch,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
-    pub(crate) record: Record<C>,
+    pub(crate) record: RecordOf<C>,
 
     pub(crate) timing: TimingStats,
     pub(crate) ticks: u64,
@@ -151,7 +152,12 @@ impl<C: Controller> Machine<C> {
     /// One turn, in one direction: all that happens between the wake-up and
     /// the last actuator write.
     fn turn(&mut self, tick: &Tick) {
-        let asked = orders::read(&mut self.orders, &mut self.controller);
+        let asked = orders::read(
+            &mut self.orders,
+            &mut self.controller,
+            tick,
+            &mut self.outbox.events,
+        );
 
         let mut stopwatch = Stopwatch::start(&*self.timer);
         self.sensors
@@ -203,7 +209,7 @@ impl<C: Controller> Machine<C> {
 
     /// Completes this tick's record and sends it off with the tick's events.
     fn tell(&mut self) {
-        self.record.state = self.state;
+        self.record.state = self.state.into();
         self.record.measurements = self.measurements;
         self.record.sensor_faults = self.sensors.faults();
         self.record.actuator_faults = self.actuators.faults();
@@ -217,7 +223,7 @@ impl<C: Controller> Machine<C> {
     }
 
     /// The record of the last tick.
-    pub const fn record(&self) -> &Record<C> {
+    pub const fn record(&self) -> &RecordOf<C> {
         &self.record
     }
 

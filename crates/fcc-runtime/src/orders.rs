@@ -1,22 +1,9 @@
-//! What may be asked of a loop from outside.
+//! Reads what is asked of the loop from outside.
 
-use fcc_core::framework::Controller;
+use fcc_core::framework::{Controller, EventKind, Order, Tick};
 use rtrb::Consumer;
 
-/// What may be asked of a loop from outside. Orders are carried out in the
-/// sequence they were sent in.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Order<O> {
-    /// Take over, if nothing blocks it: one attempt, answered by a change of
-    /// state or by [`EngageRefused`](crate::EventKind::EngageRefused).
-    Engage,
-    /// Let go.
-    Disengage,
-    /// Let go and end the loop.
-    Stop,
-    /// For the controller.
-    Controller(O),
-}
+use crate::outbox::Events;
 
 /// Orders read in one tick at most: enough for hands and for a ground station,
 /// and a bound to what a flood of them can cost.
@@ -39,14 +26,21 @@ pub(crate) enum Asked {
 pub(crate) fn read<C: Controller>(
     ring: &mut Consumer<Order<C::Order>>,
     controller: &mut C,
+    tick: &Tick,
+    events: &mut Events<C::Order>,
 ) -> Asked {
     for _ in 0..ORDERS_PER_TICK {
-        match ring.pop() {
-            Ok(Order::Controller(order)) => controller.command(&order),
-            Ok(Order::Engage) => return Asked::Engage,
-            Ok(Order::Disengage) => return Asked::Disengage,
-            Ok(Order::Stop) => return Asked::Stop,
-            Err(rtrb::PopError::Empty) => break,
+        let Ok(order) = ring.pop() else {
+            break;
+        };
+        // Told before it is carried out: one that panics the controller is
+        // the one that must be in the recording.
+        events.push(tick, EventKind::Ordered(order));
+        match order {
+            Order::Controller(order) => controller.command(&order),
+            Order::Engage => return Asked::Engage,
+            Order::Disengage => return Asked::Disengage,
+            Order::Stop => return Asked::Stop,
         }
     }
     Asked::Nothing

@@ -1,42 +1,9 @@
 //! What goes out of the loop: records and events, by a ring that never waits.
 
 use std::collections::VecDeque;
-use std::fmt;
 
-use fcc_core::framework::{Controller, Tick};
+use fcc_core::framework::{Controller, Event, EventKind, Message, MessageOf, RecordOf, Tick};
 use rtrb::Producer;
-
-use crate::event::{Event, EventKind};
-use crate::record::Record;
-
-/// What a loop tells of itself.
-pub enum Message<C: Controller> {
-    /// One tick, whole.
-    Tick(Record<C>),
-    /// Something that happened. It comes before the record of its tick.
-    Event(Event),
-}
-
-// By hand: derived, these would ask `Clone` and `Copy` of the controller.
-impl<C: Controller> Clone for Message<C> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<C: Controller> Copy for Message<C> {}
-
-impl<C: Controller> fmt::Debug for Message<C>
-where
-    Record<C>: fmt::Debug,
-{
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Tick(record) => f.debug_tuple("Tick").field(record).finish(),
-            Self::Event(event) => f.debug_tuple("Event").field(event).finish(),
-        }
-    }
-}
 
 /// Slots of the ring that records may not take, so that events get through
 /// when nobody has fetched records for a while.
@@ -62,13 +29,13 @@ impl Gap {
 
 /// Events of a tick, and those that found no room in the ring yet. Filled
 /// while the tick runs, emptied after its last actuator write.
-pub(crate) struct Events {
-    waiting: VecDeque<Event>,
+pub(crate) struct Events<O> {
+    waiting: VecDeque<Event<O>>,
     lost: Gap,
     dropped: u64,
 }
 
-impl Events {
+impl<O> Events<O> {
     fn new() -> Self {
         Self {
             waiting: VecDeque::with_capacity(EVENT_SLOTS),
@@ -78,7 +45,7 @@ impl Events {
     }
 
     /// Keeps an event for the end of the tick; counts it if there is no room.
-    pub(crate) fn push(&mut self, tick: &Tick, kind: EventKind) {
+    pub(crate) fn push(&mut self, tick: &Tick, kind: EventKind<O>) {
         // Never beyond its first size: growing would allocate.
         if self.waiting.len() < EVENT_SLOTS {
             self.waiting.push_back(Event {
@@ -95,14 +62,14 @@ impl Events {
 
 /// The loop's end of the ring of messages.
 pub(crate) struct Outbox<C: Controller> {
-    ring: Producer<Message<C>>,
-    pub(crate) events: Events,
+    ring: Producer<MessageOf<C>>,
+    pub(crate) events: Events<C::Order>,
     lost: Gap,
     dropped: u64,
 }
 
 impl<C: Controller> Outbox<C> {
-    pub(crate) fn new(ring: Producer<Message<C>>) -> Self {
+    pub(crate) fn new(ring: Producer<MessageOf<C>>) -> Self {
         Self {
             ring,
             events: Events::new(),
@@ -112,7 +79,7 @@ impl<C: Controller> Outbox<C> {
     }
 
     /// Sends what waits and this tick's record, or counts the record as lost.
-    pub(crate) fn send(&mut self, record: &Record<C>) {
+    pub(crate) fn send(&mut self, record: &RecordOf<C>) {
         self.send_events(&record.tick);
         // A gap is told right before the record that ends it.
         let needed = 1 + usize::from(self.lost.count > 0);
@@ -164,7 +131,7 @@ impl<C: Controller> Outbox<C> {
         }
     }
 
-    fn tell(&mut self, tick: &Tick, kind: EventKind) -> bool {
+    fn tell(&mut self, tick: &Tick, kind: EventKind<C::Order>) -> bool {
         self.put(Message::Event(Event {
             tick: tick.number,
             time: tick.woke,
@@ -172,7 +139,7 @@ impl<C: Controller> Outbox<C> {
         }))
     }
 
-    fn put(&mut self, message: Message<C>) -> bool {
+    fn put(&mut self, message: MessageOf<C>) -> bool {
         self.ring.push(message).is_ok()
     }
 }

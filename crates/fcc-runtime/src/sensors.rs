@@ -1,8 +1,7 @@
 //! The loop's sensors and how they do.
 
-use fcc_core::framework::{Sensor, SensorFault, Tick};
+use fcc_core::framework::{EventKind, Sensor, SensorFault, Tick};
 
-use crate::event::EventKind;
 use crate::faults::{Change, Health};
 use crate::outbox::Events;
 
@@ -30,7 +29,7 @@ impl<M> Sensors<M> {
     }
 
     /// Samples every sensor, one that fails included: the others go on.
-    pub(crate) fn sample(&mut self, tick: &Tick, into: &mut M, events: &mut Events) {
+    pub(crate) fn sample<O>(&mut self, tick: &Tick, into: &mut M, events: &mut Events<O>) {
         for (index, watched) in (0..).zip(&mut self.all) {
             let result = watched.sensor.sample(tick, into);
             self.faults += u64::from(result.is_err());

@@ -3,10 +3,10 @@
 
 mod bench;
 
-use bench::{Bench, change};
+use bench::{Bench, EventKind, change, happened};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_core::framework::{ActuatorFault, Flags, SensorFault, Switch};
-use fcc_runtime::{EventKind, LoopConfig, Message, Order, OrdersFull, StageTimes};
+use fcc_runtime::{LoopConfig, Message, Order, OrdersFull, StageTimes};
 
 fn small(messages_capacity: usize) -> LoopConfig {
     LoopConfig {
@@ -98,6 +98,43 @@ fn orders_take_effect_in_their_sequence() {
     assert_eq!(bench.stage.log().ordered, [1, 2]);
     assert_eq!(bench.tick(|_| {}), Engaged);
     assert_eq!(bench.tick(|_| {}), Stopped);
+}
+
+/// With these and its measurements a recording is flown again: each order once,
+/// in the tick that read it, before what it led to.
+#[test]
+fn every_order_is_told_in_the_tick_that_read_it() {
+    let mut bench = Bench::new();
+    for order in [
+        Order::Controller(7),
+        Order::Engage,
+        Order::Controller(8),
+        Order::Stop,
+    ] {
+        bench.order(order);
+    }
+    bench.tick(|_| {});
+    bench.tick(|_| {});
+    let told: Vec<(u64, EventKind)> = bench
+        .messages()
+        .into_iter()
+        .filter_map(|message| match message {
+            Message::Event(event) => Some((event.tick, event.kind)),
+            Message::Tick(_) => None,
+        })
+        .collect();
+    assert_eq!(
+        told,
+        [
+            (1, EventKind::Ordered(Order::Controller(7))),
+            (1, EventKind::Ordered(Order::Engage)),
+            (1, change(Standby, Engaged)),
+            (2, EventKind::Ordered(Order::Controller(8))),
+            (2, EventKind::Ordered(Order::Stop)),
+            (2, change(Engaged, Stopped)),
+            (2, bench::RELEASED),
+        ]
+    );
 }
 
 #[test]
@@ -214,14 +251,9 @@ fn events_get_through_a_ring_full_of_records() {
         machine, mut link, ..
     } = bench;
     let report = machine.finish();
-    let events: Vec<EventKind> = std::iter::from_fn(|| link.messages.receive())
-        .filter_map(|message| match message {
-            Message::Event(event) => Some(event.kind),
-            Message::Tick(_) => None,
-        })
-        .collect();
+    let messages = std::iter::from_fn(|| link.messages.receive()).collect();
     assert_eq!(
-        events,
+        happened(messages),
         [
             change(Standby, Engaged),
             change(Engaged, Stopped),

@@ -4,10 +4,10 @@ mod bench;
 
 use std::time::Duration;
 
-use bench::{Bench, PERIOD, RELEASED, change};
+use bench::{Bench, EventKind, PERIOD, RELEASED, change};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
 use fcc_core::framework::{Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, EventKind, LoopConfig, Order};
+use fcc_runtime::{AfterFailsafe, LoopConfig, Order};
 
 const LOST: Flags = Flags::bit(1);
 const SENSORS_LOST: Cause = Cause::Faults(LOST);

@@ -3,10 +3,10 @@
 
 mod bench;
 
-use bench::{Bench, RELEASED, TimerEnd, change};
+use bench::{Bench, EventKind, RELEASED, TimerEnd, change};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_core::framework::{ActuatorFault, Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, Ending, EventKind, LoopConfig, LoopReport, Order};
+use fcc_runtime::{AfterFailsafe, Ending, LoopConfig, LoopReport, Order};
 
 fn engaged() -> Bench {
     Bench::engaged(&LoopConfig::default())

@@ -1,5 +1,6 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+use core::fmt;
 use core::time::Duration;
 
 use libm::cos;
@@ -282,6 +283,14 @@ impl Controller for Autopilot {
             .get(bit as usize)
             .copied()
             .unwrap_or("unknown condition")
+    }
+
+    fn write_order(order: &Order, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match order {
+            Order::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
+            Order::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
+            Order::Altitude(m) => write!(f, "altitude {m:.1} m"),
+        }
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {

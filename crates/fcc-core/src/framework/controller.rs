@@ -1,5 +1,7 @@
 //! What the loop runs.
 
+use core::fmt;
+
 use super::{Flags, Reading, Tick, Time};
 
 /// The position of the switch that engages the loop.
@@ -47,6 +49,17 @@ pub trait Controller: Send {
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;
+
+    /// An order to this controller, in words for people.
+    ///
+    /// # Errors
+    /// What the formatter says.
+    fn write_order(_order: &Self::Order, f: &mut fmt::Formatter<'_>) -> fmt::Result
+    where
+        Self: Sized,
+    {
+        f.write_str("something of the controller")
+    }
 
     /// Takes over: captures the present as set points, so that the outputs do
     /// not jump.

@@ -3,23 +3,34 @@
 //! A loop wakes once a [`Tick`], lets each [`Sensor`] write its part of the
 //! measurements, steps a [`Controller`] and hands the outputs to each
 //! [`Actuator`]. Which [`State`] the loop is in, and why, follows one
-//! transition table ([`State::after`]). The loop itself lives in
+//! transition table ([`State::after`]). What happened in a tick is its
+//! [`Record`]; what happened once is an [`Event`]. The loop itself lives in
 //! `fcc-runtime`; here are the parts it holds and the words they exchange.
 
 mod actuator;
 mod controller;
+mod event;
 mod flags;
+mod message;
+mod order;
 mod reading;
+mod record;
 mod sensor;
 mod state;
+mod state_code;
 mod tick;
 mod time;
 
 pub use actuator::{Actuator, ActuatorFault};
 pub use controller::{Controller, Switch};
+pub use event::{Event, EventKind, EventOf, EventWords};
 pub use flags::Flags;
+pub use message::{Message, MessageOf};
+pub use order::Order;
 pub use reading::Reading;
+pub use record::{Record, RecordOf, StageTimes};
 pub use sensor::{Sensor, SensorFault};
 pub use state::{Cause, Input, State, SwitchOff};
+pub use state_code::StateCode;
 pub use tick::Tick;
 pub use time::Time;

@@ -5,6 +5,8 @@
 //! - `FCCD_PANIC_AT_S`: so many seconds after engaging, control panics;
 //! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN.
 
+use std::fmt;
+
 use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
@@ -54,6 +56,10 @@ impl Controller for Faulty {
 
     fn flag_name(bit: u32) -> &'static str {
         Autopilot::flag_name(bit)
+    }
+
+    fn write_order(order: &Order, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Autopilot::write_order(order, f)
     }
 
     fn engage(&mut self, tick: &Tick, measurements: &Measurements) {

@@ -1,7 +1,7 @@
 //! A line each second for who watches.
 
 use fcc_core::framework::{Controller, State};
-use fcc_runtime::Record;
+use fcc_telemetry::FlightRecord;
 
 use super::Pilot;
 
@@ -17,7 +17,7 @@ pub(super) struct Printer {
 }
 
 impl Printer {
-    pub(super) fn record(&mut self, record: &Record<Pilot>, now_s: f64, engaged_at_s: Option<f64>) {
+    pub(super) fn record(&mut self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) {
         self.worst_us = self
             .worst_us
             .max(record.tick.lateness().as_secs_f64() * 1e6);
@@ -30,7 +30,7 @@ impl Printer {
         }
     }
 
-    fn line(&self, record: &Record<Pilot>, now_s: f64, engaged_at_s: Option<f64>) -> String {
+    fn line(&self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) -> String {
         let measured = &record.measurements;
         let timing = format!("late ≤{:6.1} µs  missed {}", self.worst_us, self.missed);
         if measured.airspeed_mps.is_never() {
@@ -44,7 +44,7 @@ impl Printer {
         let airspeed = measured.airspeed_mps.value * MPS_KT;
         let bank = measured.attitude.value.roll_rad.to_degrees();
         let aims = &record.setpoints;
-        match record.state {
+        match record.state.state() {
             State::Engaged => {
                 let since = engaged_at_s.map_or(0.0, |at_s| now_s - at_s);
                 format!(

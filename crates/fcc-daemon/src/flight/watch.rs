@@ -1,11 +1,10 @@
 //! Takes what the loop tells, and keeps what matters later.
 
-use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::State;
-use fcc_runtime::{Event, EventKind, Message, Record};
+use fcc_core::flight::{Course, Order};
+use fcc_core::framework::{EventKind, Message, State};
 use fcc_sim::Truth;
-use fcc_telemetry::{FlightLog, Sample};
+use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample};
 
 use super::Pilot;
 use super::assemble::Assembly;
@@ -57,7 +56,7 @@ impl Watch {
     }
 
     /// Takes one message.
-    pub(super) fn take(&mut self, message: &Message<Pilot>) {
+    pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => self.record(record),
             Message::Event(event) => self.event(event),
@@ -79,7 +78,7 @@ impl Watch {
         (self.events, self.log)
     }
 
-    fn record(&mut self, record: &Record<Pilot>) {
+    fn record(&mut self, record: &FlightRecord) {
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
         self.tick = record.tick.number;
         let truth = self
@@ -108,7 +107,7 @@ impl Watch {
         }
     }
 
-    fn event(&mut self, event: &Event) {
+    fn event(&mut self, event: &FlightEvent) {
         let entry = EventEntry {
             time_s: self.seconds(event.time.as_nanos()),
             tick: event.tick,
@@ -165,7 +164,7 @@ impl Names {
         }
     }
 
-    fn words(&self, kind: EventKind) -> String {
+    fn words(&self, kind: EventKind<Order>) -> String {
         let sensor = |index: u16| self.sensors.get(usize::from(index)).unwrap_or(&"?");
         let actuator = |index: u16| self.actuators.get(usize::from(index)).unwrap_or(&"?");
         match kind {
@@ -203,7 +202,7 @@ fn true_sample(time_s: f64, truth: &Truth) -> Sample {
     }
 }
 
-fn measured_sample(time_s: f64, record: &Record<Pilot>) -> Sample {
+fn measured_sample(time_s: f64, record: &FlightRecord) -> Sample {
     let measured = &record.measurements;
     Sample {
         time_s,

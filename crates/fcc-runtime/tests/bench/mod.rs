@@ -17,8 +17,10 @@ use fcc_core::framework::{
     Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, State, Switch, Tick,
     Time,
 };
-use fcc_runtime::{EventKind, Link, LoopConfig, Machine, Message, Parts, Record};
+use fcc_runtime::{Link, LoopConfig, Machine, Message, MessageOf, Parts, RecordOf};
 use fcc_timer::{Expiry, Timer, TimerError};
+
+pub(crate) type EventKind = fcc_runtime::EventKind<u32>;
 
 /// 40 Hz.
 pub(crate) const PERIOD: Duration = Duration::from_millis(25);
@@ -368,23 +370,17 @@ impl Bench {
         self.machine.step()
     }
 
-    pub(crate) fn messages(&mut self) -> Vec<Message<Puppet>> {
+    pub(crate) fn messages(&mut self) -> Vec<MessageOf<Puppet>> {
         std::iter::from_fn(|| self.link.messages.receive()).collect()
     }
 
-    /// Fetches all; what happened.
+    /// Fetches all; what happened, but for the orders: those the script knows.
     pub(crate) fn events(&mut self) -> Vec<EventKind> {
-        self.messages()
-            .into_iter()
-            .filter_map(|message| match message {
-                Message::Event(event) => Some(event.kind),
-                Message::Tick(_) => None,
-            })
-            .collect()
+        happened(self.messages())
     }
 
     /// Fetches all; the records.
-    pub(crate) fn records(&mut self) -> Vec<Record<Puppet>> {
+    pub(crate) fn records(&mut self) -> Vec<RecordOf<Puppet>> {
         self.messages()
             .into_iter()
             .filter_map(|message| match message {
@@ -393,6 +389,18 @@ impl Bench {
             })
             .collect()
     }
+}
+
+/// What happened, but for the orders.
+pub(crate) fn happened(messages: Vec<MessageOf<Puppet>>) -> Vec<EventKind> {
+    messages
+        .into_iter()
+        .filter_map(|message| match message {
+            Message::Event(event) => Some(event.kind),
+            Message::Tick(_) => None,
+        })
+        .filter(|kind| !matches!(kind, EventKind::Ordered(_)))
+        .collect()
 }
 
 pub(crate) fn change(from: State, to: State) -> EventKind {

@@ -1,27 +1,29 @@
 //! What happened, when it happened.
 
-use std::fmt;
-use std::marker::PhantomData;
+use core::fmt;
 
-use fcc_core::framework::{ActuatorFault, Cause, Controller, Flags, SensorFault, State, Time};
+use super::{ActuatorFault, Cause, Controller, Flags, Order, SensorFault, State, Time};
 
-/// Something that happened once, unlike a [`Record`](crate::Record), of which
-/// there is one per tick.
+/// Something that happened once, unlike a [`Record`](super::Record), of which
+/// there is one per tick; `O` is what may be ordered of the controller.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Event {
+pub struct Event<O> {
     /// The tick it happened in; before the first tick, 0.
     pub tick: u64,
     /// That tick's wake-up, on the loop's clock.
     pub time: Time,
     /// What it was.
-    pub kind: EventKind,
+    pub kind: EventKind<O>,
 }
 
-/// What can happen in a loop. Sensors and actuators go by their place in
-/// [`Parts`](crate::Parts), the first being 0.
+/// The event of a controller's loop.
+pub type EventOf<C> = Event<<C as Controller>::Order>;
+
+/// What can happen in a loop. Sensors and actuators go by their place in the
+/// loop, the first being 0.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-pub enum EventKind {
+pub enum EventKind<O> {
     /// The loop's state changed.
     StateChanged {
         /// The state before.
@@ -29,6 +31,9 @@ pub enum EventKind {
         /// The state now.
         to: State,
     },
+    /// An order was read, in the sequence they were sent in: with these and the
+    /// measurements of its records a flight can be flown again.
+    Ordered(Order<O>),
     /// Somebody wanted to engage, and must ask again.
     EngageRefused {
         /// Why; empty if control was let go in the same tick.
@@ -76,6 +81,16 @@ pub enum EventKind {
         /// The tick of the last.
         last: u64,
     },
+    /// Records that reached the recorder and not its file are lost: the disk
+    /// was too slow for them.
+    NotRecorded {
+        /// How many.
+        count: u64,
+        /// The first lost tick.
+        first: u64,
+        /// The last lost tick.
+        last: u64,
+    },
     /// The actuators were told to give control back.
     Released {
         /// Whether all of them did. If not, the loop asks again.
@@ -87,20 +102,17 @@ pub enum EventKind {
     TimerFailed,
 }
 
-impl EventKind {
-    /// The event in words for people, its conditions named by the controller.
-    pub fn words<C: Controller>(&self) -> EventWords<C> {
-        EventWords {
-            kind: *self,
-            controller: PhantomData,
-        }
+impl<O: Copy> EventKind<O> {
+    /// The event in words for people, its conditions and orders named by the
+    /// controller.
+    pub const fn words<C: Controller<Order = O>>(&self) -> EventWords<C> {
+        EventWords { kind: *self }
     }
 }
 
 /// An event in words for people; see [`EventKind::words`].
-pub struct EventWords<C> {
-    kind: EventKind,
-    controller: PhantomData<fn() -> C>,
+pub struct EventWords<C: Controller> {
+    kind: EventKind<C::Order>,
 }
 
 impl<C: Controller> fmt::Display for EventWords<C> {
@@ -116,6 +128,13 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                     State::Failsafe(Cause::InvalidOutput) => f.write_str(": invalid output"),
                     _ => Ok(()),
                 }
+            }
+            EventKind::Ordered(Order::Engage) => f.write_str("ordered: engage"),
+            EventKind::Ordered(Order::Disengage) => f.write_str("ordered: disengage"),
+            EventKind::Ordered(Order::Stop) => f.write_str("ordered: stop"),
+            EventKind::Ordered(Order::Controller(order)) => {
+                f.write_str("ordered: ")?;
+                C::write_order(&order, f)
             }
             EventKind::EngageRefused { blockers } if blockers.is_empty() => {
                 f.write_str("not engaged: control was let go at the same time")
@@ -138,6 +157,12 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                 write!(
                     f,
                     "{count} events lost, ticks {first} to {last}: nobody fetched them in time"
+                )
+            }
+            EventKind::NotRecorded { count, first, last } => {
+                write!(
+                    f,
+                    "{count} records not recorded, ticks {first} to {last}: the disk is too slow"
                 )
             }
             EventKind::Released { ok: true } => f.write_str("actuators released"),

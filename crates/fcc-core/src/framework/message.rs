@@ -1,0 +1,21 @@
+//! What a loop tells of itself.
+
+use super::{Controller, Event, Record};
+
+/// What a loop tells of itself: `M`, `S` and `O` are its measurements, set
+/// points and outputs, `R` what may be ordered of its controller.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Message<M, S, O, R> {
+    /// One tick, whole.
+    Tick(Record<M, S, O>),
+    /// Something that happened. It comes before the record of its tick.
+    Event(Event<R>),
+}
+
+/// What a controller's loop tells of itself.
+pub type MessageOf<C> = Message<
+    <C as Controller>::Measurements,
+    <C as Controller>::Setpoints,
+    <C as Controller>::Outputs,
+    <C as Controller>::Order,
+>;

@@ -1,0 +1,34 @@
+//! Measures how long each stage of a tick takes.
+
+use fcc_timer::Timer;
+
+/// Times one stage after the other. What it reads goes into the record and
+/// nowhere else: no decision of the loop depends on it.
+pub(crate) struct Stopwatch {
+    lap_ns: i64,
+}
+
+impl Stopwatch {
+    pub(crate) fn start(timer: &dyn Timer) -> Self {
+        Self {
+            lap_ns: timer.now_ns(),
+        }
+    }
+
+    /// Time since the start or the last lap.
+    pub(crate) fn lap(&mut self, timer: &dyn Timer) -> u64 {
+        let now_ns = timer.now_ns();
+        let lap = span_ns(self.lap_ns, now_ns);
+        self.lap_ns = now_ns;
+        lap
+    }
+
+    /// Time from `from_ns` to the last lap.
+    pub(crate) fn since(&self, from_ns: i64) -> u64 {
+        span_ns(from_ns, self.lap_ns)
+    }
+}
+
+fn span_ns(from_ns: i64, to_ns: i64) -> u64 {
+    u64::try_from(to_ns.saturating_sub(from_ns)).unwrap_or(0)
+}

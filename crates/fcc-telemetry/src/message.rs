@@ -1,0 +1,45 @@
+//! What a loop that runs the autopilot tells of itself.
+
+use fcc_core::flight::Autopilot;
+use fcc_core::framework::{EventOf, MessageOf, RecordOf};
+
+/// The record of one tick of a flight.
+pub type FlightRecord = RecordOf<Autopilot>;
+
+/// Something that happened in a flight.
+pub type FlightEvent = EventOf<Autopilot>;
+
+/// A record or an event of a flight.
+pub type FlightMessage = MessageOf<Autopilot>;
+
+#[cfg(test)]
+mod tests {
+    use std::mem::{align_of, offset_of, size_of};
+
+    use super::*;
+
+    /// Programs in other languages read the record by its layout: whoever
+    /// changes it gives it another version.
+    #[test]
+    fn the_layout_of_a_record_is_as_written_down() {
+        assert_eq!(
+            (size_of::<FlightRecord>(), align_of::<FlightRecord>()),
+            (512, 8)
+        );
+        assert_eq!(
+            [
+                offset_of!(FlightRecord, tick),
+                offset_of!(FlightRecord, stages),
+                offset_of!(FlightRecord, measurements),
+                offset_of!(FlightRecord, setpoints),
+                offset_of!(FlightRecord, outputs),
+                offset_of!(FlightRecord, sensor_faults),
+                offset_of!(FlightRecord, state),
+                offset_of!(FlightRecord, blockers),
+                offset_of!(FlightRecord, faults),
+                offset_of!(FlightRecord, sent),
+            ],
+            [0, 40, 88, 384, 432, 464, 488, 496, 500, 504]
+        );
+    }
+}
