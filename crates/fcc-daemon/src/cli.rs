@@ -11,7 +11,7 @@ use crate::exit::EXIT_CODES;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
-#[command(name = "fccd", version, about, after_help = EXIT_CODES)]
+#[command(name = "fccd", version, after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -48,7 +48,7 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly after engaging [default: the hold and 8 legs]
-    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
     #[arg(long)]
@@ -86,10 +86,11 @@ pub struct RunArgs {
 pub struct TimingArgs {
     /// Ticks a second; may be given several times
     #[arg(long = "rate", value_name = "HZ", default_values_t = [40.0, 50.0, 100.0],
-          value_parser = rate_hz)]
+          value_parser = rate_hz, allow_negative_numbers = true)]
     pub rates: Vec<f64>,
     /// How long to measure at each rate
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive_seconds)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive_seconds,
+          allow_negative_numbers = true)]
     pub seconds: f64,
     /// Which timer wakes the loop: timerfd, posix or nanosleep
     #[arg(long, value_name = "TIMER", default_value_t = TimerKind::Timerfd)]

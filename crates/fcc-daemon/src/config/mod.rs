@@ -7,10 +7,13 @@
 
 mod autopilot;
 mod built_in;
+mod course;
 mod error;
+mod places;
 mod ranges;
 mod runtime;
 mod units;
+mod wording;
 mod x_plane;
 
 use std::path::Path;
@@ -19,8 +22,9 @@ use std::time::Duration;
 use fcc_core::flight::AutopilotConfig;
 use serde::{Deserialize, Serialize};
 
-pub use autopilot::{AutopilotSection, CourseSection};
+pub use autopilot::AutopilotSection;
 pub use built_in::{BuiltInSection, GustsChoice};
+pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
 pub use x_plane::XPlaneSection;
@@ -66,11 +70,14 @@ impl Config {
     /// When it cannot be read, is not TOML, has an unknown key or a value out
     /// of range: every problem with its line.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
-            file: path.display().to_string(),
-            source,
-        })?;
-        Self::parse(&text, &path.display().to_string())
+        let file = path.display().to_string();
+        let bytes = match std::fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(source) => return Err(ConfigError::Unreadable { file, source }),
+        };
+        let text = std::str::from_utf8(&bytes)
+            .map_err(|error| ConfigError::not_text(&file, &bytes, error))?;
+        Self::parse(text, &file)
     }
 
     /// Checks a text; `file` is its name in messages.

@@ -87,6 +87,10 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             catch_signals(&link)?;
             let handle = flight_loop.spawn()?;
+            // At once, not only in the report of a flight that may take days.
+            for refusal in &handle.grants().refused {
+                watch.remark(refusal.to_string());
+            }
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {

@@ -11,6 +11,9 @@ use serde::Serialize;
 
 use crate::exit::Exit;
 
+/// The scheduling of a loop without a thread of its own.
+const NOT_ASKED: &str = "not asked for";
+
 /// How a flight ended.
 #[derive(Debug, Serialize)]
 pub struct Outcome {
@@ -121,7 +124,11 @@ fn timing_report(
             max: summary.lateness_max_us,
         },
         realtime: Realtime {
-            policy: grants.policy,
+            policy: if grants.policy.is_empty() {
+                NOT_ASKED
+            } else {
+                grants.policy
+            },
             priority: grants.priority,
             memory_locked: grants.memory_locked,
             refused: grants
