@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use fcc_xplane::{Control, SimulatorState, Trouble, XPlaneStatus};
+use fcc_xplane::{Control, Released, SimulatorState, Trouble, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::guard::Guard;
 use crate::config::XPlaneSection;
@@ -11,9 +11,14 @@ use crate::config::XPlaneSection;
 /// not had the time to answer.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// How long the end of a flight waits for X-Plane to show that it has its
+/// controls back.
+const GIVE_BACK_WITHIN: Duration = Duration::from_secs(5);
+
 /// Watches the connection to X-Plane, and keeps the guard informed.
 pub(super) struct Connection {
     status: XPlaneStatus,
+    section: XPlaneSection,
     guard: Option<Guard>,
     trouble: Option<(Trouble, Instant)>,
     told: Told,
@@ -41,6 +46,7 @@ impl Connection {
             .ok();
         Self {
             status,
+            section: section.clone(),
             guard,
             trouble: None,
             told: Told::Nothing,
@@ -50,8 +56,9 @@ impl Connection {
 
     /// What has changed, in words; none if there is nothing to say.
     pub(super) fn poll(&mut self) -> Option<String> {
-        if let (Some(guard), Some(simulator)) = (&mut self.guard, self.status.simulator()) {
-            guard.tell(simulator);
+        if let Some(guard) = &mut self.guard {
+            let held = self.status.control() != Control::Free;
+            guard.tell(self.status.simulator().filter(|_| held));
         }
         let now = self.status.trouble();
         if self.trouble.map(|(trouble, _)| trouble) != now {
@@ -98,11 +105,25 @@ impl Connection {
         (before != now).then(|| words.to_owned())
     }
 
-    /// The flight is over; `released` says whether control was given back.
-    pub(super) fn end(self, released: bool) {
-        // A guard that is not dismissed sees the pipe end and releases.
+    /// The flight is over. Waits until X-Plane shows that control is back, if
+    /// it was ever taken; whether it is.
+    ///
+    /// Sending a release is not enough: an X-Plane that hangs loses it, and
+    /// would fly on with its yoke held when it comes back.
+    pub(super) fn end(self) -> bool {
+        let held = self.status.control() != Control::Free;
+        let released = match self.status.simulator().filter(|_| held) {
+            None => true,
+            Some(simulator) => {
+                let config = XPlaneConfig::from(&self.section);
+                let released = XPlane::release_and_wait(&config, simulator, GIVE_BACK_WITHIN);
+                matches!(released, Ok(Released::Confirmed | Released::Gone))
+            }
+        };
+        // A guard that is not dismissed sees the pipe end, and goes on trying.
         if let Some(guard) = self.guard.filter(|_| released) {
             guard.dismiss();
         }
+        released
     }
 }

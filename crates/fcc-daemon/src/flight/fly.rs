@@ -107,9 +107,18 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
             run_in_lockstep(machine, &mut link, &mut watch, plan)?
         }
     };
-    if let Some(connection) = connection {
-        connection.end(report.released);
+    let confirmed = connection.is_none_or(Connection::end);
+    if !confirmed {
+        watch.remark(
+            "X-Plane did not show that it has its controls back; the guard process goes on \
+             trying for two minutes"
+                .to_owned(),
+        );
     }
+    let report = LoopReport {
+        released: report.released && confirmed,
+        ..report
+    };
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
