@@ -40,7 +40,7 @@ impl Default for AutopilotConfig {
     /// A Cessna 172 and the thesis' pattern.
     fn default() -> Self {
         Self {
-            reference_airspeed_mps: 51.44,
+            reference_airspeed_mps: 51.444_444, // 100 kt
             max_age: Duration::from_millis(250),
             navigation: NavigationConfig::default(),
             course: Course::TimedPattern(TimedPatternConfig::default()),

@@ -32,7 +32,7 @@ impl Default for AutopilotSection {
     fn default() -> Self {
         let core = AutopilotConfig::default();
         Self {
-            reference_airspeed_kt: core.reference_airspeed_mps / KNOT_MPS,
+            reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
             envelope: EnvelopeSection::from(&core.envelope),
             navigation: NavigationSection::from(&core.navigation),
             heading: HeadingSection::from(&core.heading),
@@ -125,6 +125,21 @@ impl From<&CourseSection> for Course {
     }
 }
 
+/// To five digits: the core's defaults are meant in the file's units, and a
+/// conversion there and back must not show.
+fn rounded(value: f64) -> f64 {
+    if value == 0.0 {
+        return value;
+    }
+    let digits = 4 - value.abs().log10().floor() as i32;
+    let scale = 10_f64.powi(digits.abs());
+    if digits >= 0 {
+        (value * scale).round() / scale
+    } else {
+        (value / scale).round() * scale
+    }
+}
+
 /// Declares a section of the file beside the core's struct: each field with
 /// its unit in the file and the factor that leads to the core's.
 macro_rules! section {
@@ -143,7 +158,7 @@ macro_rules! section {
 
         impl From<&$core> for $section {
             fn from(core: &$core) -> Self {
-                Self { $( $file_field: core.$core_field / $factor, )* }
+                Self { $( $file_field: rounded(core.$core_field / $factor), )* }
             }
         }
 

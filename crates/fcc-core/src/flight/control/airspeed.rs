@@ -29,7 +29,7 @@ impl Default for AirspeedConfig {
         Self {
             airspeed_gain_per_s: 0.62,
             airspeed_integral_gain_per_s2: 0.052,
-            throttle_per_mps2: 0.37,
+            throttle_per_mps2: 0.370_157, // 3.63 per g
             induced_drag_ratio: 0.035,
             max_throttle_rate_per_s: 1.0,
             trim_throttle: 0.65,

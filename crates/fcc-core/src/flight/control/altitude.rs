@@ -38,13 +38,13 @@ impl Default for AltitudeConfig {
     fn default() -> Self {
         Self {
             altitude_gain_per_s: 1.07,
-            capture_mps2: 1.11,
-            climb_acceleration_mps2: 3.3,
+            capture_mps2: 1.108_151,            // 0.113 g
+            climb_acceleration_mps2: 3.285_228, // 0.335 g
             climb_rate_gain: 1.67,
             climb_rate_integral_gain_per_s: 0.39,
-            angle_of_attack_per_g_rad: 0.0386,
+            angle_of_attack_per_g_rad: 0.038_572, // 2.21°
             pitch_gain_per_s: 6.2,
-            max_pitch_rate_radps: 0.175,
+            max_pitch_rate_radps: 0.174_533, // 10 °/s
             pitch_rate_gain: 0.86,
             pitch_rate_integral_gain: 2.76,
             elevator_per_g: 0.30,

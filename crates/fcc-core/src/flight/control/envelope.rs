@@ -36,11 +36,11 @@ impl Default for Envelope {
             max_load_factor: 2.0,
             max_pitch_rad: 20.0_f64.to_radians(),
             min_pitch_rad: -15.0_f64.to_radians(),
-            min_airspeed_mps: 33.0,
-            max_airspeed_mps: 70.0,
-            max_climb_mps: 4.9,
-            max_sink_mps: 4.9,
-            airspeed_margin_mps: 4.0,
+            min_airspeed_mps: 33.438_889,   // 65 kt
+            max_airspeed_mps: 69.45,        // 135 kt
+            max_climb_mps: 4.902_2,         // 965 ft/min
+            max_sink_mps: 4.902_2,          // 965 ft/min
+            airspeed_margin_mps: 4.115_556, // 8 kt
         }
     }
 }
@@ -100,6 +100,6 @@ mod tests {
         assert!(envelope.climb_limits(30.0).max_mps < 0.0);
         assert!(envelope.climb_limits(73.0).min_mps > 0.0);
         let cruise = envelope.climb_limits(51.4);
-        assert_eq!((cruise.min_mps, cruise.max_mps), (-4.9, 4.9));
+        assert_eq!((cruise.min_mps, cruise.max_mps), (-4.902_2, 4.902_2));
     }
 }

@@ -42,17 +42,17 @@ impl Default for HeadingConfig {
     fn default() -> Self {
         Self {
             heading_gain_per_s: 0.84,
-            rollout_rate_radps: 0.37,
+            rollout_rate_radps: 0.366_519, // 21 °/s
             lead_s: 0.28,
             roll_gain_per_s: 3.1,
-            max_roll_rate_radps: 0.70,
-            max_roll_acceleration_radps2: 1.2,
+            max_roll_rate_radps: 0.698_132,          // 40 °/s
+            max_roll_acceleration_radps2: 1.204_277, // 69 °/s²
             aileron_per_roll_rate: 0.27,
             roll_rate_gain: 0.38,
             roll_rate_integral_gain: 0.40,
             rudder_per_aileron: 0.76,
-            side_force_gain: 0.060,
-            side_force_integral_gain: 0.054,
+            side_force_gain: 0.060_163,          // 0.59 per g
+            side_force_integral_gain: 0.054_045, // 0.53 per g and s
             yaw_damping: 0.96,
         }
     }

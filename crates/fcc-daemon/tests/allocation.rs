@@ -1,0 +1,84 @@
+//! Ten thousand ticks of the whole thing - aircraft, navigation, guidance,
+//! control, actuators, record - do not touch the allocator.
+#![cfg(test)]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use fcc_core::framework::State;
+use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
+use fcc_daemon::flight::assemble;
+use fcc_runtime::{Machine, Message, Parts};
+use fcc_timer::ManualTimer;
+
+struct Counting;
+
+static CALLS: AtomicU64 = AtomicU64::new(0);
+
+#[expect(unsafe_code, reason = "an allocator is unsafe by nature")]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        CALLS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
+    let config = Config {
+        built_in: Some(BuiltInSection {
+            gusts: GustsChoice::Moderate,
+            delay_ms: 25,
+            ..BuiltInSection::default()
+        }),
+        ..Config::default()
+    };
+    let assembly = assemble(&config).unwrap();
+    let parts = Parts {
+        timer: Box::new(ManualTimer::new(Duration::from_millis(25)).unwrap()),
+        sensors: assembly.sensors,
+        controller: assembly.autopilot,
+        actuators: assembly.actuators,
+    };
+    let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();
+    machine.start().unwrap();
+
+    let (mut engaged, mut records) = (0, 0);
+    let before = CALLS.load(Ordering::Relaxed);
+    for _ in 0..10_000 {
+        if machine.step() == State::Engaged {
+            engaged += 1;
+        }
+        while let Some(message) = link.messages.receive() {
+            records += u32::from(matches!(message, Message::Tick(_)));
+        }
+    }
+    assert_eq!(CALLS.load(Ordering::Relaxed) - before, 0);
+
+    // It was a flight: 2 s of standby, and engaged to the end.
+    assert_eq!(records, 10_000);
+    assert!((9_900..=9_920).contains(&engaged), "{engaged}");
+
+    // The counter counts.
+    let before = CALLS.load(Ordering::Relaxed);
+    drop(std::hint::black_box(Box::new(1)));
+    assert_eq!(CALLS.load(Ordering::Relaxed) - before, 2);
+}

@@ -1,0 +1,63 @@
+//! The commented examples say what is so: with every comment sign before a key
+//! taken away, they are the defaults.
+#![cfg(test)]
+
+use fcc_daemon::config::{BuiltInSection, Config, XPlaneSection};
+
+const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
+const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
+
+/// `#key = value` becomes `key = value`; what begins with `# ` is prose.
+fn uncommented(text: &str) -> String {
+    text.lines()
+        .map(|line| match line.strip_prefix('#') {
+            Some(rest) if !rest.starts_with(' ') && rest.contains(" = ") => rest,
+            _ => line,
+        })
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+fn as_value(config: &Config) -> toml::Value {
+    toml::Value::try_from(config).unwrap()
+}
+
+#[test]
+fn the_built_in_example_says_every_default() {
+    let mut expected = Config {
+        built_in: Some(BuiltInSection::default()),
+        ..Config::default()
+    };
+    // Only said where there is a choice to make.
+    expected.realtime.cpu = Some(3);
+    let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
+    assert_eq!(as_value(&full), as_value(&expected));
+    let keys = uncommented(BUILT_IN).matches(" = ").count();
+    let leaves = leaves(&as_value(&expected));
+    assert_eq!(keys, leaves, "a key of the configuration is not explained");
+}
+
+#[test]
+fn the_x_plane_example_says_every_default() {
+    let mut expected = Config {
+        x_plane: Some(XPlaneSection::default()),
+        ..Config::default()
+    };
+    expected.realtime.cpu = Some(3);
+    let full = Config::parse(&uncommented(X_PLANE), "x-plane.toml").unwrap();
+    assert_eq!(as_value(&full), as_value(&expected));
+}
+
+#[test]
+fn the_examples_as_they_stand_are_good() {
+    for text in [BUILT_IN, X_PLANE] {
+        Config::parse(text, "example").unwrap();
+    }
+}
+
+fn leaves(value: &toml::Value) -> usize {
+    match value {
+        toml::Value::Table(table) => table.values().map(leaves).sum(),
+        _ => 1,
+    }
+}

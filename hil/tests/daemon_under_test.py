@@ -1,0 +1,199 @@
+"""The real daemon beside a stand-in: start both, wait for its words, read its report.
+
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.FROZEN)
+        daemon.wait_for("engaged -> failsafe")
+        ending = daemon.end(signal.SIGTERM)
+
+Everything waits for what it needs and gives up only long after a healthy machine
+would have answered, so that a busy one makes a test slow and not wrong.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, YOKE_PITCH
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+PATIENCE_S = 15.0
+_LOOK_S = 0.02
+
+NOT_READY = "not ready"
+"""In a status line: what keeps the daemon from engaging follows."""
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a daemon ended."""
+
+    exit_code: int
+    """Negative for a signal."""
+    report: dict[str, Any]
+    """Its JSON; empty if it printed none."""
+    said: str
+    """All that it said to people."""
+
+    @property
+    def events(self) -> list[str]:
+        return [event["text"] for event in self.report["events"]]
+
+    @property
+    def states(self) -> list[str]:
+        """Return the changes of state, without their reasons."""
+        return [text.partition(":")[0] for text in self.events if " -> " in text]
+
+
+class DaemonUnderTest:
+    """A running `fccd`. What it prints goes to files: it never has to wait for a reader."""
+
+    def __init__(
+        self,
+        words: Sequence[str | Path],
+        scratch: Path,
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
+        self._out = scratch / "fccd.out"
+        self._err = scratch / "fccd.err"
+        self._heard = 0
+        with self._out.open("wb") as out, self._err.open("wb") as err:
+            self._process = subprocess.Popen(
+                [str(word) for word in words],
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=err,
+                env={**os.environ, **(environment or {})},
+            )
+        self.pid = self._process.pid
+
+    def __enter__(self) -> DaemonUnderTest:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+
+    @property
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    @property
+    def said(self) -> str:
+        """Return what it has said to people so far."""
+        return self._err.read_text()
+
+    def wait_for(self, text: str, within_s: float = PATIENCE_S) -> str:
+        """Wait for a line with `text`, after the last one waited for, and return it."""
+        deadline_s = time.monotonic() + within_s
+        while True:
+            # It may say its last words between our looking and its end.
+            running = self.is_running
+            whole = self.said
+            for line in whole[self._heard :].splitlines(keepends=True):
+                if not line.endswith("\n"):
+                    break
+                self._heard += len(line)
+                if text in line:
+                    return line.rstrip()
+            assert running, f"it ended and never said '{text}', but:\n{whole}"
+            assert time.monotonic() < deadline_s, f"it has not said '{text}', but:\n{whole}"
+            time.sleep(_LOOK_S)
+
+    def wait_until_ready(self) -> None:
+        """Wait for a status line that says it sees an aircraft and nothing is in the way."""
+        while NOT_READY in self.wait_for("standby  heading"):
+            pass
+
+    def send(self, number: signal.Signals) -> None:
+        """Send a signal to the daemon alone."""
+        self._process.send_signal(number)
+
+    def end(self, by: signal.Signals | None = None, within_s: float = PATIENCE_S) -> Ending:
+        """Wait for its end, `by` a signal or by itself."""
+        if by is not None:
+            self.send(by)
+        try:
+            exit_code = self._process.wait(within_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"it does not end; it said:\n{self.said}") from None
+        printed = self._out.read_text()
+        return Ending(exit_code, json.loads(printed) if printed else {}, self.said)
+
+
+def wait_until(holds: Callable[[], bool], what: str, within_s: float = PATIENCE_S) -> None:
+    """Wait until something holds; `what` says in words what was waited for."""
+    deadline_s = time.monotonic() + within_s
+    while not holds():
+        assert time.monotonic() < deadline_s, f"not within {within_s:.0f} s: {what}"
+        time.sleep(_LOOK_S)
+
+
+def write_config(
+    scratch: Path,
+    port: int,
+    x_plane: str = "",
+    others: str = "",
+    course: str = 'kind = "hold"',
+) -> Path:
+    """Write a configuration for the stand-in at `port`, with more lines and sections."""
+    path = scratch / "fccd.toml"
+    path.write_text(
+        f'[x-plane]\nsimulator = "127.0.0.1:{port}"\n{x_plane}\n[course]\n{course}\n{others}\n'
+    )
+    return path
+
+
+def start(
+    fccd: Path, scratch: Path, config: Path, environment: Mapping[str, str] | None = None
+) -> DaemonUnderTest:
+    """Start `fccd run`, as a user does."""
+    return DaemonUnderTest([fccd, "run", "--config", config, "--json"], scratch, environment)
+
+
+@contextlib.contextmanager
+def flight(
+    fccd: Path,
+    scratch: Path,
+    settings: Settings | None = None,
+    x_plane: str = "",
+    others: str = "",
+    environment: Mapping[str, str] | None = None,
+) -> Iterator[tuple[StandInProcess, DaemonUnderTest]]:
+    """Start a stand-in on a port of its own, and the daemon against it."""
+    with StandInProcess(settings or Settings(port=0)) as simulator:
+        config = write_config(scratch, simulator.port, x_plane, others)
+        with start(fccd, scratch, config, environment) as daemon:
+            yield simulator, daemon
+
+
+def engage(simulator: StandInProcess, daemon: DaemonUnderTest) -> None:
+    """Move the switch inside the simulator, and wait until the daemon has the controls."""
+    daemon.wait_until_ready()
+    simulator.write(ENGAGE_SWITCH, 1.0)
+    daemon.wait_for("standby -> engaged")
+    wait_until(lambda: simulator.read(OVERRIDE_JOYSTICK) == 1.0, "the joystick's override is set")
+    wait_until(lambda: simulator.read(OVERRIDE_THROTTLES) == 1.0, "the throttles' override is set")
+
+
+def assert_released(simulator: StandInProcess) -> None:
+    """Both overrides have gone off, and the surfaces, deflected in flight, were centred before."""
+    wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
+    releases = simulator.releases()
+    assert {release.path for release in releases} == {OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES}
+    elevator = [write.value for write in simulator.journal() if write.path == YOKE_PITCH]
+    assert any(value != 0.0 for value in elevator)
+    joystick = next(release for release in releases if release.path == OVERRIDE_JOYSTICK)
+    assert (joystick.elevator, joystick.aileron, joystick.rudder) == (0.0, 0.0, 0.0)

@@ -1,0 +1,161 @@
+"""What simulators do to a flight control computer: die, pause, hang, reload, not listen."""
+
+from __future__ import annotations
+
+import signal
+import socket
+from pathlib import Path
+
+from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
+from deaf_simulator import DeafSimulator
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Mode, Settings
+
+SUCCESS = 0
+FAILSAFE = 3
+
+TOO_OLD = "attitude is missing or too old"
+SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
+
+
+def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.kill()
+        assert TOO_OLD in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("sensor X-Plane: nothing arrives")
+        daemon.wait_for("failsafe -> standby")
+        daemon.wait_for("actuators released")
+        assert str(simulator.port) in daemon.wait_for("does not answer")
+        assert TOO_OLD in daemon.wait_for("not ready")
+        with StandInProcess(Settings(port=simulator.port)) as again:
+            daemon.wait_for("works again")
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{again.port} answers")
+            engage(again, daemon)
+            again.write(ENGAGE_SWITCH, 0.0)
+            daemon.wait_for("engaged -> standby")
+            assert_released(again)
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["failsafes"] == 1
+    assert ending.report["released"] is True
+    assert ending.states == [
+        "standby -> engaged",
+        "engaged -> failsafe",
+        "failsafe -> standby",
+        "standby -> engaged",
+        "engaged -> standby",
+        "standby -> stopped",
+    ]
+
+
+def test_a_killed_simulator_ends_the_program_where_that_is_wanted(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path, others=SHORT_FAILSAFE + 'then = "stop"') as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.kill()
+        ending = daemon.end()
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["ending"] == "failsafe was over"
+    assert ending.states[-1] == "failsafe -> stopped"
+
+
+def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.PAUSED)
+        stood_at_s = simulator.progress().time_s
+        for _ in range(3):
+            assert "engaged" in daemon.wait_for("heading")
+        assert simulator.progress().time_s == stood_at_s
+        assert simulator.progress().overridden
+        simulator.set_mode(Mode.RUNNING)
+        wait_until(lambda: simulator.progress().time_s > stood_at_s + 1.0, "simulated time goes on")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.FROZEN)
+        assert TOO_OLD in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("failsafe -> standby")
+        simulator.set_mode(Mode.RUNNING)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        engage(simulator, daemon)
+        simulator.jump(100.0)
+        assert "simulator time jumped" in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("failsafe -> standby")
+        assert_released(simulator)
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["failsafes"] == 2
+
+
+def test_a_flight_that_is_loaded_anew_is_not_flown_on(fccd: Path, tmp_path: Path) -> None:
+    """The switch comes back off and the clock at zero; either is a reason to let go."""
+    with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.restart_flight()
+        daemon.wait_for("engaged -> ")
+        wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
+        engage(simulator, daemon)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        assert_released(simulator)
+        daemon.end(signal.SIGTERM)
+
+
+def test_writes_that_never_arrive_are_said_with_the_setting_to_change(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        DeafSimulator(simulator.port) as deaf,
+        start(fccd, tmp_path, write_config(tmp_path, deaf.port)) as daemon,
+    ):
+        daemon.wait_until_ready()
+        simulator.write(ENGAGE_SWITCH, 1.0)
+        daemon.wait_for("standby -> engaged")
+        said = daemon.wait_for("Accept incoming connections")
+        assert "have no effect" in said
+        assert str(deaf.port) in said
+        assert not simulator.progress().overridden
+        assert deaf.dropped > 0
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        ending = daemon.end(signal.SIGTERM)
+    assert any(text.startswith("actuator X-Plane: ") for text in ending.events)
+
+
+def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        port = nobody.getsockname()[1]
+        with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
+            daemon.wait_for("no aircraft yet")
+            said = daemon.wait_for("does not answer")
+            assert "X-Plane" in said
+            assert str(port) in said
+            assert "Accept incoming connections" in said
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> stopped"]
+
+
+def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
+    """Sent to this machine alone: what multicast reaches is the network's affair."""
+    with StandInProcess(Settings(port=0, beacon=("127.0.0.1", 49707))) as simulator:
+        config = tmp_path / "fccd.toml"
+        config.write_text('[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n')
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            ending = daemon.end(signal.SIGTERM)
+            assert_released(simulator)
+    assert ending.exit_code == SUCCESS

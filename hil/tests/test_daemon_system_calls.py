@@ -1,0 +1,154 @@
+"""What the loop asks of the kernel while it flies: its timer and its socket, nothing else.
+
+The daemon runs under `strace`, engaged against the stand-in. Between the first and the
+last wake-up of the loop's thread every system call is looked at: an allocation that
+grows the heap, a lock that waits, a log line or a file would show.
+"""
+
+from __future__ import annotations
+
+import collections
+import contextlib
+import os
+import re
+import shutil
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import pytest
+from daemon_under_test import DaemonUnderTest, engage, wait_until, write_config
+
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+LOOP_THREAD = "fcc-loop"
+RATE_HZ = 500
+# Three surfaces and a throttle.
+WRITES_PER_TICK = 4
+
+_CALL = re.compile(r"(\w+)\((.*)")
+_START_S = 30.0
+# Ticks whose mark is cut in two by the end of what was read so far.
+_MARGIN = 100
+# Tracing may slow the loop down many times on a busy machine.
+_TRACE_S = 120.0
+
+
+@dataclass(frozen=True)
+class Clock:
+    """How a timer waits, as the kernel sees it."""
+
+    name: str
+    waits_by: str
+    """The call that returns at each tick."""
+    waits_on: str
+    """In that call's arguments."""
+    also: frozenset[str] = frozenset()
+
+
+TIMERFD = Clock("timerfd", "read", "[timerfd]")
+POSIX = Clock("posix", "rt_sigtimedwait", "SI_TIMER", frozenset({"timer_getoverrun"}))
+NANOSLEEP = Clock("nanosleep", "clock_nanosleep", "TIMER_ABSTIME")
+
+
+@pytest.mark.parametrize(
+    ("clock", "ticks"),
+    [(TIMERFD, 10_000), (POSIX, 1_000), (NANOSLEEP, 1_000)],
+    ids=lambda value: getattr(value, "name", None),
+)
+def test_only_the_timers_and_the_sockets_calls(
+    fccd: Path, tmp_path: Path, clock: Clock, ticks: int
+) -> None:
+    calls = between_ticks(traced_flight(fccd, tmp_path, clock, ticks), clock)
+    counts = collections.Counter(name for name, _ in calls)
+    # On machines where it is no system call at all, it does not show.
+    counts.pop("clock_gettime", 0)
+    assert set(counts) == {clock.waits_by, "recvfrom", "sendto"} | clock.also
+
+    flown = counts[clock.waits_by]
+    assert flown >= ticks
+    assert all(clock.waits_on in words for name, words in calls if name == clock.waits_by)
+    assert all(counts[name] == flown for name in clock.also)
+    # Each tick reads until there is nothing left, and writes all controls once engaged.
+    emptied = [words for name, words in calls if name == "recvfrom" and "EAGAIN" in words]
+    assert len(emptied) == flown
+    assert counts["sendto"] >= WRITES_PER_TICK * ticks
+    sockets = {words.partition(",")[0] for name, words in calls if name in ("recvfrom", "sendto")}
+    assert len(sockets) == 1
+
+
+def traced_flight(fccd: Path, scratch: Path, clock: Clock, ticks: int) -> list[tuple[str, str]]:
+    """Fly until the loop has ticked so often while engaged; return its thread's calls."""
+    strace = shutil.which("strace")
+    assert strace, "strace is missing: `apt-get install strace`"
+    trace = scratch / "trace"
+    tracer: list[str | Path] = [strace, "-ff", "-y", "-s", "0", "-o", trace]
+    with StandInProcess(Settings(port=0)) as simulator:
+        loop = f'[loop]\nrate_hz = {RATE_HZ}\ntimer = "{clock.name}"'
+        config = write_config(scratch, simulator.port, others=loop)
+        words = [*tracer, fccd, "run", "--config", config, "--json"]
+        with DaemonUnderTest(words, scratch) as traced:
+            wait_until(
+                lambda: loop_thread(traced.pid) is not None or not traced.is_running,
+                f"a thread named {LOOP_THREAD} under strace",
+                _START_S,
+            )
+            found = loop_thread(traced.pid)
+            assert found, f"no thread to trace: {traced.said}"
+            daemon, thread = found
+            path = Path(f"{trace}.{thread}")
+            try:
+                engage(simulator, traced)
+                with path.open("rb") as so_far:
+                    so_far.seek(0, os.SEEK_END)
+                    wakes = WakeCounter(so_far, clock)
+                    wait_until(lambda: wakes.count() >= ticks + _MARGIN, f"{ticks} ticks", _TRACE_S)
+                os.kill(daemon, signal.SIGTERM)
+                ending = traced.end()
+            finally:
+                # Killing strace alone would leave the daemon flying.
+                if traced.is_running:
+                    os.kill(daemon, signal.SIGKILL)
+    assert ending.exit_code == 0, ending.said
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    return [
+        (call[1], call[2]) for line in path.read_text().splitlines() if (call := _CALL.match(line))
+    ]
+
+
+class WakeCounter:
+    """Counts the wake-ups in a trace that is still being written."""
+
+    def __init__(self, trace: BinaryIO, clock: Clock) -> None:
+        self._trace = trace
+        self._mark = f"{clock.waits_by}(".encode()
+        self._counted = 0
+
+    def count(self) -> int:
+        self._counted += self._trace.read().count(self._mark)
+        return self._counted
+
+
+def loop_thread(tracer: int) -> tuple[int, int] | None:
+    """Return process and thread of the loop that `tracer` traces, if it runs yet."""
+    for status in Path("/proc").glob("[0-9]*/task/[0-9]*/status"):
+        # Processes come and go while we look.
+        with contextlib.suppress(OSError):
+            fields = dict(
+                line.split(":\t", 1) for line in status.read_text().splitlines() if ":\t" in line
+            )
+            if fields["Name"] == LOOP_THREAD and fields["TracerPid"] == str(tracer):
+                return int(fields["Tgid"]), int(fields["Pid"])
+    return None
+
+
+def between_ticks(calls: list[tuple[str, str]], clock: Clock) -> list[tuple[str, str]]:
+    """Return the calls from the first wake-up on to right before the last."""
+    wakes = [
+        place
+        for place, (name, words) in enumerate(calls)
+        if name == clock.waits_by and clock.waits_on in words
+    ]
+    return calls[wakes[0] : wakes[-1]]

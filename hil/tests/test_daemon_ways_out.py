@@ -1,0 +1,105 @@
+"""However the daemon ends, X-Plane has its controls back: asserted on X-Plane's side."""
+
+from __future__ import annotations
+
+import math
+import signal
+from pathlib import Path
+
+import pytest
+from daemon_under_test import assert_released, engage, flight, wait_until
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK
+from fcc_hil.fly import ENGAGE_SWITCH
+
+# What `fccd --help` says of them.
+SUCCESS = 0
+FAILSAFE = 3
+PANICKED = 6
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signal.Signals) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        ending = daemon.end(number)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    assert ending.report["timing"]["rate_hz"] == 40.0
+    assert ending.report["timing"]["ticks"] > 0
+    assert ending.report["flight"] is None, "a hold has no legs to score"
+    assert ending.report["ending"] == "told to stop"
+    assert ending.report["released"] is True
+    assert ending.report["failsafes"] == 0
+    assert "Accept incoming connections" not in ending.said
+
+
+def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Path) -> None:
+    with flight(faulty_fccd, tmp_path, environment={"FCCD_PANIC_AT_S": "1"}) as (simulator, daemon):
+        engage(simulator, daemon)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == PANICKED
+    assert ending.report["released"] is True
+    assert "injected panic" in ending.report["ending"]
+    assert "a part of the loop panicked" in ending.events
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_a_command_that_is_no_number_never_leaves_the_daemon(
+    faulty_fccd: Path, tmp_path: Path
+) -> None:
+    with flight(
+        faulty_fccd,
+        tmp_path,
+        others="[failsafe]\nhold_s = 1.0",
+        environment={"FCCD_NAN_AT_S": "1"},
+    ) as (simulator, daemon):
+        engage(simulator, daemon)
+        daemon.wait_for("engaged -> failsafe: invalid output")
+        daemon.wait_for("failsafe -> standby")
+        assert_released(simulator)
+        ending = daemon.end(signal.SIGTERM)
+        # The stand-in refuses what is no number; nothing was to be refused.
+        assert simulator.status()["last_refusals"] == []
+        assert all(math.isfinite(write.value) for write in simulator.journal())
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["failsafes"] == 1
+
+
+def test_a_killed_daemon_leaves_a_guard_that_centres_and_releases(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        ending = daemon.end(signal.SIGKILL)
+        assert_released(simulator)
+        wait_until(lambda: "fccd guard: the daemon is gone" in daemon.said, "the guard's word")
+    assert ending.exit_code == -signal.SIGKILL
+
+
+def test_switching_off_releases_and_watches_on(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        assert_released(simulator)
+        engage(simulator, daemon)
+        assert daemon.is_running
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        ending = daemon.end(signal.SIGTERM)
+        joystick = [r for r in simulator.releases() if r.path == OVERRIDE_JOYSTICK]
+    assert len(joystick) == 2
+    assert ending.exit_code == SUCCESS
+
+
+def test_switching_off_ends_the_program_where_that_is_wanted(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others='[engage]\nswitch_off = "stop"') as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["ending"] == "switched off"
