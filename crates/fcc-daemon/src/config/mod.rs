@@ -11,6 +11,7 @@ mod course;
 mod error;
 mod places;
 mod ranges;
+mod recording;
 mod runtime;
 mod units;
 mod wording;
@@ -26,6 +27,7 @@ pub use autopilot::AutopilotSection;
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
+pub use recording::{CompressionChoice, RecordingSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
 pub use x_plane::XPlaneSection;
 
@@ -42,6 +44,8 @@ pub struct Config {
     pub engage: EngageSection,
     /// What happens when sensors fall silent.
     pub failsafe: FailsafeSection,
+    /// Where flights are recorded.
+    pub recording: RecordingSection,
     /// What is flown.
     pub course: CourseSection,
     /// Gains and limits.
@@ -70,6 +74,14 @@ impl Config {
     /// When it cannot be read, is not TOML, has an unknown key or a value out
     /// of range: every problem with its line.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        Self::load_with_text(path).map(|(config, _)| config)
+    }
+
+    /// Reads and checks a file, and gives its text as well.
+    ///
+    /// # Errors
+    /// As [`Config::load`].
+    pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
         let file = path.display().to_string();
         let bytes = match std::fs::read(path) {
             Ok(bytes) => bytes,
@@ -77,7 +89,7 @@ impl Config {
         };
         let text = std::str::from_utf8(&bytes)
             .map_err(|error| ConfigError::not_text(&file, &bytes, error))?;
-        Self::parse(text, &file)
+        Ok((Self::parse(text, &file)?, text.to_owned()))
     }
 
     /// Checks a text; `file` is its name in messages.

@@ -1,16 +1,21 @@
 //! Flies an assembly to its end.
 
 use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use nix::sys::signal::Signal;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::recording::{LoopFacts, Recording, RecordingWish};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -24,13 +29,25 @@ pub enum Pace {
     Lockstep,
 }
 
+/// When a flight is over. One of a given length is also over when it cannot be
+/// flown: engaging is refused, or the loop falls into failsafe.
+#[derive(Clone, Copy, Debug)]
+pub enum Length {
+    /// When it is told to stop.
+    Open,
+    /// So many seconds after engaging.
+    Engaged(f64),
+    /// So many seconds after the first tick.
+    Whole(f64),
+}
+
 /// How a flight is to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// How fast time passes.
     pub pace: Pace,
-    /// Stop so many seconds after engaging; none to fly until told to stop.
-    pub seconds: Option<f64>,
+    /// When it is over.
+    pub length: Length,
     /// No status lines.
     pub quiet: bool,
     /// Whether to print events as they happen.
@@ -62,7 +79,12 @@ const FETCH_EVERY: Duration = Duration::from_millis(20);
 ///
 /// # Errors
 /// When the flight does not begin; what happens later is in the outcome.
-pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome, FlyError> {
+pub fn fly(
+    assembly: Assembly,
+    tick: &LoopSection,
+    plan: Plan,
+    recording: Option<RecordingWish>,
+) -> Result<Outcome, FlyError> {
     let period = tick.period();
     let timer: Box<dyn Timer> = match plan.pace {
         Pace::RealTime => build(tick.timer, period)?,
@@ -71,7 +93,17 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
-    let mut watch = Watch::new(&course, assembly.truth, plan, names);
+    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone());
+    let mut wish = recording;
+    if let Some(wish) = &mut wish {
+        let facts = LoopFacts {
+            timer: timer_name,
+            now_ns: timer.now_ns(),
+            sensors: names.sensors,
+            actuators: names.actuators,
+        };
+        wish.prepare(facts, &mut watch);
+    }
     // Before the loop's thread exists, so that nothing real-time is inherited.
     let mut connection = assembly
         .x_plane
@@ -82,29 +114,39 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
         controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
-    let report = match plan.pace {
+    let (report, recording, interrupted) = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
+            let interrupted = catch_signals(&link)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for refusal in &handle.grants().refused {
                 watch.remark(refusal.to_string());
             }
+            let grants = Some(handle.grants());
+            let mut recording =
+                wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             while !link.messages.is_over() {
-                drain(&mut link, &mut watch, plan);
+                drain(&mut link, &mut watch, recording.as_mut(), plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                    if let Some(recording) = &recording {
+                        recording.remark(&words);
+                    }
                     watch.remark(words);
                 }
                 thread::sleep(FETCH_EVERY);
             }
-            drain(&mut link, &mut watch, plan);
-            handle.join()
+            drain(&mut link, &mut watch, recording.as_mut(), plan);
+            (handle.join(), recording, interrupted)
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
-            run_in_lockstep(machine, &mut link, &mut watch, plan)?
+            let interrupted = catch_signals(&link)?;
+            let mut recording =
+                wish.and_then(|wish| wish.begin(None, RecordingPace::Lockstep, &mut watch));
+            let recorder = recording.as_mut();
+            let report = run_in_lockstep(machine, &mut link, &mut watch, recorder, plan)?;
+            (report, recording, interrupted)
         }
     };
     let confirmed = connection.is_none_or(Connection::end);
@@ -119,10 +161,17 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
         released: report.released && confirmed,
         ..report
     };
+    // The controls were given back before; the disk may take its time now.
+    let recording =
+        recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
+    let interrupted = interrupted.load(Ordering::Relaxed);
+    let refused = watch.was_refused() && !matches!(plan.length, Length::Open);
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
-    Ok(Outcome::new(timer_name, report, events, score))
+    let mut outcome = Outcome::new(timer_name, report, events, score, recording);
+    outcome.explain(interrupted, refused);
+    Ok(outcome)
 }
 
 fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
@@ -133,37 +182,52 @@ fn run_in_lockstep(
     mut machine: Machine<Pilot>,
     link: &mut Link<Pilot>,
     watch: &mut Watch,
+    mut recording: Option<&mut Recording>,
     plan: Plan,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
     while machine.step() != State::Stopped {
-        drain(link, watch, plan);
+        drain(link, watch, recording.as_deref_mut(), plan);
     }
     let report = machine.finish();
-    drain(link, watch, plan);
+    drain(link, watch, recording, plan);
     Ok(report)
 }
 
 /// Fetches all there is, and stops the loop when its time is up.
-fn drain(link: &mut Link<Pilot>, watch: &mut Watch, plan: Plan) {
+fn drain(
+    link: &mut Link<Pilot>,
+    watch: &mut Watch,
+    mut recording: Option<&mut Recording>,
+    plan: Plan,
+) {
     while let Some(message) = link.messages.receive() {
         watch.take(&message);
-        let time_is_up = plan
-            .seconds
-            .zip(watch.engaged_for_s())
-            .is_some_and(|(most, flown)| flown >= most - 1e-6);
-        // A flight of a given length that fails has no length any more.
-        if time_is_up || (plan.seconds.is_some() && watch.failed()) {
+        if let Some(recording) = &mut recording {
+            recording.take(&message);
+        }
+        if watch.is_over(plan.length) {
             link.stop.stop();
         }
+    }
+    if let Some(recording) = recording {
+        recording.tell(watch);
     }
 }
 
 /// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
-/// safely do; the loop releases the controls in its next tick.
-fn catch_signals(link: &Link<Pilot>) -> Result<(), FlyError> {
+/// safely do; the loop releases the controls in its next tick. A second flag
+/// tells afterwards that it was a signal.
+fn catch_signals(link: &Link<Pilot>) -> Result<Arc<AtomicBool>, FlyError> {
+    let interrupted = Arc::new(AtomicBool::new(false));
     for signal in [SIGTERM, SIGINT, SIGHUP] {
-        signal_hook::flag::register(signal, link.stop.flag()).map_err(FlyError::Signals)?;
+        for flag in [link.stop.flag(), Arc::clone(&interrupted)] {
+            signal_hook::flag::register(signal, flag).map_err(FlyError::Signals)?;
+        }
     }
-    Ok(())
+    // A limit on the size of files must end the recording, not the flight: with
+    // this caught, the write that goes too far is an error like any other.
+    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())
+        .map_err(FlyError::Signals)?;
+    Ok(interrupted)
 }

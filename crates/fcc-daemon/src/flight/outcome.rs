@@ -9,6 +9,7 @@ use fcc_telemetry::{
 use fcc_timer::{RealtimeGrants, TimingSummary};
 use serde::Serialize;
 
+use super::recording::RecordingOutcome;
 use crate::exit::Exit;
 
 /// The scheduling of a loop without a thread of its own.
@@ -31,6 +32,11 @@ pub struct Outcome {
     pub released: bool,
     /// Records that nobody fetched in time.
     pub records_dropped: u64,
+    /// What of the flight got onto the disk; none if it was not recorded.
+    pub recording: Option<RecordingOutcome>,
+    /// Whether a signal ended it.
+    #[serde(skip)]
+    pub interrupted: bool,
     /// What the program's exit code says.
     #[serde(skip)]
     pub exit: Exit,
@@ -53,6 +59,7 @@ impl Outcome {
         report: LoopReport,
         events: Vec<EventEntry>,
         flight: Option<FlightScore>,
+        recording: Option<RecordingOutcome>,
     ) -> Self {
         let exit = match report.ending {
             _ if !report.released => Exit::NotReleased,
@@ -74,7 +81,22 @@ impl Outcome {
             failsafes: report.failsafes,
             released: report.released,
             records_dropped: report.records_dropped,
+            recording,
+            interrupted: false,
             exit,
+        }
+    }
+
+    /// Says more exactly why a flight ended than the loop can.
+    pub(super) fn explain(&mut self, interrupted: bool, refused: bool) {
+        self.interrupted = interrupted;
+        if interrupted {
+            "interrupted by a signal".clone_into(&mut self.ending);
+        } else if refused {
+            "engaging was refused; the last event says why".clone_into(&mut self.ending);
+            if self.exit == Exit::Success {
+                self.exit = Exit::Failure;
+            }
         }
     }
 
@@ -91,6 +113,14 @@ impl Outcome {
         }
         if !self.released {
             text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
+        }
+        if let Some(recording) = &self.recording {
+            for file in &recording.files {
+                let _ = write!(text, "\nrecorded: {file}");
+            }
+            if recording.not_recorded > 0 {
+                let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+            }
         }
         text
     }

@@ -1,14 +1,13 @@
 //! Takes what the loop tells, and keeps what matters later.
 
+use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::flight::{Course, Order};
 use fcc_core::framework::{EventKind, Message, State};
 use fcc_sim::Truth;
-use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample};
+use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
-use super::Pilot;
 use super::assemble::Assembly;
-use super::fly::Plan;
+use super::fly::{Length, Plan};
 use super::outcome::EventEntry;
 use super::status;
 use super::tap::TruthReceiver;
@@ -16,6 +15,9 @@ use super::tap::TruthReceiver;
 const M_FT: f64 = 1.0 / 0.304_8;
 const MPS_KT: f64 = 3_600.0 / 1_852.0;
 const G_MPS2: f64 = 9.806_65;
+
+/// The most events that are kept for the end.
+const MOST_EVENTS: usize = 10_000;
 
 /// Takes what the loop tells, and keeps what matters later.
 pub(super) struct Watch {
@@ -28,6 +30,7 @@ pub(super) struct Watch {
     now_s: f64,
     tick: u64,
     failed: bool,
+    refused: bool,
     announce: bool,
     status: Option<status::Printer>,
 }
@@ -50,6 +53,7 @@ impl Watch {
             now_s: 0.0,
             tick: 0,
             failed: false,
+            refused: false,
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
         }
@@ -63,14 +67,24 @@ impl Watch {
         }
     }
 
-    /// Seconds since the loop was engaged; none while it is not.
-    pub(super) fn engaged_for_s(&self) -> Option<f64> {
-        self.engaged_at_s.map(|at_s| self.now_s - at_s)
+    /// Whether a flight of this length is over: its time is up, or it cannot be
+    /// flown.
+    pub(super) fn is_over(&self, length: Length) -> bool {
+        // Sums of ticks end this close to a whole second.
+        const ROUNDING_S: f64 = 1e-6;
+        let time_is_up = match length {
+            Length::Open => return false,
+            Length::Engaged(seconds) => self
+                .engaged_at_s
+                .is_some_and(|at_s| self.now_s - at_s >= seconds - ROUNDING_S),
+            Length::Whole(seconds) => self.now_s >= seconds - ROUNDING_S,
+        };
+        time_is_up || self.failed || self.refused
     }
 
-    /// Whether the loop fell into failsafe.
-    pub(super) fn failed(&self) -> bool {
-        self.failed
+    /// Whether engaging was refused.
+    pub(super) const fn was_refused(&self) -> bool {
+        self.refused
     }
 
     /// What was kept: events, and the log of the flight.
@@ -92,11 +106,14 @@ impl Watch {
                     log.clear();
                 }
             }
+            // Where there is truth, a tick without it is left out: sensors and
+            // truth do not mix in one score.
             let sample = match truth {
-                Some(truth) => true_sample(self.now_s, &truth),
-                None => measured_sample(self.now_s, record),
+                Some(truth) => Some(true_sample(self.now_s, &truth)),
+                None if self.truth.is_some() => None,
+                None => Some(measured_sample(self.now_s, record)),
             };
-            if let Some(log) = &mut self.log {
+            if let Some((log, sample)) = self.log.as_mut().zip(sample) {
                 log.push(sample);
             }
         } else {
@@ -111,7 +128,7 @@ impl Watch {
         let entry = EventEntry {
             time_s: self.seconds(event.time.as_nanos()),
             tick: event.tick,
-            text: self.names.words(event.kind),
+            text: event_words(event, &self.names.sensors, &self.names.actuators),
         };
         self.failed |= matches!(
             event.kind,
@@ -120,6 +137,7 @@ impl Watch {
                 ..
             }
         );
+        self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
         self.keep(entry);
     }
 
@@ -132,11 +150,21 @@ impl Watch {
         });
     }
 
+    /// Something that is said and not kept: it is no part of the flight.
+    pub(super) fn mention(&self, text: &str) {
+        if self.announce {
+            eprintln!("{:8.2} s  {text}", self.now_s);
+        }
+    }
+
     fn keep(&mut self, entry: EventEntry) {
         if self.announce {
             eprintln!("{:8.2} s  {}", entry.time_s, entry.text);
         }
-        self.events.push(entry);
+        // A flight may take weeks; the recording has them all.
+        if self.events.len() < MOST_EVENTS {
+            self.events.push(entry);
+        }
     }
 
     /// Seconds since the first thing the loop told; an event before the first
@@ -151,36 +179,19 @@ impl Watch {
 }
 
 /// What sensors and actuators are called: the loop knows them by their places.
+#[derive(Clone)]
 pub(super) struct Names {
-    sensors: Vec<&'static str>,
-    actuators: Vec<&'static str>,
+    pub(super) sensors: Vec<String>,
+    pub(super) actuators: Vec<String>,
 }
 
 impl Names {
     pub(super) fn of(assembly: &Assembly) -> Self {
+        let sensors = assembly.sensors.iter().map(|s| s.name().to_owned());
+        let actuators = assembly.actuators.iter().map(|a| a.name().to_owned());
         Self {
-            sensors: assembly.sensors.iter().map(|s| s.name()).collect(),
-            actuators: assembly.actuators.iter().map(|a| a.name()).collect(),
-        }
-    }
-
-    fn words(&self, kind: EventKind<Order>) -> String {
-        let sensor = |index: u16| self.sensors.get(usize::from(index)).unwrap_or(&"?");
-        let actuator = |index: u16| self.actuators.get(usize::from(index)).unwrap_or(&"?");
-        match kind {
-            EventKind::SensorFault { index, fault } => {
-                format!("sensor {}: {fault}", sensor(index))
-            }
-            EventKind::SensorRecovered { index } => {
-                format!("sensor {}: works again", sensor(index))
-            }
-            EventKind::ActuatorFault { index, fault } => {
-                format!("actuator {}: {fault}", actuator(index))
-            }
-            EventKind::ActuatorRecovered { index } => {
-                format!("actuator {}: works again", actuator(index))
-            }
-            kind => kind.words::<Pilot>().to_string(),
+            sensors: sensors.collect(),
+            actuators: actuators.collect(),
         }
     }
 }
