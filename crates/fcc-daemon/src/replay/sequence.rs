@@ -1,0 +1,171 @@
+//! Puts together, tick by tick, what came into the loop, and notices what is
+//! missing.
+
+use fcc_core::flight::Order as Command;
+use fcc_core::framework::{EventKind, Message, Order, Tick};
+use fcc_telemetry::{FlightEvent, FlightMessage};
+
+/// Why a recording cannot be flown again from some tick on.
+#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Cut {
+    /// It begins after the loop did.
+    #[error(
+        "the recording begins in tick {tick}, with the loop already running, and what the \
+         loop knew by then is not in it: give the recordings before it too, oldest first"
+    )]
+    BeginsLate {
+        /// Its first tick.
+        tick: u64,
+    },
+    /// Records are missing in the middle.
+    #[error(
+        "the records of ticks {first} to {last} are missing, and every later tick depends on \
+         them"
+    )]
+    Gap {
+        /// The first tick that has no record.
+        first: u64,
+        /// The last tick that has no record.
+        last: u64,
+    },
+    /// Time went back.
+    #[error(
+        "tick {tick} follows tick {after}: that is another flight, or the recordings are not \
+         given oldest first"
+    )]
+    AnotherFlight {
+        /// The tick that does not follow.
+        tick: u64,
+        /// The tick before it.
+        after: u64,
+    },
+    /// Events are missing, and they may have been orders.
+    #[error("events of ticks {first} to {last} are missing, and there may be orders among them")]
+    EventsMissing {
+        /// The tick of the first.
+        first: u64,
+        /// The tick of the last.
+        last: u64,
+    },
+    /// An order is not with the record of its tick.
+    #[error("an order of tick {tick} is not recorded beside the record of its tick")]
+    OrderOutOfPlace {
+        /// The order's tick.
+        tick: u64,
+    },
+    /// A part of the loop panicked in flight; how far that tick got is not
+    /// known.
+    #[error("a part of the loop panicked in tick {tick}: how far that tick got is not recorded")]
+    Panicked {
+        /// The tick.
+        tick: u64,
+    },
+    /// The replay's own loop stopped, and the recorded one did not.
+    #[error("the loop stopped before tick {tick} when it was flown again, and went on in flight")]
+    StoppedEarly {
+        /// The first tick it did not perform.
+        tick: u64,
+    },
+}
+
+/// Puts together what came into the loop from outside in each tick.
+#[derive(Debug, Default)]
+pub(super) struct Sequence {
+    last: Option<Tick>,
+    /// The tick of what waits for its record.
+    awaited: Option<u64>,
+    orders: Vec<Order<Command>>,
+    told_to_stop: bool,
+    panicked: bool,
+}
+
+/// What came into the loop in one tick, beside measurements.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Inputs {
+    /// In the sequence they were read.
+    pub(super) orders: Vec<Order<Command>>,
+    /// Whether the stop flag was seen.
+    pub(super) told_to_stop: bool,
+}
+
+impl Sequence {
+    /// Takes the next message; a record comes back as the inputs of its tick.
+    ///
+    /// # Errors
+    /// When from here on it is not known what came into the loop.
+    pub(super) fn take(&mut self, message: &FlightMessage) -> Result<Option<Inputs>, Cut> {
+        match message {
+            Message::Event(event) => self.event(event).map(|()| None),
+            Message::Tick(record) => self.tick(&record.tick).map(Some),
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent) -> Result<(), Cut> {
+        match event.kind {
+            EventKind::Ordered(order) => {
+                self.await_record(event.tick)?;
+                self.orders.push(order);
+            }
+            EventKind::ToldToStop => {
+                self.await_record(event.tick)?;
+                self.told_to_stop = true;
+            }
+            // One without a record after it happened between ticks.
+            EventKind::Panicked => {
+                self.panicked = self.last.is_none_or(|last| event.tick > last.number);
+            }
+            EventKind::EventsDropped { first, last, .. } => {
+                return Err(Cut::EventsMissing { first, last });
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn await_record(&mut self, tick: u64) -> Result<(), Cut> {
+        if self.last.is_some_and(|last| tick <= last.number) {
+            return Err(Cut::OrderOutOfPlace { tick });
+        }
+        self.awaited = Some(tick);
+        Ok(())
+    }
+
+    fn tick(&mut self, tick: &Tick) -> Result<Inputs, Cut> {
+        self.follows(tick)?;
+        if let Some(awaited) = self.awaited.take()
+            && awaited != tick.number
+        {
+            return Err(Cut::OrderOutOfPlace { tick: awaited });
+        }
+        if self.panicked {
+            return Err(Cut::Panicked { tick: tick.number });
+        }
+        self.last = Some(*tick);
+        Ok(Inputs {
+            orders: std::mem::take(&mut self.orders),
+            told_to_stop: std::mem::take(&mut self.told_to_stop),
+        })
+    }
+
+    /// Whether a tick comes right after the one before, or is the loop's
+    /// first: deadlines count from 1, and those missed are said.
+    fn follows(&self, tick: &Tick) -> Result<(), Cut> {
+        let number = tick.number;
+        let due = number.saturating_sub(tick.missed);
+        match self.last {
+            None if due != 1 => Err(Cut::BeginsLate { tick: number }),
+            Some(last) if number <= last.number || tick.scheduled <= last.scheduled => {
+                Err(Cut::AnotherFlight {
+                    tick: number,
+                    after: last.number,
+                })
+            }
+            Some(last) if due > last.number + 1 => Err(Cut::Gap {
+                first: last.number + 1,
+                last: due - 1,
+            }),
+            _ => Ok(()),
+        }
+    }
+}
