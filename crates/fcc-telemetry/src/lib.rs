@@ -6,12 +6,13 @@
 
 mod flight;
 mod message;
+pub mod recording;
 mod score;
 mod table;
 mod timing;
 
 pub use flight::FlightLog;
-pub use message::{FlightEvent, FlightMessage, FlightRecord};
+pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, timing_table};
 pub use timing::{Lateness, Period, Realtime, RefusedWish, TimingReport};
