@@ -27,6 +27,8 @@ pub enum Command {
     Run(RunArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
+    /// Fly a recording again and compare every output bit for bit
+    Replay(ReplayArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Give X-Plane's controls back if the daemon is killed; started by the
@@ -100,6 +102,24 @@ pub struct TimingArgs {
     /// The CPU that the loop's thread is bound to
     #[arg(long)]
     pub cpu: Option<usize>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// The recording; all its parts, oldest first, if it has several
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Show where this configuration would have commanded otherwise, instead
+    /// of comparing with the recorded one
+    #[arg(long, value_name = "OTHER")]
+    pub config: Option<PathBuf>,
+    /// Write both flights, tick by tick, into a file of comma-separated values
+    #[arg(long, value_name = "OUT", requires = "config")]
+    pub csv: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,

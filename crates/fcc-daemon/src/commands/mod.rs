@@ -4,6 +4,7 @@
 mod check;
 mod fly;
 mod guard;
+mod replay;
 mod run;
 mod timing;
 
@@ -21,6 +22,7 @@ pub fn run(cli: Cli) -> Exit {
         Command::Fly(args) => fly::fly(&args),
         Command::Run(args) => run::run(&args),
         Command::Timing(args) => timing::timing(&args),
+        Command::Replay(args) => replay::replay(&args),
         Command::Check(args) => check::check(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {

@@ -17,6 +17,8 @@
 //! first record. Hence a replay begins where the loop began, and ends where
 //! records are missing: what comes after depends on what is lost.
 
+mod chain;
+mod csv;
 mod deviation;
 mod fields;
 mod identity;
@@ -25,6 +27,8 @@ mod profile;
 mod run;
 mod sequence;
 
+pub use chain::{Chain, ChainError, ChainMessages};
+pub use csv::Csv;
 pub use deviation::{Deviation, Quantity, QuantityDeviation};
 pub use identity::{Difference, FieldDifference, Identity};
 pub use run::{Replay, Run, Unflown, run};

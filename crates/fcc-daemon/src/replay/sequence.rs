@@ -18,15 +18,15 @@ pub enum Cut {
         /// Its first tick.
         tick: u64,
     },
-    /// Records are missing in the middle.
+    /// Something is missing in the middle.
     #[error(
-        "the records of ticks {first} to {last} are missing, and every later tick depends on \
-         them"
+        "what was recorded of ticks {first} to {last} is not whole, and every later tick \
+         depends on it"
     )]
     Gap {
-        /// The first tick that has no record.
+        /// The first tick of which something is missing.
         first: u64,
-        /// The last tick that has no record.
+        /// The last tick of which something is missing.
         last: u64,
     },
     /// Time went back.
@@ -117,6 +117,10 @@ impl Sequence {
             }
             EventKind::EventsDropped { first, last, .. } => {
                 return Err(Cut::EventsMissing { first, last });
+            }
+            // Said even where every record is there: events may not be.
+            EventKind::NotRecorded { first, last, .. } => {
+                return Err(Cut::Gap { first, last });
             }
             _ => {}
         }

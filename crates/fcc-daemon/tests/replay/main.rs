@@ -2,13 +2,15 @@
 //! is not the same is found.
 #![cfg(test)]
 
+mod files;
 mod flights;
 
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
 use fcc_core::flight::Order as Command;
-use fcc_core::framework::{EventKind, Message, Order, State};
+use fcc_core::framework::State::{self, Engaged, Standby, Stopped};
+use fcc_core::framework::{EventKind, Message, Order};
 use fcc_daemon::config::{Config, CourseSection, Then};
 use fcc_daemon::replay::{Deviation, Replay, run};
 use fcc_telemetry::FlightMessage;
@@ -43,7 +45,7 @@ fn ten_minutes_in_gusts_noise_and_delay() {
         },
     );
     let states = assert_identical(&rough(), &messages);
-    assert_eq!(states, [State::Standby, State::Engaged]);
+    assert_eq!(states, [Standby, Engaged]);
 }
 
 #[test]
@@ -79,7 +81,6 @@ fn every_way_of_being_ordered_about() {
         },
     );
     let states = assert_identical(&rough(), &messages);
-    use State::{Engaged, Standby, Stopped};
     assert_eq!(
         states,
         [
@@ -124,7 +125,7 @@ fn failsafe_that_ends_the_loop() {
     };
     let messages = fly(&config, &happenings);
     let states = assert_identical(&config, &messages);
-    assert_eq!(states.last(), Some(&State::Stopped));
+    assert_eq!(states.last(), Some(&Stopped));
 
     // The stop came from the configuration and not from the recording.
     config.failsafe.hold_s = 2.0;
@@ -143,7 +144,7 @@ fn the_stop_flag_in_flight() {
     let messages = fly(&rough(), &happenings);
     let states = assert_identical(&rough(), &messages);
     assert_eq!(records(&messages).len(), 500);
-    assert_eq!(states, [State::Standby, State::Engaged, State::Stopped]);
+    assert_eq!(states, [Standby, Engaged, Stopped]);
 }
 
 #[test]
@@ -193,8 +194,11 @@ fn a_configuration_written_out_and_read_again_is_the_same_to_the_last_bit() {
     assert_identical(&read, &messages);
 }
 
+/// One of the gains of a configuration.
+type Gain = fn(&mut Config) -> &mut f64;
+
 /// The gain with the last bit of its mantissa flipped.
-fn flipped(gain: f64) -> f64 {
+pub(crate) fn flipped(gain: f64) -> f64 {
     f64::from_bits(gain.to_bits() ^ 1)
 }
 
@@ -207,11 +211,11 @@ fn one_flipped_bit_in_a_gain_is_found() {
     let messages = fly(&rough(), &happenings);
     let engaged = records(&messages)
         .iter()
-        .find(|record| record.state == State::Engaged)
+        .find(|record| record.state == Engaged)
         .map(|record| record.tick.number)
         .unwrap();
 
-    let flips: [(&str, fn(&mut Config) -> &mut f64); 4] = [
+    let flips: [(&str, Gain); 4] = [
         ("outputs.aileron", |c| {
             &mut c.autopilot.heading.roll_rate_gain
         }),

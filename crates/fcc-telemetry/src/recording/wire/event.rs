@@ -77,6 +77,7 @@ fn kind_out(kind: &EventKind<Command>) -> Option<Kind> {
         EventKind::Released { ok } => Kind::Released(fcc::Released { ok }),
         EventKind::Panicked => Kind::Panicked(fcc::Panicked {}),
         EventKind::TimerFailed => Kind::TimerFailed(fcc::TimerFailed {}),
+        EventKind::ToldToStop => Kind::ToldToStop(fcc::ToldToStop {}),
         _ => return None,
     })
 }
@@ -127,6 +128,7 @@ fn kind_in(kind: Kind) -> Result<EventKind<Command>, Unknown> {
         Kind::Released(released) => EventKind::Released { ok: released.ok },
         Kind::Panicked(_) => EventKind::Panicked,
         Kind::TimerFailed(_) => EventKind::TimerFailed,
+        Kind::ToldToStop(_) => EventKind::ToldToStop,
     })
 }
 
