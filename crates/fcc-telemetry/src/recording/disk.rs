@@ -39,7 +39,11 @@ impl Disk for FileSystem {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
-            fs::create_dir_all(folder)?;
+            fs::create_dir_all(folder).map_err(|error| match error.kind() {
+                // It is not this file that exists.
+                io::ErrorKind::AlreadyExists => io::ErrorKind::NotADirectory.into(),
+                _ => error,
+            })?;
         }
         // Readable, for the lock: it tells others that this one is being
         // written. A file system without locks does without.

@@ -82,7 +82,7 @@ impl Tally {
             end.first_tick = tick.number;
             self.first_woke_ns = woke_ns;
         } else {
-            end.missed += tick.missed;
+            end.missed = end.missed.saturating_add(tick.missed);
         }
         end.ticks += 1;
         end.last_tick = tick.number;
@@ -95,7 +95,7 @@ impl Tally {
 
     /// Counts messages that did not get into the file.
     pub(super) fn lose(&mut self, count: u64) {
-        self.end.not_recorded += count;
+        self.end.not_recorded = self.end.not_recorded.saturating_add(count);
     }
 
     pub(super) fn ticks(&self) -> u64 {

@@ -29,6 +29,7 @@
 //! desktop CPU, is in [`Compression`].
 
 mod about;
+mod chunk;
 mod crash;
 mod disk;
 mod end;

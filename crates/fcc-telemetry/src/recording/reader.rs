@@ -11,7 +11,7 @@ use prost::Message as _;
 
 use super::about::About;
 use super::end::{END, End, Tally};
-use super::raw::RawReader;
+use super::raw::{self, RawReader};
 use super::schema::{self, Topic};
 use super::wire::{self, fcc};
 use crate::FlightMessage;
@@ -82,7 +82,8 @@ impl Recording {
         let index = read_footer(&mut file, bytes);
         let end = index.as_ref().and_then(|at| read_end(&mut file, at));
         file.seek(SeekFrom::Start(0)).map_err(refused)?;
-        let about = read_about(file).map_err(|why| OpenError::NotARecording {
+        let raw = RawReader::new(file).map_err(refused)?;
+        let about = read_about(raw).map_err(|why| OpenError::NotARecording {
             path: path.clone(),
             why,
         })?;
@@ -147,11 +148,13 @@ impl Recording {
     /// # Errors
     /// When the file cannot be opened any more.
     pub fn messages(&self) -> Result<Messages, OpenError> {
-        let file = File::open(&self.path).map_err(|source| OpenError::Io {
-            path: self.path.clone(),
-            source,
-        })?;
-        Ok(Messages::new(file))
+        File::open(&self.path)
+            .and_then(RawReader::new)
+            .map(Messages::new)
+            .map_err(|source| OpenError::Io {
+                path: self.path.clone(),
+                source,
+            })
     }
 }
 
@@ -165,9 +168,9 @@ pub struct Messages {
 }
 
 impl Messages {
-    pub(super) fn new(file: File) -> Self {
+    fn new(raw: RawReader) -> Self {
         Self {
-            raw: RawReader::new(file),
+            raw,
             channels: Channels::default(),
             over: false,
             cut: None,
@@ -262,14 +265,13 @@ fn decode_event(data: &[u8]) -> Result<FlightMessage, String> {
 }
 
 /// Reads what stands before the first message.
-fn read_about(file: File) -> Result<About, String> {
+fn read_about(mut raw: RawReader) -> Result<About, String> {
     enum Found {
         Header(bool),
         Metadata(bool),
         Other,
         Messages,
     }
-    let mut raw = RawReader::new(file);
     let mut about = About::default();
     let mut known = false;
     loop {
@@ -316,7 +318,7 @@ fn read_footer(file: &mut File, bytes: u64) -> Option<Range<u64>> {
     if magic != mcap::MAGIC {
         return None;
     }
-    let Some(Record::Footer(footer)) = parse(footer) else {
+    let Some((Some(Record::Footer(footer)), _)) = split_record(footer) else {
         return None;
     };
     Some(footer.summary_start..footer_at)
@@ -329,26 +331,31 @@ fn read_end(file: &mut File, index: &Range<u64>) -> Option<End> {
         return None;
     }
     let summary = read_at(file, index.start, length)?;
-    let index = mcap::read::LinearReader::sans_magic(&summary)
-        .map_while(Result::ok)
-        .find_map(|record| match record {
-            Record::MetadataIndex(index) if index.name == END => Some(index),
-            _ => None,
-        })?;
+    let mut rest = summary.as_slice();
+    let index = loop {
+        let (record, after) = split_record(rest)?;
+        match record {
+            Some(Record::MetadataIndex(index)) if index.name == END => break index,
+            _ => rest = after,
+        }
+    };
     if index.length > MAX_METADATA_BYTES {
         return None;
     }
-    match parse(&read_at(file, index.offset, index.length)?) {
+    match split_record(&read_at(file, index.offset, index.length)?)?.0 {
         Some(Record::Metadata(metadata)) => Some(End::from_fields(&metadata.metadata)),
         _ => None,
     }
 }
 
-/// A record with its opcode and length before it.
-fn parse(bytes: &[u8]) -> Option<Record<'_>> {
+/// The record that bytes begin with, if it can be understood, and what follows
+/// it.
+fn split_record(bytes: &[u8]) -> Option<(Option<Record<'_>>, &[u8])> {
     let (opcode, rest) = bytes.split_first()?;
-    let body = rest.get(8..)?;
-    mcap::parse_record(*opcode, body).ok()
+    let (length, rest) = rest.split_first_chunk::<8>()?;
+    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+    let (body, after) = rest.split_at_checked(length)?;
+    Some((raw::parse(*opcode, body).ok(), after))
 }
 
 fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {

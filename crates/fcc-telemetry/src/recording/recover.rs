@@ -134,7 +134,7 @@ fn rewrite(
     to: &Path,
     mut go_on: impl FnMut(u64) -> bool,
 ) -> io::Result<Option<Rewritten>> {
-    let mut raw = RawReader::new(File::open(from)?);
+    let mut raw = RawReader::new(File::open(from)?)?;
     let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
     let cut = loop {
         match raw.next(|record| copy.take(&record)) {

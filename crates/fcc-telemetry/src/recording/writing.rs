@@ -1,6 +1,7 @@
 //! The recorder's thread: files begun, fed, committed each second, ended.
 
 use std::io;
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
@@ -17,6 +18,9 @@ use crate::FlightMessage;
 /// How often what has gathered is written and synced. A loss of power costs
 /// this much and the time a sync takes; less is more work for the disk.
 const COMMIT_EVERY: Duration = Duration::from_millis(800);
+
+/// Names tried, and recordings deleted, for one file to begin.
+const MAX_ATTEMPTS: usize = 100;
 
 /// What comes to the recorder's thread.
 #[derive(Debug)]
@@ -195,28 +199,32 @@ impl Writing {
     fn begin(&mut self) {
         self.about.part += 1;
         self.keep_below_total();
-        let begun = loop {
+        let mut begun = Err((PathBuf::new(), io::ErrorKind::AlreadyExists.into()));
+        for _ in 0..MAX_ATTEMPTS {
             let name = file_name(
                 self.about.started_unix_ns,
                 &self.about.aircraft,
                 self.about.part,
             );
             let path = self.settings.folder.join(name);
-            let begun = RecordingFile::begin(
+            let attempt = RecordingFile::begin(
                 &mut *self.disk,
                 &path,
                 &self.about,
                 self.settings.compression,
             );
-            match begun {
+            match attempt {
                 // Two flights in one millisecond: the second is a bit later.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     self.about.started_unix_ns += 1_000_000;
                 }
                 Err(error) if is_full(&error) && self.make_room() => {}
-                begun => break begun.map_err(|error| (path, error)),
+                done => {
+                    begun = done.map_err(|error| (path, error));
+                    break;
+                }
             }
-        };
+        }
         match begun {
             Ok(file) => {
                 let path = file.path().to_owned();
