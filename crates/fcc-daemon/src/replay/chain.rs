@@ -46,8 +46,13 @@ pub enum ChainError {
         /// The part before it.
         after: u32,
     },
-    /// The configuration that was flown is not in the file, or is not one that
-    /// this version reads.
+    /// The configuration that was flown is not in the file.
+    #[error("{file}: holds no configuration, so it is not known what was flown")]
+    NoConfig {
+        /// Which file.
+        file: PathBuf,
+    },
+    /// The configuration that was flown is not one that this version reads.
     #[error("the configuration in the recording cannot be read by this version of fccd:\n{0}")]
     Config(#[from] ConfigError),
 }
@@ -68,6 +73,11 @@ impl Chain {
         };
         for (before, next) in recordings.iter().zip(recordings.iter().skip(1)) {
             follows(before, next)?;
+        }
+        if first.about().config.trim().is_empty() {
+            return Err(ChainError::NoConfig {
+                file: first.path().to_owned(),
+            });
         }
         let config = Config::parse(&first.about().config, &name(first.path()))?;
         Ok(Self { recordings, config })
