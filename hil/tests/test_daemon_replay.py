@@ -39,7 +39,8 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
         config = write_config(
             tmp_path, simulator.port, others="[failsafe]\nhold_s = 1.0", course=QUICK_PATTERN
         )
-        words = [fccd, "run", "--config", config, "--json", "--recordings", recordings]
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
+        words += ["--recordings", recordings]
         with DaemonUnderTest(words, tmp_path) as daemon:
             engage(simulator, daemon)
             for _ in range(7):  # seconds: a status line each

@@ -53,7 +53,8 @@ pub struct FlyArgs {
     #[arg(long, value_name = "S", value_parser = positive_seconds)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
-    #[arg(long)]
+    // TOML has no larger numbers: a recording could not say what was flown.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Strength of the gusts
     #[arg(long, value_enum)]

@@ -173,3 +173,106 @@ impl Sequence {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Event, Record, State, Time};
+
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    fn record(number: u64, missed: u64) -> FlightMessage {
+        let scheduled = Time::from_nanos(number as i64 * 25 * MS);
+        let tick = Tick {
+            number,
+            scheduled,
+            woke: scheduled,
+            missed,
+            dt_s: 0.025,
+        };
+        Message::Tick(Record::new(tick, State::Standby))
+    }
+
+    fn event(tick: u64, kind: EventKind<Command>) -> FlightMessage {
+        Message::Event(Event {
+            tick,
+            time: Time::NEVER,
+            kind,
+        })
+    }
+
+    const HEADING: Order<Command> = Order::Controller(Command::Heading(1.0));
+
+    /// The cut that ends a sequence of messages, if one does.
+    fn cut(messages: &[FlightMessage]) -> Option<Cut> {
+        let mut sequence = Sequence::default();
+        messages
+            .iter()
+            .find_map(|message| sequence.take(message).err())
+    }
+
+    #[test]
+    fn orders_and_the_stop_flag_go_with_their_tick() {
+        let mut sequence = Sequence::default();
+        let messages = [
+            event(1, EventKind::Ordered(HEADING)),
+            event(1, EventKind::Ordered(Order::Engage)),
+            record(1, 0),
+            record(2, 0),
+            event(4, EventKind::ToldToStop),
+            record(4, 1),
+        ];
+        let told: Vec<_> = messages
+            .iter()
+            .filter_map(|message| sequence.take(message).unwrap())
+            .map(|inputs| (inputs.orders, inputs.told_to_stop))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (vec![HEADING, Order::Engage], false),
+                (vec![], false),
+                (vec![], true)
+            ]
+        );
+    }
+
+    #[test]
+    fn missed_ticks_are_no_gap_and_missing_records_are() {
+        assert_eq!(cut(&[record(3, 2), record(4, 0), record(9, 4)]), None);
+        let begins_late = Some(Cut::BeginsLate { tick: 3 });
+        assert_eq!(cut(&[record(3, 1)]), begins_late);
+        let gap = Some(Cut::Gap { first: 2, last: 4 });
+        assert_eq!(cut(&[record(1, 0), record(7, 2)]), gap);
+    }
+
+    #[test]
+    fn what_the_recorder_lost_is_a_gap_where_every_record_is_there_too() {
+        let lost = EventKind::NotRecorded {
+            count: 1,
+            first: 2,
+            last: 2,
+        };
+        let gap = Some(Cut::Gap { first: 2, last: 2 });
+        assert_eq!(cut(&[record(1, 0), event(2, lost), record(2, 0)]), gap);
+    }
+
+    #[test]
+    fn an_order_after_its_record_is_out_of_place() {
+        let late = event(1, EventKind::Ordered(HEADING));
+        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 1 });
+        assert_eq!(cut(&[record(1, 0), late]), out_of_place);
+        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 2 });
+        let early = event(2, EventKind::Ordered(HEADING));
+        assert_eq!(cut(&[early, record(1, 0)]), out_of_place);
+    }
+
+    #[test]
+    fn a_panic_in_a_tick_ends_it_and_one_after_the_last_does_not() {
+        let panicked = Some(Cut::Panicked { tick: 2 });
+        let panic = |tick| event(tick, EventKind::Panicked);
+        assert_eq!(cut(&[record(1, 0), panic(2), record(2, 0)]), panicked);
+        assert_eq!(cut(&[record(1, 0), panic(1)]), None);
+    }
+}
