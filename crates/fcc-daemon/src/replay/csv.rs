@@ -43,7 +43,7 @@ impl<W: Write> Csv<W> {
         write!(
             self.out,
             "{},{},{},{}",
-            (at_ns - began_ns) as f64 * 1e-9,
+            at_ns.saturating_sub(began_ns) as f64 * 1e-9,
             recorded.tick.number,
             recorded.state,
             other.state

@@ -144,7 +144,7 @@ impl Deviation {
     pub fn take(&mut self, recorded: &FlightRecord, other: &FlightRecord) {
         let at_ns = recorded.tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(at_ns);
-        let at_s = (at_ns - began_ns) as f64 * 1e-9;
+        let at_s = at_ns.saturating_sub(began_ns) as f64 * 1e-9;
         let both = recorded.sent && other.sent;
         self.compared += u64::from(both);
         self.only_recorded += u64::from(recorded.sent && !other.sent);

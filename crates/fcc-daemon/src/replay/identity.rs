@@ -69,7 +69,7 @@ impl Identity {
             if self.first.is_none() {
                 self.first = Some(Difference {
                     tick: recorded.tick.number,
-                    time_ms: (at_ns - began_ns) / 1_000_000,
+                    time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
                     field: field.name,
                     recorded: was.to_string(),
                     again: is.to_string(),

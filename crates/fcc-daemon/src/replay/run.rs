@@ -121,7 +121,7 @@ pub fn run(
         match (replay.take(&message), &message) {
             (Ok(Some(again)), Message::Tick(recorded)) => {
                 let at_ns = recorded.tick.scheduled.as_nanos();
-                run.span_s = (at_ns - *began_ns.get_or_insert(at_ns)) as f64 * 1e-9;
+                run.span_s = at_ns.saturating_sub(*began_ns.get_or_insert(at_ns)) as f64 * 1e-9;
                 run.ticks += 1;
                 compare(recorded, again);
             }

@@ -156,21 +156,28 @@ impl Sequence {
     /// first: deadlines count from 1, and those missed are said.
     fn follows(&self, tick: &Tick) -> Result<(), Cut> {
         let number = tick.number;
+        // The first tick since the one served before, missed or not.
         let due = number.saturating_sub(tick.missed);
-        match self.last {
-            None if due != 1 => Err(Cut::BeginsLate { tick: number }),
-            Some(last) if number <= last.number || tick.scheduled <= last.scheduled => {
-                Err(Cut::AnotherFlight {
-                    tick: number,
-                    after: last.number,
-                })
-            }
-            Some(last) if due > last.number + 1 => Err(Cut::Gap {
-                first: last.number + 1,
-                last: due - 1,
-            }),
-            _ => Ok(()),
+        let Some(last) = self.last else {
+            return match due {
+                1 => Ok(()),
+                _ => Err(Cut::BeginsLate { tick: number }),
+            };
+        };
+        let next = last.number.saturating_add(1);
+        if number < next || due < next || tick.scheduled <= last.scheduled {
+            return Err(Cut::AnotherFlight {
+                tick: number,
+                after: last.number,
+            });
         }
+        if due > next {
+            return Err(Cut::Gap {
+                first: next,
+                last: due - 1,
+            });
+        }
+        Ok(())
     }
 }
 

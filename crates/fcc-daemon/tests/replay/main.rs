@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use fcc_core::flight::Order as Command;
 use fcc_core::framework::State::{self, Engaged, Standby, Stopped};
-use fcc_core::framework::{EventKind, Message, Order};
+use fcc_core::framework::{EventKind, Message, Order, Reading, Time};
 use fcc_daemon::config::{Config, CourseSection, Then};
 use fcc_daemon::replay::{Deviation, Replay, run};
 use fcc_telemetry::FlightMessage;
@@ -449,4 +449,41 @@ fn another_course_deviates_by_what_the_course_says() {
     assert!(of("aileron").differing > 600);
     let text = other.to_text();
     assert!(text.contains("did not react"), "{text}");
+}
+
+/// What is in a file may be anything.
+#[test]
+fn nonsense_is_flown_without_a_panic() {
+    let happenings = Happenings {
+        steps: 200,
+        ..Happenings::default()
+    };
+    let flown = fly(&rough(), &happenings);
+    let times = [i64::MIN, i64::MIN + 1, -1, 0, i64::MAX];
+    let numbers = [f64::NAN, f64::INFINITY, -f64::MAX, f64::MIN_POSITIVE];
+    for (case, time) in times.iter().enumerate() {
+        let mut messages = flown.clone();
+        for message in &mut messages {
+            let Message::Tick(record) = message else {
+                continue;
+            };
+            if record.tick.number < 100 {
+                continue;
+            }
+            let number = numbers[(case + record.tick.number as usize) % numbers.len()];
+            record.tick.woke = Time::from_nanos(*time);
+            record.measurements.plant.value.time_s = number;
+            record.measurements.altitude_m = Reading::new(number, Time::from_nanos(*time));
+            record.measurements.attitude.value.roll_rad = number;
+            record.measurements.surfaces.value.elevator = number;
+            if record.tick.number == 150 {
+                record.tick.scheduled = Time::from_nanos(i64::MAX);
+            }
+        }
+        let (run, identity) = again(&rough(), &messages);
+        // The first whose time goes back is not flown.
+        assert_eq!(run.ticks, 150);
+        assert!(identity.outputs == 150 * OUTPUTS && !identity.to_text().is_empty());
+        deviation(&rough(), &messages).to_text();
+    }
 }
