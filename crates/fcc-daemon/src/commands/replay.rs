@@ -1,15 +1,15 @@
 //! `fccd replay`: a recording flown again.
 
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write as _};
 use std::path::Path;
 use std::time::Instant;
 
 use fcc_telemetry::{FlightMessage, FlightRecord};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{fail, print_json};
+use super::{fail, print_json, progress};
 use crate::cli::ReplayArgs;
 use crate::config::Config;
 use crate::exit::Exit;
@@ -149,7 +149,8 @@ impl Flown {
                 return printed;
             }
         } else {
-            println!("{}", self.to_text());
+            // Whoever reads only the first line still gets the exit code.
+            let _ = writeln!(io::stdout(), "{}", self.to_text());
         }
         self.exit()
     }
@@ -203,13 +204,9 @@ const LOOK_EVERY: u64 = 4_096;
 
 impl<'a> Watched<'a> {
     fn new(chain: &'a Chain) -> Self {
-        let bar = ProgressBar::new(chain.bytes());
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {percent:>3} % {eta:>4} left") {
-            bar.set_style(style);
-        }
         Self {
             messages: chain.messages(),
-            bar,
+            bar: progress::bar(chain.bytes(), "flying again"),
             read: 0,
         }
     }
