@@ -31,6 +31,8 @@ pub enum Command {
     Recover(RecoverArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
+    /// Fly a recording again and compare every output bit for bit
+    Replay(ReplayArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Give X-Plane's controls back if the daemon is killed; started by the
@@ -55,7 +57,8 @@ pub struct FlyArgs {
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
-    #[arg(long)]
+    // TOML has no larger numbers: a recording could not say what was flown.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Strength of the gusts
     #[arg(long, value_enum)]
@@ -144,6 +147,24 @@ pub struct TimingArgs {
     /// The CPU that the loop's thread is bound to
     #[arg(long)]
     pub cpu: Option<usize>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// The recording; all its parts, oldest first, if it has several
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Show where this configuration would have commanded otherwise, instead
+    /// of comparing with the recorded one
+    #[arg(long, value_name = "OTHER")]
+    pub config: Option<PathBuf>,
+    /// Write both flights, tick by tick, into a file of comma-separated values
+    #[arg(long, value_name = "OUT", requires = "config")]
+    pub csv: Option<PathBuf>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,

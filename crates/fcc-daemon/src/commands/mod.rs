@@ -7,6 +7,7 @@ mod guard;
 mod list;
 mod progress;
 mod recover;
+mod replay;
 mod run;
 mod timing;
 
@@ -26,6 +27,7 @@ pub fn run(cli: Cli) -> Exit {
         Command::List(args) => list::list(&args),
         Command::Recover(args) => recover::recover(&args),
         Command::Timing(args) => timing::timing(&args),
+        Command::Replay(args) => replay::replay(&args),
         Command::Check(args) => check::check(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {

@@ -21,6 +21,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
+use fcc_runtime::LoopConfig;
+use fcc_timer::RealtimeWishes;
 use serde::{Deserialize, Serialize};
 
 pub use autopilot::AutopilotSection;
@@ -134,6 +136,17 @@ impl Config {
             &self.course,
             Duration::from_millis(self.failsafe.sensor_max_age_ms),
         )
+    }
+
+    /// What the loop is told.
+    pub fn loop_config(&self) -> LoopConfig {
+        LoopConfig {
+            switch_off: self.engage.switch_off.into(),
+            failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
+            after_failsafe: self.failsafe.then.into(),
+            realtime: RealtimeWishes::from(&self.realtime),
+            ..LoopConfig::default()
+        }
     }
 
     /// The aircraft; the built-in one where a program did not say (a file has

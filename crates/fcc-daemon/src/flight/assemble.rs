@@ -1,12 +1,9 @@
 //! Puts sensors, autopilot and actuators together as a configuration says.
 
-use std::time::Duration;
-
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
-use fcc_timer::RealtimeWishes;
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::tap::{TruthReceiver, tap};
@@ -47,13 +44,7 @@ pub enum AssemblyError {
 /// When the aircraft cannot be had.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let autopilot = Autopilot::new(config.autopilot_config());
-    let loop_config = LoopConfig {
-        switch_off: config.engage.switch_off.into(),
-        failsafe_hold: Duration::from_secs_f64(config.failsafe.hold_s),
-        after_failsafe: config.failsafe.then.into(),
-        realtime: RealtimeWishes::from(&config.realtime),
-        ..LoopConfig::default()
-    };
+    let loop_config = config.loop_config();
     match config.aircraft() {
         Aircraft::BuiltIn(section) => {
             let simulation = Simulation::new(&SimConfig::from(section))?;
