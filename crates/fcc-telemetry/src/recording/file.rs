@@ -40,6 +40,7 @@ pub(super) struct RecordingFile {
     first_log_ns: Option<u64>,
     last_log_ns: u64,
     sequence: u32,
+    gathered_bytes: u64,
     attitude: Thinned,
     position: Thinned,
     tally: Tally,
@@ -78,6 +79,7 @@ impl RecordingFile {
             first_log_ns: None,
             last_log_ns: about.started_unix_ns,
             sequence: 0,
+            gathered_bytes: 0,
             attitude: Thinned::new(),
             position: Thinned::new(),
             tally: Tally::default(),
@@ -190,6 +192,7 @@ impl RecordingFile {
             publish_time: log_time,
         };
         self.sequence = self.sequence.wrapping_add(1);
+        self.gathered_bytes += self.bytes.len() as u64;
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
 
@@ -214,7 +217,9 @@ impl RecordingFile {
     /// power.
     pub(super) fn commit(&mut self) -> io::Result<()> {
         self.writer.flush().map_err(to_io)?;
-        self.outlet.sync()
+        self.outlet.sync()?;
+        self.gathered_bytes = 0;
+        Ok(())
     }
 
     /// Ends the file as it should end: with the account and an index.
@@ -247,15 +252,14 @@ impl RecordingFile {
         &self.path
     }
 
-    /// Bytes written, synced or not; what gathers in the present chunk is not
-    /// among them.
+    /// Bytes that are safe on the disk.
     pub(super) fn bytes(&self) -> u64 {
-        self.outlet.0.borrow().written
+        self.outlet.0.borrow().synced
     }
 
-    /// Bytes that are safe.
-    pub(super) fn synced_bytes(&self) -> u64 {
-        self.outlet.0.borrow().synced
+    /// Bytes that have gathered since, before they are compressed.
+    pub(super) const fn gathered_bytes(&self) -> u64 {
+        self.gathered_bytes
     }
 
     /// How much of a flight the file covers, ns.
@@ -290,8 +294,8 @@ fn to_io(error: McapError) -> io::Error {
     }
 }
 
-/// The way to the disk, in few large writes; shared with the writer of MCAP,
-/// which keeps what it writes to.
+/// The way to the disk, in one large write for each commit; shared with the
+/// writer of MCAP, which keeps what it writes to.
 #[derive(Clone)]
 struct Outlet(Rc<RefCell<OutletState>>);
 
@@ -303,15 +307,11 @@ struct OutletState {
     abandoned: bool,
 }
 
-/// What gathers before it is written: a flight in lockstep fills chunks faster
-/// than once a second.
-const WRITE_BYTES: usize = 1 << 20;
-
 impl Outlet {
     fn new(file: Box<dyn DiskFile>) -> Self {
         Self(Rc::new(RefCell::new(OutletState {
             file,
-            waiting: Vec::with_capacity(WRITE_BYTES),
+            waiting: Vec::new(),
             written: 0,
             synced: 0,
             abandoned: false,
@@ -350,15 +350,12 @@ impl OutletState {
 
 impl Write for Outlet {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let state = &mut *self.0.borrow_mut();
-        state.waiting.extend_from_slice(bytes);
-        if state.waiting.len() >= WRITE_BYTES {
-            state.pass_on()?;
-        }
+        self.0.borrow_mut().waiting.extend_from_slice(bytes);
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.0.borrow_mut().pass_on()
+        // Passed on when it is synced: a flush alone makes nothing safe.
+        Ok(())
     }
 }
