@@ -9,6 +9,7 @@ mod message;
 mod score;
 mod table;
 mod timing;
+mod units;
 
 pub use flight::FlightLog;
 pub use message::{FlightEvent, FlightMessage, FlightRecord};
