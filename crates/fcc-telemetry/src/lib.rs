@@ -6,6 +6,7 @@
 
 mod flight;
 mod message;
+pub mod report;
 mod score;
 mod table;
 mod timing;

@@ -32,10 +32,23 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     );
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut table = table(&header);
-    let mut row = |name: &str, value: &dyn Fn(&TimingReport) -> String| {
-        let mut cells = vec![name.to_owned()];
-        cells.extend(reports.iter().map(value));
-        table.add_row(cells);
+    for (name, cells) in timing_rows(reports) {
+        let mut row = vec![name.to_owned()];
+        row.extend(cells);
+        table.add_row(row);
+    }
+    let mut text = table.to_string();
+    for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
+        let _ = write!(text, "\nnot granted: {refused}");
+    }
+    text
+}
+
+/// The rows of the timing table, each with a cell per report.
+pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<String>)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &'static str, value: &dyn Fn(&TimingReport) -> String| {
+        rows.push((name, reports.iter().map(value).collect()));
     };
     row("Runtime", &|r| figure(r.runtime_s, 2, "s"));
     row("Average", &|r| figure(r.period_ms.mean, 4, "ms"));
@@ -51,7 +64,9 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     row("Lateness p99", &|r| figure(r.lateness_us.p99, 1, "µs"));
     row("Lateness p99.9", &|r| figure(r.lateness_us.p99_9, 1, "µs"));
     row("Lateness max", &|r| figure(r.lateness_us.max, 1, "µs"));
-    row("CPU", &|r| figure(r.cpu_percent.unwrap_or(f64::NAN), 2, "%"));
+    row("CPU", &|r| {
+        figure(r.cpu_percent.unwrap_or(f64::NAN), 2, "%")
+    });
     row("Scheduling", &|r| match r.realtime.priority {
         0 => or_unknown(r.realtime.policy.clone()),
         priority => format!("{} {priority}", r.realtime.policy),
@@ -64,11 +79,7 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
         }
         .to_owned()
     });
-    let mut text = table.to_string();
-    for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
-        let _ = write!(text, "\nnot granted: {refused}");
-    }
-    text
+    rows
 }
 
 /// What a table says where nobody measured.
@@ -91,30 +102,34 @@ fn or_unknown(text: String) -> String {
     }
 }
 
+/// The columns of a leg's figures.
+pub(crate) const LEG_COLUMNS: [&str; 10] = [
+    "Leg",
+    "≤2° s",
+    "overshoot °",
+    "hdg RMS °",
+    "≤10 ft s",
+    "overshoot ft",
+    "alt RMS ft",
+    "turn loss ft",
+    "airspeed kt",
+    "lateral g",
+];
+
 /// A row per leg and the worst of each column.
 pub fn flight_table(score: &FlightScore) -> String {
-    let mut table = table(&[
-        "Leg",
-        "≤2° s",
-        "overshoot °",
-        "hdg RMS °",
-        "≤10 ft s",
-        "overshoot ft",
-        "alt RMS ft",
-        "turn loss ft",
-        "airspeed kt",
-        "lateral g",
-    ]);
+    let mut table = table(&LEG_COLUMNS);
     for (index, leg) in score.legs.iter().enumerate() {
-        table.add_row(cells((index + 1).to_string(), leg));
+        table.add_row(leg_cells((index + 1).to_string(), leg));
     }
     if let Some(worst) = &score.worst {
-        table.add_row(cells("worst".to_owned(), worst));
+        table.add_row(leg_cells("worst".to_owned(), worst));
     }
     table.to_string()
 }
 
-fn cells(name: String, leg: &LegScore) -> Vec<String> {
+/// The cells of a leg, under [`LEG_COLUMNS`].
+pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
     let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
     vec![
         name,
