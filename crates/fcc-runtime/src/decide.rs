@@ -27,6 +27,7 @@ impl<C: Controller> Machine<C> {
         let thrown = self.switch.watch(switch, tick.woke);
 
         if self.stop.is_set() {
+            self.outbox.events.push(tick, EventKind::ToldToStop);
             self.stop_for(Ending::StopFlag, tick);
         } else if asked == Asked::Stop {
             self.stop_for(Ending::StopOrder, tick);

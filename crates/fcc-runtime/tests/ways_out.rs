@@ -37,6 +37,10 @@ fn the_stop_flag() {
     let mut bench = engaged();
     bench.link.stop.clone().stop();
     assert_eq!(bench.tick(|_| {}), Stopped);
+    assert_eq!(
+        bench.events(),
+        [EventKind::ToldToStop, change(Engaged, Stopped), RELEASED]
+    );
     assert!(matches!(released(bench).ending, Ending::StopFlag));
 }
 

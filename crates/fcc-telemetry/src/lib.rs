@@ -6,6 +6,7 @@
 
 mod flight;
 mod message;
+pub mod recording;
 pub mod report;
 mod score;
 mod table;
@@ -13,7 +14,7 @@ mod timing;
 mod units;
 
 pub use flight::FlightLog;
-pub use message::{FlightEvent, FlightMessage, FlightRecord};
+pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, timing_table};
 pub use timing::{Lateness, Period, Realtime, RefusedWish, TimingReport};

@@ -1,7 +1,7 @@
 //! What a loop that runs the autopilot tells of itself.
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{EventOf, MessageOf, RecordOf};
+use fcc_core::framework::{EventKind, EventOf, MessageOf, RecordOf};
 
 /// The record of one tick of a flight.
 pub type FlightRecord = RecordOf<Autopilot>;
@@ -11,6 +11,31 @@ pub type FlightEvent = EventOf<Autopilot>;
 
 /// A record or an event of a flight.
 pub type FlightMessage = MessageOf<Autopilot>;
+
+/// An event in words, with the names of the parts it speaks of.
+pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> String {
+    let name = |names: &[String], index: u16| {
+        names
+            .get(usize::from(index))
+            .cloned()
+            .unwrap_or_else(|| index.to_string())
+    };
+    match event.kind {
+        EventKind::SensorFault { index, fault } => {
+            format!("sensor {}: {fault}", name(sensors, index))
+        }
+        EventKind::SensorRecovered { index } => {
+            format!("sensor {}: works again", name(sensors, index))
+        }
+        EventKind::ActuatorFault { index, fault } => {
+            format!("actuator {}: {fault}", name(actuators, index))
+        }
+        EventKind::ActuatorRecovered { index } => {
+            format!("actuator {}: works again", name(actuators, index))
+        }
+        kind => kind.words::<Autopilot>().to_string(),
+    }
+}
 
 #[cfg(test)]
 mod tests {

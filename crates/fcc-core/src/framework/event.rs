@@ -34,6 +34,9 @@ pub enum EventKind<O> {
     /// An order was read, in the sequence they were sent in: with these and the
     /// measurements of its records a flight can be flown again.
     Ordered(Order<O>),
+    /// The loop was told to end by its stop flag, as a signal does; this too
+    /// comes from outside, and is needed to fly a flight again.
+    ToldToStop,
     /// Somebody wanted to engage, and must ask again.
     EngageRefused {
         /// Why; empty if control was let go in the same tick.
@@ -136,6 +139,7 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                 f.write_str("ordered: ")?;
                 C::write_order(&order, f)
             }
+            EventKind::ToldToStop => f.write_str("told to stop"),
             EventKind::EngageRefused { blockers } if blockers.is_empty() => {
                 f.write_str("not engaged: control was let go at the same time")
             }

@@ -1,0 +1,177 @@
+//! What is known of a flight before it begins.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use sha2::{Digest, Sha256};
+
+/// What is known of a flight before it begins; every file of its recording
+/// starts with this.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct About {
+    /// Which program recorded: `fccd 0.1.0`.
+    pub software: String,
+    /// The commit that it was built from, or `unknown`.
+    pub git_hash: String,
+    /// The machine's name.
+    pub host: String,
+    /// Its kernel: `Linux 6.18.44 #1 SMP PREEMPT_RT aarch64`.
+    pub kernel: String,
+    /// What flies.
+    pub aircraft: String,
+    /// Nominal ticks a second.
+    pub rate_hz: f64,
+    /// Which timer woke the loop.
+    pub timer: String,
+    /// Names of the sensors, by their place in the loop.
+    pub sensors: Vec<String>,
+    /// Names of the actuators, by their place in the loop.
+    pub actuators: Vec<String>,
+    /// What the kernel granted the loop's thread.
+    pub realtime: Realtime,
+    /// Wall clock at the start, ns since 1970 in UTC.
+    pub started_unix_ns: u64,
+    /// What to add to a time of the loop to get ns since 1970 in UTC, by the
+    /// wall clock at the start.
+    pub clock_offset_ns: i64,
+    /// The configuration file, exactly as given; none if there was none.
+    pub config_as_given: Option<String>,
+    /// The whole configuration, defaults and command line included, as TOML:
+    /// what a replay flies by.
+    pub config: String,
+    /// The same, key by key.
+    pub parameters: BTreeMap<String, String>,
+    /// Which part of the recording this file is, from 1.
+    pub part: u32,
+}
+
+/// What the kernel granted the loop's thread.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Realtime {
+    /// `SCHED_FIFO`, `SCHED_OTHER` or another of the kernel's policies.
+    pub policy: String,
+    /// Priority under `SCHED_FIFO`.
+    pub priority: i32,
+    /// Whether the process' memory was locked.
+    pub memory_locked: bool,
+    /// The wishes that were refused, in words.
+    pub refused: Vec<String>,
+}
+
+/// Names of the metadata records and of the attachments of a file.
+pub(super) const RECORDING: &str = "fcc.recording";
+pub(super) const REALTIME: &str = "fcc.realtime";
+pub(super) const PARAMETERS: &str = "fcc.parameters";
+pub(super) const CONFIG: &str = "config.toml";
+pub(super) const CONFIG_AS_GIVEN: &str = "config-as-given.toml";
+
+/// What parts of a list are kept apart by: no name has one.
+const SEPARATOR: &str = "\n";
+
+type Fields = BTreeMap<String, String>;
+
+impl About {
+    /// SHA-256 of the configuration file as given, or of the whole
+    /// configuration if none was given: 64 hexadecimal digits.
+    pub fn config_sha256(&self) -> String {
+        let text = self.config_as_given.as_ref().unwrap_or(&self.config);
+        let mut digits = String::new();
+        for byte in Sha256::digest(text.as_bytes()) {
+            let _ = write!(digits, "{byte:02x}");
+        }
+        digits
+    }
+
+    /// The metadata records that say this; attachments carry the rest.
+    pub(super) fn to_metadata(&self) -> [(&'static str, Fields); 3] {
+        let recording = [
+            ("format", "1".to_owned()),
+            ("software", self.software.clone()),
+            ("git_hash", self.git_hash.clone()),
+            ("host", self.host.clone()),
+            ("kernel", self.kernel.clone()),
+            ("aircraft", self.aircraft.clone()),
+            ("rate_hz", self.rate_hz.to_string()),
+            ("timer", self.timer.clone()),
+            ("sensors", self.sensors.join(SEPARATOR)),
+            ("actuators", self.actuators.join(SEPARATOR)),
+            ("started", super::utc::timestamp(self.started_unix_ns)),
+            ("started_unix_ns", self.started_unix_ns.to_string()),
+            ("clock_offset_ns", self.clock_offset_ns.to_string()),
+            ("config_sha256", self.config_sha256()),
+            ("part", self.part.to_string()),
+        ];
+        let realtime = [
+            ("policy", self.realtime.policy.clone()),
+            ("priority", self.realtime.priority.to_string()),
+            ("memory_locked", self.realtime.memory_locked.to_string()),
+            ("refused", self.realtime.refused.join(SEPARATOR)),
+        ];
+        [
+            (RECORDING, fields(recording)),
+            (REALTIME, fields(realtime)),
+            (PARAMETERS, self.parameters.clone()),
+        ]
+    }
+
+    /// Takes a metadata record; whether it was one of these.
+    pub(super) fn take_metadata(&mut self, name: &str, fields: Fields) -> bool {
+        let text = |key: &str| fields.get(key).cloned().unwrap_or_default();
+        let list = |key: &str| {
+            let lines = text(key);
+            lines.lines().map(str::to_owned).collect::<Vec<_>>()
+        };
+        match name {
+            RECORDING => {
+                self.software = text("software");
+                self.git_hash = text("git_hash");
+                self.host = text("host");
+                self.kernel = text("kernel");
+                self.aircraft = text("aircraft");
+                self.rate_hz = number(&fields, "rate_hz");
+                self.timer = text("timer");
+                self.sensors = list("sensors");
+                self.actuators = list("actuators");
+                self.started_unix_ns = number(&fields, "started_unix_ns");
+                self.clock_offset_ns = number(&fields, "clock_offset_ns");
+                self.part = number(&fields, "part");
+            }
+            REALTIME => {
+                self.realtime = Realtime {
+                    policy: text("policy"),
+                    priority: number(&fields, "priority"),
+                    memory_locked: text("memory_locked") == "true",
+                    refused: list("refused"),
+                }
+            }
+            PARAMETERS => self.parameters = fields,
+            _ => return false,
+        }
+        true
+    }
+
+    /// Takes an attachment, if it is one of these.
+    pub(super) fn take_attachment(&mut self, name: &str, data: &[u8]) {
+        let text = || String::from_utf8_lossy(data).into_owned();
+        match name {
+            CONFIG => self.config = text(),
+            CONFIG_AS_GIVEN => self.config_as_given = Some(text()),
+            _ => {}
+        }
+    }
+}
+
+pub(super) fn fields<const N: usize>(pairs: [(&str, String); N]) -> Fields {
+    pairs
+        .into_iter()
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect()
+}
+
+/// A field as a number; 0 where it is missing or none.
+pub(super) fn number<T: std::str::FromStr + Default>(fields: &Fields, key: &str) -> T {
+    fields
+        .get(key)
+        .and_then(|text| text.parse().ok())
+        .unwrap_or_default()
+}

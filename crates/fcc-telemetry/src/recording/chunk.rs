@@ -1,0 +1,47 @@
+//! What is in a chunk of MCAP.
+
+use std::io::{self, Read};
+
+use mcap::records::ChunkHeader;
+
+use super::raw::MAX_RECORD_BYTES;
+
+/// Looking back further than this is more than our chunks are long; the memory
+/// for it is bounded by this and not by what a file claims.
+const MAX_WINDOW_LOG2: u32 = 24;
+
+/// Puts the records of a chunk into `records`, if its length and its checksum
+/// hold.
+pub(super) fn open(header: &ChunkHeader, data: &[u8], records: &mut Vec<u8>) -> Result<(), String> {
+    let length = header.uncompressed_size;
+    if length > MAX_RECORD_BYTES {
+        return Err(format!("a chunk claims {length} bytes"));
+    }
+    // One byte more shows that there is more.
+    let limit = length + 1;
+    let unpacked = match header.compression.as_str() {
+        "" => data.take(limit).read_to_end(records),
+        "lz4" => lz4::Decoder::new(data).and_then(|from| from.take(limit).read_to_end(records)),
+        "zstd" => zstd(data).and_then(|from| from.take(limit).read_to_end(records)),
+        other => {
+            return Err(format!(
+                "a chunk is compressed by {other}, which is not known"
+            ));
+        }
+    };
+    unpacked.map_err(|error| format!("a chunk cannot be unpacked: {error}"))?;
+    if records.len() as u64 != length {
+        return Err("a chunk is not as long as it claims".to_owned());
+    }
+    let sum = header.uncompressed_crc;
+    if sum != 0 && crc32fast::hash(records) != sum {
+        return Err("a chunk's checksum does not hold".to_owned());
+    }
+    Ok(())
+}
+
+fn zstd(data: &[u8]) -> io::Result<zstd::Decoder<'_, &[u8]>> {
+    let mut from = zstd::Decoder::with_buffer(data)?;
+    from.window_log_max(MAX_WINDOW_LOG2)?;
+    Ok(from)
+}

@@ -1,0 +1,76 @@
+//! Where recordings are written: a file system, or a test's idea of a bad one.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Where recordings are written.
+pub trait Disk: Send {
+    /// Makes a file that does not exist yet.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::AlreadyExists`] if it does; else what the system says.
+    fn create(&mut self, path: &Path) -> io::Result<Box<dyn DiskFile>>;
+}
+
+/// A file being written.
+pub trait DiskFile: Write {
+    /// Waits until everything written is safe from a loss of power.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn sync(&mut self) -> io::Result<()>;
+
+    /// Cuts the file off after so many bytes; what is written next follows
+    /// there.
+    ///
+    /// # Errors
+    /// What the system says.
+    fn cut_to(&mut self, bytes: u64) -> io::Result<()>;
+}
+
+/// The file system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FileSystem;
+
+impl Disk for FileSystem {
+    fn create(&mut self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
+        let folder = path
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder {
+            fs::create_dir_all(folder).map_err(|error| match error.kind() {
+                // It is not this file that exists.
+                io::ErrorKind::AlreadyExists => io::ErrorKind::NotADirectory.into(),
+                _ => error,
+            })?;
+        }
+        // Readable, for the lock: it tells others that this one is being
+        // written. A file system without locks does without.
+        let file = OpenOptions::new()
+            .read(true)
+            .append(true)
+            .create_new(true)
+            .open(path)?;
+        let _ = file.try_lock();
+        // Until its folder is synced, a loss of power takes the file's name.
+        File::open(folder.unwrap_or(Path::new(".")))?.sync_all()?;
+        Ok(Box::new(file))
+    }
+}
+
+impl DiskFile for File {
+    fn sync(&mut self) -> io::Result<()> {
+        self.sync_data()
+    }
+
+    fn cut_to(&mut self, bytes: u64) -> io::Result<()> {
+        self.set_len(bytes)
+    }
+}
+
+/// Whether somebody is writing a file right now.
+pub(super) fn is_being_written(path: &Path) -> bool {
+    File::open(path)
+        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
+}

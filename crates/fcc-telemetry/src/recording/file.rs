@@ -1,0 +1,364 @@
+//! One file of a recording while it is written.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::{fs, mem};
+
+use fcc_core::framework::EventKind;
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{Attachment, McapError, WriteOptions};
+
+use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
+use super::disk::{Disk, DiskFile};
+use super::end::{END, Tally};
+use super::foxglove::{self, Thinned};
+use super::schema::{self, Topic};
+use super::settings::Compression;
+use super::wire::foxglove::log::Level;
+use super::wire::{encode_event, encode_record};
+use crate::{FlightEvent, FlightMessage, FlightRecord, event_words};
+
+/// What a chunk holds at most before it is compressed: what a reader needs in
+/// memory at once.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+/// One file of a recording while it is written.
+///
+/// What is given to it gathers in memory until [`commit`](Self::commit) writes
+/// it as one whole chunk and syncs it: at any moment the file on the disk ends
+/// where a record ends.
+pub(super) struct RecordingFile {
+    path: PathBuf,
+    writer: mcap::Writer<NoSeek<Outlet>>,
+    outlet: Outlet,
+    channels: [u16; Topic::ALL.len()],
+    offset_ns: i64,
+    first_log_ns: Option<u64>,
+    last_log_ns: u64,
+    sequence: u32,
+    attitude: Thinned,
+    position: Thinned,
+    tally: Tally,
+    names: Names,
+    /// A message's bytes, kept for the next.
+    bytes: Vec<u8>,
+}
+
+/// What sensors and actuators are called, for the words of events.
+struct Names {
+    sensors: Vec<String>,
+    actuators: Vec<String>,
+}
+
+impl RecordingFile {
+    /// Begins a file with all that is known of the flight, and syncs that.
+    pub(super) fn begin(
+        disk: &mut dyn Disk,
+        path: &Path,
+        about: &About,
+        compression: Compression,
+    ) -> io::Result<Self> {
+        let outlet = Outlet::new(disk.create(path)?);
+        let begun = Self::write_beginning(&outlet, about, compression).map_err(to_io);
+        let (writer, channels) = begun.inspect_err(|_| {
+            outlet.abandon();
+            // Nobody needs a file that says nothing.
+            let _ = fs::remove_file(path);
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            writer,
+            outlet,
+            channels,
+            offset_ns: about.clock_offset_ns,
+            first_log_ns: None,
+            last_log_ns: about.started_unix_ns,
+            sequence: 0,
+            attitude: Thinned::new(),
+            position: Thinned::new(),
+            tally: Tally::default(),
+            names: Names {
+                sensors: about.sensors.clone(),
+                actuators: about.actuators.clone(),
+            },
+            bytes: Vec::new(),
+        })
+    }
+
+    fn write_beginning(
+        outlet: &Outlet,
+        about: &About,
+        compression: Compression,
+    ) -> Result<(mcap::Writer<NoSeek<Outlet>>, [u16; Topic::ALL.len()]), McapError> {
+        let mut writer = options(compression)
+            .library(about.software.clone())
+            .create(NoSeek::new(outlet.clone()))?;
+        for (name, metadata) in about.to_metadata() {
+            writer.write_metadata(&Metadata {
+                name: name.to_owned(),
+                metadata,
+            })?;
+        }
+        let as_given = about.config_as_given.as_ref();
+        let texts = [(CONFIG, Some(&about.config)), (CONFIG_AS_GIVEN, as_given)];
+        for (name, text) in texts {
+            if let Some(text) = text {
+                writer.attach(&Attachment {
+                    log_time: about.started_unix_ns,
+                    create_time: about.started_unix_ns,
+                    name: name.to_owned(),
+                    media_type: "application/toml".to_owned(),
+                    data: text.as_bytes().into(),
+                })?;
+            }
+        }
+        let mut channels = [0; Topic::ALL.len()];
+        for (channel, topic) in channels.iter_mut().zip(Topic::ALL) {
+            let schema =
+                writer.add_schema(topic.schema(), schema::ENCODING, topic.descriptors())?;
+            *channel =
+                writer.add_channel(schema, topic.name(), schema::ENCODING, &BTreeMap::new())?;
+        }
+        writer.flush()?;
+        outlet.sync()?;
+        Ok((writer, channels))
+    }
+
+    /// Takes a record or an event.
+    pub(super) fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
+        match message {
+            FlightMessage::Tick(record) => self.record(record),
+            FlightMessage::Event(event) => self.event(event),
+        }
+        .map_err(to_io)
+    }
+
+    fn record(&mut self, record: &FlightRecord) -> Result<(), McapError> {
+        let log_ns = self.log_time(record.tick.woke.as_nanos());
+        self.write(Topic::Record, log_ns, &encode_record(record))?;
+        if let Some(pose) = foxglove::pose(record, &mut self.attitude, log_ns) {
+            self.write(Topic::Attitude, log_ns, &pose)?;
+        }
+        if let Some(location) = foxglove::location(record, &mut self.position, log_ns) {
+            self.write(Topic::Position, log_ns, &location)?;
+        }
+        self.tally.count(record);
+        Ok(())
+    }
+
+    fn event(&mut self, event: &FlightEvent) -> Result<(), McapError> {
+        if let EventKind::NotRecorded { count, .. } = event.kind {
+            self.tally.lose(count);
+        }
+        let log_ns = self.log_time(event.time.as_nanos());
+        let text = self.words(event);
+        let wire = encode_event(event, text.clone());
+        self.write(Topic::Event, log_ns, &wire)?;
+        let line = foxglove::line(text, foxglove::level(event), log_ns);
+        self.write(Topic::Log, log_ns, &line)
+    }
+
+    /// Takes words that are not an event of the loop.
+    pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
+        let log_ns = self.last_log_ns;
+        self.write(
+            Topic::Log,
+            log_ns,
+            &foxglove::line(text, Level::Info, log_ns),
+        )
+        .map_err(to_io)
+    }
+
+    fn write(
+        &mut self,
+        topic: Topic,
+        log_time: u64,
+        message: &impl prost::Message,
+    ) -> Result<(), McapError> {
+        self.bytes.clear();
+        message
+            .encode(&mut self.bytes)
+            .map_err(|error| McapError::Io(io::Error::other(error)))?;
+        let header = MessageHeader {
+            channel_id: self.channels.get(topic as usize).copied().unwrap_or(0),
+            sequence: self.sequence,
+            log_time,
+            publish_time: log_time,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.writer.write_to_known_channel(&header, &self.bytes)
+    }
+
+    /// Wall clock at the start plus the loop's time since; never backwards, as
+    /// readers search by it.
+    fn log_time(&mut self, loop_ns: i64) -> u64 {
+        let unix_ns = if loop_ns == i64::MIN {
+            0
+        } else {
+            u64::try_from(loop_ns.saturating_add(self.offset_ns)).unwrap_or(0)
+        };
+        self.last_log_ns = self.last_log_ns.max(unix_ns);
+        self.first_log_ns.get_or_insert(self.last_log_ns);
+        self.last_log_ns
+    }
+
+    fn words(&self, event: &FlightEvent) -> String {
+        event_words(event, &self.names.sensors, &self.names.actuators)
+    }
+
+    /// Writes what has gathered and waits until it is safe from a loss of
+    /// power.
+    pub(super) fn commit(&mut self) -> io::Result<()> {
+        self.writer.flush().map_err(to_io)?;
+        self.outlet.sync()
+    }
+
+    /// Ends the file as it should end: with the account and an index.
+    pub(super) fn finish(mut self, ending: &str) -> io::Result<()> {
+        let finished = self
+            .write_end(ending)
+            .map_err(to_io)
+            .and_then(|()| self.outlet.sync());
+        if finished.is_err() {
+            self.outlet.abandon();
+        }
+        finished
+    }
+
+    fn write_end(&mut self, ending: &str) -> Result<(), McapError> {
+        self.writer.write_metadata(&Metadata {
+            name: END.to_owned(),
+            metadata: self.tally.end(ending).to_fields(),
+        })?;
+        self.writer.finish()?;
+        Ok(())
+    }
+
+    /// Leaves the file as it was when last synced: cut, with nothing torn.
+    pub(super) fn abandon(self) {
+        self.outlet.abandon();
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Bytes written, synced or not; what gathers in the present chunk is not
+    /// among them.
+    pub(super) fn bytes(&self) -> u64 {
+        self.outlet.0.borrow().written
+    }
+
+    /// Bytes that are safe.
+    pub(super) fn synced_bytes(&self) -> u64 {
+        self.outlet.0.borrow().synced
+    }
+
+    /// How much of a flight the file covers, ns.
+    pub(super) fn span_ns(&self) -> u64 {
+        self.first_log_ns
+            .map_or(0, |first| self.last_log_ns.saturating_sub(first))
+    }
+
+    /// Records given to the file.
+    pub(super) fn ticks(&self) -> u64 {
+        self.tally.ticks()
+    }
+}
+
+/// How every file is written.
+pub(super) fn options(compression: Compression) -> WriteOptions {
+    WriteOptions::new()
+        .profile(schema::PROFILE)
+        .compression(compression.to_mcap())
+        // The default is a thread per core, beside a flight.
+        .compression_threads(0)
+        .chunk_size(Some(CHUNK_BYTES))
+        // A chunk is put together in memory and appended whole: a file that
+        // is cut off ends with a whole chunk, at an ordinary end of file.
+        .disable_seeking(true)
+}
+
+fn to_io(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+/// The way to the disk, in few large writes; shared with the writer of MCAP,
+/// which keeps what it writes to.
+#[derive(Clone)]
+struct Outlet(Rc<RefCell<OutletState>>);
+
+struct OutletState {
+    file: Box<dyn DiskFile>,
+    waiting: Vec<u8>,
+    written: u64,
+    synced: u64,
+    abandoned: bool,
+}
+
+/// What gathers before it is written: a flight in lockstep fills chunks faster
+/// than once a second.
+const WRITE_BYTES: usize = 1 << 20;
+
+impl Outlet {
+    fn new(file: Box<dyn DiskFile>) -> Self {
+        Self(Rc::new(RefCell::new(OutletState {
+            file,
+            waiting: Vec::with_capacity(WRITE_BYTES),
+            written: 0,
+            synced: 0,
+            abandoned: false,
+        })))
+    }
+
+    fn sync(&self) -> io::Result<()> {
+        let state = &mut *self.0.borrow_mut();
+        state.pass_on()?;
+        state.file.sync()?;
+        state.synced = state.written;
+        Ok(())
+    }
+
+    /// Cuts off what is not known to be whole, and writes no more.
+    fn abandon(&self) {
+        let state = &mut *self.0.borrow_mut();
+        if !mem::replace(&mut state.abandoned, true) {
+            // On a disk that failed, this may fail too; readers cope.
+            let _ = state.file.cut_to(state.synced);
+            let _ = state.file.sync();
+        }
+    }
+}
+
+impl OutletState {
+    fn pass_on(&mut self) -> io::Result<()> {
+        if !self.abandoned {
+            self.file.write_all(&self.waiting)?;
+            self.written += self.waiting.len() as u64;
+        }
+        self.waiting.clear();
+        Ok(())
+    }
+}
+
+impl Write for Outlet {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let state = &mut *self.0.borrow_mut();
+        state.waiting.extend_from_slice(bytes);
+        if state.waiting.len() >= WRITE_BYTES {
+            state.pass_on()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.borrow_mut().pass_on()
+    }
+}

@@ -1,0 +1,54 @@
+//! The folder that recordings go to, and how it is kept from filling a disk.
+
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use super::{disk, name};
+
+/// The recordings in a folder, the oldest first.
+///
+/// # Errors
+/// When the folder cannot be read.
+pub(super) fn recordings(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut found: Vec<PathBuf> = fs::read_dir(folder)?
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| name::is_recording(path))
+        .collect();
+    found.sort();
+    Ok(found)
+}
+
+/// Deletes the oldest recordings until those in the folder take at most
+/// `keep_bytes`; what is being written stays. Gives what was deleted.
+pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
+    let sizes: Vec<(PathBuf, u64)> = recordings(folder)
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(|path| {
+            let bytes = fs::metadata(&path).ok()?.len();
+            Some((path, bytes))
+        })
+        .collect();
+    let mut total: u64 = sizes.iter().map(|(_, bytes)| bytes).sum();
+    let mut deleted = Vec::new();
+    for (path, bytes) in sizes {
+        if total <= keep_bytes {
+            break;
+        }
+        if !disk::is_being_written(&path) && fs::remove_file(&path).is_ok() {
+            total -= bytes;
+            deleted.push(path);
+        }
+    }
+    deleted
+}
+
+/// Deletes the oldest recording that is not being written and not among
+/// `kept`; none if there is none to delete.
+pub(super) fn delete_oldest(folder: &Path, kept: &[PathBuf]) -> Option<PathBuf> {
+    recordings(folder)
+        .ok()?
+        .into_iter()
+        .filter(|path| !kept.contains(path))
+        .find(|path| !disk::is_being_written(path) && fs::remove_file(path).is_ok())
+}

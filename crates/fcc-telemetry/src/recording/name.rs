@@ -1,0 +1,64 @@
+//! What recordings are called.
+
+use std::path::{Path, PathBuf};
+
+use super::utc;
+
+/// How the names of recordings end.
+pub(crate) const EXTENSION: &str = "mcap";
+
+/// `2026-11-20T04-21-33.512Z-built-in-01.mcap`: when the flight began, what
+/// flew, and which part of the recording it is. Names sort by date.
+pub(super) fn file_name(started_unix_ns: u64, aircraft: &str, part: u32) -> String {
+    let aircraft: String = aircraft
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    let stamp = utc::file_stamp(started_unix_ns);
+    format!("{stamp}-{aircraft}-{part:02}.{EXTENSION}")
+}
+
+/// Whether a file has the name of a recording: nothing else is ever deleted or
+/// repaired.
+pub(super) fn is_recording(path: &Path) -> bool {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+        return false;
+    };
+    let stamp = "0000-00-00T00-00-00.000Z-";
+    name.len() > stamp.len()
+        && Path::new(name).extension().is_some_and(|e| e == EXTENSION)
+        && name
+            .bytes()
+            .zip(stamp.bytes())
+            .all(|(byte, pattern)| match pattern {
+                b'0' => byte.is_ascii_digit(),
+                other => byte == other,
+            })
+}
+
+/// Where a file is put together that will replace `path`.
+pub(super) fn unfinished(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".unfinished");
+    PathBuf::from(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_says_when_and_what_and_is_known_again() {
+        let name = file_name(1_795_148_493_512_000_000, "X-Plane: c172/2", 3);
+        assert_eq!(name, "2026-11-20T04-21-33.512Z-X-Plane--c172-2-03.mcap");
+        assert!(is_recording(Path::new(&name)));
+        for other in [
+            "flight.mcap",
+            "2026-11-20T04-21-33.512Z-c172-01.mcap.unfinished",
+            "2026-11-20T04-21-33.512Z-c172-01.txt",
+            "2026-11-20.mcap",
+        ] {
+            assert!(!is_recording(Path::new(other)), "{other}");
+        }
+    }
+}

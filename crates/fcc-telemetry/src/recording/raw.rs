@@ -1,0 +1,189 @@
+//! MCAP records one after the other, from a file of which nothing is believed:
+//! no length it claims is allocated before it is known to be there, and nothing
+//! of a chunk is handed on before its checksum holds.
+//!
+//! The framing is done here because the `mcap` crate's own reader panics on
+//! some lengths that no writer writes (0.26); its parsing of single records is
+//! used where it does not.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read};
+
+use mcap::parse_record;
+use mcap::records::{Record, op};
+
+use super::chunk;
+
+/// No record of ours is longer: a chunk is 1 MiB, a configuration less.
+pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
+
+/// Opcode and length.
+const HEAD_BYTES: usize = 1 + 8;
+
+/// Where and why there is no more to read in a file that did not say it was
+/// over.
+pub(super) type Cut = String;
+
+/// Reads the records of a file one after the other, with those of its chunks,
+/// from the header to the footer. Indexes are passed over.
+pub(super) struct RawReader {
+    file: BufReader<File>,
+    /// How long the file was at first: what is appended later is left.
+    length: u64,
+    position: u64,
+    /// The record at hand, without its opcode and length.
+    body: Vec<u8>,
+    /// The chunk at hand, and how far it is read.
+    chunk: Vec<u8>,
+    chunk_position: usize,
+}
+
+impl RawReader {
+    pub(super) fn new(file: File) -> io::Result<Self> {
+        Ok(Self {
+            length: file.metadata()?.len(),
+            file: BufReader::with_capacity(64 << 10, file),
+            position: 0,
+            body: Vec::new(),
+            chunk: Vec::new(),
+            chunk_position: 0,
+        })
+    }
+
+    /// Bytes read so far, for who shows progress.
+    pub(super) const fn bytes_read(&self) -> u64 {
+        self.position
+    }
+
+    /// Hands the next record to `take`; none after the footer of a whole file.
+    ///
+    /// # Errors
+    /// Where the file is cut or damaged; there is no use in going on then.
+    pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Option<T>, Cut> {
+        if self.position == 0 {
+            self.read_magic()?;
+        }
+        loop {
+            if self.chunk_position < self.chunk.len() {
+                let (opcode, body, end) = framed(&self.chunk, self.chunk_position)
+                    .ok_or_else(|| self.damaged("a chunk's records overlap its end"))?;
+                self.chunk_position = end;
+                let record = parse(opcode, body).map_err(|why| self.damaged(&why))?;
+                return Ok(Some(take(record)));
+            }
+            let opcode = self.read_record()?;
+            match opcode {
+                op::CHUNK => self.open_chunk()?,
+                op::FOOTER => {
+                    self.read_magic()?;
+                    return Ok(None);
+                }
+                op::HEADER
+                | op::SCHEMA
+                | op::CHANNEL
+                | op::MESSAGE
+                | op::ATTACHMENT
+                | op::METADATA => {
+                    let record = parse(opcode, &self.body).map_err(|why| self.damaged(&why))?;
+                    return Ok(Some(take(record)));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn read_magic(&mut self) -> Result<(), Cut> {
+        self.read_body(mcap::MAGIC.len() as u64)?;
+        if self.body == mcap::MAGIC {
+            Ok(())
+        } else {
+            Err(self.damaged("it is no MCAP file"))
+        }
+    }
+
+    /// Reads the next record of the file; gives its opcode.
+    fn read_record(&mut self) -> Result<u8, Cut> {
+        self.read_body(HEAD_BYTES as u64)?;
+        let head = self
+            .body
+            .split_first_chunk::<1>()
+            .and_then(|(opcode, rest)| {
+                let length = rest.first_chunk::<8>()?;
+                Some((opcode[0], u64::from_le_bytes(*length)))
+            });
+        let Some((opcode, length)) = head else {
+            return Err(self.cut_off());
+        };
+        if length > MAX_RECORD_BYTES {
+            return Err(self.damaged(&format!("a record claims {length} bytes")));
+        }
+        self.read_body(length)?;
+        Ok(opcode)
+    }
+
+    fn read_body(&mut self, length: u64) -> Result<(), Cut> {
+        let end = self.position.saturating_add(length);
+        if end > self.length {
+            return Err(self.cut_off());
+        }
+        self.body.resize(length as usize, 0);
+        self.file
+            .read_exact(&mut self.body)
+            .map_err(|error| format!("reading failed after {} bytes: {error}", self.position))?;
+        self.position = end;
+        Ok(())
+    }
+
+    fn open_chunk(&mut self) -> Result<(), Cut> {
+        self.chunk.clear();
+        self.chunk_position = 0;
+        let opened = match parse(op::CHUNK, &self.body) {
+            Ok(Record::Chunk { header, data }) => chunk::open(&header, &data, &mut self.chunk),
+            Ok(_) => Ok(()),
+            Err(why) => Err(why),
+        };
+        opened.map_err(|why| {
+            self.chunk.clear();
+            self.damaged(&why)
+        })
+    }
+
+    fn cut_off(&self) -> Cut {
+        format!("cut off after {} bytes", self.length)
+    }
+
+    fn damaged(&self, why: &str) -> Cut {
+        format!("damaged before byte {}: {why}", self.position)
+    }
+}
+
+/// The record at a place in a chunk: opcode, body, and where it ends.
+fn framed(chunk: &[u8], position: usize) -> Option<(u8, &[u8], usize)> {
+    let (head, rest) = chunk.get(position..)?.split_first_chunk::<HEAD_BYTES>()?;
+    let [opcode, length @ ..] = *head;
+    let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
+    let body = rest.get(..length)?;
+    Some((opcode, body, position + HEAD_BYTES + length))
+}
+
+/// A record without its opcode and length.
+pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+    if opcode == op::ATTACHMENT && !attachment_is_sound(body) {
+        return Err("an attachment is shorter than it claims".to_owned());
+    }
+    parse_record(opcode, body).map_err(|error| error.to_string())
+}
+
+/// Whether an attachment's lengths fit into it: log time, create time, name,
+/// media type, data, checksum.
+fn attachment_is_sound(body: &[u8]) -> bool {
+    fn past_string(body: &[u8], at: usize) -> Option<usize> {
+        let length = body.get(at..)?.first_chunk::<4>()?;
+        at.checked_add(4)?
+            .checked_add(usize::try_from(u32::from_le_bytes(*length)).ok()?)
+    }
+    past_string(body, 16)
+        .and_then(|at| past_string(body, at))
+        .and_then(|at| at.checked_add(8 + 4))
+        .is_some_and(|least| least <= body.len())
+}

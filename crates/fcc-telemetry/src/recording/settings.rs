@@ -1,0 +1,76 @@
+//! How and where a recorder writes.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// How and where a recorder writes.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct RecorderSettings {
+    /// Where recordings go; made if it is missing.
+    pub folder: PathBuf,
+    /// A file that has grown to this size is finished and another begun; none
+    /// for no limit.
+    pub max_file_bytes: Option<u64>,
+    /// A file that covers this much of a flight is finished and another begun;
+    /// none for no limit.
+    pub max_file_age: Option<Duration>,
+    /// Keep the folder's recordings below this: the oldest are deleted, when a
+    /// file is begun, as it grows, and when the disk is full. None never
+    /// deletes.
+    pub keep_total_bytes: Option<u64>,
+    /// How chunks are compressed.
+    pub compression: Compression,
+    /// What happens to what the disk is too slow for.
+    pub pace: RecordingPace,
+    /// How many messages may wait for the disk.
+    pub capacity: usize,
+}
+
+impl RecorderSettings {
+    /// Records into a folder, without any limit, in real time.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: folder.into(),
+            max_file_bytes: None,
+            max_file_age: None,
+            keep_total_bytes: None,
+            compression: Compression::default(),
+            pace: RecordingPace::RealTime,
+            capacity: DEFAULT_CAPACITY,
+        }
+    }
+}
+
+/// 8 s at 1 kHz, 200 s at 40 Hz, and 4 MiB.
+const DEFAULT_CAPACITY: usize = 8_192;
+
+/// What happens to what the disk is too slow for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum RecordingPace {
+    /// It is dropped and counted: nobody ever waits for a disk.
+    RealTime,
+    /// Who records waits: for flights in lockstep, which have no real time.
+    Lockstep,
+}
+
+/// How the chunks of a recording are compressed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Compression {
+    /// Not at all.
+    None,
+    /// Fast.
+    Lz4,
+    /// Small.
+    #[default]
+    Zstd,
+}
+
+impl Compression {
+    pub(super) const fn to_mcap(self) -> Option<mcap::Compression> {
+        match self {
+            Self::None => None,
+            Self::Lz4 => Some(mcap::Compression::Lz4),
+            Self::Zstd => Some(mcap::Compression::Zstd),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! How a recorder does, for whoever looks.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How a recorder does.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct RecorderStatus {
+    /// The file being written; none if recording has stopped.
+    pub file: Option<PathBuf>,
+    /// Every file of this recording, in order.
+    pub files: Vec<PathBuf>,
+    /// Records written, whether synced already or not.
+    pub ticks: u64,
+    /// Bytes that are safe on the disk, all files together.
+    pub bytes: u64,
+    /// Records and events that were dropped: the disk was too slow or full.
+    pub not_recorded: u64,
+    /// Why recording stopped before the flight ended; none if it did not.
+    pub stopped: Option<String>,
+}
+
+/// Where a recorder's thread leaves its status. Only ever locked for a copy,
+/// and never by the loop's thread.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Board(Arc<Mutex<RecorderStatus>>);
+
+impl Board {
+    pub(super) fn update(&self, change: impl FnOnce(&mut RecorderStatus)) {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    pub(super) fn read(&self) -> RecorderStatus {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+}

@@ -1,0 +1,7 @@
+//! Recordings from outside: what goes in comes back, whatever the disk does.
+
+mod cut;
+mod disk;
+mod flight;
+mod folder;
+mod round_trip;
