@@ -4,6 +4,7 @@
 mod check;
 mod fly;
 mod guard;
+mod report;
 mod run;
 mod timing;
 
@@ -22,6 +23,7 @@ pub fn run(cli: Cli) -> Exit {
         Command::Run(args) => run::run(&args),
         Command::Timing(args) => timing::timing(&args),
         Command::Check(args) => check::check(&args),
+        Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {
             clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());

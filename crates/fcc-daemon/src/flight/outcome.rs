@@ -3,9 +3,7 @@
 use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{
-    FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table,
-};
+use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table};
 use fcc_timer::RealtimeGrants;
 use serde::Serialize;
 

@@ -10,9 +10,8 @@ use std::path::Path;
 
 use fcc_core::framework::{Message, Reading, Time};
 
-use super::events::words;
 use super::origin::Origin;
-use crate::{FlightEvent, FlightMessage, FlightRecord};
+use crate::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// Writes the messages of a flight into two CSV files.
 pub struct CsvFolder {
@@ -86,7 +85,7 @@ impl CsvFolder {
         self.events.write_record([
             event.tick.to_string(),
             self.cell.clone(),
-            words(event.kind, &self.origin),
+            event_words(event, &self.origin.sensors, &self.origin.actuators),
         ])?;
         Ok(())
     }

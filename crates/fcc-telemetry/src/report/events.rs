@@ -1,10 +1,11 @@
 //! What happened in a flight, numbered to be found in the plots.
 
-use fcc_core::flight::{Autopilot, Order};
+use fcc_core::flight::Order;
 use fcc_core::framework::{EventKind, State};
 use serde::Serialize;
 
 use super::origin::Origin;
+use crate::{FlightEvent, event_words};
 
 /// As many events are kept; the rest are counted.
 const MOST_EVENTS: usize = 2_000;
@@ -45,15 +46,15 @@ pub(super) struct Events {
 }
 
 impl Events {
-    pub(super) fn take(&mut self, time_s: f64, tick: u64, kind: EventKind<Order>, origin: &Origin) {
+    pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
         self.count += 1;
         if self.lines.len() < MOST_EVENTS {
             self.lines.push(EventLine {
                 number: self.count,
                 time_s,
-                tick,
-                text: words(kind, origin),
-                weight: weight(kind),
+                tick: event.tick,
+                text: event_words(event, &origin.sensors, &origin.actuators),
+                weight: weight(event.kind),
             });
         }
     }
@@ -78,26 +79,6 @@ fn weight(kind: EventKind<Order>) -> Weight {
         EventKind::Ordered(_) | EventKind::EngageRefused { .. } => Weight::Asked,
         _ => Weight::Minor,
     }
-}
-
-/// The event in words, sensors and actuators by their names.
-pub(super) fn words(kind: EventKind<Order>, origin: &Origin) -> String {
-    let sensor = |index: u16| name(&origin.sensors, index, "sensor");
-    let actuator = |index: u16| name(&origin.actuators, index, "actuator");
-    match kind {
-        EventKind::SensorFault { index, fault } => format!("{}: {fault}", sensor(index)),
-        EventKind::SensorRecovered { index } => format!("{} works again", sensor(index)),
-        EventKind::ActuatorFault { index, fault } => format!("{}: {fault}", actuator(index)),
-        EventKind::ActuatorRecovered { index } => format!("{} works again", actuator(index)),
-        kind => kind.words::<Autopilot>().to_string(),
-    }
-}
-
-fn name(names: &[String], index: u16, what: &str) -> String {
-    names.get(usize::from(index)).map_or_else(
-        || format!("{what} {index}"),
-        |name| format!("{what} {name}"),
-    )
 }
 
 /// Whether an order to the autopilot itself, which ends a pattern.

@@ -124,8 +124,7 @@ impl Survey {
             scoring.ordered();
         }
         self.failsafes += u64::from(events::is_failsafe(event.kind));
-        self.events
-            .take(time_s, event.tick, event.kind, &self.origin);
+        self.events.take(time_s, event, &self.origin);
     }
 
     /// The report, once the file has ended.
