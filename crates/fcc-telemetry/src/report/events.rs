@@ -53,7 +53,8 @@ impl Events {
                 number: self.count,
                 time_s,
                 tick: event.tick,
-                text: event_words(event, &origin.sensors, &origin.actuators),
+                text: event_words(event, &origin.sensors, &origin.actuators)
+                    .replace("->", "\u{2192}"),
                 weight: weight(event.kind),
             });
         }

@@ -80,7 +80,15 @@ fn gaps(report: &Report) -> Vec<String> {
 }
 
 fn timing(report: &Report) -> Option<String> {
-    let timing = &report.timing.as_ref()?.table;
+    let timing = report.timing.as_ref()?;
+    if timing.is_lockstep() {
+        return Some(
+            "Every wake-up was exactly at its deadline: this was flown in lockstep, and its \
+             timing tells nothing of a machine."
+                .to_owned(),
+        );
+    }
+    let timing = &timing.table;
     let missed = match timing.missed {
         0 => "No deadline passed unserved".to_owned(),
         missed => format!("{} passed unserved", plural(missed, "deadline")),

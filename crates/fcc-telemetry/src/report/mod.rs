@@ -94,6 +94,13 @@ pub struct Report {
     track: Vec<Place>,
 }
 
+impl Timing {
+    /// Whether the loop never waited for a clock: its timing is none.
+    fn is_lockstep(&self) -> bool {
+        self.table.lateness_us.max == 0.0 && self.table.period_ms.range == 0.0
+    }
+}
+
 /// How well the loop kept time.
 #[derive(Clone, Debug, Serialize)]
 pub struct Timing {

@@ -68,7 +68,7 @@ impl Report {
         if origin.started.is_empty() {
             of
         } else {
-            format!("{of}, {}", origin.started)
+            format!("{of}, {}", self.started())
         }
     }
 

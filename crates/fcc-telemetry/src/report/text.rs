@@ -55,6 +55,11 @@ impl Report {
         }
     }
 
+    /// When the flight began, for people: `2026-11-20 04:21:33 UTC`.
+    pub(super) fn started(&self) -> String {
+        self.origin.started.replace('T', " ").replace('Z', " UTC")
+    }
+
     /// What is known of where the flight comes from, name by name.
     pub(super) fn header(&self) -> Vec<(&'static str, String)> {
         let origin = &self.origin;
@@ -80,7 +85,7 @@ impl Report {
         let last_state = self.states.last().map(|span| span.state.clone());
         let mut rows = vec![
             ("Recording", origin.file.clone()),
-            ("Started", origin.started.clone()),
+            ("Started", self.started()),
             ("Aircraft", origin.aircraft.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
@@ -97,7 +102,7 @@ impl Report {
         rows.extend([
             ("Software", origin.software.clone()),
             ("Commit", origin.git_hash.clone()),
-            ("Configuration", origin.config_sha256.clone()),
+            ("Config SHA-256", origin.config_sha256.clone()),
             ("Host", origin.host.clone()),
             ("Kernel", origin.kernel.clone()),
         ]);
@@ -136,6 +141,7 @@ impl NamedPercentiles {
 /// A time in the unit that suits it, in three figures or a little more.
 pub(super) fn time(us: f64) -> String {
     match us {
+        0.0 => "0 µs".to_owned(),
         us if us < 10.0 => figure(us, 2, "µs"),
         us if us < 1_000.0 => figure(us, 1, "µs"),
         us if us < 100_000.0 => figure(us / 1e3, 2, "ms"),

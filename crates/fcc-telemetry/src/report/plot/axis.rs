@@ -38,6 +38,12 @@ impl Axis {
     /// From one value to another, with about `count` ticks.
     pub(super) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
         let step = nice_step((to - from) / count.max(1) as f64);
+        // Two ticks are the least to read a scale from.
+        let step = [step, 0.5 * step, 0.2 * step]
+            .into_iter()
+            .map(nice_step)
+            .find(|step| multiples(from, to, *step).count() >= 2)
+            .unwrap_or(step);
         Self {
             ticks: ticks(from, to, step),
             light: Vec::new(),

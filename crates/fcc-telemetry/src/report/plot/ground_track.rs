@@ -109,7 +109,7 @@ impl Map {
             } else {
                 pen(OTHER, 1.0)
             };
-            panel.polyline(places.iter().map(at).collect(), style)?;
+            panel.polyline(smooth(&panel, places.iter().map(at)), style)?;
         }
         let ends = [report.track.first(), report.track.last()];
         for (place, filled) in ends.into_iter().flatten().zip([false, true]) {
@@ -123,6 +123,27 @@ impl Map {
         legend(area)?;
         number_states(area, report, &panel, at)
     }
+}
+
+/// The points that are told apart on the sheet, and the last: closer ones show
+/// the noise of a receiver and no turn.
+fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    const APART_PX: f64 = 3.0;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    let mut last = None;
+    for point in points {
+        let (x, y) = panel.on_sheet(point);
+        let is_far = kept.last().is_none_or(|kept| {
+            let (u, v) = panel.on_sheet(*kept);
+            (u - x).hypot(v - y) >= APART_PX
+        });
+        last = (!is_far).then_some(point);
+        if is_far {
+            kept.push(point);
+        }
+    }
+    kept.extend(last);
+    kept
 }
 
 /// The track in pieces of one state each, which touch.

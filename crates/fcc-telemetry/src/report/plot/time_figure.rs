@@ -142,7 +142,8 @@ fn legend(area: &Area<'_>, report: &Report, panels: &[TimePanel]) -> Drawn {
         (Ink::Actual, pen(ACTUAL, 1.3), "actual"),
         (Ink::Desired, pen(DESIRED, 1.0), "desired"),
     ] {
-        if has(ink) {
+        // Where nothing is desired, the one line needs no name.
+        if has(ink) && has(Ink::Desired) {
             let sample = |x: f64| -> Drawn {
                 let ends = [(px(x), px(middle)), (px(x + 21.0), px(middle))];
                 Ok(area.draw(&PathElement::new(ends, pen))?)

@@ -26,23 +26,13 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
         return Ok(Vec::new());
     };
     let mut figures = Vec::new();
-    if let Some(of) = &timing.period_box_ms {
-        figures.push(periods(timing, of)?);
+    if !timing.is_lockstep() {
+        if let Some(of) = &timing.period_box_ms {
+            figures.push(periods(timing, of)?);
+        }
+        figures.push(lateness(timing)?);
+        figures.push(lateness_over_time(report)?);
     }
-    figures.push(lateness(timing)?);
-    figures.push(Figure {
-        title: "Lateness over time",
-        caption: "From deadline to wake-up.".to_owned(),
-        svg: time_figure(
-            report,
-            "Lateness over time",
-            &[TimePanel {
-                height_px: 100.0,
-                y: lateness_axis(extent([&report.lines.lateness_us])),
-                lines: vec![(Ink::Actual, report.lines.lateness_us.lines())],
-            }],
-        )?,
-    });
     figures.extend(percentile_ranges::figure(
         "Stages of a tick",
         "How long each stage took".to_owned(),
@@ -54,6 +44,22 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
         &report.sensor_ages,
     )?);
     Ok(figures)
+}
+
+fn lateness_over_time(report: &Report) -> Result<Figure, PlotError> {
+    Ok(Figure {
+        title: "Lateness over time",
+        caption: "From deadline to wake-up.".to_owned(),
+        svg: time_figure(
+            report,
+            "Lateness over time",
+            &[TimePanel {
+                height_px: 100.0,
+                y: lateness_axis(extent([&report.lines.lateness_us])),
+                lines: vec![(Ink::Actual, report.lines.lateness_us.lines())],
+            }],
+        )?,
+    })
 }
 
 fn lateness_axis((_, high): (f64, f64)) -> Axis {
