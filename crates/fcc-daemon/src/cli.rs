@@ -25,6 +25,10 @@ pub enum Command {
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until told to stop
     Run(RunArgs),
+    /// List recordings
+    List(ListArgs),
+    /// Make a whole recording of one that was cut off
+    Recover(RecoverArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
     /// Check a configuration file
@@ -61,6 +65,9 @@ pub struct FlyArgs {
     /// As fast as the machine can, instead of in real time
     #[arg(long)]
     pub lockstep: bool,
+    /// Where to record
+    #[command(flatten)]
+    pub recording: RecordingArgs,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -75,12 +82,48 @@ pub struct RunArgs {
     /// Configuration file
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
+    /// Where to record
+    #[command(flatten)]
+    pub recording: RecordingArgs,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
     /// No status lines
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// Where a flight is recorded.
+#[derive(Args, Debug)]
+pub struct RecordingArgs {
+    /// Folder that the recording goes to [default: recordings, or as
+    /// configured]
+    #[arg(long, value_name = "DIR")]
+    pub recordings: Option<PathBuf>,
+    /// Do not record
+    #[arg(long, conflicts_with = "recordings")]
+    pub no_recording: bool,
+}
+
+/// `fccd list`.
+#[derive(Args, Debug)]
+pub struct ListArgs {
+    /// Folder of recordings
+    #[arg(value_name = "DIR", default_value = "recordings")]
+    pub folder: PathBuf,
+    /// Print the list as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd recover`.
+#[derive(Args, Debug)]
+pub struct RecoverArgs {
+    /// Recording; if it is cut off, a whole one takes its place
+    pub file: PathBuf,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `fccd timing`.

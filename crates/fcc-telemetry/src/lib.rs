@@ -16,5 +16,5 @@ mod units;
 pub use flight::FlightLog;
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
-pub use table::{flight_table, timing_table};
+pub use table::{flight_table, recordings_table, timing_table};
 pub use timing::{Lateness, Period, Realtime, RefusedWish, TimingReport};

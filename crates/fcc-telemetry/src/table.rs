@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
+use super::recording::{Entry, Wholeness};
 use super::score::{FlightScore, LegScore};
 use super::timing::TimingReport;
 
@@ -124,6 +125,40 @@ pub fn flight_table(score: &FlightScore) -> String {
     }
     if let Some(worst) = &score.worst {
         table.add_row(leg_cells("worst".to_owned(), worst));
+    }
+    table.to_string()
+}
+
+/// A row per recording.
+pub fn recordings_table(entries: &[Entry]) -> String {
+    let mut table = table(&[
+        "Recording",
+        "started (UTC)",
+        "aircraft",
+        "duration",
+        "ticks",
+        "worst late",
+        "end state",
+        "file",
+    ]);
+    for entry in entries {
+        let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
+        let seconds = entry.duration_s;
+        table.add_row(vec![
+            name.to_string_lossy().into_owned(),
+            entry.started.replace('T', " ").replace('Z', ""),
+            entry.aircraft.clone(),
+            format!("{}:{:04.1}", (seconds / 60.0) as u64, seconds % 60.0),
+            entry.ticks.to_string(),
+            format!("{:.1} µs", entry.worst_lateness_us),
+            entry.state.clone(),
+            match entry.file {
+                Wholeness::Whole => "whole",
+                Wholeness::Cut => "cut: fccd recover",
+                Wholeness::BeingWritten => "being written",
+            }
+            .to_owned(),
+        ]);
     }
     table.to_string()
 }

@@ -3,10 +3,10 @@
 use fcc_runtime::SpawnError;
 
 use super::{fail, print_json};
-use crate::cli::FlyArgs;
+use crate::cli::{FlyArgs, RecordingArgs};
 use crate::config::{BuiltInSection, Config, CourseSection};
 use crate::exit::Exit;
-use crate::flight::{FlyError, Outcome, Pace, Plan, assemble, fly as fly_assembly};
+use crate::flight::{FlyError, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly};
 
 /// The legs that a flight has if nobody says how long it is to be.
 const DEFAULT_LEGS: f64 = 8.0;
@@ -15,13 +15,14 @@ const DEFAULT_HOLD_S: f64 = 60.0;
 
 /// Flies the built-in aircraft.
 pub(super) fn fly(args: &FlyArgs) -> Exit {
-    let config = match configuration(args) {
-        Ok(config) => config,
+    let (mut config, as_given) = match configuration(args) {
+        Ok(configured) => configured,
         Err(message) => {
             eprintln!("{message}");
             return Exit::Usage;
         }
     };
+    direct(&mut config, &args.recording);
     let plan = Plan {
         pace: if args.lockstep {
             Pace::Lockstep
@@ -35,16 +36,17 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
         quiet: args.quiet,
         announce: true,
     };
-    conduct(&config, plan, args.json)
+    conduct(&config, as_given, plan, args.json)
 }
 
 /// Flies a configuration and prints how it ended.
-pub(super) fn conduct(config: &Config, plan: Plan, json: bool) -> Exit {
+pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, json: bool) -> Exit {
     let assembly = match assemble(config) {
         Ok(assembly) => assembly,
         Err(error) => return fail(&error.to_string()),
     };
-    match fly_assembly(assembly, &config.tick, plan) {
+    let recording = RecordingWish::of(config, as_given);
+    match fly_assembly(assembly, &config.tick, plan, recording) {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
@@ -69,13 +71,28 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
     outcome.exit
 }
 
-fn configuration(args: &FlyArgs) -> Result<Config, String> {
-    let mut config = match &args.config {
-        Some(path) => Config::load(path).map_err(|error| error.to_string())?,
-        None => Config {
-            built_in: Some(BuiltInSection::default()),
-            ..Config::default()
-        },
+/// What the command line says about recording goes before the file.
+pub(super) fn direct(config: &mut Config, args: &RecordingArgs) {
+    if let Some(folder) = &args.recordings {
+        config.recording.folder.clone_from(folder);
+        config.recording.enabled = true;
+    }
+    config.recording.enabled &= !args.no_recording;
+}
+
+/// The configuration, and the text of its file if there is one.
+fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
+    let (mut config, as_given) = match &args.config {
+        Some(path) => Config::load_with_text(path)
+            .map(|(config, text)| (config, Some(text)))
+            .map_err(|error| error.to_string())?,
+        None => (
+            Config {
+                built_in: Some(BuiltInSection::default()),
+                ..Config::default()
+            },
+            None,
+        ),
     };
     let Some(built_in) = &mut config.built_in else {
         return Err(
@@ -90,5 +107,5 @@ fn configuration(args: &FlyArgs) -> Result<Config, String> {
     if let Some(gusts) = args.gusts {
         built_in.gusts = gusts;
     }
-    Ok(config)
+    Ok((config, as_given))
 }

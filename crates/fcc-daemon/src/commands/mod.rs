@@ -4,6 +4,9 @@
 mod check;
 mod fly;
 mod guard;
+mod list;
+mod progress;
+mod recover;
 mod report;
 mod run;
 mod timing;
@@ -21,6 +24,8 @@ pub fn run(cli: Cli) -> Exit {
     match cli.command {
         Command::Fly(args) => fly::fly(&args),
         Command::Run(args) => run::run(&args),
+        Command::List(args) => list::list(&args),
+        Command::Recover(args) => recover::recover(&args),
         Command::Timing(args) => timing::timing(&args),
         Command::Check(args) => check::check(&args),
         Command::Report(args) => report::report(&args),

@@ -5,17 +5,14 @@ use std::path::Path;
 
 use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_telemetry::recording::{Messages, Recording};
+use fcc_telemetry::recording::Recording;
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{fail, print_json};
+use super::{fail, print_json, progress};
 use crate::cli::ReportArgs;
 use crate::config::Config;
 use crate::exit::Exit;
 
-/// Shorter files are read before a bar could be seen.
-const LONG_FILE_BYTES: u64 = 4 << 20;
 /// Messages between two looks at how far the file is read.
 const BAR_EVERY: u64 = 4_096;
 
@@ -56,7 +53,8 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
     };
     let mut survey = Survey::new(origin, pattern(&recording));
     let mut messages = recording.messages().map_err(|error| error.to_string())?;
-    let mut bar = Bar::new(&recording);
+    let bar = progress::bar(recording.bytes(), "reading");
+    let mut taken = 0_u64;
     while let Some(message) = messages.next() {
         survey
             .take(&message)
@@ -64,9 +62,12 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
         if let Some(csv) = &mut csv {
             csv.take(&message).map_err(csv_failed)?;
         }
-        bar.moved(&messages);
+        taken += 1;
+        if taken.is_multiple_of(BAR_EVERY) {
+            bar.set_position(messages.bytes_read());
+        }
     }
-    bar.finish();
+    bar.finish_and_clear();
     if let Some(csv) = csv {
         csv.finish().map_err(csv_failed)?;
     }
@@ -96,36 +97,5 @@ fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     match config.course {
         Course::TimedPattern(pattern) => Some(pattern),
         Course::Hold => None,
-    }
-}
-
-/// A bar that fills while a long file is read; nothing where standard error
-/// is no terminal.
-struct Bar {
-    bar: ProgressBar,
-    messages: u64,
-}
-
-impl Bar {
-    fn new(recording: &Recording) -> Self {
-        let bar = ProgressBar::new(recording.bytes());
-        if recording.bytes() < LONG_FILE_BYTES {
-            bar.set_draw_target(ProgressDrawTarget::hidden());
-        }
-        if let Ok(style) = ProgressStyle::with_template("reading {wide_bar} {eta:>4} left") {
-            bar.set_style(style);
-        }
-        Self { bar, messages: 0 }
-    }
-
-    fn moved(&mut self, messages: &Messages) {
-        self.messages += 1;
-        if self.messages.is_multiple_of(BAR_EVERY) {
-            self.bar.set_position(messages.bytes_read());
-        }
-    }
-
-    fn finish(&self) {
-        self.bar.finish_and_clear();
     }
 }

@@ -1,6 +1,6 @@
 //! `fccd run`: the aircraft of a configuration, until told to stop.
 
-use super::fly::conduct;
+use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::config::Config;
 use crate::exit::Exit;
@@ -8,15 +8,16 @@ use crate::flight::{Pace, Plan};
 
 /// Flies a configuration until told to stop.
 pub(super) fn run(args: &RunArgs) -> Exit {
-    match Config::load(&args.config) {
-        Ok(config) => {
+    match Config::load_with_text(&args.config) {
+        Ok((mut config, text)) => {
+            direct(&mut config, &args.recording);
             let plan = Plan {
                 pace: Pace::RealTime,
                 seconds: None,
                 quiet: args.quiet,
                 announce: true,
             };
-            conduct(&config, plan, args.json)
+            conduct(&config, Some(text), plan, args.json)
         }
         Err(error) => {
             eprintln!("{error}");

@@ -57,7 +57,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         announce: false,
     };
     let progress = Progress::start(rate_hz, args.seconds);
-    let outcome = fly(assembly, &config.tick, plan).map_err(|error| error.to_string());
+    let outcome = fly(assembly, &config.tick, plan, None).map_err(|error| error.to_string());
     progress.stop();
     Ok(outcome?.timing)
 }

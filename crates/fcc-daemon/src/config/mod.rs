@@ -9,6 +9,7 @@ mod autopilot;
 mod built_in;
 mod error;
 mod ranges;
+mod recording;
 mod runtime;
 mod units;
 mod x_plane;
@@ -22,6 +23,7 @@ use serde::{Deserialize, Serialize};
 pub use autopilot::{AutopilotSection, CourseSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use error::{ConfigError, Problem};
+pub use recording::{CompressionChoice, RecordingSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
 pub use x_plane::XPlaneSection;
 
@@ -38,6 +40,8 @@ pub struct Config {
     pub engage: EngageSection,
     /// What happens when sensors fall silent.
     pub failsafe: FailsafeSection,
+    /// Where flights are recorded.
+    pub recording: RecordingSection,
     /// What is flown.
     pub course: CourseSection,
     /// Gains and limits.
@@ -66,11 +70,19 @@ impl Config {
     /// When it cannot be read, is not TOML, has an unknown key or a value out
     /// of range: every problem with its line.
     pub fn load(path: &Path) -> Result<Self, ConfigError> {
+        Self::load_with_text(path).map(|(config, _)| config)
+    }
+
+    /// Reads and checks a file, and gives its text as well.
+    ///
+    /// # Errors
+    /// As [`Config::load`].
+    pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
         let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
             file: path.display().to_string(),
             source,
         })?;
-        Self::parse(&text, &path.display().to_string())
+        Ok((Self::parse(&text, &path.display().to_string())?, text))
     }
 
     /// Checks a text; `file` is its name in messages.

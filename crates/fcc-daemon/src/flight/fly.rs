@@ -1,16 +1,20 @@
 //! Flies an assembly to its end.
 
 use std::io;
+use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use nix::sys::signal::Signal;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::recording::{LoopFacts, Recording, RecordingWish};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -62,7 +66,12 @@ const FETCH_EVERY: Duration = Duration::from_millis(20);
 ///
 /// # Errors
 /// When the flight does not begin; what happens later is in the outcome.
-pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome, FlyError> {
+pub fn fly(
+    assembly: Assembly,
+    tick: &LoopSection,
+    plan: Plan,
+    recording: Option<RecordingWish>,
+) -> Result<Outcome, FlyError> {
     let period = tick.period();
     let timer: Box<dyn Timer> = match plan.pace {
         Pace::RealTime => build(tick.timer, period)?,
@@ -71,7 +80,17 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
-    let mut watch = Watch::new(&course, assembly.truth, plan, names);
+    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone());
+    let mut wish = recording;
+    if let Some(wish) = &mut wish {
+        let facts = LoopFacts {
+            timer: timer_name,
+            now_ns: timer.now_ns(),
+            sensors: names.sensors,
+            actuators: names.actuators,
+        };
+        wish.prepare(facts, &mut watch);
+    }
     // Before the loop's thread exists, so that nothing real-time is inherited.
     let mut connection = assembly
         .x_plane
@@ -82,34 +101,47 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
         controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
-    let report = match plan.pace {
+    let (report, recording) = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             catch_signals(&link)?;
             let handle = flight_loop.spawn()?;
+            let grants = Some(handle.grants());
+            let mut recording =
+                wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             while !link.messages.is_over() {
-                drain(&mut link, &mut watch, plan);
+                drain(&mut link, &mut watch, recording.as_mut(), plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                    if let Some(recording) = &recording {
+                        recording.remark(&words);
+                    }
                     watch.remark(words);
                 }
                 thread::sleep(FETCH_EVERY);
             }
-            drain(&mut link, &mut watch, plan);
-            handle.join()
+            drain(&mut link, &mut watch, recording.as_mut(), plan);
+            (handle.join(), recording)
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
             catch_signals(&link)?;
-            run_in_lockstep(machine, &mut link, &mut watch, plan)?
+            let mut recording =
+                wish.and_then(|wish| wish.begin(None, RecordingPace::Lockstep, &mut watch));
+            let recorder = recording.as_mut();
+            let report = run_in_lockstep(machine, &mut link, &mut watch, recorder, plan)?;
+            (report, recording)
         }
     };
+    // The controls were given back before; the disk may take its time now.
     if let Some(connection) = connection {
         connection.end(report.released);
     }
+    let recording =
+        recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
-    Ok(Outcome::new(timer_name, report, events, score))
+    Ok(Outcome::new(timer_name, report, events, score, recording))
 }
 
 fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
@@ -120,21 +152,30 @@ fn run_in_lockstep(
     mut machine: Machine<Pilot>,
     link: &mut Link<Pilot>,
     watch: &mut Watch,
+    mut recording: Option<&mut Recording>,
     plan: Plan,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
     while machine.step() != State::Stopped {
-        drain(link, watch, plan);
+        drain(link, watch, recording.as_deref_mut(), plan);
     }
     let report = machine.finish();
-    drain(link, watch, plan);
+    drain(link, watch, recording, plan);
     Ok(report)
 }
 
 /// Fetches all there is, and stops the loop when its time is up.
-fn drain(link: &mut Link<Pilot>, watch: &mut Watch, plan: Plan) {
+fn drain(
+    link: &mut Link<Pilot>,
+    watch: &mut Watch,
+    mut recording: Option<&mut Recording>,
+    plan: Plan,
+) {
     while let Some(message) = link.messages.receive() {
         watch.take(&message);
+        if let Some(recording) = &mut recording {
+            recording.take(&message);
+        }
         let time_is_up = plan
             .seconds
             .zip(watch.engaged_for_s())
@@ -144,6 +185,9 @@ fn drain(link: &mut Link<Pilot>, watch: &mut Watch, plan: Plan) {
             link.stop.stop();
         }
     }
+    if let Some(recording) = recording {
+        recording.tell(watch);
+    }
 }
 
 /// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
@@ -152,5 +196,9 @@ fn catch_signals(link: &Link<Pilot>) -> Result<(), FlyError> {
     for signal in [SIGTERM, SIGINT, SIGHUP] {
         signal_hook::flag::register(signal, link.stop.flag()).map_err(FlyError::Signals)?;
     }
+    // A limit on the size of files must end the recording, not the flight: with
+    // this caught, the write that goes too far is an error like any other.
+    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())
+        .map_err(FlyError::Signals)?;
     Ok(())
 }

@@ -11,6 +11,7 @@ mod guard;
 #[cfg(feature = "fault-injection")]
 mod injection;
 mod outcome;
+mod recording;
 mod status;
 mod tap;
 mod watch;
@@ -19,6 +20,7 @@ pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
+pub use recording::{RecordingOutcome, RecordingWish};
 
 /// What the loop runs.
 #[cfg(not(feature = "fault-injection"))]

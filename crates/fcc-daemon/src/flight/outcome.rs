@@ -7,6 +7,7 @@ use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_tab
 use fcc_timer::RealtimeGrants;
 use serde::Serialize;
 
+use super::recording::RecordingOutcome;
 use crate::exit::Exit;
 
 /// How a flight ended.
@@ -26,6 +27,8 @@ pub struct Outcome {
     pub released: bool,
     /// Records that nobody fetched in time.
     pub records_dropped: u64,
+    /// What of the flight got onto the disk; none if it was not recorded.
+    pub recording: Option<RecordingOutcome>,
     /// What the program's exit code says.
     #[serde(skip)]
     pub exit: Exit,
@@ -48,6 +51,7 @@ impl Outcome {
         report: LoopReport,
         events: Vec<EventEntry>,
         flight: Option<FlightScore>,
+        recording: Option<RecordingOutcome>,
     ) -> Self {
         let exit = match report.ending {
             _ if !report.released => Exit::NotReleased,
@@ -69,6 +73,7 @@ impl Outcome {
             failsafes: report.failsafes,
             released: report.released,
             records_dropped: report.records_dropped,
+            recording,
             exit,
         }
     }
@@ -86,6 +91,14 @@ impl Outcome {
         }
         if !self.released {
             text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
+        }
+        if let Some(recording) = &self.recording {
+            for file in &recording.files {
+                let _ = write!(text, "\nrecorded: {file}");
+            }
+            if recording.not_recorded > 0 {
+                let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+            }
         }
         text
     }

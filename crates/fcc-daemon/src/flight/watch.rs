@@ -1,12 +1,11 @@
 //! Takes what the loop tells, and keeps what matters later.
 
+use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::flight::{Course, Order};
 use fcc_core::framework::{EventKind, Message, State};
 use fcc_sim::Truth;
-use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample};
+use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
-use super::Pilot;
 use super::assemble::Assembly;
 use super::fly::Plan;
 use super::outcome::EventEntry;
@@ -111,7 +110,7 @@ impl Watch {
         let entry = EventEntry {
             time_s: self.seconds(event.time.as_nanos()),
             tick: event.tick,
-            text: self.names.words(event.kind),
+            text: event_words(event, &self.names.sensors, &self.names.actuators),
         };
         self.failed |= matches!(
             event.kind,
@@ -130,6 +129,13 @@ impl Watch {
             tick: self.tick,
             text,
         });
+    }
+
+    /// Something that is said and not kept: it is no part of the flight.
+    pub(super) fn mention(&self, text: &str) {
+        if self.announce {
+            eprintln!("{:8.2} s  {text}", self.now_s);
+        }
     }
 
     fn keep(&mut self, entry: EventEntry) {
@@ -151,36 +157,19 @@ impl Watch {
 }
 
 /// What sensors and actuators are called: the loop knows them by their places.
+#[derive(Clone)]
 pub(super) struct Names {
-    sensors: Vec<&'static str>,
-    actuators: Vec<&'static str>,
+    pub(super) sensors: Vec<String>,
+    pub(super) actuators: Vec<String>,
 }
 
 impl Names {
     pub(super) fn of(assembly: &Assembly) -> Self {
+        let sensors = assembly.sensors.iter().map(|s| s.name().to_owned());
+        let actuators = assembly.actuators.iter().map(|a| a.name().to_owned());
         Self {
-            sensors: assembly.sensors.iter().map(|s| s.name()).collect(),
-            actuators: assembly.actuators.iter().map(|a| a.name()).collect(),
-        }
-    }
-
-    fn words(&self, kind: EventKind<Order>) -> String {
-        let sensor = |index: u16| self.sensors.get(usize::from(index)).unwrap_or(&"?");
-        let actuator = |index: u16| self.actuators.get(usize::from(index)).unwrap_or(&"?");
-        match kind {
-            EventKind::SensorFault { index, fault } => {
-                format!("sensor {}: {fault}", sensor(index))
-            }
-            EventKind::SensorRecovered { index } => {
-                format!("sensor {}: works again", sensor(index))
-            }
-            EventKind::ActuatorFault { index, fault } => {
-                format!("actuator {}: {fault}", actuator(index))
-            }
-            EventKind::ActuatorRecovered { index } => {
-                format!("actuator {}: works again", actuator(index))
-            }
-            kind => kind.words::<Pilot>().to_string(),
+            sensors: sensors.collect(),
+            actuators: actuators.collect(),
         }
     }
 }

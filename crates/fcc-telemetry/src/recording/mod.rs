@@ -58,4 +58,4 @@ pub use reader::{Messages, OpenError, Recording};
 pub use recorder::Recorder;
 pub use recover::{RecoverError, Recovered, recover};
 pub use settings::{Compression, RecorderSettings, RecordingPace};
-pub use status::RecorderStatus;
+pub use status::{News, RecorderStatus};

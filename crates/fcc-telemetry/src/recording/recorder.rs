@@ -10,7 +10,7 @@ use fcc_core::framework::{Event, EventKind, Time};
 use super::about::About;
 use super::disk::{Disk, FileSystem};
 use super::settings::{RecorderSettings, RecordingPace};
-use super::status::{Board, RecorderStatus};
+use super::status::{Board, News, RecorderStatus};
 use super::writing::{Feed, Writing};
 use crate::FlightMessage;
 
@@ -34,7 +34,7 @@ pub struct Recorder {
     pace: RecordingPace,
     lost: Lost,
     board: Board,
-    news: Receiver<String>,
+    news: Receiver<News>,
     thread: JoinHandle<()>,
 }
 
@@ -91,7 +91,7 @@ impl Recorder {
 
     /// What there is to say about the recording: where it goes, what was
     /// deleted for it, why it stopped. None if there is nothing new.
-    pub fn news(&self) -> Option<String> {
+    pub fn news(&self) -> Option<News> {
         self.news.try_recv().ok()
     }
 
@@ -103,7 +103,7 @@ impl Recorder {
     /// Ends the recording; `ending` says in words why the flight ended. Waits
     /// for the disk, 10 s at most, and gives the last word on the recording and
     /// the news nobody asked for.
-    pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<String>) {
+    pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<News>) {
         let began = Instant::now();
         let last = (self.lost.count > 0).then(|| Feed::Message(self.lost.event(None)));
         for feed in last.into_iter().chain([Feed::End(ending.to_owned())]) {
@@ -112,11 +112,13 @@ impl Recorder {
         while !self.thread.is_finished() && began.elapsed() < PATIENCE {
             thread::sleep(POLL);
         }
-        let mut news: Vec<String> = self.news.try_iter().collect();
+        let mut news: Vec<News> = self.news.try_iter().collect();
         if !self.thread.is_finished() {
-            news.push(
-                "the recording's end is not on the disk after 10 s: it does not answer".to_owned(),
-            );
+            news.push(News {
+                text: "the recording's end is not on the disk after 10 s: it does not answer"
+                    .to_owned(),
+                is_trouble: true,
+            });
         }
         (self.board.read(), news)
     }

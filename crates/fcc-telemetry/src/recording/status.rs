@@ -20,6 +20,16 @@ pub struct RecorderStatus {
     pub stopped: Option<String>,
 }
 
+/// Something to say about a recording.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct News {
+    /// In words for people.
+    pub text: String,
+    /// Whether something went wrong: a part of the flight is not recorded, or
+    /// not as it should be.
+    pub is_trouble: bool,
+}
+
 /// Where a recorder's thread leaves its status. Only ever locked for a copy,
 /// and never by the loop's thread.
 #[derive(Clone, Debug, Default)]

@@ -12,7 +12,7 @@ use super::folder;
 use super::name::file_name;
 use super::recorder::Lost;
 use super::settings::RecorderSettings;
-use super::status::Board;
+use super::status::{Board, News};
 use crate::FlightMessage;
 
 /// How often what has gathered is written and synced. A loss of power costs
@@ -40,7 +40,7 @@ pub(super) struct Writing {
     about: About,
     settings: RecorderSettings,
     board: Board,
-    news: Sender<String>,
+    news: Sender<News>,
     file: Option<RecordingFile>,
     /// What a failing disk would lose: given to the file, not yet committed.
     uncommitted: Lost,
@@ -60,7 +60,7 @@ impl Writing {
         about: About,
         settings: RecorderSettings,
         board: Board,
-        news: Sender<String>,
+        news: Sender<News>,
     ) -> Self {
         Self {
             disk,
@@ -228,7 +228,7 @@ impl Writing {
         match begun {
             Ok(file) => {
                 let path = file.path().to_owned();
-                self.tell(format!("recording to {}", path.display()));
+                self.tell(format!("recording to {}", path.display()), false);
                 self.board.update(|status| {
                     status.file = Some(path.clone());
                     status.files.push(path);
@@ -271,7 +271,7 @@ impl Writing {
         let words = format!("{}: {error}; {gap}", path.display());
         if is_full(error) && self.make_room() {
             self.lost = lost;
-            self.tell(words);
+            self.tell(words, true);
             self.begin();
         } else {
             self.stop(format!("{words}. The flight goes on unrecorded"));
@@ -287,7 +287,10 @@ impl Writing {
         let own = self.board.read().files;
         let deleted = folder::delete_oldest(&self.settings.folder, &own);
         if let Some(path) = &deleted {
-            self.tell(format!("{}: deleted, the disk is full", path.display()));
+            self.tell(
+                format!("{}: deleted, the disk is full", path.display()),
+                false,
+            );
         }
         deleted.is_some()
     }
@@ -297,25 +300,26 @@ impl Writing {
             return;
         };
         for path in folder::keep_below(&self.settings.folder, most) {
-            self.tell(format!(
+            let text = format!(
                 "{}: deleted, to keep recordings below {} MB",
                 path.display(),
                 most / 1_000_000
-            ));
+            );
+            self.tell(text, false);
         }
     }
 
     fn stop(&mut self, words: String) {
-        self.tell(format!("recording stopped: {words}"));
+        self.tell(format!("recording stopped: {words}"), true);
         self.board.update(|status| {
             status.file = None;
             status.stopped = Some(words);
         });
     }
 
-    fn tell(&self, words: String) {
+    fn tell(&self, text: String, is_trouble: bool) {
         // Whoever flies may be gone already.
-        let _ = self.news.send(words);
+        let _ = self.news.send(News { text, is_trouble });
     }
 }
 

@@ -114,7 +114,7 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
         "{stopped}"
     );
     assert!(
-        news.last().unwrap().starts_with("recording stopped: "),
+        news.last().unwrap().text.starts_with("recording stopped: "),
         "{news:?}"
     );
     assert_eq!((status.ticks, status.not_recorded), (40, 40));
@@ -218,8 +218,11 @@ fn a_folder_that_cannot_be_written_is_news_and_no_error() {
     }
     let (status, news) = recorder.finish("ordered to stop");
     assert_eq!(news.len(), 1);
-    assert!(news[0].starts_with("recording stopped: "), "{news:?}");
-    assert!(news[0].contains("--recordings"), "{news:?}");
+    assert!(news[0].text.starts_with("recording stopped: "), "{news:?}");
+    assert!(
+        news[0].is_trouble && news[0].text.contains("--recordings"),
+        "{news:?}"
+    );
     assert_eq!((status.ticks, status.not_recorded), (0, 11));
 }
 

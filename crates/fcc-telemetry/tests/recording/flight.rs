@@ -116,7 +116,12 @@ pub(crate) fn record_all(recorder: Recorder, messages: &[FlightMessage]) -> Vec<
     for message in messages {
         recorder.take(message);
     }
-    recorder.finish("ordered to stop").1
+    recorder
+        .finish("ordered to stop")
+        .1
+        .into_iter()
+        .map(|news| news.text)
+        .collect()
 }
 
 /// The only recording in a folder.

@@ -339,6 +339,7 @@ fn every_event_comes_back() {
         EventKind::Released { ok: false },
         EventKind::Panicked,
         EventKind::TimerFailed,
+        EventKind::ToldToStop,
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];

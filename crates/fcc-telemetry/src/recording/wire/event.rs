@@ -40,6 +40,7 @@ fn kind_out(kind: &EventKind<Command>) -> Option<Kind> {
         EventKind::Ordered(order) => Kind::Ordered(fcc::Order {
             order: Some(order_out(order)?),
         }),
+        EventKind::ToldToStop => Kind::ToldToStop(fcc::ToldToStop {}),
         EventKind::EngageRefused { blockers } => Kind::EngageRefused(fcc::EngageRefused {
             blockers: blockers.bits(),
         }),
@@ -88,6 +89,7 @@ fn kind_in(kind: Kind) -> Result<EventKind<Command>, Unknown> {
             to: state_in(changed.to.unwrap_or_default())?.state(),
         },
         Kind::Ordered(order) => EventKind::Ordered(order_in(order)?),
+        Kind::ToldToStop(_) => EventKind::ToldToStop,
         Kind::EngageRefused(refused) => EventKind::EngageRefused {
             blockers: Flags::from_bits(refused.blockers),
         },

@@ -1,0 +1,45 @@
+//! `fccd list [DIR]`.
+
+use fcc_telemetry::recording::{self, Entry};
+use fcc_telemetry::recordings_table;
+
+use super::{fail, print_json, progress};
+use crate::cli::ListArgs;
+use crate::exit::Exit;
+
+/// Lists the recordings in a folder. What is no recording is said and left.
+pub(super) fn list(args: &ListArgs) -> Exit {
+    let files = match recording::files(&args.folder) {
+        Ok(files) => files,
+        Err(error) => {
+            return fail(&format!(
+                "{}: cannot be listed: {error}. Give the folder that flights were recorded to",
+                args.folder.display()
+            ));
+        }
+    };
+    let bytes = |path: &std::path::PathBuf| path.metadata().map_or(0, |metadata| metadata.len());
+    let bar = progress::bar(files.iter().map(bytes).sum(), "reading");
+    let mut entries: Vec<Entry> = Vec::new();
+    let mut refused = Vec::new();
+    for path in &files {
+        match recording::entry(path) {
+            Ok(entry) => entries.push(entry),
+            Err(error) => refused.push(error),
+        }
+        bar.inc(bytes(path));
+    }
+    bar.finish_and_clear();
+    for error in refused {
+        eprintln!("{error}");
+    }
+    if args.json {
+        return print_json(&entries);
+    }
+    if entries.is_empty() {
+        println!("{}: no recordings", args.folder.display());
+    } else {
+        println!("{}", recordings_table(&entries));
+    }
+    Exit::Success
+}

@@ -1,0 +1,30 @@
+//! `fccd recover FILE`.
+
+use std::fs;
+
+use fcc_telemetry::recording;
+
+use super::{fail, print_json, progress};
+use crate::cli::RecoverArgs;
+use crate::exit::Exit;
+
+/// Makes a whole recording of one that was cut off.
+pub(super) fn recover(args: &RecoverArgs) -> Exit {
+    let bytes = fs::metadata(&args.file).map_or(0, |metadata| metadata.len());
+    let bar = progress::bar(bytes, "recovering");
+    let recovered = recording::recover(&args.file, |read| bar.set_position(read));
+    bar.finish_and_clear();
+    match recovered {
+        Err(error) => fail(&error.to_string()),
+        Ok(recovered) if args.json => print_json(&recovered),
+        Ok(recovered) => {
+            let file = recovered.path.display();
+            let ticks = recovered.ticks;
+            match recovered.cut {
+                None => println!("{file}: is whole: {ticks} ticks"),
+                Some(cut) => println!("{file}: was {cut}; is whole now: {ticks} ticks"),
+            }
+            Exit::Success
+        }
+    }
+}

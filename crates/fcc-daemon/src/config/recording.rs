@@ -1,0 +1,72 @@
+//! `[recording]`: where flights are recorded.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use fcc_telemetry::recording::{Compression, RecorderSettings};
+use serde::{Deserialize, Serialize};
+
+/// `[recording]`.
+#[derive(Clone, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RecordingSection {
+    /// Whether flights are recorded.
+    pub enabled: bool,
+    /// Where recordings go; made if it is missing.
+    pub folder: PathBuf,
+    /// A file that grows to this size is ended and another begun; 0 for no
+    /// limit.
+    pub max_file_mb: u64,
+    /// A file that covers this much of a flight is ended and another begun; 0
+    /// for no limit.
+    pub max_file_minutes: u64,
+    /// The oldest recordings are deleted to keep all below this; 0 to delete
+    /// none.
+    pub keep_total_mb: u64,
+    /// How they are compressed.
+    pub compression: CompressionChoice,
+}
+
+/// How recordings are compressed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompressionChoice {
+    /// Not at all.
+    None,
+    /// Fast.
+    Lz4,
+    /// Small.
+    #[default]
+    Zstd,
+}
+
+impl Default for RecordingSection {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            folder: PathBuf::from("recordings"),
+            max_file_mb: 1_000,
+            max_file_minutes: 0,
+            keep_total_mb: 0,
+            compression: CompressionChoice::default(),
+        }
+    }
+}
+
+impl From<&RecordingSection> for RecorderSettings {
+    fn from(section: &RecordingSection) -> Self {
+        let limit = |value: u64| (value > 0).then_some(value);
+        Self {
+            max_file_bytes: limit(section.max_file_mb).map(|mb| mb * 1_000_000),
+            max_file_age: limit(section.max_file_minutes)
+                .map(|minutes| Duration::from_secs(minutes * 60)),
+            keep_total_bytes: limit(section.keep_total_mb).map(|mb| mb * 1_000_000),
+            compression: match section.compression {
+                CompressionChoice::None => Compression::None,
+                CompressionChoice::Lz4 => Compression::Lz4,
+                CompressionChoice::Zstd => Compression::Zstd,
+            },
+            ..Self::new(&section.folder)
+        }
+    }
+}
