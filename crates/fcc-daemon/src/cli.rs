@@ -35,6 +35,8 @@ pub enum Command {
     Replay(ReplayArgs),
     /// Check a configuration file
     Check(CheckArgs),
+    /// Report on a recorded flight: tables, and a page with plots
+    Report(ReportArgs),
     /// Give X-Plane's controls back if the daemon is killed; started by the
     /// daemon itself
     #[command(hide = true)]
@@ -176,6 +178,22 @@ pub struct CheckArgs {
     /// Configuration file
     pub file: PathBuf,
     /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd report`.
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// The recording
+    pub file: PathBuf,
+    /// Write a page with all tables and plots, complete in one file
+    #[arg(long, value_name = "OUT.html")]
+    pub html: Option<PathBuf>,
+    /// Write every tick and event into records.csv and events.csv
+    #[arg(long, value_name = "DIR")]
+    pub csv: Option<PathBuf>,
+    /// Print all statistics as JSON
     #[arg(long)]
     pub json: bool,
 }

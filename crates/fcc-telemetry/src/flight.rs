@@ -1,37 +1,61 @@
-//! Gathers a flight for its score.
+//! Scores a flight while it goes by.
 
 use fcc_core::flight::guidance::TimedPatternConfig;
 
-use super::score::{FlightScore, Leg, Sample, ScoreError, score};
+use super::score::{FlightScore, Leg, LegScore, ROUNDING_S, Sample, ScoreError, score};
+use super::units::M_FT;
 
-/// Gathers the samples of a flight through the timed pattern, from engagement
-/// on.
-#[derive(Debug)]
+/// Scores a flight through the timed pattern, from engagement on. It keeps the
+/// samples of one leg and the figures of those before, however long the flight.
+#[derive(Clone, Debug)]
 pub struct FlightLog {
     pattern: TimedPatternConfig,
-    samples: Vec<Sample>,
+    captured: Option<Sample>,
+    /// Between samples, as at the beginning.
+    step_s: f64,
+    /// Samples of the leg being flown.
+    leg: Vec<Sample>,
+    /// Whole legs before it, or why one of them has no figures.
+    flown: Result<Vec<LegScore>, ScoreError>,
 }
-
-/// Feet in a metre.
-const M_FT: f64 = 1.0 / 0.304_8;
 
 impl FlightLog {
     /// An empty log of a flight through `pattern`.
     pub const fn new(pattern: TimedPatternConfig) -> Self {
         Self {
             pattern,
-            samples: Vec::new(),
+            captured: None,
+            step_s: 0.0,
+            leg: Vec::new(),
+            flown: Ok(Vec::new()),
         }
     }
 
     /// Takes a sample while engaged; the first is what was captured.
     pub fn push(&mut self, sample: Sample) {
-        self.samples.push(sample);
+        let captured = *self.captured.get_or_insert(sample);
+        if self.step_s == 0.0 {
+            self.step_s = sample.time_s - captured.time_s;
+        }
+        while let Ok(flown) = &mut self.flown {
+            let leg = leg(&self.pattern, &captured, flown.len());
+            if sample.time_s < leg.end_s - ROUNDING_S {
+                if sample.time_s >= leg.start_s - ROUNDING_S {
+                    self.leg.push(sample);
+                }
+                break;
+            }
+            match score(&self.leg, &[leg]) {
+                Ok(scored) => flown.extend(scored.legs),
+                Err(error) => self.flown = Err(error),
+            }
+            self.leg.clear();
+        }
     }
 
     /// Forgets the flight: the next sample begins another.
     pub fn clear(&mut self) {
-        self.samples.clear();
+        *self = Self::new(self.pattern);
     }
 
     /// The score over all whole legs flown.
@@ -39,44 +63,38 @@ impl FlightLog {
     /// # Errors
     /// When samples are missing from a leg.
     pub fn score(&self) -> Result<FlightScore, ScoreError> {
-        score(&self.samples, &self.legs())
-    }
-
-    /// The whole legs flown, around the state at the first sample.
-    fn legs(&self) -> Vec<Leg> {
-        let (Some(captured), Some(last)) = (self.samples.first(), self.samples.last()) else {
-            return Vec::new();
-        };
-        let pattern = &self.pattern;
-        // One sample's time may be missing at the end of the last leg.
-        let step_s = match self.samples.as_slice() {
-            [first, second, ..] => second.time_s - first.time_s,
-            _ => 0.0,
-        };
-        let flown_s = last.time_s + step_s - captured.time_s - pattern.hold_s;
-        let count = (flown_s / pattern.leg_s + 1e-3).floor().max(0.0) as u32;
-        let climb_ft = |leg: u32| {
-            if leg % 2 == 1 {
-                pattern.climb_m * M_FT
-            } else {
-                0.0
+        let mut legs = self.flown.clone()?;
+        if let (Some(captured), Some(last)) = (self.captured, self.leg.last()) {
+            let leg = leg(&self.pattern, &captured, legs.len());
+            // One sample's time may be missing at the end of the last leg.
+            let flown_s = last.time_s + self.step_s - leg.start_s;
+            if flown_s >= self.pattern.leg_s * (1.0 - 1e-3) {
+                legs.extend(score(&self.leg, &[leg])?.legs);
             }
-        };
-        (0..count)
-            .map(|leg| {
-                let start_s = captured.time_s + pattern.hold_s + f64::from(leg) * pattern.leg_s;
-                let turn_deg = pattern.turn_rad.to_degrees();
-                Leg {
-                    start_s,
-                    end_s: start_s + pattern.leg_s,
-                    heading_from_deg: captured.heading_deg + f64::from(leg) * turn_deg,
-                    heading_deg: captured.heading_deg + f64::from(leg + 1) * turn_deg,
-                    altitude_from_ft: captured.altitude_ft + climb_ft(leg),
-                    altitude_ft: captured.altitude_ft + climb_ft(leg + 1),
-                    airspeed_kt: captured.airspeed_kt,
-                }
-            })
-            .collect()
+        }
+        Ok(FlightScore::of(legs))
+    }
+}
+
+/// A leg, the first being 0, around what was captured.
+fn leg(pattern: &TimedPatternConfig, captured: &Sample, number: usize) -> Leg {
+    let climb_ft = |leg: usize| {
+        if leg % 2 == 1 {
+            pattern.climb_m * M_FT
+        } else {
+            0.0
+        }
+    };
+    let start_s = captured.time_s + pattern.hold_s + number as f64 * pattern.leg_s;
+    let turn_deg = pattern.turn_rad.to_degrees();
+    Leg {
+        start_s,
+        end_s: start_s + pattern.leg_s,
+        heading_from_deg: captured.heading_deg + number as f64 * turn_deg,
+        heading_deg: captured.heading_deg + (number + 1) as f64 * turn_deg,
+        altitude_from_ft: captured.altitude_ft + climb_ft(number),
+        altitude_ft: captured.altitude_ft + climb_ft(number + 1),
+        airspeed_kt: captured.airspeed_kt,
     }
 }
 
@@ -117,5 +135,27 @@ mod tests {
     fn no_whole_leg_no_score() {
         let log = FlightLog::new(TimedPatternConfig::default());
         assert_eq!(log.score().unwrap().worst, None);
+    }
+
+    /// A leg of which nothing was seen has no figures, and the flight no score.
+    #[test]
+    fn a_hole_in_a_flight_is_said() {
+        let mut log = FlightLog::new(TimedPatternConfig::default());
+        for time_s in [0.0, 0.025, 1e9] {
+            log.push(Sample {
+                time_s,
+                heading_deg: 0.0,
+                altitude_ft: 0.0,
+                airspeed_kt: 100.0,
+                lateral_g: 0.0,
+            });
+        }
+        assert_eq!(
+            log.score(),
+            Err(ScoreError::NotFlown {
+                start_s: 20.0,
+                end_s: 40.0
+            })
+        );
     }
 }

@@ -7,9 +7,11 @@
 mod flight;
 mod message;
 pub mod recording;
+pub mod report;
 mod score;
 mod table;
 mod timing;
+mod units;
 
 pub use flight::FlightLog;
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};

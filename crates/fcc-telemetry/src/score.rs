@@ -93,7 +93,7 @@ const ALTITUDE_BAND_FT: f64 = 10.0;
 const HEADING_WINDOW_S: f64 = 3.0;
 const ALTITUDE_WINDOW_S: f64 = 8.0;
 /// Sums of ticks end this close to a leg's border.
-const ROUNDING_S: f64 = 1e-6;
+pub(crate) const ROUNDING_S: f64 = 1e-6;
 
 /// Scores a flight: samples in ascending time, one score per leg.
 ///
@@ -104,8 +104,15 @@ pub fn score(samples: &[Sample], legs: &[Leg]) -> Result<FlightScore, ScoreError
         .iter()
         .map(|leg| score_leg(samples, leg))
         .collect::<Result<Vec<_>, _>>()?;
-    let worst = legs.iter().copied().reduce(LegScore::worst);
-    Ok(FlightScore { legs, worst })
+    Ok(FlightScore::of(legs))
+}
+
+impl FlightScore {
+    /// Of legs that are scored already.
+    pub(crate) fn of(legs: Vec<LegScore>) -> Self {
+        let worst = legs.iter().copied().reduce(LegScore::worst);
+        Self { legs, worst }
+    }
 }
 
 impl LegScore {

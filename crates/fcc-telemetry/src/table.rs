@@ -12,7 +12,7 @@ use super::timing::TimingReport;
 const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
-fn table(header: &[&str]) -> Table {
+pub(crate) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(STYLE);
     table.set_header(header);
@@ -33,70 +33,98 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     );
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut table = table(&header);
-    let mut row = |name: &str, value: &dyn Fn(&TimingReport) -> String| {
-        let mut cells = vec![name.to_owned()];
-        cells.extend(reports.iter().map(value));
-        table.add_row(cells);
-    };
-    row("Runtime", &|r| format!("{:.2} s", r.runtime_s));
-    row("Average", &|r| format!("{:.4} ms", r.period_ms.mean));
-    row("Median", &|r| format!("{:.3} ms", r.period_ms.median));
-    row("Min time", &|r| format!("{:.3} ms", r.period_ms.min));
-    row("Max time", &|r| format!("{:.3} ms", r.period_ms.max));
-    row("Range", &|r| format!("{:.3} ms", r.period_ms.range));
-    row("Missed", &|r| r.missed.to_string());
-    row("Within ±2 %", &|r| {
-        format!("{:.3} %", 100.0 * r.period_ms.within_2_percent)
-    });
-    row("Lateness p50", &|r| format!("{:.1} µs", r.lateness_us.p50));
-    row("Lateness p99", &|r| format!("{:.1} µs", r.lateness_us.p99));
-    row("Lateness p99.9", &|r| {
-        format!("{:.1} µs", r.lateness_us.p99_9)
-    });
-    row("Lateness max", &|r| format!("{:.1} µs", r.lateness_us.max));
-    row("CPU", &|r| format!("{:.2} %", r.cpu_percent));
-    row("Scheduling", &|r| match r.realtime.priority {
-        0 => r.realtime.policy.to_owned(),
-        priority => format!("{} {priority}", r.realtime.policy),
-    });
-    row("Memory locked", &|r| {
-        if r.realtime.memory_locked {
-            "yes"
-        } else {
-            "no"
-        }
-        .to_owned()
-    });
+    for (name, cells) in timing_rows(reports) {
+        let mut row = vec![name.to_owned()];
+        row.extend(cells);
+        table.add_row(row);
+    }
     let mut text = table.to_string();
     for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
-        let _ = write!(
-            text,
-            "\nnot granted: {} ({}): {}",
-            refused.wish, refused.reason, refused.remedy
-        );
+        let _ = write!(text, "\nnot granted: {refused}");
     }
     text
 }
 
+/// The rows of the timing table, each with a cell per report.
+pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<String>)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &'static str, value: &dyn Fn(&TimingReport) -> String| {
+        rows.push((name, reports.iter().map(value).collect()));
+    };
+    row("Runtime", &|r| figure(r.runtime_s, 2, "s"));
+    row("Average", &|r| figure(r.period_ms.mean, 4, "ms"));
+    row("Median", &|r| figure(r.period_ms.median, 3, "ms"));
+    row("Min time", &|r| figure(r.period_ms.min, 3, "ms"));
+    row("Max time", &|r| figure(r.period_ms.max, 3, "ms"));
+    row("Range", &|r| figure(r.period_ms.range, 3, "ms"));
+    row("Missed", &|r| r.missed.to_string());
+    row("Within ±2 %", &|r| {
+        figure(100.0 * r.period_ms.within_2_percent, 3, "%")
+    });
+    row("Lateness p50", &|r| figure(r.lateness_us.p50, 1, "µs"));
+    row("Lateness p99", &|r| figure(r.lateness_us.p99, 1, "µs"));
+    row("Lateness p99.9", &|r| figure(r.lateness_us.p99_9, 1, "µs"));
+    row("Lateness max", &|r| figure(r.lateness_us.max, 1, "µs"));
+    row("CPU", &|r| {
+        figure(r.cpu_percent.unwrap_or(f64::NAN), 2, "%")
+    });
+    row("Scheduling", &|r| match r.realtime.priority {
+        0 => or_unknown(r.realtime.policy.clone()),
+        priority => format!("{} {priority}", r.realtime.policy),
+    });
+    row("Memory locked", &|r| {
+        match (r.realtime.policy.is_empty(), r.realtime.memory_locked) {
+            (true, _) => UNKNOWN,
+            (false, true) => "yes",
+            (false, false) => "no",
+        }
+        .to_owned()
+    });
+    rows
+}
+
+/// What a table says where nobody measured.
+const UNKNOWN: &str = "–";
+
+/// A number with its unit.
+pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
+    if value.is_finite() {
+        format!("{value:.decimals$} {unit}")
+    } else {
+        UNKNOWN.to_owned()
+    }
+}
+
+fn or_unknown(text: String) -> String {
+    if text.is_empty() {
+        UNKNOWN.to_owned()
+    } else {
+        text
+    }
+}
+
+/// The columns of a leg's figures.
+pub(crate) const LEG_COLUMNS: [&str; 10] = [
+    "Leg",
+    "≤2° s",
+    "overshoot °",
+    "hdg RMS °",
+    "≤10 ft s",
+    "overshoot ft",
+    "alt RMS ft",
+    "turn loss ft",
+    "airspeed kt",
+    "lateral g",
+];
+
 /// A row per leg and the worst of each column.
 pub fn flight_table(score: &FlightScore) -> String {
-    let mut table = table(&[
-        "Leg",
-        "≤2° s",
-        "overshoot °",
-        "hdg RMS °",
-        "≤10 ft s",
-        "overshoot ft",
-        "alt RMS ft",
-        "turn loss ft",
-        "airspeed kt",
-        "lateral g",
-    ]);
+    let mut table = table(&LEG_COLUMNS);
     for (index, leg) in score.legs.iter().enumerate() {
-        table.add_row(cells((index + 1).to_string(), leg));
+        table.add_row(leg_cells((index + 1).to_string(), leg));
     }
     if let Some(worst) = &score.worst {
-        table.add_row(cells("worst".to_owned(), worst));
+        table.add_row(leg_cells("worst".to_owned(), worst));
     }
     table.to_string()
 }
@@ -135,7 +163,8 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     table.to_string()
 }
 
-fn cells(name: String, leg: &LegScore) -> Vec<String> {
+/// The cells of a leg, under [`LEG_COLUMNS`].
+pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
     let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
     vec![
         name,
@@ -161,7 +190,7 @@ mod tests {
     fn prints_the_thesis_table_as_the_thesis_does() {
         let report = TimingReport {
             rate_hz: 40.0,
-            timer: "posix",
+            timer: "posix".to_owned(),
             ticks: 2_716,
             missed: 0,
             runtime_s: 67.90,
@@ -180,12 +209,12 @@ mod tests {
                 max: 4.0,
             },
             realtime: Realtime {
-                policy: "SCHED_OTHER",
+                policy: "SCHED_OTHER".to_owned(),
                 priority: 0,
                 memory_locked: false,
                 refused: Vec::new(),
             },
-            cpu_percent: 1.0,
+            cpu_percent: Some(1.0),
         };
         let text = timing_table(&[report]);
         for figure in [

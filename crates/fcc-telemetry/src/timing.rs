@@ -1,5 +1,8 @@
 //! How well the loop kept time, as other tools read it.
 
+use std::fmt;
+
+use fcc_timer::TimingSummary;
 use serde::Serialize;
 
 /// How well the loop kept time.
@@ -8,7 +11,7 @@ pub struct TimingReport {
     /// Nominal.
     pub rate_hz: f64,
     /// Which timer: `timerfd`, `posix`, `nanosleep`.
-    pub timer: &'static str,
+    pub timer: String,
     /// Ticks served.
     pub ticks: u64,
     /// Periods that passed unserved.
@@ -22,8 +25,49 @@ pub struct TimingReport {
     pub lateness_us: Lateness,
     /// What the kernel granted the loop's thread.
     pub realtime: Realtime,
-    /// CPU time of the loop's thread over the runtime.
-    pub cpu_percent: f64,
+    /// CPU time of the loop's thread over the runtime; none where nobody
+    /// measured it.
+    pub cpu_percent: Option<f64>,
+}
+
+impl TimingReport {
+    /// What a loop's statistics say of it.
+    pub fn new(timer: &str, summary: &TimingSummary, realtime: Realtime) -> Self {
+        Self {
+            rate_hz: summary.rate_hz,
+            timer: timer.to_owned(),
+            ticks: summary.ticks,
+            missed: summary.missed,
+            runtime_s: summary.runtime_s,
+            period_ms: Period {
+                mean: summary.period_mean_ms,
+                median: summary.period_median_ms,
+                min: summary.period_min_ms,
+                max: summary.period_max_ms,
+                range: summary.period_range_ms,
+                within_2_percent: summary.period_within_2_percent,
+            },
+            lateness_us: Lateness {
+                p50: summary.lateness_p50_us,
+                p99: summary.lateness_p99_us,
+                p99_9: summary.lateness_p99_9_us,
+                max: summary.lateness_max_us,
+            },
+            realtime,
+            cpu_percent: None,
+        }
+    }
+
+    /// Adds the CPU time that the loop's thread took, s.
+    #[must_use]
+    pub fn with_cpu_time(mut self, cpu_s: f64) -> Self {
+        self.cpu_percent = Some(if self.runtime_s > 0.0 {
+            100.0 * cpu_s / self.runtime_s
+        } else {
+            0.0
+        });
+        self
+    }
 }
 
 /// Time between wake-ups, ms.
@@ -57,10 +101,10 @@ pub struct Lateness {
 }
 
 /// What the kernel granted the loop's thread.
-#[derive(Clone, PartialEq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Realtime {
-    /// `SCHED_FIFO` or `SCHED_OTHER`.
-    pub policy: &'static str,
+    /// `SCHED_FIFO` or `SCHED_OTHER`; empty if nobody knows.
+    pub policy: String,
     /// 0 for `SCHED_OTHER`.
     pub priority: i32,
     /// Whether the process' memory is locked.
@@ -70,7 +114,7 @@ pub struct Realtime {
 }
 
 /// A wish that was not granted.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
 pub struct RefusedWish {
     /// What was asked for.
     pub wish: String,
@@ -78,4 +122,17 @@ pub struct RefusedWish {
     pub reason: String,
     /// What would help.
     pub remedy: String,
+}
+
+impl fmt::Display for RefusedWish {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.wish)?;
+        if !self.reason.is_empty() {
+            write!(f, " ({})", self.reason)?;
+        }
+        if !self.remedy.is_empty() {
+            write!(f, ": {}", self.remedy)?;
+        }
+        Ok(())
+    }
 }

@@ -8,6 +8,7 @@ mod list;
 mod progress;
 mod recover;
 mod replay;
+mod report;
 mod run;
 mod timing;
 
@@ -29,6 +30,7 @@ pub fn run(cli: Cli) -> Exit {
         Command::Timing(args) => timing::timing(&args),
         Command::Replay(args) => replay::replay(&args),
         Command::Check(args) => check::check(&args),
+        Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {
             clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());

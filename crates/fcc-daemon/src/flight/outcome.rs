@@ -3,10 +3,8 @@
 use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{
-    FlightScore, Lateness, Period, Realtime, RefusedWish, TimingReport, flight_table, timing_table,
-};
-use fcc_timer::{RealtimeGrants, TimingSummary};
+use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table};
+use fcc_timer::RealtimeGrants;
 use serde::Serialize;
 
 use super::recording::RecordingOutcome;
@@ -69,12 +67,12 @@ impl Outcome {
             _ => Exit::Success,
         };
         Self {
-            timing: timing_report(
+            timing: TimingReport::new(
                 timer,
                 &report.timing,
-                &report.grants.unwrap_or_default(),
-                report.cpu_time.as_secs_f64(),
-            ),
+                realtime(&report.grants.unwrap_or_default()),
+            )
+            .with_cpu_time(report.cpu_time.as_secs_f64()),
             flight,
             events,
             ending: report.ending.to_string(),
@@ -126,55 +124,25 @@ impl Outcome {
     }
 }
 
-/// The timing of a loop as other tools read it.
-fn timing_report(
-    timer: &'static str,
-    summary: &TimingSummary,
-    grants: &RealtimeGrants,
-    cpu_s: f64,
-) -> TimingReport {
-    TimingReport {
-        rate_hz: summary.rate_hz,
-        timer,
-        ticks: summary.ticks,
-        missed: summary.missed,
-        runtime_s: summary.runtime_s,
-        period_ms: Period {
-            mean: summary.period_mean_ms,
-            median: summary.period_median_ms,
-            min: summary.period_min_ms,
-            max: summary.period_max_ms,
-            range: summary.period_range_ms,
-            within_2_percent: summary.period_within_2_percent,
-        },
-        lateness_us: Lateness {
-            p50: summary.lateness_p50_us,
-            p99: summary.lateness_p99_us,
-            p99_9: summary.lateness_p99_9_us,
-            max: summary.lateness_max_us,
-        },
-        realtime: Realtime {
-            policy: if grants.policy.is_empty() {
-                NOT_ASKED
-            } else {
-                grants.policy
-            },
-            priority: grants.priority,
-            memory_locked: grants.memory_locked,
-            refused: grants
-                .refused
-                .iter()
-                .map(|refusal| RefusedWish {
-                    wish: refusal.wish.clone(),
-                    reason: refusal.reason.clone(),
-                    remedy: refusal.remedy.clone(),
-                })
-                .collect(),
-        },
-        cpu_percent: if summary.runtime_s > 0.0 {
-            100.0 * cpu_s / summary.runtime_s
+/// What the kernel granted, as other tools read it.
+fn realtime(grants: &RealtimeGrants) -> Realtime {
+    Realtime {
+        policy: if grants.policy.is_empty() {
+            NOT_ASKED
         } else {
-            0.0
-        },
+            grants.policy
+        }
+        .to_owned(),
+        priority: grants.priority,
+        memory_locked: grants.memory_locked,
+        refused: grants
+            .refused
+            .iter()
+            .map(|refusal| RefusedWish {
+                wish: refusal.wish.clone(),
+                reason: refusal.reason.clone(),
+                remedy: refusal.remedy.clone(),
+            })
+            .collect(),
     }
 }

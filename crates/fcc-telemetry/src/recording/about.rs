@@ -82,6 +82,11 @@ impl About {
         digits
     }
 
+    /// When it began: `2026-11-20T04:21:33Z`.
+    pub fn started(&self) -> String {
+        super::utc::timestamp(self.started_unix_ns)
+    }
+
     /// The metadata records that say this; attachments carry the rest.
     pub(super) fn to_metadata(&self) -> [(&'static str, Fields); 3] {
         let recording = [
@@ -95,7 +100,7 @@ impl About {
             ("timer", self.timer.clone()),
             ("sensors", self.sensors.join(SEPARATOR)),
             ("actuators", self.actuators.join(SEPARATOR)),
-            ("started", super::utc::timestamp(self.started_unix_ns)),
+            ("started", self.started()),
             ("started_unix_ns", self.started_unix_ns.to_string()),
             ("clock_offset_ns", self.clock_offset_ns.to_string()),
             ("config_sha256", self.config_sha256()),

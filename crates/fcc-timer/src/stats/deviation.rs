@@ -45,6 +45,17 @@ impl Deviations {
         self.below.distinct_values() + self.above.distinct_values()
     }
 
+    /// Every deviation with how often it was recorded, lowest first. What the
+    /// histograms cannot tell apart is one value, the middle of its range.
+    pub(super) fn counts(&self) -> impl Iterator<Item = (f64, u64)> {
+        let below: Vec<_> = counts(&self.below).collect();
+        below
+            .into_iter()
+            .rev()
+            .map(|(distance, count)| (-distance, count))
+            .chain(counts(&self.above))
+    }
+
     /// The value in the middle, or the mean of the two in the middle. `None`
     /// when nothing was recorded.
     pub(super) fn median(&self) -> Option<f64> {
@@ -66,23 +77,31 @@ impl Deviations {
     }
 }
 
+/// Every value recorded, as the middle of the range that the histogram cannot
+/// tell apart, with how often, lowest first.
+pub(super) fn counts(histogram: &Histogram<u32>) -> impl Iterator<Item = (f64, u64)> {
+    histogram.iter_recorded().map(|step| {
+        let value = step.value_iterated_to();
+        (
+            f64::midpoint(
+                histogram.lowest_equivalent(value) as f64,
+                histogram.highest_equivalent(value) as f64,
+            ),
+            u64::from(step.count_at_value()),
+        )
+    })
+}
+
 /// The `rank`-th smallest value recorded, the first being 1, as the middle of
 /// the range that the histogram cannot tell apart.
 fn nth(histogram: &Histogram<u32>, rank: u64) -> Option<f64> {
     let mut passed = 0;
-    histogram
-        .iter_recorded()
-        .find(|step| {
-            passed += u64::from(step.count_at_value());
+    counts(histogram)
+        .find(|(_, count)| {
+            passed += count;
             passed >= rank
         })
-        .map(|step| {
-            let value = step.value_iterated_to();
-            f64::midpoint(
-                histogram.lowest_equivalent(value) as f64,
-                histogram.highest_equivalent(value) as f64,
-            )
-        })
+        .map(|(value, _)| value)
 }
 
 #[cfg(test)]

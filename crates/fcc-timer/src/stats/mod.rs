@@ -13,6 +13,8 @@ pub use summary::TimingSummary;
 
 /// Figures that a histogram tells apart: a value of 100 µs is kept to 0.1 µs.
 pub(crate) const FIGURES: u8 = 3;
+const NS_PER_US: f64 = 1e3;
+const NS_PER_MS: f64 = 1e6;
 /// What a histogram can hold, in periods. Longer counts as this long; minimum,
 /// maximum and mean are kept beside the histogram and know no limit.
 const LONGEST_PERIODS: u64 = 64;
@@ -126,6 +128,23 @@ impl TimingStats {
     #[must_use]
     pub fn summary(&self) -> TimingSummary {
         TimingSummary::of(self)
+    }
+
+    /// Every period measured, ms, with how often, shortest first: to draw their
+    /// distribution. As exact as the median.
+    pub fn period_counts(&self) -> impl Iterator<Item = (f64, u64)> {
+        let (min, max) = (self.period_min_ns as f64, self.period_max_ns as f64);
+        self.deviations.counts().map(move |(deviation_ns, count)| {
+            let period_ns = self.period.ns() as f64 + deviation_ns;
+            (period_ns.max(min).min(max) / NS_PER_MS, count)
+        })
+    }
+
+    /// Every lateness measured, µs, with how often, smallest first; each to
+    /// 0.1 % of itself.
+    pub fn lateness_counts(&self) -> impl Iterator<Item = (f64, u64)> {
+        let max = self.lateness_max_ns as f64;
+        deviation::counts(&self.lateness).map(move |(ns, count)| (ns.min(max) / NS_PER_US, count))
     }
 
     /// Periods measured: one less than ticks.

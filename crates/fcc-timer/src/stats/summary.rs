@@ -1,9 +1,7 @@
 //! The figures that people and programs read.
 
-use super::TimingStats;
+use super::{NS_PER_MS, NS_PER_US, TimingStats};
 
-const NS_PER_US: f64 = 1e3;
-const NS_PER_MS: f64 = 1e6;
 const NS_PER_S: f64 = 1e9;
 
 /// What [`TimingStats`] say, as plain numbers. The thesis' table of a control

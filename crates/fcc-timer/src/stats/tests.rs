@@ -194,3 +194,53 @@ fn the_memory_is_what_the_documentation_says() {
     let longest = kib_of(Duration::from_secs(3600));
     assert!((400..=450).contains(&longest), "{longest}");
 }
+
+/// Counted by hand: periods 24.999, 25.000 twice, 25.001 and 26.5 ms.
+#[test]
+fn periods_and_latenesses_are_told_one_by_one() {
+    let mut stats = TimingStats::new(NOMINAL).unwrap();
+    for (number, woke_ns) in [
+        (1, 25_000_000),
+        (2, 50_000_000),
+        (3, 75_001_000),
+        (4, 100_000_000),
+        (5, 125_000_000),
+        (6, 151_500_000),
+    ] {
+        stats.record(&Expiry {
+            number,
+            scheduled_ns: number as i64 * NOMINAL_NS,
+            woke_ns,
+            missed: 0,
+        });
+    }
+    let periods: Vec<_> = stats.period_counts().collect();
+    assert_eq!(
+        periods.iter().map(|(_, count)| count).sum::<u64>(),
+        5,
+        "{periods:?}"
+    );
+    for ((period_ms, count), (expected_ms, expected_count)) in
+        periods
+            .into_iter()
+            .zip([(24.999, 1), (25.0, 2), (25.001, 1), (26.5, 1)])
+    {
+        // 0.1 % of the distance from 25 ms.
+        assert_near(
+            period_ms,
+            expected_ms,
+            1e-6 + 1e-3 * (expected_ms - 25.0).abs(),
+        );
+        assert_eq!(count, expected_count);
+    }
+    let latenesses: Vec<_> = stats.lateness_counts().collect();
+    assert_eq!(latenesses.len(), 3, "{latenesses:?}");
+    for ((late_us, count), (expected_us, expected_count)) in
+        latenesses
+            .into_iter()
+            .zip([(0.0, 4), (1.0, 1), (1500.0, 1)])
+    {
+        assert_near(late_us, expected_us, 1e-6 + 1e-3 * expected_us);
+        assert_eq!(count, expected_count);
+    }
+}

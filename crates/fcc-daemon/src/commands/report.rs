@@ -1,0 +1,101 @@
+//! `fccd report FILE`: what a recording tells.
+
+use std::fs;
+use std::path::Path;
+
+use fcc_core::flight::Course;
+use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_telemetry::recording::Recording;
+use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
+
+use super::{fail, print_json, progress};
+use crate::cli::ReportArgs;
+use crate::config::Config;
+use crate::exit::Exit;
+
+/// Messages between two looks at how far the file is read.
+const BAR_EVERY: u64 = 4_096;
+
+/// Reads a recording and reports on it.
+pub(super) fn report(args: &ReportArgs) -> Exit {
+    match read(args).and_then(|report| write_page(args, &report).map(|()| report)) {
+        Ok(report) if args.json => print_json(&report),
+        Ok(report) => {
+            println!("{}", report.to_text());
+            Exit::Success
+        }
+        Err(message) => fail(&message),
+    }
+}
+
+/// One pass over the file.
+fn read(args: &ReportArgs) -> Result<Report, String> {
+    if let Some(html) = &args.html
+        && is_same_file(html, &args.file)
+    {
+        return Err(format!(
+            "{}: is the recording itself: give the page another name",
+            html.display()
+        ));
+    }
+    let recording = Recording::open(&args.file).map_err(|error| error.to_string())?;
+    let origin = Origin::of(&recording);
+    let mut csv = match &args.csv {
+        None => None,
+        Some(folder) => Some(
+            CsvFolder::create(folder, &origin)
+                .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?,
+        ),
+    };
+    let csv_failed = |error| {
+        let folder = args.csv.as_deref().unwrap_or(Path::new("")).display();
+        format!("{folder}: cannot be written: {error}")
+    };
+    let mut survey = Survey::new(origin, pattern(&recording));
+    let mut messages = recording.messages().map_err(|error| error.to_string())?;
+    let bar = progress::bar(recording.bytes(), "reading");
+    let mut taken = 0_u64;
+    while let Some(message) = messages.next() {
+        survey
+            .take(&message)
+            .map_err(|error| format!("{}: {error}", args.file.display()))?;
+        if let Some(csv) = &mut csv {
+            csv.take(&message).map_err(csv_failed)?;
+        }
+        taken += 1;
+        if taken.is_multiple_of(BAR_EVERY) {
+            bar.set_position(messages.bytes_read());
+        }
+    }
+    bar.finish_and_clear();
+    if let Some(csv) = csv {
+        csv.finish().map_err(csv_failed)?;
+    }
+    Ok(survey.finish(FileEnd::of(&recording, messages.cut())))
+}
+
+fn write_page(args: &ReportArgs, report: &Report) -> Result<(), String> {
+    let Some(path) = &args.html else {
+        return Ok(());
+    };
+    let page = report.to_html().map_err(|error| error.to_string())?;
+    fs::write(path, page).map_err(|error| format!("{}: cannot be written: {error}", path.display()))
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// The pattern that was to be flown, by the configuration in the recording; a
+/// configuration of another version may not be understood, and then nothing
+/// is scored.
+fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
+    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
+    match config.course {
+        Course::TimedPattern(pattern) => Some(pattern),
+        Course::Hold => None,
+    }
+}

@@ -1,0 +1,180 @@
+//! What is worth saying of a recording in words, before any table.
+
+use super::Report;
+use super::origin::FileEnd;
+use super::states::{Phase, time_in};
+
+/// The sentences, the gravest first.
+pub(super) fn findings(report: &Report) -> Vec<String> {
+    let mut said = Vec::new();
+    if report.continuity.ticks == 0 {
+        said.push(
+            "There is no tick in this recording: nothing can be said of the flight.".to_owned(),
+        );
+        said.extend(end(report));
+        return said;
+    }
+    said.extend(end(report));
+    said.extend(gaps(report));
+    said.extend(timing(report));
+    said.extend(states(report));
+    said.extend(missing(report));
+    said
+}
+
+fn end(report: &Report) -> Option<String> {
+    match &report.end {
+        FileEnd::Cut(words) => Some(format!(
+            "The recording was not finished: {words}. What is shown is what came before."
+        )),
+        FileEnd::Finished(_) | FileEnd::Unknown => None,
+    }
+}
+
+fn gaps(report: &Report) -> Vec<String> {
+    let continuity = &report.continuity;
+    let mut said = Vec::new();
+    let missing_before = continuity.first_tick.saturating_sub(1);
+    if report.origin.part > 1 {
+        said.push(format!(
+            "This is part {} of a recording: it begins at tick {}.",
+            report.origin.part, continuity.first_tick
+        ));
+    } else if missing_before > 0 {
+        said.push(format!(
+            "The recording begins late, at tick {}: {} before it are not there.",
+            continuity.first_tick,
+            ticks(missing_before)
+        ));
+    }
+    if continuity.lost == 0 {
+        said.push(format!(
+            "Every tick that was served from {} to {} is in the file.",
+            continuity.first_tick, continuity.last_tick
+        ));
+    } else {
+        let longest = continuity
+            .gaps
+            .iter()
+            .max_by(|a, b| (a.to_s - a.from_s).total_cmp(&(b.to_s - b.from_s)));
+        let where_longest = longest.map_or_else(String::new, |gap| {
+            format!(
+                ", the longest of {:.2} s after {:.2} s",
+                gap.to_s - gap.from_s,
+                gap.from_s
+            )
+        });
+        said.push(format!(
+            "{} missing from the file, in {}{where_longest}; the plots leave them open.",
+            are(continuity.lost, "tick"),
+            plural(continuity.gap_count, "gap"),
+        ));
+    }
+    if continuity.out_of_order > 0 {
+        said.push(format!(
+            "{} out of order and left out.",
+            are(continuity.out_of_order, "tick")
+        ));
+    }
+    said
+}
+
+fn timing(report: &Report) -> Option<String> {
+    let timing = report.timing.as_ref()?;
+    if timing.is_lockstep() {
+        return Some(
+            "Every wake-up was exactly at its deadline: this was flown in lockstep, and its \
+             timing tells nothing of a machine."
+                .to_owned(),
+        );
+    }
+    let timing = &timing.table;
+    let missed = match timing.missed {
+        0 => "No deadline passed unserved".to_owned(),
+        missed => format!("{} passed unserved", plural(missed, "deadline")),
+    };
+    timing
+        .period_ms
+        .within_2_percent
+        .is_finite()
+        .then(|| {
+            format!(
+                "{missed}; {:.3} % of the periods lie within ±2 % of {:.3} ms.",
+                100.0 * timing.period_ms.within_2_percent,
+                1e3 / timing.rate_hz
+            )
+        })
+        .or_else(|| Some("There is only one tick: it has no period.".to_owned()))
+}
+
+fn states(report: &Report) -> Vec<String> {
+    let mut said = Vec::new();
+    let engaged_s = time_in(&report.states, Phase::Engaged);
+    let engagements = report
+        .states
+        .iter()
+        .filter(|span| span.phase == Phase::Engaged)
+        .count();
+    if engagements == 0 {
+        said.push(
+            "The autopilot was never engaged: there are no set points to compare with.".to_owned(),
+        );
+    } else {
+        let times = if engagements > 1 {
+            format!(", in {}", plural(engagements as u64, "engagement"))
+        } else {
+            String::new()
+        };
+        said.push(format!(
+            "The autopilot was engaged for {engaged_s:.1} s of {:.1} s{times}.",
+            report.duration_s
+        ));
+    }
+    if report.failsafes > 0 {
+        said.push(format!(
+            "It fell into failsafe {}, {:.1} s in all.",
+            if report.failsafes == 1 {
+                "once".to_owned()
+            } else {
+                format!("{} times", report.failsafes)
+            },
+            time_in(&report.states, Phase::Failsafe)
+        ));
+    }
+    said
+}
+
+fn missing(report: &Report) -> Vec<String> {
+    let mut said = Vec::new();
+    if let Some(why) = &report.not_scored {
+        said.push(format!("A part of the flight could not be scored: {why}."));
+    }
+    if report.event_count > report.events.len() {
+        said.push(format!(
+            "Only the first {} of {} events are shown.",
+            report.events.len(),
+            report.event_count
+        ));
+    }
+    if report.track.is_empty() {
+        said.push("No position was measured: there is no ground track.".to_owned());
+    }
+    said
+}
+
+fn ticks(count: u64) -> String {
+    plural(count, "tick")
+}
+
+fn are(count: u64, what: &str) -> String {
+    let verb = if count == 1 { "is" } else { "are" };
+    format!("{} {verb}", plural(count, what))
+}
+
+fn plural(count: u64, what: &str) -> String {
+    if count == 1 {
+        format!("1 {what}")
+    } else {
+        format!("{count} {what}s")
+    }
+}

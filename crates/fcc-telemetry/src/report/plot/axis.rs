@@ -1,0 +1,199 @@
+//! Axes: what they span, where their ticks are and what those say.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+
+use super::super::trace::Trace;
+
+/// An axis: a range, ticks within it with their words, and what it measures.
+#[derive(Clone, Debug)]
+pub(super) struct Axis {
+    pub(super) from: f64,
+    pub(super) to: f64,
+    pub(super) ticks: Vec<(f64, String)>,
+    /// Lines of the grid without words.
+    pub(super) light: Vec<f64>,
+    pub(super) title: String,
+}
+
+/// Room beyond the data at either end, in parts of the span.
+const MARGIN: f64 = 0.06;
+
+impl Axis {
+    /// Around values from `low` to `high`, at least `least_span` long, with
+    /// about `count` ticks.
+    pub(super) fn around(
+        (low, high): (f64, f64),
+        least_span: f64,
+        count: usize,
+        title: &str,
+    ) -> Self {
+        let middle = f64::midpoint(low, high);
+        let span = (high - low).max(least_span);
+        let reach = span * (0.5 + MARGIN);
+        Self::exactly((middle - reach, middle + reach), count, title)
+    }
+
+    /// From one value to another, with about `count` ticks.
+    pub(super) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
+        let step = nice_step((to - from) / count.max(1) as f64);
+        // Two ticks are the least to read a scale from.
+        let step = [step, 0.5 * step, 0.2 * step]
+            .into_iter()
+            .map(nice_step)
+            .find(|step| multiples(from, to, *step).count() >= 2)
+            .unwrap_or(step);
+        Self {
+            ticks: ticks(from, to, step),
+            light: Vec::new(),
+            from,
+            to,
+            title: title.to_owned(),
+        }
+    }
+
+    /// With a tick at every multiple of `step`, in the words of `say`.
+    pub(super) fn stepped(
+        (from, to): (f64, f64),
+        step: f64,
+        title: &str,
+        say: impl Fn(f64) -> String,
+    ) -> Self {
+        Self {
+            ticks: multiples(from, to, step).map(|at| (at, say(at))).collect(),
+            light: Vec::new(),
+            from,
+            to,
+            title: title.to_owned(),
+        }
+    }
+
+    /// A logarithmic axis over whole decades around positive values: its
+    /// coordinate is the decimal logarithm.
+    pub(super) fn decades((low, high): (f64, f64), title: &str, say: fn(i32) -> String) -> Self {
+        let from = low.max(f64::MIN_POSITIVE).log10().floor() as i32;
+        let to = (high.max(f64::MIN_POSITIVE).log10().ceil() as i32).max(from + 1);
+        Self {
+            from: f64::from(from),
+            to: f64::from(to),
+            ticks: (from..=to).map(|d| (f64::from(d), say(d))).collect(),
+            light: (from..to)
+                .flat_map(|d| (2..10).map(move |n| f64::from(d) + f64::from(n).log10()))
+                .collect(),
+            title: title.to_owned(),
+        }
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        let share = (value - self.from) / (self.to - self.from);
+        from + (share * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() {
+            self.light.clone()
+        } else {
+            self.ticks.iter().map(|(at, _)| *at).collect()
+        }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.from..self.to
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, at: &f64) -> String {
+        self.ticks
+            .iter()
+            .find(|(tick, _)| tick == at)
+            .map(|(_, words)| words.clone())
+            .unwrap_or_default()
+    }
+}
+
+/// The lowest and highest value of lines; 0 and 0 if there is none.
+pub(super) fn extent<'a>(traces: impl IntoIterator<Item = &'a Trace>) -> (f64, f64) {
+    traces
+        .into_iter()
+        .filter_map(Trace::extent)
+        .reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+        .unwrap_or((0.0, 0.0))
+}
+
+/// 1, 2 or 5 times a power of ten, at least `least`.
+fn nice_step(least: f64) -> f64 {
+    if !(least > 0.0 && least.is_finite()) {
+        return 1.0;
+    }
+    let decade = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|n| n * decade)
+        .find(|step| *step >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * decade)
+}
+
+fn ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
+    let decimals = (-step.log10().floor()).max(0.0) as usize;
+    multiples(from, to, step)
+        .map(|at| (at, number(at, decimals)))
+        .collect()
+}
+
+/// At most a hundred: a range that is no range makes no page full of ticks.
+fn multiples(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
+    let first = (from / step - 1e-9).ceil();
+    let last = (to / step + 1e-9).floor();
+    let count = (last - first + 1.0).clamp(0.0, 100.0) as usize;
+    (0..count).map(move |n| (first + n as f64) * step)
+}
+
+/// A number with a real minus.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),
+        Some(rest) => format!("\u{2212}{rest}"),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(axis: &Axis) -> Vec<&str> {
+        axis.ticks.iter().map(|(_, words)| words.as_str()).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_numbers() {
+        let axis = Axis::exactly((-0.3, 1.1), 6, "");
+        assert_eq!(words(&axis), ["0.0", "0.5", "1.0"]);
+        let axis = Axis::exactly((2_987.0, 3_162.0), 5, "");
+        assert_eq!(words(&axis), ["3000", "3050", "3100", "3150"]);
+        assert_eq!(number(-0.001, 1), "0.0");
+        assert_eq!(number(-12.34, 1), "\u{2212}12.3");
+    }
+
+    #[test]
+    fn a_flat_line_has_an_axis_too() {
+        let axis = Axis::around((100.0, 100.0), 4.0, 4, "");
+        assert!(axis.from < 98.0 && axis.to > 102.0);
+        assert!(axis.ticks.len() >= 3);
+    }
+
+    #[test]
+    fn decades_cover_their_values() {
+        let axis = Axis::decades((3.0, 450.0), "", |d| d.to_string());
+        assert_eq!(words(&axis), ["0", "1", "2", "3"]);
+        assert_eq!(axis.light.len(), 24);
+    }
+}

@@ -1,0 +1,162 @@
+//! One pair of axes, and what is drawn between them.
+
+use plotters::chart::ChartContext;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::super::trace::Point;
+use super::axis::Axis;
+use super::canvas::{Area, Drawn, FAINT, GRID, LABEL_PX, PlotError, TEXT, pen, px, text};
+
+type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
+
+/// Where a panel lies on its sheet, px from the sheet's upper left, axes and
+/// their words not included.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+/// Room for the words of an axis, px.
+const X_WORDS_PX: f64 = 34.0;
+const Y_WORDS_PX: f64 = 54.0;
+
+/// One pair of axes, and what is drawn between them.
+pub(super) struct Panel<'a> {
+    area: Area<'a>,
+    chart: Chart<'a>,
+    x: Axis,
+    y: Axis,
+    frame: Frame,
+}
+
+impl<'a> Panel<'a> {
+    /// A panel in its frame; nothing is drawn yet.
+    pub(super) fn new(area: &Area<'a>, frame: Frame, x: Axis, y: Axis) -> Result<Self, PlotError> {
+        let left = frame.left - Y_WORDS_PX;
+        let cell = area.clone().shrink(
+            (px(left), px(frame.top)),
+            (
+                px(frame.right - left),
+                px(frame.bottom - frame.top + X_WORDS_PX),
+            ),
+        );
+        let chart = ChartBuilder::on(&cell)
+            .x_label_area_size(px(X_WORDS_PX))
+            .y_label_area_size(px(Y_WORDS_PX))
+            .build_cartesian_2d(x.clone(), y.clone())?;
+        Ok(Self {
+            area: area.clone(),
+            chart,
+            x,
+            y,
+            frame,
+        })
+    }
+
+    /// Tints the whole height from one x to another.
+    pub(super) fn tint(&mut self, from: f64, to: f64, ink: RGBColor) -> Drawn {
+        let (from, to) = (from.max(self.x.from), to.min(self.x.to));
+        if from < to {
+            let corners = [(from, self.y.from), (to, self.y.to)];
+            self.chart
+                .draw_series([Rectangle::new(corners, ink.filled())])?;
+        }
+        Ok(())
+    }
+
+    /// Draws grid and axes; the words of the x axis if they are wanted.
+    pub(super) fn axes(&mut self, with_x_words: bool) -> Drawn {
+        let label = text(LABEL_PX, TEXT, HPos::Center, VPos::Center);
+        let (log, silent) = (
+            !self.x.light.is_empty() || !self.y.light.is_empty(),
+            |_: &f64| String::new(),
+        );
+        let mut mesh = self.chart.configure_mesh();
+        mesh.bold_line_style(pen(GRID, 0.6))
+            .light_line_style(pen(RGBColor(240, 240, 240), 0.5))
+            .axis_style(pen(FAINT, 0.8))
+            .label_style(label.clone())
+            .axis_desc_style(label)
+            .set_all_tick_mark_size(px(3.0));
+        if !log {
+            mesh.light_line_style(TRANSPARENT);
+        }
+        if !with_x_words {
+            mesh.x_label_formatter(&silent);
+        }
+        mesh.draw()?;
+        self.titles(with_x_words)
+    }
+
+    fn titles(&self, with_x_title: bool) -> Drawn {
+        let frame = self.frame;
+        if with_x_title && !self.x.title.is_empty() {
+            let at = (
+                px(f64::midpoint(frame.left, frame.right)),
+                px(frame.bottom + X_WORDS_PX - 4.0),
+            );
+            let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Bottom);
+            self.area.draw_text(&self.x.title, &style, at)?;
+        }
+        if !self.y.title.is_empty() {
+            let at = (
+                px(frame.left - Y_WORDS_PX + 4.0),
+                px(f64::midpoint(frame.top, frame.bottom)),
+            );
+            let style =
+                text(LABEL_PX, TEXT, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
+            self.area.draw_text(&self.y.title, &style, at)?;
+        }
+        Ok(())
+    }
+
+    /// Draws unbroken lines.
+    pub(super) fn lines(&mut self, lines: &[Vec<Point>], style: ShapeStyle) -> Drawn {
+        for line in lines {
+            let points: Vec<_> = line.iter().map(|p| (p.time_s, p.value)).collect();
+            self.polyline(points, style)?;
+        }
+        Ok(())
+    }
+
+    /// Draws a line through points of the axes.
+    pub(super) fn polyline(&mut self, points: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn {
+        // A line of one point would be nothing at all.
+        if let [(x, y)] = points.as_slice() {
+            let (at, radius) = ((*x, *y), px(0.8));
+            self.chart
+                .draw_series([Circle::new(at, radius, style.color.filled())])?;
+        } else {
+            self.chart.draw_series([PathElement::new(points, style)])?;
+        }
+        Ok(())
+    }
+
+    /// Draws a filled rectangle between points of the axes.
+    pub(super) fn bar(&mut self, from: (f64, f64), to: (f64, f64), style: ShapeStyle) -> Drawn {
+        self.chart
+            .draw_series([Rectangle::new([from, to], style)])?;
+        Ok(())
+    }
+
+    /// Draws a dot, filled or not.
+    pub(super) fn dot(&mut self, at: (f64, f64), radius_px: f64, style: ShapeStyle) -> Drawn {
+        self.chart
+            .draw_series([Circle::new(at, px(radius_px), style)])?;
+        Ok(())
+    }
+
+    /// Where a point of the axes lies on the sheet, px.
+    pub(super) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
+        let frame = self.frame;
+        let share = |value: f64, axis: &Axis| (value - axis.from) / (axis.to - axis.from);
+        (
+            frame.left + share(at.0, &self.x) * (frame.right - frame.left),
+            frame.bottom - share(at.1, &self.y) * (frame.bottom - frame.top),
+        )
+    }
+}
