@@ -5,6 +5,8 @@
 //! loop left behind.
 
 mod flight;
+#[cfg(feature = "live")]
+pub mod live;
 mod message;
 mod score;
 mod table;
