@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::config::GustsChoice;
@@ -27,6 +28,9 @@ pub enum Command {
     Run(RunArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
+    /// Watch a flight on this machine, live
+    #[cfg(feature = "live")]
+    Top(TopArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Give X-Plane's controls back if the daemon is killed; started by the
@@ -56,6 +60,9 @@ pub struct FlyArgs {
     /// Strength of the gusts
     #[arg(long, value_enum)]
     pub gusts: Option<GustsChoice>,
+    /// What watchers call this flight, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// As fast as the machine can, instead of in real time
     #[arg(long)]
     pub lockstep: bool,
@@ -73,6 +80,9 @@ pub struct RunArgs {
     /// Configuration file
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
+    /// What watchers call this daemon, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -101,6 +111,18 @@ pub struct TimingArgs {
     #[arg(long)]
     pub cpu: Option<usize>,
     /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd top`.
+#[cfg(feature = "live")]
+#[derive(Args, Debug)]
+pub struct TopArgs {
+    /// Which daemon: the name that it was given by --instance or [telemetry]
+    #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
+    pub instance: Instance,
+    /// Print one snapshot as JSON and end
     #[arg(long)]
     pub json: bool,
 }

@@ -5,6 +5,7 @@
 //! loop left behind.
 
 mod flight;
+mod instance;
 #[cfg(feature = "live")]
 pub mod live;
 mod message;
@@ -13,6 +14,7 @@ mod table;
 mod timing;
 
 pub use flight::FlightLog;
+pub use instance::{Instance, InstanceError};
 pub use message::{FlightEvent, FlightMessage, FlightRecord};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, timing_table};

@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventKind, State, Tick, Time};
 use fcc_telemetry::live::{
-    Event, EventCode, Info, Instance, MAX_WATCHERS, PublishError, Publisher, RecorderState,
-    RecorderStatus, Text, WatchError, Watcher,
+    Event, EventCode, Info, MAX_WATCHERS, PublishError, Publisher, RecorderState, RecorderStatus,
+    Text, WatchError, Watcher,
 };
-use fcc_telemetry::{FlightEvent, FlightRecord};
+use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
 
 /// Long after a healthy machine would have answered.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -84,6 +84,9 @@ fn configuration(args: &FlyArgs) -> Result<Config, String> {
                 .to_owned(),
         );
     };
+    if let Some(instance) = &args.instance {
+        config.telemetry.instance = instance.clone();
+    }
     if let Some(seed) = args.seed {
         built_in.seed = seed;
     }

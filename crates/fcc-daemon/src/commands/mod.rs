@@ -6,6 +6,8 @@ mod fly;
 mod guard;
 mod run;
 mod timing;
+#[cfg(feature = "live")]
+mod top;
 
 use std::io;
 
@@ -21,6 +23,8 @@ pub fn run(cli: Cli) -> Exit {
         Command::Fly(args) => fly::fly(&args),
         Command::Run(args) => run::run(&args),
         Command::Timing(args) => timing::timing(&args),
+        #[cfg(feature = "live")]
+        Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {

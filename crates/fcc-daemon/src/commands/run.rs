@@ -9,7 +9,10 @@ use crate::flight::{Pace, Plan};
 /// Flies a configuration until told to stop.
 pub(super) fn run(args: &RunArgs) -> Exit {
     match Config::load(&args.config) {
-        Ok(config) => {
+        Ok(mut config) => {
+            if let Some(instance) = &args.instance {
+                config.telemetry.instance = instance.clone();
+            }
             let plan = Plan {
                 pace: Pace::RealTime,
                 seconds: None,

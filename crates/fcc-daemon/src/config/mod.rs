@@ -10,6 +10,7 @@ mod built_in;
 mod error;
 mod ranges;
 mod runtime;
+mod telemetry;
 mod units;
 mod x_plane;
 
@@ -23,6 +24,7 @@ pub use autopilot::{AutopilotSection, CourseSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use error::{ConfigError, Problem};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -38,6 +40,8 @@ pub struct Config {
     pub engage: EngageSection,
     /// What happens when sensors fall silent.
     pub failsafe: FailsafeSection,
+    /// Who may watch, live.
+    pub telemetry: TelemetrySection,
     /// What is flown.
     pub course: CourseSection,
     /// Gains and limits.

@@ -11,6 +11,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::live::Live;
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -71,7 +72,13 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
-    let mut watch = Watch::new(&course, assembly.truth, plan, names);
+    // There is nothing to watch where time does not pass.
+    let live = match plan.pace {
+        Pace::RealTime => Live::start(&assembly.telemetry),
+        Pace::Lockstep => Live::off(),
+    };
+    let aircraft = names.aircraft();
+    let mut watch = Watch::new(&course, assembly.truth, plan, names, live);
     // Before the loop's thread exists, so that nothing real-time is inherited.
     let mut connection = assembly
         .x_plane
@@ -87,9 +94,13 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             catch_signals(&link)?;
             let handle = flight_loop.spawn()?;
+            watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                    watch.remark(words);
+                }
+                if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
                 thread::sleep(FETCH_EVERY);

@@ -9,6 +9,7 @@ use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample}
 use super::Pilot;
 use super::assemble::Assembly;
 use super::fly::Plan;
+use super::live::Live;
 use super::outcome::EventEntry;
 use super::status;
 use super::tap::TruthReceiver;
@@ -27,9 +28,12 @@ pub(super) struct Watch {
     engaged_at_s: Option<f64>,
     now_s: f64,
     tick: u64,
+    woke_ns: i64,
     failed: bool,
     announce: bool,
     status: Option<status::Printer>,
+    /// Who watches from elsewhere.
+    pub(super) live: Live,
 }
 
 impl Watch {
@@ -39,6 +43,7 @@ impl Watch {
         truth: Option<TruthReceiver>,
         plan: Plan,
         names: Names,
+        live: Live,
     ) -> Self {
         Self {
             names,
@@ -49,9 +54,11 @@ impl Watch {
             engaged_at_s: None,
             now_s: 0.0,
             tick: 0,
+            woke_ns: i64::MIN,
             failed: false,
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
+            live,
         }
     }
 
@@ -79,8 +86,10 @@ impl Watch {
     }
 
     fn record(&mut self, record: &FlightRecord) {
+        self.live.record(record);
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
         self.tick = record.tick.number;
+        self.woke_ns = record.tick.woke.as_nanos();
         let truth = self
             .truth
             .as_mut()
@@ -113,6 +122,7 @@ impl Watch {
             tick: event.tick,
             text: self.names.words(event.kind),
         };
+        self.live.event(event, &entry.text);
         self.failed |= matches!(
             event.kind,
             EventKind::StateChanged {
@@ -125,6 +135,7 @@ impl Watch {
 
     /// Something that the loop itself does not know.
     pub(super) fn remark(&mut self, text: String) {
+        self.live.remark(self.tick, self.woke_ns, &text);
         self.keep(EventEntry {
             time_s: self.now_s,
             tick: self.tick,
@@ -162,6 +173,11 @@ impl Names {
             sensors: assembly.sensors.iter().map(|s| s.name()).collect(),
             actuators: assembly.actuators.iter().map(|a| a.name()).collect(),
         }
+    }
+
+    /// What is flown: by what it is sensed.
+    pub(super) fn aircraft(&self) -> String {
+        self.sensors.join(", ")
     }
 
     fn words(&self, kind: EventKind<Order>) -> String {

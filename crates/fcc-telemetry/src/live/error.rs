@@ -1,6 +1,7 @@
 //! Why nothing can be published or watched.
 
-use super::{Instance, MAX_WATCHERS};
+use super::MAX_WATCHERS;
+use crate::Instance;
 
 /// Why nothing can be published. The flight goes on without.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]

@@ -1,5 +1,7 @@
 //! Who publishes, and in which layout.
 
+use nix::time::{ClockId, clock_gettime};
+
 use super::{Event, LAYOUT, Status, Text};
 use crate::FlightRecord;
 
@@ -73,6 +75,19 @@ impl Default for Info {
 }
 
 impl Info {
+    /// This process as it begins to publish: process, time and layout.
+    pub fn of_this_process() -> Self {
+        let now_ns = |clock| {
+            clock_gettime(clock).map_or(0, |now| now.tv_sec() * 1_000_000_000 + now.tv_nsec())
+        };
+        Self {
+            process_id: std::process::id(),
+            started_unix_ns: now_ns(ClockId::CLOCK_REALTIME),
+            started_ns: now_ns(ClockId::CLOCK_MONOTONIC),
+            ..Self::default()
+        }
+    }
+
     /// Whether records, events and status are laid out as this program knows
     /// them.
     pub fn is_understood(&self) -> bool {

@@ -22,7 +22,6 @@
 mod error;
 mod event;
 mod info;
-mod instance;
 mod lateness;
 mod publisher;
 mod record;
@@ -36,7 +35,6 @@ mod watcher;
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
 pub use info::Info;
-pub use instance::{Instance, InstanceError};
 pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
 pub use publisher::Publisher;
 pub use services::{EVENT_HISTORY, MAX_WATCHERS, RECORD_BUFFER};

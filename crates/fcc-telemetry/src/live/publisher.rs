@@ -7,8 +7,8 @@ use std::time::Duration;
 use rtrb::{Producer, RingBuffer};
 
 use super::thread::{self, Started};
-use super::{Event, Info, Instance, PublishError, RecorderStatus};
-use crate::FlightRecord;
+use super::{Event, Info, PublishError, RecorderStatus};
+use crate::{FlightRecord, Instance};
 
 /// What waits to be published: two seconds of records at 1 kHz. When a watcher
 /// joins or leaves, the publishing thread may be held up for one.

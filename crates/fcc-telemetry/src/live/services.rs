@@ -12,7 +12,8 @@ use iceoryx2::service::builder::publish_subscribe::{
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use iceoryx2::service::service_name::ServiceName;
 
-use super::{Instance, LAYOUT, PublishError, WatchError};
+use super::{LAYOUT, PublishError, WatchError};
+use crate::Instance;
 
 /// Programs that may watch one daemon at the same time. One more is told that
 /// there is no room; the others and the daemon do not notice it. The room of

@@ -14,7 +14,8 @@ use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
-use super::{Event, Info, Instance, PublishError, RecorderStatus, Status, Text};
+use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
+use crate::Instance;
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";

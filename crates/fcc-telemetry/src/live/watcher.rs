@@ -7,8 +7,8 @@ use iceoryx2::prelude::{PortFactory, ZeroCopySend, ipc};
 
 use super::record::Found;
 use super::services::{self, Access, EVENT, INFO, RECORD, STATUS, Service};
-use super::{Event, Info, Instance, LAYOUT, Status, WatchError};
-use crate::FlightRecord;
+use super::{Event, Info, LAYOUT, Status, WatchError};
+use crate::{FlightRecord, Instance};
 
 /// How long a daemon may take to say who it is.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -19,7 +19,8 @@ type In<T> = Subscriber<ipc::Service, T, ()>;
 /// Watches a daemon on this machine, from this or another process.
 ///
 /// ```no_run
-/// use fcc_telemetry::live::{Instance, Watcher};
+/// use fcc_telemetry::Instance;
+/// use fcc_telemetry::live::Watcher;
 ///
 /// let mut watcher = Watcher::open(&Instance::default())?;
 /// println!("{} Hz by {}", watcher.info().rate_hz, watcher.info().timer);

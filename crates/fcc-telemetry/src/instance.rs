@@ -7,13 +7,13 @@ use std::str::FromStr;
 /// `.`, at most 32 of them. Two daemons on one machine need two names.
 ///
 /// ```
-/// use fcc_telemetry::live::Instance;
+/// use fcc_telemetry::Instance;
 ///
 /// let instance: Instance = "left-wing".parse()?;
 /// assert_eq!(instance.to_string(), "left-wing");
 /// assert!("left/wing".parse::<Instance>().is_err());
 /// assert_eq!(Instance::default().to_string(), "fccd");
-/// # Ok::<(), fcc_telemetry::live::InstanceError>(())
+/// # Ok::<(), fcc_telemetry::InstanceError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Instance(String);
