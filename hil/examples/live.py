@@ -291,17 +291,15 @@ def _received(subscriber: Any) -> Iterator[Any]:
 
 def main() -> None:
     """Print a line four times a second until the daemon falls silent."""
-    watcher = Watcher(*sys.argv[1:2])
+    watcher = Watcher(sys.argv[1] if len(sys.argv) > 1 else "fccd")
     info = watcher.info
     print(f"{info.aircraft.decode()}: {info.rate_hz} Hz by {info.timer.decode()}")
     silent_since_s = time.monotonic()
     while time.monotonic() - silent_since_s < 2.0:
         for event in watcher.events():
             print(f"tick {event.tick}: {event.text.decode()}")
-        record = None
-        for record in watcher.records():
+        for record in list(watcher.records())[-1:]:
             silent_since_s = time.monotonic()
-        if record is not None:
             measured = record.measurements
             late_us = (record.tick.woke_ns - record.tick.scheduled_ns) / 1e3
             print(

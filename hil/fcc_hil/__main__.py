@@ -350,7 +350,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     try:
         code: int = options.run(options)
-    except (FlightError, watched.FlightError, DaemonError, StandInError, TrimError, ValueError, OSError) as error:
+    except (
+        FlightError,
+        watched.FlightError,
+        DaemonError,
+        StandInError,
+        TrimError,
+        ValueError,
+        OSError,
+    ) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

@@ -79,12 +79,9 @@ def fly(load: Load, watchers: int, number: int) -> Flight:
         config.write_text(
             f'[built-in]\nengage_at_s = 0.1\n[loop]\nrate_hz = {RATE_HZ}\n[course]\nkind = "hold"\n'
         )
-        daemon = subprocess.Popen(
-            [load.fccd, "fly", "--config", config, "--instance", instance, "--json", "--quiet"]
-            + ["--seconds", str(load.seconds)],
-            stdout=out,
-            stderr=subprocess.DEVNULL,
-        )
+        words: list[str | Path] = [load.fccd, "fly", "--json", "--quiet", "--config", config]
+        words += ["--instance", instance, "--seconds", str(load.seconds)]
+        daemon = subprocess.Popen(words, stdout=out, stderr=subprocess.DEVNULL)
         try:
             time.sleep(_SETTLE_S)
             _watch(load, watchers, instance, daemon, chance)
@@ -112,10 +109,12 @@ def _watch(
         if come < watchers and now_s >= come * pace_s:
             stays_s = chance.uniform(*_STAY_S)
             # Every second one would stay for ever.
-            words = [load.watcher, instance, *([f"{stays_s:.2f}"] if come % 2 else [])]
-            process = subprocess.Popen(
-                words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-            )
+            words: list[str | Path] = [
+                load.watcher,
+                instance,
+                *([f"{stays_s:.2f}"] if come % 2 else []),
+            ]
+            process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             here.append((now_s + stays_s, process))
             come += 1
         for until_s, process in list(here):
