@@ -9,6 +9,8 @@ PLOT     ?= $(JSON:.json=.png)
 # Faults of network and sensors for fly-jsbsim, such as
 # HARSH="--loss 0.02 --duplicate 0.01 --reorder 0.01 --noise".
 HARSH    ?=
+# For bench-live, such as LIVE="--seconds 60 --watchers 200".
+LIVE     ?=
 
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
@@ -19,7 +21,7 @@ VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
 
-.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench doc build clean
+.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -73,6 +75,10 @@ fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly to
 bench: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench
 
+bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
+	cargo build --locked --release -p fcc-telemetry --example watch
+	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
+
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
 
@@ -86,6 +92,7 @@ clean: ## Remove what was built
 $(STAMPS)/rust: rust-toolchain.toml
 	@command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs"; exit 1; }
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
+	@./scripts/has-libclang || ./scripts/apt-install libclang-dev
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/python: hil/pyproject.toml

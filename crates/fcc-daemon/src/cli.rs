@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::config::GustsChoice;
@@ -33,6 +34,9 @@ pub enum Command {
     Timing(TimingArgs),
     /// Fly a recording again and compare every output bit for bit
     Replay(ReplayArgs),
+    /// Watch a flight on this machine, live
+    #[cfg(feature = "live")]
+    Top(TopArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Report on a recorded flight: tables, and a page with plots
@@ -65,6 +69,9 @@ pub struct FlyArgs {
     /// Strength of the gusts
     #[arg(long, value_enum)]
     pub gusts: Option<GustsChoice>,
+    /// What watchers call this flight, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// As fast as the machine can, instead of in real time
     #[arg(long)]
     pub lockstep: bool,
@@ -88,6 +95,9 @@ pub struct RunArgs {
     /// Where to record
     #[command(flatten)]
     pub recording: RecordingArgs,
+    /// What watchers call this daemon, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -168,6 +178,18 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "OUT", requires = "config")]
     pub csv: Option<PathBuf>,
     /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd top`.
+#[cfg(feature = "live")]
+#[derive(Args, Debug)]
+pub struct TopArgs {
+    /// Which daemon: the name that it was given by --instance or [telemetry]
+    #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
+    pub instance: Instance,
+    /// Print one snapshot as JSON and end
     #[arg(long)]
     pub json: bool,
 }

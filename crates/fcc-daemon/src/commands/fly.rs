@@ -103,6 +103,9 @@ fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
                 .to_owned(),
         );
     };
+    if let Some(instance) = &args.instance {
+        config.telemetry.instance = instance.clone();
+    }
     if let Some(seed) = args.seed {
         built_in.seed = seed;
     }

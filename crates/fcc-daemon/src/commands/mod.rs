@@ -11,6 +11,8 @@ mod replay;
 mod report;
 mod run;
 mod timing;
+#[cfg(feature = "live")]
+mod top;
 
 use std::io;
 
@@ -29,6 +31,8 @@ pub fn run(cli: Cli) -> Exit {
         Command::Recover(args) => recover::recover(&args),
         Command::Timing(args) => timing::timing(&args),
         Command::Replay(args) => replay::replay(&args),
+        #[cfg(feature = "live")]
+        Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),
         Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),

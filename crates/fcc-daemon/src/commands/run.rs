@@ -11,6 +11,9 @@ pub(super) fn run(args: &RunArgs) -> Exit {
     match Config::load_with_text(&args.config) {
         Ok((mut config, text)) => {
             direct(&mut config, &args.recording);
+            if let Some(instance) = &args.instance {
+                config.telemetry.instance = instance.clone();
+            }
             let plan = Plan {
                 pace: Pace::RealTime,
                 length: Length::Open,

@@ -41,6 +41,8 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
+    // What is measured is the loop, and nobody needs to watch it.
+    config.telemetry.enabled = false;
     config.realtime.priority = args.priority;
     config.realtime.cpu = args.cpu;
     let assembly = assemble(&config).map_err(|error| error.to_string())?;

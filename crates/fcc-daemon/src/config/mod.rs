@@ -13,6 +13,7 @@ mod places;
 mod ranges;
 mod recording;
 mod runtime;
+mod telemetry;
 mod units;
 mod wording;
 mod x_plane;
@@ -31,6 +32,7 @@ pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -48,6 +50,8 @@ pub struct Config {
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// Who may watch, live.
+    pub telemetry: TelemetrySection,
     /// What is flown.
     pub course: CourseSection,
     /// Gains and limits.

@@ -7,7 +7,7 @@ use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::tap::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config, XPlaneSection};
+use crate::config::{Aircraft, Config, TelemetrySection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -19,6 +19,8 @@ pub struct Assembly {
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     /// What the loop is told.
     pub loop_config: LoopConfig,
+    /// Who may watch, live.
+    pub(super) telemetry: TelemetrySection,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -54,6 +56,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
+                telemetry: config.telemetry.clone(),
                 truth: Some(truth),
                 x_plane: None,
             })
@@ -66,6 +69,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(actuator)],
                 loop_config,
+                telemetry: config.telemetry.clone(),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

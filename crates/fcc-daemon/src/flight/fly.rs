@@ -15,6 +15,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
@@ -93,7 +94,13 @@ pub fn fly(
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
-    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone());
+    // There is nothing to watch where time does not pass.
+    let live = match plan.pace {
+        Pace::RealTime => Live::start(&assembly.telemetry),
+        Pace::Lockstep => Live::off(),
+    };
+    let aircraft = names.aircraft();
+    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone(), live);
     let mut wish = recording;
     if let Some(wish) = &mut wish {
         let facts = LoopFacts {
@@ -126,12 +133,16 @@ pub fn fly(
             let grants = Some(handle.grants());
             let mut recording =
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
+            watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
+                    watch.remark(words);
+                }
+                if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
                 thread::sleep(FETCH_EVERY);

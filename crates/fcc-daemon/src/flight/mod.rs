@@ -10,6 +10,8 @@ mod fly;
 mod guard;
 #[cfg(feature = "fault-injection")]
 mod injection;
+#[cfg_attr(not(feature = "live"), path = "not_live.rs")]
+mod live;
 mod outcome;
 mod recording;
 mod status;

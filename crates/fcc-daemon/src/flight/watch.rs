@@ -8,6 +8,7 @@ use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample,
 
 use super::assemble::Assembly;
 use super::fly::{Length, Plan};
+use super::live::Live;
 use super::outcome::EventEntry;
 use super::status;
 use super::tap::TruthReceiver;
@@ -29,10 +30,13 @@ pub(super) struct Watch {
     engaged_at_s: Option<f64>,
     now_s: f64,
     tick: u64,
+    woke_ns: i64,
     failed: bool,
     refused: bool,
     announce: bool,
     status: Option<status::Printer>,
+    /// Who watches from elsewhere.
+    pub(super) live: Live,
 }
 
 impl Watch {
@@ -42,6 +46,7 @@ impl Watch {
         truth: Option<TruthReceiver>,
         plan: Plan,
         names: Names,
+        live: Live,
     ) -> Self {
         Self {
             names,
@@ -52,10 +57,12 @@ impl Watch {
             engaged_at_s: None,
             now_s: 0.0,
             tick: 0,
+            woke_ns: i64::MIN,
             failed: false,
             refused: false,
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
+            live,
         }
     }
 
@@ -93,8 +100,10 @@ impl Watch {
     }
 
     fn record(&mut self, record: &FlightRecord) {
+        self.live.record(record);
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
         self.tick = record.tick.number;
+        self.woke_ns = record.tick.woke.as_nanos();
         let truth = self
             .truth
             .as_mut()
@@ -130,6 +139,7 @@ impl Watch {
             tick: event.tick,
             text: event_words(event, &self.names.sensors, &self.names.actuators),
         };
+        self.live.event(event, &entry.text);
         self.failed |= matches!(
             event.kind,
             EventKind::StateChanged {
@@ -143,6 +153,7 @@ impl Watch {
 
     /// Something that the loop itself does not know.
     pub(super) fn remark(&mut self, text: String) {
+        self.live.remark(self.tick, self.woke_ns, &text);
         self.keep(EventEntry {
             time_s: self.now_s,
             tick: self.tick,
@@ -193,6 +204,11 @@ impl Names {
             sensors: sensors.collect(),
             actuators: actuators.collect(),
         }
+    }
+
+    /// What is flown: by what it is sensed.
+    pub(super) fn aircraft(&self) -> String {
+        self.sensors.join(", ")
     }
 }
 
