@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
 use fcc_timer::RealtimeGrants;
-use nix::sys::utsname::uname;
+use nix::sys::utsname::{UtsName, uname};
 use serde::Serialize;
 
 use super::watch::Watch;
@@ -50,12 +50,12 @@ fn about(config: &Config, as_given: Option<String>) -> About {
     About {
         software: concat!("fccd ", env!("CARGO_PKG_VERSION")).to_owned(),
         git_hash: env!("FCCD_GIT_HASH").to_owned(),
-        host: said(machine.as_ref().map(|m| m.nodename())),
+        host: said(machine.as_ref().map(UtsName::nodename)),
         kernel: [
-            said(machine.as_ref().map(|m| m.sysname())),
-            said(machine.as_ref().map(|m| m.release())),
-            said(machine.as_ref().map(|m| m.version())),
-            said(machine.as_ref().map(|m| m.machine())),
+            said(machine.as_ref().map(UtsName::sysname)),
+            said(machine.as_ref().map(UtsName::release)),
+            said(machine.as_ref().map(UtsName::version)),
+            said(machine.as_ref().map(UtsName::machine)),
         ]
         .join(" "),
         aircraft: aircraft.to_owned(),

@@ -38,6 +38,7 @@ mod folder;
 mod foxglove;
 mod list;
 mod name;
+mod outlet;
 mod parse;
 mod raw;
 mod reader;
