@@ -1,11 +1,9 @@
 //! One file of a recording while it is written.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
-use std::{fs, mem};
 
 use fcc_core::framework::EventKind;
 use mcap::records::{MessageHeader, Metadata};
@@ -13,9 +11,10 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
 use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
-use super::disk::{Disk, DiskFile};
+use super::disk::Disk;
 use super::end::{END, Tally};
 use super::foxglove::{self, Thinned};
+use super::outlet::Outlet;
 use super::schema::{self, Topic};
 use super::settings::Compression;
 use super::wire::foxglove::log::Level;
@@ -254,7 +253,7 @@ impl RecordingFile {
 
     /// Bytes that are safe on the disk.
     pub(super) fn bytes(&self) -> u64 {
-        self.outlet.0.borrow().synced
+        self.outlet.synced_bytes()
     }
 
     /// Bytes that have gathered since, before they are compressed.
@@ -291,71 +290,5 @@ fn to_io(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,
         other => io::Error::other(other),
-    }
-}
-
-/// The way to the disk, in one large write for each commit; shared with the
-/// writer of MCAP, which keeps what it writes to.
-#[derive(Clone)]
-struct Outlet(Rc<RefCell<OutletState>>);
-
-struct OutletState {
-    file: Box<dyn DiskFile>,
-    waiting: Vec<u8>,
-    written: u64,
-    synced: u64,
-    abandoned: bool,
-}
-
-impl Outlet {
-    fn new(file: Box<dyn DiskFile>) -> Self {
-        Self(Rc::new(RefCell::new(OutletState {
-            file,
-            waiting: Vec::new(),
-            written: 0,
-            synced: 0,
-            abandoned: false,
-        })))
-    }
-
-    fn sync(&self) -> io::Result<()> {
-        let state = &mut *self.0.borrow_mut();
-        state.pass_on()?;
-        state.file.sync()?;
-        state.synced = state.written;
-        Ok(())
-    }
-
-    /// Cuts off what is not known to be whole, and writes no more.
-    fn abandon(&self) {
-        let state = &mut *self.0.borrow_mut();
-        if !mem::replace(&mut state.abandoned, true) {
-            // On a disk that failed, this may fail too; readers cope.
-            let _ = state.file.cut_to(state.synced);
-            let _ = state.file.sync();
-        }
-    }
-}
-
-impl OutletState {
-    fn pass_on(&mut self) -> io::Result<()> {
-        if !self.abandoned {
-            self.file.write_all(&self.waiting)?;
-            self.written += self.waiting.len() as u64;
-        }
-        self.waiting.clear();
-        Ok(())
-    }
-}
-
-impl Write for Outlet {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().waiting.extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        // Passed on when it is synced: a flush alone makes nothing safe.
-        Ok(())
     }
 }

@@ -38,6 +38,8 @@ mod folder;
 mod foxglove;
 mod list;
 mod name;
+mod outlet;
+mod parse;
 mod raw;
 mod reader;
 mod recorder;
