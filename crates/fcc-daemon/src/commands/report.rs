@@ -1,6 +1,7 @@
 //! `fccd report FILE`: what a recording tells.
 
 use std::fs;
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use fcc_core::flight::Course;
@@ -20,10 +21,13 @@ const BAR_EVERY: u64 = 4_096;
 pub(super) fn report(args: &ReportArgs) -> Exit {
     match read(args).and_then(|report| write_page(args, &report).map(|()| report)) {
         Ok(report) if args.json => print_json(&report),
-        Ok(report) => {
-            println!("{}", report.to_text());
-            Exit::Success
-        }
+        Ok(report) => match writeln!(io::stdout(), "{}", report.to_text()) {
+            // Whoever reads the first lines alone has what they wanted.
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                fail(&format!("the tables could not be printed: {error}"))
+            }
+            _ => Exit::Success,
+        },
         Err(message) => fail(&message),
     }
 }

@@ -156,6 +156,9 @@ fn missing(report: &Report) -> Vec<String> {
             report.event_count
         ));
     }
+    if !report.sensor_ages.is_empty() && !report.has_ages() {
+        said.push("Every measurement was taken at the very tick that used it.".to_owned());
+    }
     if report.track.is_empty() {
         said.push("No position was measured: there is no ground track.".to_owned());
     }

@@ -94,6 +94,13 @@ pub struct Report {
     track: Vec<Place>,
 }
 
+impl Report {
+    /// Whether any measurement was older than its tick.
+    fn has_ages(&self) -> bool {
+        self.sensor_ages.iter().any(|row| row.of.max_us > 0.0)
+    }
+}
+
 impl Timing {
     /// Whether the loop never waited for a clock: its timing is none.
     fn is_lockstep(&self) -> bool {

@@ -46,7 +46,9 @@ impl Report {
                         (timing_table(timing))
                         @for figure in &figures.timing { (figure_markup(figure)) }
                         (percentiles_table("Stage", &self.stages))
-                        (percentiles_table("Age of", &self.sensor_ages))
+                        @if self.has_ages() {
+                            (percentiles_table("Age of", &self.sensor_ages))
+                        }
                     }
                     @if !self.events.is_empty() {
                         h2 { "Events" }

@@ -27,7 +27,7 @@ use crate::{FlightEvent, FlightMessage, FlightRecord, TimingReport};
 pub struct Survey {
     origin: Origin,
     scoring: Option<Scoring>,
-    /// The loop's time that the report counts from.
+    /// When the first tick was due: the report counts from there.
     began_ns: Option<i64>,
     timing: Option<TimingStats>,
     continuity: Continuity,
@@ -81,7 +81,9 @@ impl Survey {
     /// As for [`take`](Self::take).
     pub fn take_record(&mut self, record: &FlightRecord) -> Result<(), TimerError> {
         let tick = &record.tick;
-        let time_s = self.seconds(tick.scheduled.as_nanos());
+        let scheduled_ns = tick.scheduled.as_nanos();
+        let began_ns = *self.began_ns.get_or_insert(scheduled_ns);
+        let time_s = since(began_ns, scheduled_ns);
         match self.continuity.take(tick, time_s) {
             Follows::Directly => {}
             Follows::AfterGap => self.lines.cut(),
@@ -113,10 +115,12 @@ impl Survey {
 
     /// Takes an event.
     pub fn take_event(&mut self, event: &FlightEvent) {
-        let time_s = if event.time.is_never() {
-            0.0
-        } else {
-            self.seconds(event.time.as_nanos()).max(0.0)
+        // What happens before the first tick, or in it, happens at 0.
+        let time_s = match self.began_ns {
+            Some(began_ns) if !event.time.is_never() => {
+                (since(began_ns, event.time.as_nanos())).max(0.0)
+            }
+            _ => 0.0,
         };
         if events::is_order_to_autopilot(event.kind)
             && let Some(scoring) = &mut self.scoring
@@ -159,12 +163,11 @@ impl Survey {
         report.findings = findings(&report);
         report
     }
+}
 
-    /// Since the first time that was seen.
-    fn seconds(&mut self, nanos: i64) -> f64 {
-        let began_ns = *self.began_ns.get_or_insert(nanos);
-        nanos.saturating_sub(began_ns) as f64 * 1e-9
-    }
+/// Seconds from one time of the loop to another.
+fn since(began_ns: i64, nanos: i64) -> f64 {
+    nanos.saturating_sub(began_ns) as f64 / 1e9
 }
 
 /// The loop's period, from what one tick says of it.
@@ -181,5 +184,110 @@ fn timing(stats: &TimingStats, origin: &Origin) -> Timing {
         period_box_ms: BoxPlot::of(&periods),
         lateness_histogram: log_histogram(stats.lateness_counts()),
         thesis: ThesisFigures::at(summary.rate_hz),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Flags, StateCode, Time};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A record of anything at all: a damaged file can hold it.
+    fn record() -> impl Strategy<Value = FlightRecord> {
+        let numbers = || prop::array::uniform8(any::<f64>());
+        let times = (any::<i64>(), any::<i64>(), any::<i64>());
+        let counts = (0_u64..50, 0_u64..5, any::<u64>(), 0_u8..4);
+        (times, counts, numbers(), numbers()).prop_map(
+            |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
+                let mut record = FlightRecord::default();
+                record.tick = Tick {
+                    number: step,
+                    scheduled: Time::from_nanos(due),
+                    woke: Time::from_nanos(woke),
+                    missed,
+                    dt_s: 0.025,
+                };
+                record.stages.total_ns = stage_ns;
+                record.state = StateCode::from_parts(phase, u8::from(phase == 2), Flags::NONE)
+                    .unwrap_or_default();
+                record.sent = stage_ns % 2 == 0;
+                let taken = Time::from_nanos(taken);
+                let measured = &mut record.measurements;
+                let [
+                    roll,
+                    pitch,
+                    heading,
+                    airspeed,
+                    altitude,
+                    latitude,
+                    longitude,
+                    side,
+                ] = a;
+                measured.attitude.value.roll_rad = roll;
+                measured.attitude.value.pitch_rad = pitch;
+                measured.heading_rad.value = heading;
+                measured.airspeed_mps.value = airspeed;
+                measured.altitude_m.value = altitude;
+                measured.position.value.latitude_rad = latitude;
+                measured.position.value.longitude_rad = longitude;
+                measured.specific_force.value.y_mps2 = side;
+                measured.attitude.taken = taken;
+                measured.heading_rad.taken = record.tick.woke;
+                measured.airspeed_mps.taken = record.tick.woke;
+                measured.altitude_m.taken = taken;
+                measured.position.taken = taken;
+                let [
+                    throttle,
+                    elevator,
+                    aileron,
+                    rudder,
+                    speed,
+                    course,
+                    height,
+                    bank,
+                ] = b;
+                record.outputs.throttle = throttle;
+                record.outputs.elevator = elevator;
+                record.outputs.aileron = aileron;
+                record.outputs.rudder = rudder;
+                record.setpoints.airspeed_mps = speed;
+                record.setpoints.heading_rad = course;
+                record.setpoints.altitude_m = height;
+                record.setpoints.roll_rad = bank;
+                record
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Nothing that a file can hold makes a report panic or grow.
+        #[test]
+        fn anything_can_be_reported_on(
+            records in prop::collection::vec(record(), 0..40),
+            in_order in any::<bool>(),
+        ) {
+            let pattern = TimedPatternConfig::default();
+            let mut survey = Survey::new(Origin::default(), Some(pattern));
+            let mut number = 0;
+            let mut due_ns = 0_i64;
+            for mut record in records {
+                if in_order {
+                    number += record.tick.number;
+                    due_ns = due_ns.saturating_add(record.tick.scheduled.as_nanos().abs() >> 20);
+                    record.tick.number = number;
+                    record.tick.scheduled = Time::from_nanos(due_ns);
+                }
+                survey.take_record(&record).unwrap();
+            }
+            let report = survey.finish(FileEnd::Unknown);
+            let page = report.to_html().unwrap();
+            prop_assert!(page.len() < 5_000_000);
+            prop_assert!(!report.to_text().is_empty());
+            prop_assert!(serde_json::to_string(&report).is_ok());
+        }
     }
 }

@@ -6,10 +6,12 @@ use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
 use super::{Report, Timing};
 use crate::table::{figure, table};
-use crate::{flight_table, timing_table};
+use crate::{FlightScore, flight_table, timing_table};
 
 /// More events than these do not fit on a screen.
 const MOST_EVENTS: usize = 20;
+/// Nor more legs.
+const MOST_LEGS: usize = 16;
 
 impl Report {
     /// Tables for people.
@@ -25,13 +27,31 @@ impl Report {
         if let Some(timing) = &self.timing {
             let _ = writeln!(text, "\n{}", timing.table_text());
         }
-        for (title, rows) in [("Stage", &self.stages), ("Age of", &self.sensor_ages)] {
-            if !rows.is_empty() {
-                let _ = writeln!(text, "\n{}", percentiles_table(title, rows));
-            }
+        if !self.stages.is_empty() {
+            let _ = writeln!(text, "\n{}", percentiles_table("Stage", &self.stages));
+        }
+        if self.has_ages() {
+            let _ = writeln!(text, "\n{}", percentiles_table("Age of", &self.sensor_ages));
         }
         if let Some(flight) = &self.flight {
-            let _ = writeln!(text, "\n{}", flight_table(flight));
+            let many = flight.legs.len() > MOST_LEGS;
+            let legs = if many { &[] } else { flight.legs.as_slice() };
+            let shown = FlightScore {
+                legs: legs.to_vec(),
+                worst: flight.worst,
+            };
+            let _ = writeln!(
+                text,
+                "\nLegs, by what was measured:\n{}",
+                flight_table(&shown)
+            );
+            if many {
+                let _ = writeln!(
+                    text,
+                    "of {} legs: see the page (--html) for each",
+                    flight.legs.len()
+                );
+            }
         }
         self.write_events(&mut text);
         text.truncate(text.trim_end().len());
@@ -152,17 +172,33 @@ pub(super) fn time(us: f64) -> String {
 
 /// `2 min 15.3 s`.
 pub(super) fn duration(seconds: f64) -> String {
-    let minutes = (seconds / 60.0).floor();
-    let rest_s = seconds - 60.0 * minutes;
-    if minutes < 1.0 {
-        format!("{seconds:.1} s")
-    } else if minutes < 60.0 {
-        format!("{minutes:.0} min {rest_s:.1} s")
-    } else {
-        let hours = (minutes / 60.0).floor();
-        format!(
-            "{hours:.0} h {:.0} min {rest_s:.0} s",
-            minutes - 60.0 * hours
-        )
+    let tenths = (seconds * 10.0).round() as u64;
+    let (minutes, rest_s) = (tenths / 600, (tenths % 600) as f64 / 10.0);
+    match minutes {
+        0 => format!("{rest_s:.1} s"),
+        1..60 => format!("{minutes} min {rest_s:.1} s"),
+        _ => format!("{} h {} min {rest_s:.0} s", minutes / 60, minutes % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_and_times_are_said_as_people_do() {
+        assert_eq!(duration(42.04), "42.0 s");
+        assert_eq!(duration(182.0), "3 min 2.0 s");
+        assert_eq!(duration(3_599.99), "1 h 0 min 0 s");
+        for (us, said) in [
+            (0.0, "0 µs"),
+            (2.345, "2.35 µs"),
+            (54.321, "54.3 µs"),
+            (25_000.0, "25.00 ms"),
+            (250_000.0, "250 ms"),
+            (12_000_000.0, "12.0 s"),
+        ] {
+            assert_eq!(time(us), said);
+        }
     }
 }

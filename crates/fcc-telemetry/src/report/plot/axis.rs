@@ -92,7 +92,7 @@ impl Ranged for Axis {
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
         let share = (value - self.from) / (self.to - self.from);
-        from + (share * f64::from(to - from)).round() as i32
+        from.saturating_add((share * f64::from(to - from)).round() as i32)
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
@@ -150,7 +150,8 @@ fn ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
 /// At most a hundred: a range that is no range makes no page full of ticks.
 fn multiples(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (from / step - 1e-9).ceil();
-    let last = (to / step + 1e-9).floor();
+    // An hour less one tick is an hour to its axis.
+    let last = (to / step + 2e-3).floor();
     let count = (last - first + 1.0).clamp(0.0, 100.0) as usize;
     (0..count).map(move |n| (first + n as f64) * step)
 }

@@ -114,8 +114,13 @@ impl Note {
         let x = px(self.at_px);
         let lead = [(x, px(bar_bottom)), (x, px(middle + 3.0))];
         area.draw(&PathElement::new(lead, pen(FAINT, 0.6)))?;
-        let style = text(SMALL_PX, TEXT, HPos::Left, VPos::Center);
-        area.draw_text(&self.words, &style, (px(self.left_px), px(middle)))?;
+        let (at, side) = if self.left_px < self.at_px {
+            (self.right_px, HPos::Right)
+        } else {
+            (self.left_px, HPos::Left)
+        };
+        let style = text(SMALL_PX, TEXT, side, VPos::Center);
+        area.draw_text(&self.words, &style, (px(at), px(middle)))?;
         Ok(())
     }
 

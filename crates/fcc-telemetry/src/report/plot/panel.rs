@@ -150,6 +150,11 @@ impl<'a> Panel<'a> {
         Ok(())
     }
 
+    /// Whether the x axis reaches a value.
+    pub(super) fn shows(&self, x: f64) -> bool {
+        (self.x.from..=self.x.to).contains(&x)
+    }
+
     /// Where a point of the axes lies on the sheet, px.
     pub(super) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
         let frame = self.frame;

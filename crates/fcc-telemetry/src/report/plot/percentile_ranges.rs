@@ -31,7 +31,7 @@ pub(super) fn figure(
     let frame = Frame {
         left: LEFT_PX,
         top: TOP_PX,
-        right: WIDTH_PX - 16.0,
+        right: WIDTH_PX - 22.0,
         bottom: TOP_PX + ROW_PX * rows.len() as f64,
     };
     let svg = draw(frame.bottom + X_WORDS_PX, title, |area| {

@@ -24,6 +24,9 @@ const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
 const X_WORDS_PX: f64 = 36.0;
 
+/// Of a flight longer than this, a fine line shows more.
+const DENSE_S: f64 = 600.0;
+
 /// Where records are missing.
 const GAP: RGBColor = RGBColor(255, 238, 170);
 
@@ -103,9 +106,11 @@ fn draw_panel(
         ))?;
     }
     for (ink, lines) in &panel.lines {
-        let style = match ink {
-            Ink::Actual => pen(ACTUAL, 1.3),
-            Ink::Desired => pen(DESIRED, 1.0),
+        let style = match (ink, report.duration_s > DENSE_S) {
+            (Ink::Actual, false) => pen(ACTUAL, 1.3),
+            (Ink::Actual, true) => pen(ACTUAL, 0.8),
+            (Ink::Desired, false) => pen(DESIRED, 1.0),
+            (Ink::Desired, true) => pen(DESIRED, 0.7),
         };
         drawn.lines(lines, style)?;
     }

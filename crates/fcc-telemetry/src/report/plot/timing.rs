@@ -17,7 +17,7 @@ use super::time_figure::{Ink, TimePanel, time_figure};
 use super::{Figure, percentile_ranges};
 
 const LEFT_PX: f64 = 90.0;
-const RIGHT_PX: f64 = WIDTH_PX - 12.0;
+const RIGHT_PX: f64 = WIDTH_PX - 22.0;
 const X_WORDS_PX: f64 = 36.0;
 
 /// The figures that there are data for.
@@ -123,8 +123,10 @@ fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
                 draw_row(&mut panel, 1, of, thesis.mean_ms, "thesis (2012)", OTHER)?;
             }
             let deviation = of.deviation_from(nominal_ms, 1e3);
+            let whiskers = (deviation.whisker_low, deviation.whisker_high);
+            let beyond = 0.5 * (whiskers.1 - whiskers.0);
             let x = Axis::around(
-                (deviation.min, deviation.max),
+                (whiskers.0 - beyond, whiskers.1 + beyond),
                 0.1,
                 10,
                 &format!("this flight: period less {nominal_ms:.3} ms, µs"),
@@ -137,7 +139,8 @@ fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
     )?;
     let beside = if timing.thesis.is_some() {
         " Above on one scale with the thesis, whose box is as its text tells it and whose \
-         whiskers reach its extremes; below by itself."
+         whiskers reach its extremes; below by itself, as far as its whiskers and half \
+         as far again."
     } else {
         ""
     };
@@ -170,7 +173,7 @@ fn draw_box(panel: &mut Panel<'_>, y: f64, of: &BoxPlot, mean: f64, ink: RGBColo
     for outlier in &of.outliers {
         // Circles on each other say no more than one.
         let (at_px, _) = panel.on_sheet((*outlier, y));
-        if at_px - last_px >= 0.8 {
+        if panel.shows(*outlier) && at_px - last_px >= 0.8 {
             last_px = at_px;
             panel.dot((*outlier, y), 2.0, pen(ink, 0.7))?;
         }
@@ -252,20 +255,20 @@ fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
                 let at = us.max(0.1).log10();
                 let (x, bottom) = panel.on_sheet((at, floor));
                 let (_, top) = panel.on_sheet((at, ceiling));
-                let half = text_width_px(&words, SMALL_PX) / 2.0;
-                let middle = x.clamp(frame.left + half, frame.right - half);
-                let row = ends.iter().position(|end| middle - half > end + 6.0);
+                // Words end at their line: what comes later is right of both.
+                let left = x - 3.0 - text_width_px(&words, SMALL_PX);
+                let row = ends.iter().position(|end| left > end + 6.0);
                 let row = row.unwrap_or(ROWS - 1);
                 if let Some(end) = ends.get_mut(row) {
-                    *end = middle + half;
+                    *end = x;
                 }
-                let y = top_px - 4.0 - row as f64 * ROW_PX;
+                let y = top_px - 2.0 - (row + 1) as f64 * ROW_PX;
                 area.draw(&PathElement::new(
                     [(px(x), px(bottom)), (px(x), px(top.min(y)))],
                     pen(TEXT, 0.7),
                 ))?;
-                let style = text(SMALL_PX, TEXT, HPos::Center, VPos::Bottom);
-                area.draw_text(&words, &style, (px(middle), px(y)))?;
+                let style = text(SMALL_PX, TEXT, HPos::Right, VPos::Top);
+                area.draw_text(&words, &style, (px(x - 3.0), px(y)))?;
             }
             Ok(())
         },

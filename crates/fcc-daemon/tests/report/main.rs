@@ -1,0 +1,175 @@
+//! Reports on flights of the built-in aircraft: what they say, that their page
+//! is sound and needs nothing else, and that their CSV is what was recorded.
+#![cfg(test)]
+
+mod command;
+mod flown;
+
+use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_telemetry::FlightMessage;
+use fcc_telemetry::report::{FileEnd, Origin, Report, Survey};
+use flown::Plan;
+use scraper::{Html, Selector};
+
+/// The report on a flight of which only some messages were kept.
+fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> Report {
+    let mut survey = Survey::new(Origin::default(), Some(TimedPatternConfig::default()));
+    plan.fly(|message| {
+        if keep(message) {
+            survey.take(message).unwrap();
+        }
+    });
+    survey.finish(FileEnd::Finished("told to stop".to_owned()))
+}
+
+fn all(_: &FlightMessage) -> bool {
+    true
+}
+
+fn says(report: &Report, words: &str) -> bool {
+    report.findings.iter().any(|said| said.contains(words))
+}
+
+/// Parses a page; it must be well formed and hold all that it needs.
+#[track_caller]
+fn sound(page: &str) -> Html {
+    let html = Html::parse_document(page);
+    assert!(html.errors.is_empty(), "{:?}", html.errors);
+    let elsewhere = page.replace("http://www.w3.org/2000/svg", "");
+    for fetched in [
+        "http:", "https:", "<script", "<link", "<iframe", "src=", "url(", "@import",
+    ] {
+        assert!(!elsewhere.contains(fetched), "the page has {fetched}");
+    }
+    assert!(!page.contains("NaN"), "the page has a number that is none");
+    html
+}
+
+fn texts(html: &Html, selector: &str) -> Vec<String> {
+    html.select(&Selector::parse(selector).unwrap())
+        .map(|element| element.text().collect())
+        .collect()
+}
+
+/// 65 s: 2 s of standby, 20 s of holding, two whole legs and a part.
+#[test]
+fn a_flight_is_told_as_it_was_flown() {
+    let report = report(Plan::seconds(65), all);
+    assert_eq!(report.continuity.ticks, 2_600);
+    assert_eq!(report.continuity.lost, 0);
+    assert!((report.duration_s - 64.975).abs() < 1e-9);
+    let states: Vec<_> = report
+        .states
+        .iter()
+        .map(|span| (span.state.as_str(), span.from_s))
+        .collect();
+    assert_eq!(
+        states,
+        [("standby", 0.0), ("engaged", 2.0), ("stopped", 64.975)]
+    );
+    let timing = report.timing.as_ref().unwrap();
+    assert!((timing.table.period_ms.mean - 25.0).abs() < 1e-9);
+    // Table 6.1 of the thesis.
+    assert_eq!(timing.thesis.unwrap().max_ms, 32.593);
+    assert!(says(&report, "flown in lockstep"));
+
+    let flight = report.flight.as_ref().unwrap();
+    assert_eq!(flight.legs.len(), 2, "the third leg is not whole");
+    let worst = flight.worst.unwrap();
+    // The design's bounds, widened by the sensors' noise.
+    assert!(worst.heading_settle_s.unwrap() < 17.5, "{worst:?}");
+    assert!(worst.altitude_settle_s.unwrap() < 14.0, "{worst:?}");
+
+    let html = sound(&report.to_html().unwrap());
+    assert_eq!(
+        texts(&html, "figure > h3"),
+        [
+            "Course",
+            "Heading",
+            "Altitude and pitch",
+            "Airspeed and throttle",
+            "Bank and surfaces",
+            "Ground track",
+            "Legs of the timed pattern",
+            "Period and lateness",
+        ]
+    );
+    assert_eq!(
+        texts(&html, "table.events tbody tr").len(),
+        report.event_count
+    );
+}
+
+#[test]
+fn a_gap_is_said_and_left_open() {
+    let report = report(Plan::seconds(30), |message| match message {
+        FlightMessage::Tick(record) => !(401..=439).contains(&record.tick.number),
+        FlightMessage::Event(_) => true,
+    });
+    assert_eq!(report.continuity.lost, 39);
+    let [gap] = report.continuity.gaps.as_slice() else {
+        panic!("{:?}", report.continuity);
+    };
+    // Tick 1 is at 0 s: 400 is at 9.975 s, 440 at 10.975 s.
+    assert!((gap.from_s - 9.975).abs() < 1e-9 && (gap.to_s - 10.975).abs() < 1e-9);
+    assert!(says(
+        &report,
+        "39 ticks are missing from the file, in 1 gap, the longest of 1.00 s"
+    ));
+    let page = report.to_html().unwrap();
+    sound(&page);
+    assert!(page.contains("records missing"));
+}
+
+#[test]
+fn a_silent_sensor_is_an_event_and_a_failsafe() {
+    let report = report(
+        Plan {
+            silent_from: Some(1_000),
+            ..Plan::seconds(40)
+        },
+        all,
+    );
+    assert_eq!(report.failsafes, 1);
+    assert!(says(&report, "It fell into failsafe once"));
+    let words: Vec<_> = report.events.iter().map(|event| &event.text).collect();
+    assert!(
+        words.iter().any(|text| text.contains("failsafe")),
+        "{words:?}"
+    );
+    let page = report.to_html().unwrap();
+    sound(&page);
+    // No line goes on where nothing is measured: ages do.
+    assert!(page.contains("Ages of measurements"));
+    assert!(report.to_text().contains("Age of"));
+}
+
+#[test]
+fn standby_alone_has_nothing_desired() {
+    let report = report(Plan::seconds(1), all);
+    assert!(says(&report, "never engaged"));
+    assert!(report.flight.is_none());
+    let page = report.to_html().unwrap();
+    sound(&page);
+    assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
+}
+
+#[test]
+fn a_recording_without_ticks_says_so() {
+    let report = Survey::new(Origin::default(), None).finish(FileEnd::Unknown);
+    assert!(says(&report, "no tick"));
+    let html = sound(&report.to_html().unwrap());
+    assert!(texts(&html, "figure").is_empty());
+    assert!(report.to_text().contains("no tick"));
+}
+
+#[test]
+fn one_tick_is_a_report_too() {
+    let report = report(Plan::seconds(1), |message| match message {
+        FlightMessage::Tick(record) => record.tick.number == 7,
+        FlightMessage::Event(_) => false,
+    });
+    assert_eq!(report.continuity.ticks, 1);
+    assert!(says(&report, "begins late, at tick 7: 6 ticks"));
+    sound(&report.to_html().unwrap());
+}
