@@ -42,6 +42,7 @@ test: lint test-rust test-python ## Run every check and every test
 test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
+	cargo check --locked -p fcc-daemon --no-default-features
 
 test-python: $(STAMPS)/rust faulty build $(STAMPS)/python-module $(STAMPS)/strace
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
@@ -89,7 +90,7 @@ clean: ## Remove what was built
 # --- set-up ------------------------------------------------------------------
 
 # rustup reads rust-toolchain.toml and fetches what is missing at first use.
-$(STAMPS)/rust: rust-toolchain.toml
+$(STAMPS)/rust: rust-toolchain.toml scripts/has-libclang
 	@command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs"; exit 1; }
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
 	@./scripts/has-libclang || ./scripts/apt-install libclang-dev

@@ -34,7 +34,7 @@ pub(super) fn stages(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     .map(|(name, now_ns, most_ns)| {
         Line::from(vec![
             format!("{name:<8}").dim(),
-            format!("{:>6}", short(now_ns)).bold(),
+            format!("{:>7}", short(now_ns)).bold(),
             format!(" ≤{:>6}", short(most_ns)).into(),
         ])
     })
