@@ -7,11 +7,11 @@ use std::time::Duration;
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
 use super::live::Live;
+use super::signals::{self, Kept};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -72,6 +72,7 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
+    let kept = Kept::from_new_threads().map_err(FlyError::Signals)?;
     // There is nothing to watch where time does not pass.
     let live = match plan.pace {
         Pace::RealTime => Live::start(&assembly.telemetry),
@@ -92,8 +93,9 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
     let report = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
+            signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
             let handle = flight_loop.spawn()?;
+            drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, plan);
@@ -110,7 +112,8 @@ pub fn fly(assembly: Assembly, tick: &LoopSection, plan: Plan) -> Result<Outcome
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
+            signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
+            drop(kept);
             run_in_lockstep(machine, &mut link, &mut watch, plan)?
         }
     };
@@ -155,13 +158,4 @@ fn drain(link: &mut Link<Pilot>, watch: &mut Watch, plan: Plan) {
             link.stop.stop();
         }
     }
-}
-
-/// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
-/// safely do; the loop releases the controls in its next tick.
-fn catch_signals(link: &Link<Pilot>) -> Result<(), FlyError> {
-    for signal in [SIGTERM, SIGINT, SIGHUP] {
-        signal_hook::flag::register(signal, link.stop.flag()).map_err(FlyError::Signals)?;
-    }
-    Ok(())
 }

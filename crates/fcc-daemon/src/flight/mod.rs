@@ -13,6 +13,7 @@ mod injection;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
 mod live;
 mod outcome;
+mod signals;
 mod status;
 mod tap;
 mod watch;

@@ -27,7 +27,7 @@ pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
         signal_hook::flag::register(signal, Arc::clone(&told_to_end))?;
     }
     // From here on a panic restores the terminal before it is printed.
-    let mut terminal = ratatui::try_init()?;
+    let mut terminal = ratatui::try_init().inspect_err(|_| ratatui::restore())?;
     let shown = show(&mut terminal, instance, watcher, &told_to_end);
     ratatui::try_restore()?;
     shown
