@@ -48,6 +48,7 @@ test: lint test-rust test-python ## Run every check and every test
 test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
+	cargo check --locked -p fcc-daemon --no-default-features
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
@@ -95,7 +96,7 @@ clean: ## Remove what was built
 # --- set-up ------------------------------------------------------------------
 
 # rustup reads rust-toolchain.toml and fetches what is missing at first use.
-$(STAMPS)/rust: rust-toolchain.toml
+$(STAMPS)/rust: rust-toolchain.toml scripts/has-libclang scripts/check-rust
 	@./scripts/check-rust
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
 	@./scripts/has-libclang || ./scripts/apt-install libclang-dev

@@ -186,7 +186,7 @@ pub struct ReplayArgs {
 #[cfg(feature = "live")]
 #[derive(Args, Debug)]
 pub struct TopArgs {
-    /// Which daemon: the name that it was given by --instance or [telemetry]
+    /// Which daemon: the name that it was given by --instance, or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
     pub instance: Instance,
     /// Print one snapshot as JSON and end

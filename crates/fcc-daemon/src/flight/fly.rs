@@ -1,8 +1,7 @@
 //! Flies an assembly to its end.
 
 use std::io;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
@@ -10,13 +9,12 @@ use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
-use nix::sys::signal::Signal;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::signals::{self, Kept};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -94,6 +92,7 @@ pub fn fly(
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
+    let kept = Kept::from_new_threads().map_err(FlyError::Signals)?;
     // There is nothing to watch where time does not pass.
     let live = match plan.pace {
         Pace::RealTime => Live::start(&assembly.telemetry),
@@ -124,7 +123,7 @@ pub fn fly(
     let (report, recording, interrupted) = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
-            let interrupted = catch_signals(&link)?;
+            let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for refusal in &handle.grants().refused {
@@ -133,6 +132,7 @@ pub fn fly(
             let grants = Some(handle.grants());
             let mut recording =
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
+            drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
@@ -152,9 +152,10 @@ pub fn fly(
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
-            let interrupted = catch_signals(&link)?;
+            let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
             let mut recording =
                 wish.and_then(|wish| wish.begin(None, RecordingPace::Lockstep, &mut watch));
+            drop(kept);
             let recorder = recording.as_mut();
             let report = run_in_lockstep(machine, &mut link, &mut watch, recorder, plan)?;
             (report, recording, interrupted)
@@ -224,21 +225,4 @@ fn drain(
     if let Some(recording) = recording {
         recording.tell(watch);
     }
-}
-
-/// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
-/// safely do; the loop releases the controls in its next tick. A second flag
-/// tells afterwards that it was a signal.
-fn catch_signals(link: &Link<Pilot>) -> Result<Arc<AtomicBool>, FlyError> {
-    let interrupted = Arc::new(AtomicBool::new(false));
-    for signal in [SIGTERM, SIGINT, SIGHUP] {
-        for flag in [link.stop.flag(), Arc::clone(&interrupted)] {
-            signal_hook::flag::register(signal, flag).map_err(FlyError::Signals)?;
-        }
-    }
-    // A limit on the size of files must end the recording, not the flight: with
-    // this caught, the write that goes too far is an error like any other.
-    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())
-        .map_err(FlyError::Signals)?;
-    Ok(interrupted)
 }

@@ -14,6 +14,7 @@ mod injection;
 mod live;
 mod outcome;
 mod recording;
+mod signals;
 mod status;
 mod tap;
 mod watch;

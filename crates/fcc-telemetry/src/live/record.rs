@@ -112,14 +112,14 @@ impl Found {
 mod tests {
     use super::*;
 
-    fn found(record: FlightRecord) -> Found {
+    fn found(record: &FlightRecord) -> Found {
         // A record has holes, whose bytes are not defined; these are zero.
         let mut found = Found([0; WORDS]);
         // SAFETY: sizes and alignments are the same.
         unsafe {
             std::ptr::from_mut(&mut found)
                 .cast::<FlightRecord>()
-                .write(record);
+                .write(*record);
         }
         found
     }
@@ -133,13 +133,13 @@ mod tests {
         record.measurements.engage_switch.value = Switch::On;
         record.measurements.plant.value.state = PlantState::Jumped;
         record.sent = true;
-        assert_eq!(found(record).record(), Some(record));
+        assert_eq!(found(&record).record(), Some(record));
     }
 
     #[test]
     fn what_is_no_record_is_not_taken_for_one() {
         for (at, most) in CHECKED {
-            let mut found = found(FlightRecord::default());
+            let mut found = found(&FlightRecord::default());
             let mut bytes = found.0[at / 8].to_ne_bytes();
             bytes[at % 8] = most + 1;
             found.0[at / 8] = u64::from_ne_bytes(bytes);

@@ -8,13 +8,16 @@ use nix::sys::statvfs::statvfs;
 const SHARED_MEMORY: &str = "/dev/shm";
 
 /// Room that publishing may need at any time: all records, events and watchers'
-/// connections there can be come to some 4 MiB.
+/// connections there can be come to some 3 MiB.
 pub(super) const NEEDED_BYTES: u64 = 8 * 1_024 * 1_024;
 
 /// Below this, nothing is published until there is room again. A page of shared
 /// memory that cannot be had kills the process that touches it: a full
 /// `/dev/shm` must never end a flight.
 pub(super) const LEAST_BYTES: u64 = 4 * 1_024 * 1_024;
+
+/// What a watcher needs for its connections, with room to spare.
+pub(super) const WATCHER_BYTES: u64 = 1_024 * 1_024;
 
 /// Free shared memory; none where it is not known, which is no reason to stop.
 pub(super) fn free_bytes() -> Option<u64> {

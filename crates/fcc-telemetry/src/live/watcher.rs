@@ -7,6 +7,7 @@ use iceoryx2::prelude::{PortFactory, ZeroCopySend, ipc};
 
 use super::record::Found;
 use super::services::{self, Access, EVENT, INFO, RECORD, STATUS, Service};
+use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
 use crate::{FlightRecord, Instance};
 
@@ -52,6 +53,9 @@ impl Watcher {
     /// When no daemon of this name runs here, when it is of a version with
     /// another layout, and when there is no room for another watcher.
     pub fn open(instance: &Instance) -> Result<Self, WatchError> {
+        if let Some(words) = space::too_little(space::WATCHER_BYTES) {
+            return Err(WatchError::NoSharedMemory(words));
+        }
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
         if !info.is_understood() {

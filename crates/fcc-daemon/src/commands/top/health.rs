@@ -34,7 +34,7 @@ pub(super) fn stages(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     .map(|(name, now_ns, most_ns)| {
         Line::from(vec![
             format!("{name:<8}").dim(),
-            format!("{:>6}", short(now_ns)).bold(),
+            format!("{:>7}", short(now_ns)).bold(),
             format!(" ≤{:>6}", short(most_ns)).into(),
         ])
     })
@@ -148,13 +148,8 @@ pub(super) fn recorder(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
 }
 
 fn watched(status: &Status, picture: &Picture) -> Line<'static> {
-    let mut words = format!("{} watching", status.watchers);
-    let lived_s = picture.seconds(status.time_ns);
-    if lived_s > 1.0 {
-        let percent = status.cpu_ns as f64 * 1e-7 / lived_s;
-        words.push_str(&format!(", {percent:.1} % CPU"));
-    }
-    Line::from(words)
+    let percent = status.cpu_ns as f64 * 1e-7 / picture.seconds(status.time_ns).max(1.0);
+    Line::from(format!("{} watching, {percent:.1} % CPU", status.watchers))
 }
 
 fn lost(name: &'static str, number: u64) -> Line<'static> {

@@ -102,7 +102,7 @@ fn aircraft(area: Rect, buffer: &mut Buffer) {
     }
     let at = (
         area.x + (area.width - width) / 2,
-        area.y + area.height / 2 - u16::from(area.height % 2 == 0 && area.height > 0),
+        area.y + area.height.saturating_sub(1) / 2,
     );
     for (n, letter) in WINGS.chars().enumerate() {
         if letter == ' ' {

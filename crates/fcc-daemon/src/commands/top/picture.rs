@@ -26,12 +26,12 @@ pub(super) struct Picture {
 
 impl Picture {
     pub(super) fn new(watcher: &Watcher) -> Self {
-        Self::of(*watcher.info())
+        Self::of(watcher.info())
     }
 
-    pub(super) fn of(info: Info) -> Self {
+    pub(super) fn of(info: &Info) -> Self {
         Self {
-            info,
+            info: *info,
             record: None,
             status: None,
             events: VecDeque::with_capacity(EVENT_HISTORY),
@@ -45,7 +45,7 @@ impl Picture {
     pub(super) fn update(&mut self, watcher: &mut Watcher) -> Result<bool, WatchError> {
         let mut new = false;
         while let Some(record) = watcher.next_record()? {
-            self.record(record);
+            self.record(&record);
             new = true;
         }
         while let Some(event) = watcher.next_event()? {
@@ -69,7 +69,7 @@ impl Picture {
         time_ns.saturating_sub(self.info.started_ns) as f64 * 1e-9
     }
 
-    pub(super) fn record(&mut self, record: FlightRecord) {
+    pub(super) fn record(&mut self, record: &FlightRecord) {
         let (longest, now) = (&mut self.longest, &record.stages);
         for (longest, now) in [
             (&mut longest.sensors_ns, now.sensors_ns),
@@ -81,7 +81,7 @@ impl Picture {
         ] {
             *longest = (*longest).max(now);
         }
-        self.record = Some(record);
+        self.record = Some(*record);
     }
 
     pub(super) fn event(&mut self, event: Event) {

@@ -137,8 +137,8 @@ fn actual(record: &FlightRecord) -> Values {
     Values {
         heading_deg: (!m.heading_rad.is_never())
             .then(|| m.heading_rad.value.to_degrees().rem_euclid(360.0)),
-        altitude_ft: (!m.altitude_m.is_never()).then(|| m.altitude_m.value * M_FT),
-        airspeed_kt: (!m.airspeed_mps.is_never()).then(|| m.airspeed_mps.value * MPS_KT),
+        altitude_ft: (!m.altitude_m.is_never()).then_some(m.altitude_m.value * M_FT),
+        airspeed_kt: (!m.airspeed_mps.is_never()).then_some(m.airspeed_mps.value * MPS_KT),
         bank_deg: attitude.map(|attitude| attitude.roll_rad.to_degrees()),
         pitch_deg: attitude.map(|attitude| attitude.pitch_rad.to_degrees()),
     }

@@ -18,7 +18,7 @@ use super::screen;
 /// small board and a slow line.
 const REDRAW_EVERY: Duration = Duration::from_millis(67);
 /// How long nothing may come before it is asked whether the daemon is gone.
-const SILENCE: Duration = Duration::from_millis(1_000);
+const SILENCE: Duration = Duration::from_secs(1);
 
 /// Shows a flight until somebody presses `q`.
 pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
@@ -27,7 +27,7 @@ pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
         signal_hook::flag::register(signal, Arc::clone(&told_to_end))?;
     }
     // From here on a panic restores the terminal before it is printed.
-    let mut terminal = ratatui::try_init()?;
+    let mut terminal = ratatui::try_init().inspect_err(|_| ratatui::restore())?;
     let shown = show(&mut terminal, instance, watcher, &told_to_end);
     ratatui::try_restore()?;
     shown

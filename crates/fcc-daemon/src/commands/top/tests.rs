@@ -12,7 +12,7 @@ use super::screen;
 
 /// 60 s into a flight: turning right and climbing.
 fn picture() -> Picture {
-    let mut picture = Picture::of(Info {
+    let mut picture = Picture::of(&Info {
         rate_hz: 40.0,
         timer: Text::new("timerfd"),
         policy: Text::new("SCHED_FIFO"),
@@ -67,7 +67,7 @@ fn picture() -> Picture {
     record.setpoints.airspeed_mps = 185.2 / 3.6;
     record.stages.control_ns = 1_500;
     record.stages.total_ns = 12_345;
-    picture.record(record);
+    picture.record(&record);
     picture.status = Some(Status {
         time_ns: 60_000_000_000,
         ticks: 2_400,
@@ -124,7 +124,7 @@ fn any_size_is_drawn() {
 
 #[test]
 fn nothing_known_yet_is_drawn() {
-    let rows = drawn(&Picture::of(Info::default()), 80, 24).concat();
+    let rows = drawn(&Picture::of(&Info::default()), 80, 24).concat();
     assert!(rows.contains("waiting for the first tick"), "{rows}");
 }
 
@@ -143,7 +143,7 @@ fn what_keeps_it_from_engaging_is_named() {
     let mut record = picture.record.unwrap();
     record.state = State::Standby.into();
     record.blockers = Flags::bit(0);
-    picture.record(record);
+    picture.record(&record);
     let rows = drawn(&picture, 80, 24);
     assert!(rows[0].contains("STANDBY"));
     assert!(rows[23].contains("not ready: "), "{}", rows[23]);

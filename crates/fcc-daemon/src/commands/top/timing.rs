@@ -1,5 +1,7 @@
 //! How late the loop wakes.
 
+use std::fmt::Write as _;
+
 use fcc_telemetry::live::{LATENESS_BOUNDS_NS, LatenessCounts, Status};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -80,12 +82,10 @@ pub(super) fn duration(ns: u64) -> String {
         (ns / 1e9, "s")
     };
     // As three figures are rounded, not as they are cut.
-    let digits = if number < 9.995 {
-        2
-    } else if number < 99.95 {
-        1
-    } else {
-        0
+    let digits = match number {
+        ..9.995 => 2,
+        9.995..99.95 => 1,
+        _ => 0,
     };
     format!("{number:.digits$} {unit}")
 }
@@ -140,11 +140,13 @@ fn color(bin: usize) -> Color {
 /// Every second decade, under the edge between its bins.
 fn scale(bin: usize) -> Line<'static> {
     let mut words = String::new();
+    let mut column = 0;
     // Bin 0 ends at 100 ns, and each decade has two.
     for (decade, word) in [(1, "1µs┘"), (3, "100µs┘"), (5, "10ms┘")] {
         let end = bin * (1 + 2 * decade);
-        let room = end.saturating_sub(words.chars().count());
-        words.push_str(&format!("{word:>room$}"));
+        let room = end - column;
+        let _ = write!(words, "{word:>room$}");
+        column = end;
     }
     Line::from(words)
 }
