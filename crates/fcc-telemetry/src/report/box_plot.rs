@@ -48,7 +48,7 @@ impl BoxPlot {
             q1,
             median: quartile(0.5)?,
             q3,
-            whisker_high: within().last().map_or(q3, |(value, _)| value.max(q3)),
+            whisker_high: within().next_back().map_or(q3, |(value, _)| value.max(q3)),
             max,
             outlier_count: outside().map(|(_, count)| count).sum(),
             outliers: outside().map(|(value, _)| *value).collect(),

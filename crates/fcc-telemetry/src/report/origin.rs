@@ -57,7 +57,11 @@ impl Origin {
                 policy: realtime.policy.clone(),
                 priority: realtime.priority,
                 memory_locked: realtime.memory_locked,
-                refused: realtime.refused.iter().map(in_words).collect(),
+                refused: realtime
+                    .refused
+                    .iter()
+                    .map(|words| in_words(words))
+                    .collect(),
             },
             sensors: about.sensors.clone(),
             actuators: about.actuators.clone(),
@@ -67,9 +71,9 @@ impl Origin {
 }
 
 /// A recording keeps no more than the words.
-fn in_words(refused: &String) -> RefusedWish {
+fn in_words(refused: &str) -> RefusedWish {
     RefusedWish {
-        wish: refused.clone(),
+        wish: refused.to_owned(),
         ..RefusedWish::default()
     }
 }
