@@ -107,6 +107,11 @@ fn a_gap_is_said_and_left_open() {
         FlightMessage::Event(_) => true,
     });
     assert_eq!(report.continuity.lost, 39);
+    let timing = &report.timing.as_ref().unwrap().table;
+    assert!(
+        (timing.period_ms.max - 25.0).abs() < 1e-9,
+        "a gap is no period"
+    );
     let [gap] = report.continuity.gaps.as_slice() else {
         panic!("{:?}", report.continuity);
     };

@@ -60,7 +60,7 @@ impl Origin {
                 refused: realtime
                     .refused
                     .iter()
-                    .map(|refused| in_words(refused))
+                    .map(|words| in_words(words))
                     .collect(),
             },
             sensors: about.sensors.clone(),

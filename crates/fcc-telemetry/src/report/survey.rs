@@ -84,16 +84,19 @@ impl Survey {
         let scheduled_ns = tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(scheduled_ns);
         let time_s = since(began_ns, scheduled_ns);
-        match self.continuity.take(tick, time_s) {
-            Follows::Directly => {}
-            Follows::AfterGap => self.lines.cut(),
-            Follows::Not => return Ok(()),
+        let follows = self.continuity.take(tick, time_s);
+        if follows == Follows::Not {
+            return Ok(());
         }
         self.last_s = time_s;
         let timing = match &mut self.timing {
             Some(timing) => timing,
             None => self.timing.insert(TimingStats::new(period(tick))?),
         };
+        if follows == Follows::AfterGap {
+            timing.interrupt();
+            self.lines.cut();
+        }
         timing.record(&Expiry {
             number: tick.number,
             scheduled_ns: tick.scheduled.as_nanos(),

@@ -40,8 +40,12 @@ pub struct TimingStats {
     missed: u64,
     /// The deadline before the first that was recorded.
     began_ns: i64,
+    /// When the first period counted began, as if none had been left out.
     first_woke_ns: i64,
     last_woke_ns: i64,
+    periods: u64,
+    /// Whether the next period is to be left out.
+    interrupted: bool,
     period_min_ns: i64,
     period_max_ns: i64,
     within_2_percent: u64,
@@ -66,6 +70,8 @@ impl TimingStats {
             began_ns: 0,
             first_woke_ns: 0,
             last_woke_ns: 0,
+            periods: 0,
+            interrupted: false,
             period_min_ns: i64::MAX,
             period_max_ns: i64::MIN,
             within_2_percent: 0,
@@ -82,6 +88,8 @@ impl TimingStats {
     pub fn reset(&mut self) {
         self.ticks = 0;
         self.missed = 0;
+        self.periods = 0;
+        self.interrupted = false;
         self.period_min_ns = i64::MAX;
         self.period_max_ns = i64::MIN;
         self.within_2_percent = 0;
@@ -96,8 +104,14 @@ impl TimingStats {
             self.began_ns = expiry.scheduled_ns.saturating_sub(self.period.ns());
             self.first_woke_ns = expiry.woke_ns;
         } else {
-            self.record_period(expiry.woke_ns.saturating_sub(self.last_woke_ns));
+            let period_ns = expiry.woke_ns.saturating_sub(self.last_woke_ns);
+            if self.interrupted {
+                self.first_woke_ns = self.first_woke_ns.saturating_add(period_ns);
+            } else {
+                self.record_period(period_ns);
+            }
         }
+        self.interrupted = false;
         self.last_woke_ns = expiry.woke_ns;
         self.ticks = self.ticks.saturating_add(1);
         self.missed = self.missed.saturating_add(expiry.missed);
@@ -107,7 +121,14 @@ impl TimingStats {
         self.lateness.saturating_record(lateness_ns.unsigned_abs());
     }
 
+    /// Says that ticks are missing before the next one to be recorded: the
+    /// time until then is no period. Allocates nothing.
+    pub fn interrupt(&mut self) {
+        self.interrupted = true;
+    }
+
     fn record_period(&mut self, period_ns: i64) {
+        self.periods = self.periods.saturating_add(1);
         self.period_min_ns = self.period_min_ns.min(period_ns);
         self.period_max_ns = self.period_max_ns.max(period_ns);
         let deviation_ns = period_ns.saturating_sub(self.period.ns());
@@ -147,9 +168,9 @@ impl TimingStats {
         deviation::counts(&self.lateness).map(move |(ns, count)| (ns.min(max) / NS_PER_US, count))
     }
 
-    /// Periods measured: one less than ticks.
+    /// Periods measured: one less than ticks, if none was left out.
     fn periods(&self) -> u64 {
-        self.ticks.saturating_sub(1)
+        self.periods
     }
 }
 

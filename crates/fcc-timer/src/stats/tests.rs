@@ -244,3 +244,35 @@ fn periods_and_latenesses_are_told_one_by_one() {
         assert_eq!(count, expected_count);
     }
 }
+
+/// Ticks at 25, 50, 51 + 1000, 76 + 1000 ms: two periods, of 25 ms each.
+#[test]
+fn what_is_missing_makes_no_period() {
+    let mut stats = TimingStats::new(NOMINAL).unwrap();
+    for (number, woke_ns) in [
+        (1, 25_000_000),
+        (2, 50_000_000),
+        (42, 1_051_000_000),
+        (43, 1_076_000_000),
+    ] {
+        if number == 42 {
+            stats.interrupt();
+        }
+        stats.record(&Expiry {
+            number,
+            scheduled_ns: number as i64 * NOMINAL_NS,
+            woke_ns,
+            missed: 0,
+        });
+    }
+    let summary = stats.summary();
+    assert_eq!(summary.ticks, 4);
+    assert_near(summary.period_mean_ms, 25.0, 1e-12);
+    assert_near(summary.period_max_ms, 25.0, 1e-12);
+    assert_near(summary.period_within_2_percent, 1.0, 1e-12);
+    assert_eq!(
+        stats.period_counts().map(|(_, count)| count).sum::<u64>(),
+        2
+    );
+    assert_near(summary.runtime_s, 1.076, 1e-12);
+}

@@ -4,52 +4,69 @@ use super::super::events::{EventLine, Weight};
 use super::canvas::{SMALL_PX, text_width_px};
 
 /// Events that are too close to be told apart, under one mark.
-#[derive(Clone, PartialEq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub(super) struct Mark {
     /// Of the weightiest of them, px on the sheet.
     pub(super) at_px: f64,
-    /// Their numbers.
-    pub(super) label: String,
+    /// Number of the first.
+    first: usize,
+    /// Number of the last.
+    last: usize,
     /// Of the weightiest.
-    pub(super) weight: Weight,
+    weight: Weight,
 }
 
 /// Marks for all events, none on top of another; `x_px` says where on the
 /// sheet a time is.
 pub(super) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
-    let mut first = 0;
-    let mut last_at_px = f64::NEG_INFINITY;
     for event in events {
-        let at_px = x_px(event.time_s);
-        let joins = marks.last().is_some_and(|mark| {
-            let own = text_width_px(&event.number.to_string(), SMALL_PX);
-            at_px - last_at_px < half_width(&mark.label) + own / 2.0 + 4.0
-        });
-        match marks.last_mut() {
-            Some(mark) if joins => {
-                mark.label = format!("{first}\u{2013}{}", event.number);
-                if event.weight > mark.weight {
-                    mark.weight = event.weight;
-                    mark.at_px = at_px;
-                }
-            }
-            _ => {
-                first = event.number;
-                last_at_px = at_px;
-                marks.push(Mark {
-                    at_px,
-                    label: event.number.to_string(),
-                    weight: event.weight,
-                });
-            }
+        let mut mark = Mark {
+            at_px: x_px(event.time_s),
+            first: event.number,
+            last: event.number,
+            weight: event.weight,
+        };
+        // A joint mark is wider, and may reach the one before it.
+        while let Some(before) = marks.pop_if(|before| before.touches(&mark)) {
+            mark = before.join(mark);
         }
+        marks.push(mark);
     }
     marks
 }
 
-fn half_width(label: &str) -> f64 {
-    text_width_px(label, SMALL_PX) / 2.0
+impl Mark {
+    /// The numbers of its events.
+    pub(super) fn label(&self) -> String {
+        if self.first == self.last {
+            self.first.to_string()
+        } else {
+            format!("{}\u{2013}{}", self.first, self.last)
+        }
+    }
+
+    fn half_width_px(&self) -> f64 {
+        text_width_px(&self.label(), SMALL_PX) / 2.0
+    }
+
+    fn touches(&self, later: &Self) -> bool {
+        let apart_px = later.at_px - self.at_px;
+        apart_px < self.half_width_px() + later.half_width_px() + 5.0
+    }
+
+    fn join(self, later: Self) -> Self {
+        let weightier = if later.weight > self.weight {
+            later
+        } else {
+            self
+        };
+        Self {
+            first: self.first,
+            last: later.last,
+            ..weightier
+        }
+    }
 }
 
 #[cfg(test)]
@@ -76,7 +93,8 @@ mod tests {
             event(5, 300.0, Weight::Wrong),
         ];
         let marks = marks(&events, |time_s| time_s);
-        let seen: Vec<_> = marks.iter().map(|m| (m.label.as_str(), m.at_px)).collect();
+        let seen: Vec<_> = marks.iter().map(|m| (m.label(), m.at_px)).collect();
+        let seen: Vec<_> = seen.iter().map(|(l, at)| (l.as_str(), *at)).collect();
         assert_eq!(seen, [("1", 0.0), ("2\u{2013}4", 101.0), ("5", 300.0)]);
     }
 }

@@ -21,7 +21,7 @@ const LEAST_US: f64 = 0.01;
 /// A row for each; none where there is nothing above 0.
 pub(super) fn figure(
     title: &'static str,
-    what: String,
+    what: &str,
     rows: &[NamedPercentiles],
 ) -> Result<Option<Figure>, PlotError> {
     // In lockstep everything is as new as it can be.

@@ -120,7 +120,7 @@ fn draw_panel(
 fn number_marks(area: &Area<'_>, top: f64, marks: &[Mark]) -> Drawn {
     let style = text(SMALL_PX, FAINT, HPos::Center, VPos::Bottom);
     for mark in marks {
-        area.draw_text(&mark.label, &style, (px(mark.at_px), px(top - 1.0)))?;
+        area.draw_text(&mark.label(), &style, (px(mark.at_px), px(top - 1.0)))?;
     }
     Ok(())
 }

@@ -35,12 +35,12 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
     }
     figures.extend(percentile_ranges::figure(
         "Stages of a tick",
-        "How long each stage took".to_owned(),
+        "How long each stage took",
         &report.stages,
     )?);
     figures.extend(percentile_ranges::figure(
         "Ages of measurements",
-        "How old each measurement was when the loop woke".to_owned(),
+        "How old each measurement was when the loop woke",
         &report.sensor_ages,
     )?);
     Ok(figures)
@@ -194,7 +194,7 @@ fn draw_box(panel: &mut Panel<'_>, y: f64, of: &BoxPlot, mean: f64, ink: RGBColo
     ];
     panel.polyline(corners, line)?;
     panel.polyline(vec![(of.median, low), (of.median, high)], pen(ink, 2.0))?;
-    if mean.is_finite() {
+    if panel.shows(mean) {
         panel.dot((mean, y), 2.2, ink.filled())?;
     }
     Ok(())
