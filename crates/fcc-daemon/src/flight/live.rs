@@ -1,7 +1,7 @@
 //! Lets others watch a flight, live.
 
-use fcc_telemetry::live::{Event, Info, Publisher, Text};
-use fcc_telemetry::{FlightEvent, FlightRecord};
+use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
+use fcc_telemetry::{FlightEvent, FlightRecord, recording};
 use fcc_timer::RealtimeGrants;
 
 use crate::config::{LoopSection, TelemetrySection};
@@ -41,6 +41,7 @@ impl Live {
             rate_hz: tick.rate_hz,
             timer: Text::new(tick.timer.name()),
             software: Text::new(env!("CARGO_PKG_VERSION")),
+            commit: Text::new(env!("FCCD_GIT_HASH")),
             policy: Text::new(grants.policy),
             priority: grants.priority,
             memory_locked: grants.memory_locked.into(),
@@ -70,6 +71,28 @@ impl Live {
         if let Some(publisher) = &mut self.publisher {
             publisher.event(Event::remark(tick, time_ns, text));
         }
+    }
+
+    /// Publishes how the recorder does.
+    pub(super) fn recorder(&mut self, now: &recording::RecorderStatus) {
+        let Some(publisher) = &mut self.publisher else {
+            return;
+        };
+        let name = now.file.as_ref().and_then(|file| file.file_name());
+        publisher.recorder(RecorderStatus {
+            state: match (&now.stopped, name) {
+                (None, Some(_)) => RecorderState::Recording,
+                (None, None) => RecorderState::Off,
+                (Some(_), _) => RecorderState::Stopped,
+            },
+            recorded: now.ticks,
+            not_recorded: now.not_recorded,
+            bytes: now.bytes,
+            name: match &now.stopped {
+                Some(why) => why.clone(),
+                None => name.unwrap_or_default().to_string_lossy().into_owned(),
+            },
+        });
     }
 
     /// Publishes now what was handed over; gives words if there is trouble.
