@@ -204,13 +204,16 @@ mod tests {
         let counts = (0_u64..50, 0_u64..5, any::<u64>(), 0_u8..4);
         (times, counts, numbers(), numbers()).prop_map(
             |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
-                let mut record = FlightRecord::default();
-                record.tick = Tick {
+                let tick = Tick {
                     number: step,
                     scheduled: Time::from_nanos(due),
                     woke: Time::from_nanos(woke),
                     missed,
                     dt_s: 0.025,
+                };
+                let mut record = FlightRecord {
+                    tick,
+                    ..FlightRecord::default()
                 };
                 record.stages.total_ns = stage_ns;
                 record.state = StateCode::from_parts(phase, u8::from(phase == 2), Flags::NONE)
