@@ -5,10 +5,14 @@ AIRCRAFT ?= c172p
 LEGS     ?= 8
 SEED     ?= 1
 JSON     ?= target/fly-jsbsim-$(AIRCRAFT).json
-PLOT     ?= $(JSON:.json=.png)
+PLOT     ?= $(basename $(JSON)).png
+# The UDP port on which the stand-in listens, X-Plane's own unless it is taken.
+PORT     ?= 49000
 # Faults of network and sensors for fly-jsbsim, such as
 # HARSH="--loss 0.02 --duplicate 0.01 --reorder 0.01 --noise".
 HARSH    ?=
+# For bench-live, such as LIVE="--seconds 60 --watchers 200".
+LIVE     ?=
 
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
@@ -19,29 +23,34 @@ VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
 
-.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench doc build clean
+# Two goals build the same program with and without faults.
+.NOTPARALLEL:
+
+.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-build:
+build: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon
 
-fly: $(STAMPS)/rust build ## Fly the built-in aircraft through the timed pattern, in real time
+fly: build ## Fly the built-in aircraft through the timed pattern, in real time
 	$(FCCD) fly
 
-fly-jsbsim: $(STAMPS)/rust build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protocol (AIRCRAFT= LEGS= JSON= HARSH=)
-	@mkdir -p $(dir $(JSON))
-	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) \
-	    --fccd $(FCCD) --config config/x-plane.toml --json $(JSON) --plot $(PLOT) $(HARSH)
+fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protocol (AIRCRAFT= LEGS= JSON= PORT= HARSH=)
+	@mkdir -p $(dir $(JSON)) target
+	@sed 's/:49000"/:$(PORT)"/' config/x-plane.toml > target/x-plane.toml
+	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) --port $(PORT) \
+	    --fccd $(FCCD) --config target/x-plane.toml --json $(JSON) --plot $(PLOT) $(HARSH)
 
 test: lint test-rust test-python ## Run every check and every test
 
 test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
+	cargo check --locked -p fcc-daemon --no-default-features
 
-test-python: $(STAMPS)/rust faulty build $(STAMPS)/python-module $(STAMPS)/strace
+test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
 
 faulty: $(STAMPS)/rust
@@ -61,17 +70,21 @@ lint-python: $(STAMPS)/python-module
 	cd hil && ../$(PYTHON) -m mypy
 
 deny: $(STAMPS)/rust
-	@command -v cargo-deny >/dev/null || cargo install --locked cargo-deny
+	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
 	cargo deny --log-level error check bans licenses sources
 
 fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly toolchain)
-	@command -v cargo-fuzz >/dev/null || cargo install --locked cargo-fuzz
+	@command -v cargo-fuzz >/dev/null || cargo install --locked --version 0.13.2 cargo-fuzz
 	for target in $$(cargo +nightly fuzz list); do \
 	    cargo +nightly fuzz run $$target -- -max_total_time=60 || exit 1; \
 	done
 
 bench: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench
+
+bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
+	cargo build --locked --release -p fcc-telemetry --example watch
+	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
@@ -83,9 +96,10 @@ clean: ## Remove what was built
 # --- set-up ------------------------------------------------------------------
 
 # rustup reads rust-toolchain.toml and fetches what is missing at first use.
-$(STAMPS)/rust: rust-toolchain.toml
-	@command -v cargo >/dev/null || { echo "cargo is missing: install Rust from https://rustup.rs"; exit 1; }
+$(STAMPS)/rust: rust-toolchain.toml scripts/has-libclang scripts/check-rust
+	@./scripts/check-rust
 	@command -v cc >/dev/null || ./scripts/apt-install gcc libc6-dev
+	@./scripts/has-libclang || ./scripts/apt-install libclang-dev
 	@mkdir -p $(STAMPS) && touch $@
 
 $(STAMPS)/python: hil/pyproject.toml

@@ -1,4 +1,4 @@
-"""Commands for people: `python -m fcc_hil fly | standin | peer | bench`."""
+"""Commands for people: `python -m fcc_hil fly | standin | peer | bench | bench-live`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from . import watched
 from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
 from .faults import Address, Faults
@@ -256,6 +257,25 @@ def _bench(options: argparse.Namespace) -> int:
     return 0
 
 
+def _bench_live(options: argparse.Namespace) -> int:
+    load = watched.Load(
+        options.fccd, options.watcher, options.rounds, options.seconds, options.watchers
+    )
+    flights = []
+    for flight in watched.run(load):
+        flights.append(flight)
+        print(
+            f"{flight.watchers:5} watchers: late {flight.p99_us:6.1f} us at p99, "
+            f"{flight.p99_9_us:6.1f} us at p99.9, {flight.max_us:7.1f} us at most; "
+            f"{flight.ticks} ticks, {flight.missed} missed, {flight.dropped} records lost",
+            flush=True,
+        )
+    ratio = watched.ratio(flights)
+    print(f"median p99.9 with watchers over that without: {ratio:.2f}")
+    lost = any(flight.dropped or flight.exit_code for flight in flights)
+    return 1 if lost else 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m fcc_hil", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -305,6 +325,20 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
     bench.add_argument("--json", action="store_true", help="print the scores as JSON")
     bench.set_defaults(run=_bench)
+
+    bench_live = commands.add_parser(
+        "bench-live", help="fly with and without programs that watch, come, go and are killed"
+    )
+    bench_live.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    bench_live.add_argument("--watcher", type=Path, required=True, help="the example `watch`")
+    bench_live.add_argument("--rounds", type=int, default=5, help="(default %(default)s)")
+    bench_live.add_argument(
+        "--seconds", type=float, default=300.0, metavar="S", help="of each flight (%(default)s)"
+    )
+    bench_live.add_argument(
+        "--watchers", type=int, default=1000, help="in every second flight (%(default)s)"
+    )
+    bench_live.set_defaults(run=_bench_live)
     return parser
 
 
@@ -316,7 +350,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     try:
         code: int = options.run(options)
-    except (FlightError, DaemonError, StandInError, TrimError, ValueError, OSError) as error:
+    except (
+        FlightError,
+        watched.FlightError,
+        DaemonError,
+        StandInError,
+        TrimError,
+        ValueError,
+        OSError,
+    ) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

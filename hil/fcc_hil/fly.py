@@ -141,6 +141,10 @@ def fly(order: Order, say: Callable[[str], None]) -> Flight:
             failures.append(f"the daemon ended with exit code {exit_code}")
         if report is None:
             failures.append("the daemon printed no JSON object")
+        else:
+            missed = report.get("timing", {}).get("missed", 0)
+            if missed:
+                failures.append(f"the loop missed {missed} ticks")
         # The status first: handing the truth over takes longer than a frame.
         status = simulator.status()
         truth = simulator.truth()

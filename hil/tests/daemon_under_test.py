@@ -151,7 +151,8 @@ def write_config(
     """Write a configuration for the stand-in at `port`, with more lines and sections."""
     path = scratch / "fccd.toml"
     path.write_text(
-        f'[x-plane]\nsimulator = "127.0.0.1:{port}"\n{x_plane}\n[course]\n{course}\n{others}\n'
+        f'[x-plane]\nsimulator = "127.0.0.1:{port}"\n{x_plane}\n[course]\n{course}\n'
+        f'[recording]\nfolder = "{scratch}/recordings"\n{others}\n'
     )
     return path
 

@@ -11,7 +11,7 @@ from deaf_simulator import DeafSimulator
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
-from fcc_hil.standin import Mode, Settings
+from fcc_hil.standin import BEACON_GROUP, Mode, Settings
 
 SUCCESS = 0
 FAILSAFE = 3
@@ -67,6 +67,7 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.set_mode(Mode.PAUSED)
+        daemon.wait_for("X-Plane is paused")
         stood_at_s = simulator.progress().time_s
         for _ in range(3):
             assert "engaged" in daemon.wait_for("heading")
@@ -132,6 +133,7 @@ def test_writes_that_never_arrive_are_said_with_the_setting_to_change(
         daemon.wait_for("engaged -> standby")
         ending = daemon.end(signal.SIGTERM)
     assert any(text.startswith("actuator X-Plane: ") for text in ending.events)
+    assert "works again" not in ending.said, "nobody knows that"
 
 
 def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) -> None:
@@ -150,11 +152,11 @@ def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) ->
 
 
 def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
-    """Sent to this machine alone: what multicast reaches is the network's affair."""
-    with StandInProcess(Settings(port=0, beacon=("127.0.0.1", 49707))) as simulator:
+    with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
         config = tmp_path / "fccd.toml"
         config.write_text('[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n')
         with start(fccd, tmp_path, config) as daemon:
+            daemon.wait_for(f"X-Plane at 127.0.0.1:{simulator.port} answers")
             engage(simulator, daemon)
             ending = daemon.end(signal.SIGTERM)
             assert_released(simulator)

@@ -7,7 +7,17 @@ use fcc_core::flight::{
     Attitude, Autopilot, AutopilotConfig, BodyRates, Course, Measurements, Order, Plant,
     PlantState, SpecificForce, Surfaces, flags,
 };
-use fcc_core::framework::{Controller, Flags, Reading, Tick, Time};
+use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
+
+/// Every sensor that control needs, by its fault.
+const SENSORS: [Flags; 6] = [
+    flags::ATTITUDE,
+    flags::HEADING,
+    flags::BODY_RATES,
+    flags::SPECIFIC_FORCE,
+    flags::AIRSPEED,
+    flags::ALTITUDE,
+];
 
 const DT_S: f64 = 0.025;
 const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
@@ -19,7 +29,8 @@ struct Cockpit {
     /// What the sensors say; stamped at each tick.
     feel: Feel,
     measurements: Measurements,
-    silent: bool,
+    silent: Flags,
+    switch: Option<Switch>,
 }
 
 #[derive(Clone, Copy)]
@@ -64,9 +75,10 @@ impl Cockpit {
             },
             feel: LEVEL,
             measurements: Measurements::default(),
-            silent: false,
+            silent: Flags::NONE,
+            switch: None,
         };
-        for _ in 0..40 {
+        for _ in 0..80 {
             cockpit.observe();
         }
         cockpit
@@ -86,44 +98,94 @@ impl Cockpit {
         self.tick.woke = self.tick.woke + Duration::from_millis(25);
         self.tick.scheduled = self.tick.woke;
         let (feel, now) = (self.feel, self.tick.woke);
-        if !self.silent {
-            self.measurements = Measurements {
-                attitude: Reading::new(
-                    Attitude {
-                        pitch_rad: feel.pitch_deg.to_radians(),
-                        roll_rad: feel.roll_deg.to_radians(),
+        let before = self.measurements;
+        self.measurements = Measurements {
+            attitude: Reading::new(
+                Attitude {
+                    pitch_rad: feel.pitch_deg.to_radians(),
+                    roll_rad: feel.roll_deg.to_radians(),
+                },
+                now,
+            ),
+            heading_rad: Reading::new(feel.heading_deg.to_radians(), now),
+            body_rates: Reading::new(BodyRates::default(), now),
+            specific_force: Reading::new(
+                SpecificForce {
+                    z_mps2: -9.806_65,
+                    ..SpecificForce::default()
+                },
+                now,
+            ),
+            airspeed_mps: Reading::new(feel.airspeed_kt * KNOT_MPS, now),
+            altitude_m: Reading::new(feel.altitude_m, now),
+            surfaces: Reading::new(STANDING, now),
+            plant: feel.plant.map_or_else(Reading::default, |state| {
+                Reading::new(
+                    Plant {
+                        time_s: now.as_nanos() as f64 * 1e-9,
+                        state,
                     },
                     now,
-                ),
-                heading_rad: Reading::new(feel.heading_deg.to_radians(), now),
-                body_rates: Reading::new(BodyRates::default(), now),
-                specific_force: Reading::new(
-                    SpecificForce {
-                        z_mps2: -9.806_65,
-                        ..SpecificForce::default()
-                    },
-                    now,
-                ),
-                airspeed_mps: Reading::new(feel.airspeed_kt * KNOT_MPS, now),
-                altitude_m: Reading::new(feel.altitude_m, now),
-                surfaces: Reading::new(STANDING, now),
-                plant: feel.plant.map_or_else(Reading::default, |state| {
-                    Reading::new(
-                        Plant {
-                            time_s: now.as_nanos() as f64 * 1e-9,
-                            state,
-                        },
-                        now,
-                    )
-                }),
-                ..Measurements::default()
-            };
+                )
+            }),
+            engage_switch: self
+                .switch
+                .map_or(before.engage_switch, |switch| Reading::new(switch, now)),
+            ..Measurements::default()
+        };
+        let (silent, now) = (self.silent, &mut self.measurements);
+        if silent.contains(flags::ATTITUDE) {
+            now.attitude = before.attitude;
         }
+        if silent.contains(flags::HEADING) {
+            now.heading_rad = before.heading_rad;
+        }
+        if silent.contains(flags::BODY_RATES) {
+            now.body_rates = before.body_rates;
+        }
+        if silent.contains(flags::SPECIFIC_FORCE) {
+            now.specific_force = before.specific_force;
+        }
+        if silent.contains(flags::AIRSPEED) {
+            now.airspeed_mps = before.airspeed_mps;
+        }
+        if silent.contains(flags::ALTITUDE) {
+            now.altitude_m = before.altitude_m;
+        }
+        if silent.contains(flags::PLANT_STALLED) {
+            now.plant.value.time_s = before.plant.value.time_s;
+            now.plant.value.state = PlantState::Stalled;
+        }
+        self.autopilot.estimate(&self.tick, &self.measurements);
+    }
+
+    /// A tick on which everything speaks, but the plant's clock stands still.
+    fn pause(&mut self, time_s: f64) {
+        self.tick.number += 1;
+        self.tick.woke = self.tick.woke + Duration::from_millis(25);
+        self.tick.scheduled = self.tick.woke;
+        let now = self.tick.woke;
+        let measured = &mut self.measurements;
+        measured.attitude.taken = now;
+        measured.heading_rad.taken = now;
+        measured.body_rates.taken = now;
+        measured.specific_force.taken = now;
+        measured.airspeed_mps.taken = now;
+        measured.altitude_m.taken = now;
+        let paused = Plant {
+            time_s,
+            state: PlantState::Paused,
+        };
+        measured.plant = Reading::new(paused, now);
         self.autopilot.estimate(&self.tick, &self.measurements);
     }
 
     fn step(&mut self) -> Surfaces {
         self.observe();
+        self.act()
+    }
+
+    fn act(&mut self) -> Surfaces {
         self.autopilot.guide(&self.tick, &self.measurements);
         self.autopilot.control(&self.tick, &self.measurements)
     }
@@ -214,23 +276,57 @@ fn too_slow_trades_altitude_for_speed() {
 }
 
 #[test]
-fn each_silent_sensor_is_a_fault_once_it_is_too_old() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+fn each_silent_sensor_is_its_own_fault_once_it_is_too_old() {
+    for sensor in SENSORS {
+        let mut cockpit = Cockpit::engaged(Course::Hold);
+        cockpit.step();
+        cockpit.silent = sensor;
+        // 250 ms are allowed.
+        for _ in 0..10 {
+            cockpit.step();
+            assert_eq!(cockpit.faults(), Flags::NONE);
+        }
+        cockpit.step();
+        assert_eq!(cockpit.faults(), sensor);
+    }
+}
+
+#[test]
+fn a_switch_that_falls_silent_is_a_fault() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.switch = Some(Switch::On);
     cockpit.step();
-    cockpit.silent = true;
-    // 250 ms are allowed.
+    cockpit.switch = None;
+    // 1 s is allowed.
+    cockpit.steps(40);
+    assert_eq!(cockpit.faults(), Flags::NONE);
+    cockpit.step();
+    assert_eq!(cockpit.faults(), flags::ENGAGE_SWITCH);
+}
+
+/// The simulator's clock is lost while everything else goes on: the loops must
+/// not freeze with the last command standing.
+#[test]
+fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.plant = Some(PlantState::Running);
+    cockpit.observe();
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    cockpit.silent = flags::PLANT_STALLED;
     for _ in 0..10 {
         cockpit.step();
         assert_eq!(cockpit.faults(), Flags::NONE);
     }
-    cockpit.step();
-    let all = flags::ATTITUDE
-        | flags::HEADING
-        | flags::BODY_RATES
-        | flags::SPECIFIC_FORCE
-        | flags::AIRSPEED
-        | flags::ALTITUDE;
-    assert_eq!(cockpit.faults(), all);
+    cockpit.steps(2);
+    assert_eq!(cockpit.faults(), flags::PLANT_STALLED);
+    // And the controls move again: 20° of bank is flown off.
+    cockpit.feel.roll_deg = 20.0;
+    let first = cockpit.steps(1);
+    let later = cockpit.steps(20);
+    assert!(later.aileron < first.aileron - 0.05);
 }
 
 #[test]
@@ -258,6 +354,8 @@ fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
     }
 }
 
+/// Paused in the middle of things: the climb rate is not settled, the
+/// altitude is off, the bank is not where it is asked to be.
 #[test]
 fn a_paused_simulator_leaves_everything_as_it_is() {
     let mut cockpit = Cockpit::new(Course::Hold);
@@ -269,11 +367,29 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
     cockpit
         .autopilot
         .command(&Order::Heading(100.0_f64.to_radians()));
+    cockpit.feel.altitude_m += 20.0;
+    cockpit.feel.roll_deg = 5.0;
     let before = cockpit.steps(20);
+    let estimated = *cockpit.autopilot.estimated();
+    assert!(estimated.climb_rate_mps.abs() > 0.5);
+
+    // The plant's clock stands still from the last running tick on.
+    let time_s = cockpit.measurements.plant.value.time_s;
     cockpit.feel.plant = Some(PlantState::Paused);
-    let after = cockpit.steps(400);
-    assert_eq!(before, after);
-    assert!(cockpit.blockers().contains(flags::PLANT_HALTED));
+    for _ in 0..400 {
+        cockpit.pause(time_s);
+        let held = cockpit.act();
+        for (held, before) in [
+            (held.throttle, before.throttle),
+            (held.elevator, before.elevator),
+            (held.aileron, before.aileron),
+            (held.rudder, before.rudder),
+        ] {
+            assert!((held - before).abs() < 1e-12);
+        }
+    }
+    assert_eq!(*cockpit.autopilot.estimated(), estimated);
+    assert_eq!(cockpit.blockers(), flags::PLANT_PAUSED);
     assert_eq!(cockpit.faults(), Flags::NONE);
 }
 
@@ -308,7 +424,7 @@ fn failsafe_levels_the_wings_while_the_attitude_is_known() {
 fn failsafe_without_attitude_keeps_the_trim() {
     let mut cockpit = Cockpit::engaged(Course::Hold);
     cockpit.step();
-    cockpit.silent = true;
+    cockpit.silent = SENSORS.into_iter().fold(Flags::NONE, |all, one| all | one);
     let out = (0..40).fold(Surfaces::default(), |_, _| {
         cockpit.observe();
         cockpit
@@ -339,4 +455,95 @@ fn what_blocks_engaging_is_said() {
         Autopilot::flag_name(9),
         "bank or pitch is beyond 60 degrees"
     );
+}
+
+#[test]
+fn it_engages_only_after_it_has_watched_for_a_second() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.autopilot = Autopilot::new(*cockpit.autopilot.config());
+    for _ in 0..40 {
+        cockpit.observe();
+        assert_eq!(cockpit.blockers(), flags::SETTLING);
+    }
+    cockpit.observe();
+    assert_eq!(cockpit.blockers(), Flags::NONE);
+}
+
+/// The ceiling is 135 kt and the margin 8 kt: engaged above, it slows down to
+/// where it can still descend, instead of climbing for ever.
+#[test]
+fn what_is_captured_is_inside_the_envelope() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.airspeed_kt = 150.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    let aim_kt = cockpit.autopilot.setpoints().airspeed_mps / KNOT_MPS;
+    assert!((aim_kt - 127.0).abs() < 0.01, "{aim_kt}");
+}
+
+/// From 64 to 70 kt in steps of a hundredth of a knot: around the floor, the
+/// throttle never jumps.
+#[test]
+fn the_throttle_is_steady_around_the_floor() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.feel.airspeed_kt = 70.0;
+    let mut last = cockpit.steps(400).throttle;
+    for n in 0..600 {
+        cockpit.feel.airspeed_kt = 70.0 - f64::from(n) * 0.01;
+        let throttle = cockpit.step().throttle;
+        assert!((throttle - last).abs() < 0.03, "{last} to {throttle}");
+        last = throttle;
+    }
+    assert!(last > 0.999, "{last}");
+}
+
+/// From 0°, told 90° and then 260°: 100° to the left is shorter than 260° to
+/// the right.
+#[test]
+fn a_heading_is_turned_to_from_where_the_nose_points() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.heading_deg = 0.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    for heading_deg in [90.0_f64, 260.0] {
+        cockpit
+            .autopilot
+            .command(&Order::Heading(heading_deg.to_radians()));
+        cockpit.step();
+    }
+    assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
+}
+
+/// Engaged with the nose 12° up; the failsafe does not keep that pitch.
+#[test]
+fn failsafe_flies_level_whatever_the_pitch_was() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.pitch_deg = 12.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    // The altimeter says that it climbs at 5 m/s.
+    for _ in 0..400 {
+        cockpit.feel.altitude_m += 5.0 * DT_S;
+        cockpit.observe();
+        cockpit
+            .autopilot
+            .failsafe(&cockpit.tick, &cockpit.measurements);
+    }
+    let aims = cockpit.autopilot.setpoints();
+    assert_eq!(aims.climb_rate_mps, 0.0);
+    assert!(aims.pitch_rad.to_degrees() < 5.0, "{}", aims.pitch_rad);
 }

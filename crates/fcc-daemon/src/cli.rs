@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::config::GustsChoice;
@@ -11,7 +12,7 @@ use crate::exit::EXIT_CODES;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
-#[command(name = "fccd", version, about, after_help = EXIT_CODES)]
+#[command(name = "fccd", version, after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
@@ -31,6 +32,11 @@ pub enum Command {
     Recover(RecoverArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
+    /// Fly a recording again and compare every output bit for bit
+    Replay(ReplayArgs),
+    /// Watch a flight on this machine, live
+    #[cfg(feature = "live")]
+    Top(TopArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Report on a recorded flight: tables, and a page with plots
@@ -54,14 +60,18 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly after engaging [default: the hold and 8 legs]
-    #[arg(long, value_name = "S", value_parser = positive_seconds)]
+    #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
-    #[arg(long)]
+    // TOML has no larger numbers: a recording could not say what was flown.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Strength of the gusts
     #[arg(long, value_enum)]
     pub gusts: Option<GustsChoice>,
+    /// What watchers call this flight, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// As fast as the machine can, instead of in real time
     #[arg(long)]
     pub lockstep: bool,
@@ -85,6 +95,9 @@ pub struct RunArgs {
     /// Where to record
     #[command(flatten)]
     pub recording: RecordingArgs,
+    /// What watchers call this daemon, instead of what the configuration says
+    #[arg(long, value_name = "NAME")]
+    pub instance: Option<Instance>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -131,10 +144,11 @@ pub struct RecoverArgs {
 pub struct TimingArgs {
     /// Ticks a second; may be given several times
     #[arg(long = "rate", value_name = "HZ", default_values_t = [40.0, 50.0, 100.0],
-          value_parser = rate_hz)]
+          value_parser = rate_hz, allow_negative_numbers = true)]
     pub rates: Vec<f64>,
     /// How long to measure at each rate
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive_seconds)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive_seconds,
+          allow_negative_numbers = true)]
     pub seconds: f64,
     /// Which timer wakes the loop: timerfd, posix or nanosleep
     #[arg(long, value_name = "TIMER", default_value_t = TimerKind::Timerfd)]
@@ -146,6 +160,36 @@ pub struct TimingArgs {
     #[arg(long)]
     pub cpu: Option<usize>,
     /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd replay`.
+#[derive(Args, Debug)]
+pub struct ReplayArgs {
+    /// The recording; all its parts, oldest first, if it has several
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Show where this configuration would have commanded otherwise, instead
+    /// of comparing with the recorded one
+    #[arg(long, value_name = "OTHER")]
+    pub config: Option<PathBuf>,
+    /// Write both flights, tick by tick, into a file of comma-separated values
+    #[arg(long, value_name = "OUT", requires = "config")]
+    pub csv: Option<PathBuf>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `fccd top`.
+#[cfg(feature = "live")]
+#[derive(Args, Debug)]
+pub struct TopArgs {
+    /// Which daemon: the name that it was given by --instance, or in its configuration
+    #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
+    pub instance: Instance,
+    /// Print one snapshot as JSON and end
     #[arg(long)]
     pub json: bool,
 }

@@ -20,6 +20,11 @@ pub enum Exit {
     NotReleased = 5,
     /// A part of the loop panicked; the controls were released.
     Panicked = 6,
+    /// A recording flown again gave other outputs.
+    Differs = 7,
+    /// A recording could not be flown again, or not to its end; nothing that
+    /// was differs.
+    NotReplayed = 8,
 }
 
 /// For `--help`.
@@ -31,7 +36,9 @@ Exit codes:
   3  the flight fell into failsafe
   4  a real-time wish was refused and realtime.strict is set
   5  control may not have been released
-  6  a part of the loop panicked; the controls were released";
+  6  a part of the loop panicked; the controls were released
+  7  a recording flown again gave other outputs
+  8  a recording could not be flown again to its end; nothing else differs";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -6,6 +6,7 @@
 //! | [`config`] | reads and checks the configuration file |
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
 //! | [`flight`] | makes a loop of a configuration, flies it and watches |
+//! | [`replay`] | flies a recording again and compares |
 //!
 //! The library is for the Python module, which reads the same configuration.
 
@@ -14,3 +15,4 @@ pub mod commands;
 pub mod config;
 pub mod exit;
 pub mod flight;
+pub mod replay;

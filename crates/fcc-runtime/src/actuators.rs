@@ -69,9 +69,12 @@ impl<A> Actuators<A> {
         for (index, watched) in (0..).zip(&mut self.all) {
             match panics::caught(|| watched.actuator.release()) {
                 Ok(result) => {
+                    // A release that works says nothing of writes that did not.
+                    if result.is_err() || watched.owes_release {
+                        watched.note(index, result, tick, events);
+                    }
                     watched.owes_release = result.is_err();
                     self.faults += u64::from(result.is_err());
-                    watched.note(index, result, tick, events);
                 }
                 Err(words) => {
                     watched.owes_release = true;

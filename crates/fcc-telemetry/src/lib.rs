@@ -5,6 +5,9 @@
 //! loop left behind.
 
 mod flight;
+mod instance;
+#[cfg(feature = "live")]
+pub mod live;
 mod message;
 pub mod recording;
 pub mod report;
@@ -14,6 +17,7 @@ mod timing;
 mod units;
 
 pub use flight::FlightLog;
+pub use instance::{Instance, InstanceError};
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, recordings_table, timing_table};

@@ -16,7 +16,8 @@ pub struct TimingReport {
     pub ticks: u64,
     /// Periods that passed unserved.
     pub missed: u64,
-    /// First tick to last.
+    /// First tick to last; for people, who compare it with the thesis'.
+    #[serde(skip)]
     pub runtime_s: f64,
     /// Time between wake-ups.
     pub period_ms: Period,

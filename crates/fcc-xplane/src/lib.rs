@@ -29,7 +29,7 @@
 //! | `simulator` | the simulator's clock against ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
 //! | `subscriptions` | what to ask for, and when again |
-//! | `controls`, `confirmation`, `letting_go` | writing, whether it takes effect, giving back |
+//! | `controls`, `confirmation`, `letting_go`, `release` | writing, whether it takes effect, giving back |
 //! | `port`, `discovery` | sockets and the beacon |
 //!
 //! # What may go wrong out there
@@ -57,6 +57,7 @@ mod open;
 mod port;
 pub mod protocol;
 mod quantity;
+mod release;
 mod rows;
 mod sensor;
 mod simulator;
@@ -74,6 +75,7 @@ pub use discovery::{DiscoverError, Found, discover};
 pub use link::Control;
 pub use open::{OpenError, XPlane};
 pub use port::{Errno, Port, UdpPort};
+pub use release::Released;
 pub use sensor::XPlaneSensor;
 pub use simulator::SimulatorState;
 pub use status::{Counts, Trouble, XPlaneStatus};

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
 use crate::config::{ConfigError, Simulator, XPlaneConfig};
-use crate::controls::{Controls, LET_GO_TIMES};
 use crate::link::Link;
 use crate::port::{Port, UdpPort};
 use crate::protocol::PathError;
@@ -46,14 +45,6 @@ pub enum OpenError {
         group: SocketAddrV4,
         /// What the operating system said.
         source: io::Error,
-    },
-    /// The overrides cannot be released.
-    #[error("cannot send to X-Plane at {simulator} (errno {errno}): release the controls there")]
-    Send {
-        /// Where X-Plane is.
-        simulator: SocketAddrV4,
-        /// What the operating system said.
-        errno: i32,
     },
 }
 
@@ -96,28 +87,6 @@ impl XPlane {
         let sensor = XPlaneSensor::new(config, Arc::clone(&port), beacons, Arc::clone(&link))?;
         let actuator = XPlaneActuator::new(config, port, link)?;
         Ok((sensor, actuator))
-    }
-
-    /// Centres the surfaces and releases the overrides at `simulator`, whoever
-    /// set them. For whoever survives a process that was killed while it held
-    /// the controls: it could not give them back itself, and X-Plane never
-    /// takes them back on its own.
-    ///
-    /// # Errors
-    /// When the configuration is refused, or nothing can be sent.
-    pub fn release_after_crash(
-        config: &XPlaneConfig,
-        simulator: SocketAddrV4,
-    ) -> Result<(), OpenError> {
-        config.validate()?;
-        let port = bind(0)?;
-        let mut controls = Controls::new(config)?;
-        for _ in 0..LET_GO_TIMES {
-            controls
-                .let_go(|datagram| port.send(datagram, simulator))
-                .map_err(|errno| OpenError::Send { simulator, errno })?;
-        }
-        Ok(())
     }
 }
 

@@ -51,7 +51,10 @@ impl UdpPort {
         socket.set_reuse_address(true)?;
         socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, group.port()).into())?;
         if group.ip().is_multicast() {
-            socket.join_multicast_v4(group.ip(), &Ipv4Addr::UNSPECIFIED)?;
+            let outside = socket.join_multicast_v4(group.ip(), &Ipv4Addr::UNSPECIFIED);
+            // A machine without a network has its own loopback to listen on.
+            let inside = socket.join_multicast_v4(group.ip(), &Ipv4Addr::LOCALHOST);
+            outside.or(inside)?;
         }
         socket.set_nonblocking(true)?;
         Ok(Self(socket.into()))

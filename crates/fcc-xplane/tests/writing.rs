@@ -4,7 +4,9 @@
 mod support;
 
 use fcc_core::framework::{Actuator, ActuatorFault};
-use fcc_xplane::{Control, Output, Trouble, XPlane};
+use std::time::Duration;
+
+use fcc_xplane::{Control, Output, Released, Trouble, XPlane};
 use support::bench::Bench;
 use support::{
     FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING, YOKE_PITCH,
@@ -185,8 +187,15 @@ fn after_a_crash_the_controls_can_be_released_from_outside() {
     let mut simulator = FakeXPlane::new();
     simulator.set(OVERRIDE_JOYSTICK, 1.0);
     simulator.set(YOKE_PITCH, -0.5);
-    XPlane::release_after_crash(&simulator.config(), simulator.address()).unwrap();
-    simulator.listen();
+    let (config, address) = (simulator.config(), simulator.address());
+    let released = std::thread::spawn(move || {
+        XPlane::release_and_wait(&config, address, Duration::from_secs(10)).unwrap()
+    });
+    while !released.is_finished() {
+        simulator.live(0.0);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(released.join().unwrap(), Released::Confirmed);
     simulator.assert_shows(OVERRIDE_JOYSTICK, 0.0);
     simulator.assert_shows(YOKE_PITCH, 0.0);
 }

@@ -63,7 +63,7 @@ impl Controller for Thermostat {
 
     fn engage(&mut self, _: &Tick, measured: &Measured) {
         let room_c = measured.room_c.value;
-        self.pid.engage(0.0, room_c, room_c, 0.0);
+        self.pid.engage(0.0, room_c, room_c, 0.0, 1.0);
     }
 
     fn control(&mut self, tick: &Tick, measured: &Measured) -> f64 {

@@ -94,10 +94,19 @@ impl Pid {
     }
 
     /// Takes over at a present output without a bump: the next step with the
-    /// same set point, measurement and feed-forward yields it again.
-    pub fn engage(&mut self, output: f64, setpoint: f64, measurement: f64, feed_forward: f64) {
+    /// same set point, measurement, feed-forward and gain scale yields it
+    /// again.
+    pub fn engage(
+        &mut self,
+        output: f64,
+        setpoint: f64,
+        measurement: f64,
+        feed_forward: f64,
+        gain_scale: f64,
+    ) {
         let output = self.limit(output);
-        self.integral = output - self.config.kp * (setpoint - measurement) - feed_forward;
+        let proportional = gain_scale * self.config.kp * (setpoint - measurement);
+        self.integral = output - proportional - feed_forward;
         self.derivative = 0.0;
         self.last_measurement = Some(measurement);
         self.last_output = Some(output);
@@ -244,8 +253,8 @@ mod tests {
     #[test]
     fn taking_over_does_not_bump() {
         let mut pid = pi(AntiWindup::Clamping);
-        pid.engage(0.63, 3.0, 2.9, 0.2);
-        let output = pid.step_scheduled(3.0, 2.9, 0.2, 1.0, 0.0);
+        pid.engage(0.63, 3.0, 2.9, 0.2, 1.8);
+        let output = pid.step_scheduled(3.0, 2.9, 0.2, 1.8, 0.0);
         assert!((output - 0.63).abs() < 1e-12);
     }
 
@@ -256,7 +265,7 @@ mod tests {
             output_rate_per_s: 2.0,
             ..PidConfig::default()
         });
-        pid.engage(0.0, 0.0, 0.0, 0.0);
+        pid.engage(0.0, 0.0, 0.0, 0.0, 1.0);
         assert!((pid.step(1.0, 0.0, 0.025) - 0.05).abs() < 1e-12);
         assert!((pid.step(1.0, 0.0, 0.025) - 0.10).abs() < 1e-12);
     }
@@ -264,7 +273,7 @@ mod tests {
     #[test]
     fn no_time_no_change() {
         let mut pid = pi(AntiWindup::Clamping);
-        pid.engage(0.1, 0.0, 0.0, 0.0);
+        pid.engage(0.1, 0.0, 0.0, 0.0, 1.0);
         let before = pid.integral();
         pid.step(1.0, 0.0, 0.0);
         assert_eq!(pid.integral(), before);

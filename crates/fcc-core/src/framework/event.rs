@@ -84,8 +84,8 @@ pub enum EventKind<O> {
         /// The tick of the last.
         last: u64,
     },
-    /// Records that reached the recorder and not its file are lost: the disk
-    /// was too slow for them.
+    /// Messages that reached the recorder and not its file are lost: the disk
+    /// was too slow for them, or full.
     NotRecorded {
         /// How many.
         count: u64,
@@ -166,7 +166,8 @@ impl<C: Controller> fmt::Display for EventWords<C> {
             EventKind::NotRecorded { count, first, last } => {
                 write!(
                     f,
-                    "{count} records not recorded, ticks {first} to {last}: the disk is too slow"
+                    "{count} messages not recorded, ticks {first} to {last}: \
+                     the disk was too slow or full"
                 )
             }
             EventKind::Released { ok: true } => f.write_str("actuators released"),

@@ -37,6 +37,11 @@ impl Flags {
         self.0 & other.0 == other.0
     }
 
+    /// Whether any condition of `other` holds.
+    pub const fn intersects(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
     /// These conditions, and `other` if `holds`.
     #[must_use]
     pub const fn with(self, other: Self, holds: bool) -> Self {

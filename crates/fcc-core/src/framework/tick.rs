@@ -9,8 +9,8 @@ use super::Time;
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]
 pub struct Tick {
-    /// Counts periods from 0 at the loop's start; a missed period is counted
-    /// too, so a gap in the numbers is a gap in time.
+    /// Counts periods, the first after the loop's start being 1; a missed
+    /// period is counted too, so a gap in the numbers is a gap in time.
     pub number: u64,
     /// When the tick was due.
     pub scheduled: Time,

@@ -9,6 +9,7 @@ use crate::exit::Exit;
 
 #[derive(Serialize)]
 struct Checked {
+    file: String,
     ok: bool,
     problems: Vec<Problem>,
 }
@@ -27,6 +28,7 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
             Err(error) => error.problems(),
         };
         let printed = print_json(&Checked {
+            file: args.file.display().to_string(),
             ok: checked.is_ok(),
             problems,
         });

@@ -6,7 +6,9 @@ use super::{fail, print_json};
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::config::{BuiltInSection, Config, CourseSection};
 use crate::exit::Exit;
-use crate::flight::{FlyError, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly};
+use crate::flight::{
+    FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
+};
 
 /// The legs that a flight has if nobody says how long it is to be.
 const DEFAULT_LEGS: f64 = 8.0;
@@ -29,7 +31,7 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
         } else {
             Pace::RealTime
         },
-        seconds: Some(args.seconds.unwrap_or(match config.course {
+        length: Length::Engaged(args.seconds.unwrap_or(match config.course {
             CourseSection::Hold => DEFAULT_HOLD_S,
             CourseSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
@@ -101,6 +103,9 @@ fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
                 .to_owned(),
         );
     };
+    if let Some(instance) = &args.instance {
+        config.telemetry.instance = instance.clone();
+    }
     if let Some(seed) = args.seed {
         built_in.seed = seed;
     }

@@ -2,6 +2,7 @@
 
 use std::io;
 
+use fcc_xplane::Released;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::fail;
@@ -19,10 +20,17 @@ pub(super) fn guard() -> Exit {
         }
     }
     match stand_guard(io::stdin().lock()) {
-        Ok(None) => Exit::Success,
-        Ok(Some(simulator)) => {
+        Ok(None | Some((_, Released::Gone))) => Exit::Success,
+        Ok(Some((simulator, Released::Confirmed))) => {
             eprintln!("fccd guard: the daemon is gone; X-Plane at {simulator} was released");
             Exit::Success
+        }
+        Ok(Some((simulator, Released::Unconfirmed))) => {
+            eprintln!(
+                "fccd guard: the daemon is gone, and X-Plane at {simulator} does not show that it \
+                 has its controls back: switch off override_joystick and override_throttles there"
+            );
+            Exit::NotReleased
         }
         Err(error) => fail(&format!("guard: {error}")),
     }

@@ -7,9 +7,12 @@ mod guard;
 mod list;
 mod progress;
 mod recover;
+mod replay;
 mod report;
 mod run;
 mod timing;
+#[cfg(feature = "live")]
+mod top;
 
 use std::io;
 
@@ -27,6 +30,9 @@ pub fn run(cli: Cli) -> Exit {
         Command::List(args) => list::list(&args),
         Command::Recover(args) => recover::recover(&args),
         Command::Timing(args) => timing::timing(&args),
+        Command::Replay(args) => replay::replay(&args),
+        #[cfg(feature = "live")]
+        Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),
         Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),

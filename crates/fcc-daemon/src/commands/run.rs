@@ -4,16 +4,19 @@ use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::config::Config;
 use crate::exit::Exit;
-use crate::flight::{Pace, Plan};
+use crate::flight::{Length, Pace, Plan};
 
 /// Flies a configuration until told to stop.
 pub(super) fn run(args: &RunArgs) -> Exit {
     match Config::load_with_text(&args.config) {
         Ok((mut config, text)) => {
             direct(&mut config, &args.recording);
+            if let Some(instance) = &args.instance {
+                config.telemetry.instance = instance.clone();
+            }
             let plan = Plan {
                 pace: Pace::RealTime,
-                seconds: None,
+                length: Length::Open,
                 quiet: args.quiet,
                 announce: true,
             };

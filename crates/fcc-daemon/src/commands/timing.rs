@@ -13,10 +13,7 @@ use super::{fail, print_json};
 use crate::cli::TimingArgs;
 use crate::config::{BuiltInSection, Config, CourseSection, LoopSection};
 use crate::exit::Exit;
-use crate::flight::{Pace, Plan, assemble, fly};
-
-/// How long the aircraft flies before the switch engages the autopilot, s.
-const ENGAGE_AT_S: f64 = 0.1;
+use crate::flight::{Length, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
 pub(super) fn timing(args: &TimingArgs) -> Exit {
@@ -41,25 +38,28 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
             timer: args.timer,
         },
         course: CourseSection::Hold,
-        built_in: Some(BuiltInSection {
-            engage_at_s: ENGAGE_AT_S,
-            ..BuiltInSection::default()
-        }),
+        built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
+    // What is measured is the loop, and nobody needs to watch it.
+    config.telemetry.enabled = false;
     config.realtime.priority = args.priority;
     config.realtime.cpu = args.cpu;
     let assembly = assemble(&config).map_err(|error| error.to_string())?;
     let plan = Plan {
         pace: Pace::RealTime,
-        seconds: Some(args.seconds),
+        length: Length::Whole(args.seconds),
         quiet: true,
         announce: false,
     };
     let progress = Progress::start(rate_hz, args.seconds);
     let outcome = fly(assembly, &config.tick, plan, None).map_err(|error| error.to_string());
     progress.stop();
-    Ok(outcome?.timing)
+    let outcome = outcome?;
+    if outcome.interrupted {
+        return Err("interrupted by a signal: nothing is reported".to_owned());
+    }
+    Ok(outcome.timing)
 }
 
 /// A bar that fills while a measurement runs; nothing where standard error is

@@ -1,14 +1,14 @@
-//! `[autopilot]` and `[course]`: the flying part of the configuration.
+//! `[autopilot]`: gains and limits.
 
 use std::time::Duration;
 
 use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
-use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::flight::navigation::NavigationConfig;
 use fcc_core::flight::{AutopilotConfig, Course};
 use serde::{Deserialize, Serialize};
 
-use super::units::{FOOT_M, FOOT_PER_MINUTE_MPS, KNOT_MPS};
+use super::CourseSection;
+use super::units::{FOOT_PER_MINUTE_MPS, KNOT_MPS};
 
 /// `[autopilot]`: gains and limits. What is left out is as for a Cessna 172.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -55,72 +55,6 @@ impl AutopilotSection {
             altitude: AltitudeConfig::from(&self.altitude),
             airspeed: AirspeedConfig::from(&self.airspeed),
             envelope: Envelope::from(&self.envelope),
-        }
-    }
-}
-
-/// `[course]`: what is flown once engaged.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum CourseSection {
-    /// Keep what was captured.
-    Hold,
-    /// The timed pattern of the thesis.
-    TimedPattern {
-        /// How long to hold what was captured.
-        #[serde(default = "default_hold_s")]
-        hold_s: f64,
-        /// How long each leg takes.
-        #[serde(default = "default_leg_s")]
-        leg_s: f64,
-        /// Turn of each leg, right if positive.
-        #[serde(default = "default_turn_deg")]
-        turn_deg: f64,
-        /// Climb of every odd leg, taken back in every even one.
-        #[serde(default = "default_climb_ft")]
-        climb_ft: f64,
-    },
-}
-
-const fn default_hold_s() -> f64 {
-    20.0
-}
-const fn default_leg_s() -> f64 {
-    20.0
-}
-const fn default_turn_deg() -> f64 {
-    90.0
-}
-const fn default_climb_ft() -> f64 {
-    150.0
-}
-
-impl Default for CourseSection {
-    fn default() -> Self {
-        Self::TimedPattern {
-            hold_s: default_hold_s(),
-            leg_s: default_leg_s(),
-            turn_deg: default_turn_deg(),
-            climb_ft: default_climb_ft(),
-        }
-    }
-}
-
-impl From<&CourseSection> for Course {
-    fn from(section: &CourseSection) -> Self {
-        match *section {
-            CourseSection::Hold => Self::Hold,
-            CourseSection::TimedPattern {
-                hold_s,
-                leg_s,
-                turn_deg,
-                climb_ft,
-            } => Self::TimedPattern(TimedPatternConfig {
-                hold_s,
-                leg_s,
-                turn_rad: turn_deg.to_radians(),
-                climb_m: climb_ft * FOOT_M,
-            }),
         }
     }
 }

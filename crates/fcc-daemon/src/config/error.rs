@@ -1,9 +1,13 @@
 //! What is wrong with a configuration file, and where.
 
 use std::fmt;
-use std::ops::Range;
+use std::io;
+use std::str::Utf8Error;
 
 use serde::Serialize;
+
+use super::places::{Places, line_of};
+use super::wording::plainly;
 
 /// What is wrong with a configuration file.
 #[derive(Debug)]
@@ -14,7 +18,7 @@ pub enum ConfigError {
         /// Its name.
         file: String,
         /// Why.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// The file says what it may not: each problem with its place.
     Invalid {
@@ -40,18 +44,24 @@ impl ConfigError {
     pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
         let span = error.span();
         let line = span.as_ref().map(|span| line_of(text, span));
-        // The key of the line, if the error points into one: the message often
-        // names the value only.
-        let key = line
-            .and_then(|line| text.lines().nth(line - 1))
-            .and_then(|line| line.split_once('='))
-            .map(|(key, _)| key.trim().to_owned());
+        let key = span.and_then(|span| Places::of(text).key_at(span.start));
+        let message = plainly(error.message(), key.as_deref());
+        Self::Invalid {
+            file: file.to_owned(),
+            problems: vec![Problem { line, key, message }],
+        }
+    }
+
+    /// The file is no text.
+    pub(super) fn not_text(file: &str, bytes: &[u8], error: Utf8Error) -> Self {
+        let good = bytes.get(..error.valid_up_to()).unwrap_or_default();
+        let line = good.split(|byte| *byte == b'\n').count();
         Self::Invalid {
             file: file.to_owned(),
             problems: vec![Problem {
-                line,
-                key,
-                message: error.message().replace('\n', " "),
+                line: Some(line),
+                key: None,
+                message: "is not UTF-8: save the file as UTF-8 text".to_owned(),
             }],
         }
     }
@@ -62,32 +72,32 @@ impl ConfigError {
             Self::Unreadable { source, .. } => vec![Problem {
                 line: None,
                 key: None,
-                message: source.to_string(),
+                message: unreadable(source),
             }],
             Self::Invalid { problems, .. } => problems.clone(),
         }
     }
 }
 
-/// The line that a span of the text begins in, from 1.
-pub(super) fn line_of(text: &str, span: &Range<usize>) -> usize {
-    text.bytes()
-        .take(span.start)
-        .filter(|byte| *byte == b'\n')
-        .count()
-        + 1
+impl Problem {
+    /// Whether its key is in this section.
+    pub(super) fn is_in(&self, section: &str) -> bool {
+        let key = self.key.as_deref().unwrap_or_default();
+        key.split('.').next() == Some(section)
+    }
+}
+
+fn unreadable(source: &io::Error) -> String {
+    format!(
+        "cannot be read: {source}. Give the path of a configuration file; examples are in the \
+         folder config/"
+    )
 }
 
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable { file, source } => {
-                write!(
-                    f,
-                    "{file}: cannot be read: {source}. Give the path of a configuration file; \
-                     examples are in the folder config/"
-                )
-            }
+            Self::Unreadable { file, source } => write!(f, "{file}: {}", unreadable(source)),
             Self::Invalid { file, problems } => {
                 for (n, problem) in problems.iter().enumerate() {
                     let separator = if n == 0 { "" } else { "\n" };

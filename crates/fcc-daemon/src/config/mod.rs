@@ -7,24 +7,32 @@
 
 mod autopilot;
 mod built_in;
+mod course;
 mod error;
+mod places;
 mod ranges;
 mod recording;
 mod runtime;
+mod telemetry;
 mod units;
+mod wording;
 mod x_plane;
 
 use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
+use fcc_runtime::LoopConfig;
+use fcc_timer::RealtimeWishes;
 use serde::{Deserialize, Serialize};
 
-pub use autopilot::{AutopilotSection, CourseSection};
+pub use autopilot::AutopilotSection;
 pub use built_in::{BuiltInSection, GustsChoice};
+pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -42,6 +50,8 @@ pub struct Config {
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// Who may watch, live.
+    pub telemetry: TelemetrySection,
     /// What is flown.
     pub course: CourseSection,
     /// Gains and limits.
@@ -78,11 +88,14 @@ impl Config {
     /// # Errors
     /// As [`Config::load`].
     pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
-            file: path.display().to_string(),
-            source,
-        })?;
-        Ok((Self::parse(&text, &path.display().to_string())?, text))
+        let file = path.display().to_string();
+        let bytes = match std::fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(source) => return Err(ConfigError::Unreadable { file, source }),
+        };
+        let text = std::str::from_utf8(&bytes)
+            .map_err(|error| ConfigError::not_text(&file, &bytes, error))?;
+        Ok((Self::parse(text, &file)?, text.to_owned()))
     }
 
     /// Checks a text; `file` is its name in messages.
@@ -127,6 +140,17 @@ impl Config {
             &self.course,
             Duration::from_millis(self.failsafe.sensor_max_age_ms),
         )
+    }
+
+    /// What the loop is told.
+    pub fn loop_config(&self) -> LoopConfig {
+        LoopConfig {
+            switch_off: self.engage.switch_off.into(),
+            failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
+            after_failsafe: self.failsafe.then.into(),
+            realtime: RealtimeWishes::from(&self.realtime),
+            ..LoopConfig::default()
+        }
     }
 
     /// The aircraft; the built-in one where a program did not say (a file has

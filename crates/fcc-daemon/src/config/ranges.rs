@@ -3,9 +3,9 @@
 //! One table of ranges for all numeric keys; a test shows that no key is
 //! missing from it.
 
-use toml::de::DeTable;
+use fcc_xplane::{ConfigError, XPlaneConfig};
 
-use super::error::line_of;
+use super::places::Places;
 use super::{Config, Problem};
 
 /// Key, smallest and largest value.
@@ -99,13 +99,22 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.seed", 0.0, 9.3e18),
 ];
 
-/// Everything that is wrong with the values of a configuration.
+/// Smallest and largest value of a numeric key.
+pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
+    RANGES
+        .iter()
+        .find(|(name, ..)| *name == key)
+        .map(|(_, least, most)| (*least, *most))
+}
+
+/// Everything that is wrong with the values of a configuration, in the order
+/// of the text.
 pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
     let places = Places::of(text);
     let mut problems = Vec::new();
     let mut complain = |key: &str, message: String| {
         problems.push(Problem {
-            line: places.line(key),
+            line: places.nearest_line(key),
             key: Some(key.to_owned()),
             message,
         });
@@ -127,6 +136,17 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
         ),
     }
     relations(config, &mut complain);
+    x_plane(config, &mut problems, &places);
+    if config.x_plane.is_none() && config.built_in.is_none() {
+        problems.push(Problem {
+            line: None,
+            key: None,
+            message: "has neither [x-plane] nor [built-in]: add the section of the aircraft that \
+                      is to be flown"
+                .to_owned(),
+        });
+    }
+    problems.sort_by_key(|problem| problem.line);
     problems
 }
 
@@ -142,24 +162,35 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
             ),
         );
     }
-    match (&config.x_plane, &config.built_in) {
-        (Some(_), Some(_)) => complain(
+    if config.x_plane.is_some() && config.built_in.is_some() {
+        complain(
             "built-in",
             "stands beside [x-plane]: keep the section of the aircraft that is to be flown"
                 .to_owned(),
-        ),
-        (None, None) => complain(
-            "x-plane",
-            "or [built-in] is missing: add the section of the aircraft that is to be flown"
-                .to_owned(),
-        ),
-        _ => {}
+        );
     }
-    if let Some(x_plane) = &config.x_plane
-        && let Err(error) = fcc_xplane::XPlaneConfig::from(x_plane).validate()
-    {
-        complain("x-plane", error.to_string());
-    }
+}
+
+/// What the adapter itself refuses, other than what a range has refused.
+fn x_plane(config: &Config, problems: &mut Vec<Problem>, places: &Places<'_>) {
+    let Some(section) = &config.x_plane else {
+        return;
+    };
+    let Err(error) = XPlaneConfig::from(section).validate() else {
+        return;
+    };
+    let key = match error {
+        ConfigError::EngageSwitch { .. } => "x-plane.engage_switch",
+        ConfigError::Simulator(_) => "x-plane.simulator",
+        ConfigError::LocalPort => "x-plane.local_port",
+        _ if problems.iter().any(|problem| problem.is_in("x-plane")) => return,
+        _ => "x-plane",
+    };
+    problems.push(Problem {
+        line: places.nearest_line(key),
+        key: Some(key.to_owned()),
+        message: error.to_string(),
+    });
 }
 
 fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
@@ -169,35 +200,6 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
     value
         .as_float()
         .or_else(|| value.as_integer().map(|integer| integer as f64))
-}
-
-/// Where the keys of a text are.
-struct Places<'a> {
-    text: &'a str,
-    table: Option<toml::Spanned<DeTable<'a>>>,
-}
-
-impl<'a> Places<'a> {
-    fn of(text: &'a str) -> Self {
-        Self {
-            text,
-            table: DeTable::parse(text).ok(),
-        }
-    }
-
-    /// The line of a key, if the text says it.
-    fn line(&self, key: &str) -> Option<usize> {
-        let mut table = self.table.as_ref()?.get_ref();
-        let mut parts = key.split('.').peekable();
-        while let Some(part) = parts.next() {
-            let (name, value) = table.iter().find(|(name, _)| name.get_ref() == part)?;
-            if parts.peek().is_none() {
-                return Some(line_of(self.text, &name.span()));
-            }
-            table = value.get_ref().as_table()?;
-        }
-        None
-    }
 }
 
 #[cfg(test)]

@@ -1,16 +1,13 @@
 //! Puts sensors, autopilot and actuators together as a configuration says.
 
-use std::time::Duration;
-
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
-use fcc_timer::RealtimeWishes;
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::tap::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config, XPlaneSection};
+use crate::config::{Aircraft, Config, TelemetrySection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -22,6 +19,8 @@ pub struct Assembly {
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     /// What the loop is told.
     pub loop_config: LoopConfig,
+    /// Who may watch, live.
+    pub(super) telemetry: TelemetrySection,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -47,13 +46,7 @@ pub enum AssemblyError {
 /// When the aircraft cannot be had.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let autopilot = Autopilot::new(config.autopilot_config());
-    let loop_config = LoopConfig {
-        switch_off: config.engage.switch_off.into(),
-        failsafe_hold: Duration::from_secs_f64(config.failsafe.hold_s),
-        after_failsafe: config.failsafe.then.into(),
-        realtime: RealtimeWishes::from(&config.realtime),
-        ..LoopConfig::default()
-    };
+    let loop_config = config.loop_config();
     match config.aircraft() {
         Aircraft::BuiltIn(section) => {
             let simulation = Simulation::new(&SimConfig::from(section))?;
@@ -63,6 +56,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
+                telemetry: config.telemetry.clone(),
                 truth: Some(truth),
                 x_plane: None,
             })
@@ -75,6 +69,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(actuator)],
                 loop_config,
+                telemetry: config.telemetry.clone(),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

@@ -1,9 +1,8 @@
 //! The connection to X-Plane, as people see it from outside the loop.
 
-use std::net::SocketAddrV4;
 use std::time::{Duration, Instant};
 
-use fcc_xplane::{Trouble, XPlaneStatus};
+use fcc_xplane::{Control, Released, SimulatorState, Trouble, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::guard::Guard;
 use crate::config::XPlaneSection;
@@ -12,12 +11,26 @@ use crate::config::XPlaneSection;
 /// not had the time to answer.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// How long the end of a flight waits for X-Plane to show that it has its
+/// controls back.
+const GIVE_BACK_WITHIN: Duration = Duration::from_secs(5);
+
 /// Watches the connection to X-Plane, and keeps the guard informed.
 pub(super) struct Connection {
     status: XPlaneStatus,
+    section: XPlaneSection,
     guard: Option<Guard>,
     trouble: Option<(Trouble, Instant)>,
-    told: Option<Trouble>,
+    told: Told,
+    pace: SimulatorState,
+}
+
+/// What was said last of the connection.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Told {
+    Nothing,
+    Trouble(Trouble),
+    Good,
 }
 
 impl Connection {
@@ -33,42 +46,84 @@ impl Connection {
             .ok();
         Self {
             status,
+            section: section.clone(),
             guard,
             trouble: None,
-            told: None,
+            told: Told::Nothing,
+            pace: SimulatorState::Running,
         }
     }
 
     /// What has changed, in words; none if there is nothing to say.
     pub(super) fn poll(&mut self) -> Option<String> {
-        if let (Some(guard), Some(simulator)) = (&mut self.guard, self.status.simulator()) {
-            guard.tell(simulator);
+        if let Some(guard) = &mut self.guard {
+            let held = self.status.control() != Control::Free;
+            guard.tell(self.status.simulator().filter(|_| held));
         }
         let now = self.status.trouble();
         if self.trouble.map(|(trouble, _)| trouble) != now {
             self.trouble = now.map(|trouble| (trouble, Instant::now()));
         }
         match self.trouble {
-            Some((trouble, since)) if since.elapsed() >= PATIENCE && self.told != Some(trouble) => {
-                self.told = Some(trouble);
-                Some(trouble.to_string())
+            Some((trouble, since)) => {
+                let worth = since.elapsed() >= PATIENCE && self.told != Told::Trouble(trouble);
+                worth.then(|| {
+                    self.told = Told::Trouble(trouble);
+                    trouble.to_string()
+                })
             }
-            None if self.told.take().is_some() => self
-                .simulator()
-                .map(|simulator| format!("X-Plane at {simulator} answers")),
-            _ => None,
+            None => self.good_news().or_else(|| self.change_of_pace()),
         }
     }
 
-    /// The flight is over; `released` says whether control was given back.
-    pub(super) fn end(self, released: bool) {
-        // A guard that is not dismissed sees the pipe end and releases.
+    /// Nothing is wrong; in words if something was, or at the first contact.
+    fn good_news(&mut self) -> Option<String> {
+        let simulator = self.status.simulator()?;
+        match std::mem::replace(&mut self.told, Told::Good) {
+            Told::Good => None,
+            // Who no longer writes does not know whether it would work now.
+            Told::Trouble(Trouble::Unconfirmed(_)) => (self.status.control() == Control::Held)
+                .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
+            Told::Nothing | Told::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
+        }
+    }
+
+    /// Whether X-Plane is paused or slow, if that has changed.
+    fn change_of_pace(&mut self) -> Option<String> {
+        let now = self.status.state();
+        let words = match now {
+            // The loop tells of both itself, one as a sensor and one as a plant.
+            SimulatorState::Silent | SimulatorState::Jumped => return None,
+            SimulatorState::Running => "X-Plane's time runs again",
+            SimulatorState::Paused => "X-Plane is paused",
+            SimulatorState::Stalled => "X-Plane's time stands still, but it does not say paused",
+            SimulatorState::Slow => {
+                "X-Plane is slow: fewer than 20 frames a second, or its time falls behind"
+            }
+        };
+        let before = std::mem::replace(&mut self.pace, now);
+        (before != now).then(|| words.to_owned())
+    }
+
+    /// The flight is over. Waits until X-Plane shows that control is back, if
+    /// it was ever taken; whether it is.
+    ///
+    /// Sending a release is not enough: an X-Plane that hangs loses it, and
+    /// would fly on with its yoke held when it comes back.
+    pub(super) fn end(self) -> bool {
+        let held = self.status.control() != Control::Free;
+        let released = match self.status.simulator().filter(|_| held) {
+            None => true,
+            Some(simulator) => {
+                let config = XPlaneConfig::from(&self.section);
+                let released = XPlane::release_and_wait(&config, simulator, GIVE_BACK_WITHIN);
+                matches!(released, Ok(Released::Confirmed | Released::Gone))
+            }
+        };
+        // A guard that is not dismissed sees the pipe end, and goes on trying.
         if let Some(guard) = self.guard.filter(|_| released) {
             guard.dismiss();
         }
-    }
-
-    fn simulator(&self) -> Option<SocketAddrV4> {
-        self.status.simulator()
+        released
     }
 }

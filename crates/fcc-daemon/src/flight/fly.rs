@@ -1,7 +1,7 @@
 //! Flies an assembly to its end.
 
 use std::io;
-use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
@@ -9,12 +9,12 @@ use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
-use nix::sys::signal::Signal;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::signals::{self, Kept};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -28,13 +28,25 @@ pub enum Pace {
     Lockstep,
 }
 
+/// When a flight is over. One of a given length is also over when it cannot be
+/// flown: engaging is refused, or the loop falls into failsafe.
+#[derive(Clone, Copy, Debug)]
+pub enum Length {
+    /// When it is told to stop.
+    Open,
+    /// So many seconds after engaging.
+    Engaged(f64),
+    /// So many seconds after the first tick.
+    Whole(f64),
+}
+
 /// How a flight is to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
     /// How fast time passes.
     pub pace: Pace,
-    /// Stop so many seconds after engaging; none to fly until told to stop.
-    pub seconds: Option<f64>,
+    /// When it is over.
+    pub length: Length,
     /// No status lines.
     pub quiet: bool,
     /// Whether to print events as they happen.
@@ -80,7 +92,14 @@ pub fn fly(
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
     let names = Names::of(&assembly);
-    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone());
+    let kept = Kept::from_new_threads().map_err(FlyError::Signals)?;
+    // There is nothing to watch where time does not pass.
+    let live = match plan.pace {
+        Pace::RealTime => Live::start(&assembly.telemetry),
+        Pace::Lockstep => Live::off(),
+    };
+    let aircraft = names.aircraft();
+    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone(), live);
     let mut wish = recording;
     if let Some(wish) = &mut wish {
         let facts = LoopFacts {
@@ -101,14 +120,20 @@ pub fn fly(
         controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
-    let (report, recording) = match plan.pace {
+    let (report, recording, interrupted) = match plan.pace {
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
+            let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
             let handle = flight_loop.spawn()?;
+            // At once, not only in the report of a flight that may take days.
+            for refusal in &handle.grants().refused {
+                watch.remark(refusal.to_string());
+            }
             let grants = Some(handle.grants());
             let mut recording =
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
+            drop(kept);
+            watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
@@ -117,31 +142,48 @@ pub fn fly(
                     }
                     watch.remark(words);
                 }
+                if let Some(words) = watch.live.poll() {
+                    watch.remark(words);
+                }
                 thread::sleep(FETCH_EVERY);
             }
             drain(&mut link, &mut watch, recording.as_mut(), plan);
-            (handle.join(), recording)
+            (handle.join(), recording, interrupted)
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
-            catch_signals(&link)?;
+            let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
             let mut recording =
                 wish.and_then(|wish| wish.begin(None, RecordingPace::Lockstep, &mut watch));
+            drop(kept);
             let recorder = recording.as_mut();
             let report = run_in_lockstep(machine, &mut link, &mut watch, recorder, plan)?;
-            (report, recording)
+            (report, recording, interrupted)
         }
     };
-    // The controls were given back before; the disk may take its time now.
-    if let Some(connection) = connection {
-        connection.end(report.released);
+    let confirmed = connection.is_none_or(Connection::end);
+    if !confirmed {
+        watch.remark(
+            "X-Plane did not show that it has its controls back; the guard process goes on \
+             trying for two minutes"
+                .to_owned(),
+        );
     }
+    let report = LoopReport {
+        released: report.released && confirmed,
+        ..report
+    };
+    // The controls were given back before; the disk may take its time now.
     let recording =
         recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
+    let interrupted = interrupted.load(Ordering::Relaxed);
+    let refused = watch.was_refused() && !matches!(plan.length, Length::Open);
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
-    Ok(Outcome::new(timer_name, report, events, score, recording))
+    let mut outcome = Outcome::new(timer_name, report, events, score, recording);
+    outcome.explain(interrupted, refused);
+    Ok(outcome)
 }
 
 fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
@@ -176,29 +218,11 @@ fn drain(
         if let Some(recording) = &mut recording {
             recording.take(&message);
         }
-        let time_is_up = plan
-            .seconds
-            .zip(watch.engaged_for_s())
-            .is_some_and(|(most, flown)| flown >= most - 1e-6);
-        // A flight of a given length that fails has no length any more.
-        if time_is_up || (plan.seconds.is_some() && watch.failed()) {
+        if watch.is_over(plan.length) {
             link.stop.stop();
         }
     }
     if let Some(recording) = recording {
         recording.tell(watch);
     }
-}
-
-/// TERM, INT and HUP set the loop's stop flag, which is all that a signal may
-/// safely do; the loop releases the controls in its next tick.
-fn catch_signals(link: &Link<Pilot>) -> Result<(), FlyError> {
-    for signal in [SIGTERM, SIGINT, SIGHUP] {
-        signal_hook::flag::register(signal, link.stop.flag()).map_err(FlyError::Signals)?;
-    }
-    // A limit on the size of files must end the recording, not the flight: with
-    // this caught, the write that goes too far is an error like any other.
-    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())
-        .map_err(FlyError::Signals)?;
-    Ok(())
 }

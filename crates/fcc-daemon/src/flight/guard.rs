@@ -3,28 +3,33 @@
 //!
 //! X-Plane never takes an override back by itself, and a process that is
 //! killed can do nothing more. So before a flight, this program starts itself
-//! again as `fccd guard`, which waits at the end of a pipe. The pipe closes
-//! when this process ends, however it does; unless it said `done` before, the
-//! guard centres the surfaces and releases the overrides.
+//! again as `fccd guard`, which waits at the end of a pipe. The pipe tells it
+//! where control is held, and closes when this process ends, however it does;
+//! if control was held by then, the guard centres the surfaces and releases
+//! the overrides, until X-Plane shows that it did.
 
 use std::io::{self, BufRead, Write};
 use std::net::SocketAddrV4;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
-use fcc_xplane::{OpenError, XPlane, XPlaneConfig};
+use fcc_xplane::{OpenError, Released, XPlane, XPlaneConfig};
 
 use crate::config::XPlaneSection;
 
-/// The word by which a flight that gave its controls back lets the guard go.
-const DONE: &str = "done";
-/// Begins a line that says where X-Plane is.
-const AT: &str = "at ";
+/// Begins a line that says where control is held.
+const HELD: &str = "held ";
+/// Says that control is nobody's of ours.
+const FREE: &str = "free";
+/// How long a guard goes on trying: a simulator that loads scenery hangs for a
+/// while.
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The guard, as the process that it guards sees it.
 pub(super) struct Guard {
     child: Child,
-    told: Option<SocketAddrV4>,
+    held: Option<SocketAddrV4>,
 }
 
 impl Guard {
@@ -44,53 +49,55 @@ impl Guard {
         if let Some(pipe) = &mut child.stdin {
             writeln!(pipe, "{line}")?;
         }
-        Ok(Self { child, told: None })
+        Ok(Self { child, held: None })
     }
 
-    /// Says where X-Plane is. A guard that is gone is no reason to stop.
-    pub(super) fn tell(&mut self, simulator: SocketAddrV4) {
-        if self.told == Some(simulator) {
+    /// Says where control is held, if it is. A guard that is gone is no reason
+    /// to stop.
+    pub(super) fn tell(&mut self, held: Option<SocketAddrV4>) {
+        if self.held == held {
             return;
         }
-        self.told = Some(simulator);
+        self.held = held;
         if let Some(pipe) = &mut self.child.stdin {
-            let _ = writeln!(pipe, "{AT}{simulator}");
+            let _ = match held {
+                Some(simulator) => writeln!(pipe, "{HELD}{simulator}"),
+                None => writeln!(pipe, "{FREE}"),
+            };
         }
     }
 
-    /// Lets the guard go: the controls were given back.
+    /// Lets the guard go, and waits until it is gone.
     pub(super) fn dismiss(mut self) {
-        if let Some(mut pipe) = self.child.stdin.take() {
-            let _ = writeln!(pipe, "{DONE}");
-        }
+        self.tell(None);
+        drop(self.child.stdin.take());
         let _ = self.child.wait();
     }
 }
 
-/// Stands guard: reads `from` until it ends, and then gives the controls back
-/// unless told otherwise. Returns where it did.
+/// Stands guard: reads `from` until it ends, and then gives back what is held.
+/// Returns where, and how that ended.
 ///
 /// # Errors
-/// When what is read makes no sense, or nothing can be sent.
-pub fn stand_guard(from: impl BufRead) -> Result<Option<SocketAddrV4>, GuardError> {
+/// When what is read makes no sense, or there is no socket to be had.
+pub fn stand_guard(from: impl BufRead) -> Result<Option<(SocketAddrV4, Released)>, GuardError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(GuardError::Nothing)??;
     let section: XPlaneSection = serde_json::from_str(&first)?;
-    let mut simulator = None;
-    for line in lines {
-        // A pipe that breaks is a pipe that ends.
-        let Ok(line) = line else { break };
-        if line == DONE {
-            return Ok(None);
-        }
-        if let Some(address) = line.strip_prefix(AT) {
-            simulator = address.parse().ok().or(simulator);
+    let mut held: Option<SocketAddrV4> = None;
+    // A pipe that breaks is a pipe that ends.
+    for line in lines.map_while(Result::ok) {
+        if line == FREE {
+            held = None;
+        } else if let Some(address) = line.strip_prefix(HELD) {
+            held = address.parse().ok().or(held);
         }
     }
-    if let Some(simulator) = simulator {
-        XPlane::release_after_crash(&XPlaneConfig::from(&section), simulator)?;
-    }
-    Ok(simulator)
+    let Some(simulator) = held else {
+        return Ok(None);
+    };
+    let released = XPlane::release_and_wait(&XPlaneConfig::from(&section), simulator, PATIENCE)?;
+    Ok(Some((simulator, released)))
 }
 
 /// Why a guard could not do its work.
@@ -106,7 +113,7 @@ pub enum GuardError {
     /// The first line is not a configuration.
     #[error("the first line is no [x-plane] section as JSON: {0}")]
     Section(#[from] serde_json::Error),
-    /// Nothing could be sent.
+    /// There is no socket to be had.
     #[error(transparent)]
     Release(#[from] OpenError),
 }
@@ -121,7 +128,7 @@ mod tests {
     fn script(simulator: &UdpSocket, last: &str) -> String {
         let section = serde_json::to_string(&XPlaneSection::default()).unwrap();
         let at = simulator.local_addr().unwrap();
-        format!("{section}\nat {at}\n{last}")
+        format!("{section}\nheld {at}\n{last}")
     }
 
     fn simulator() -> UdpSocket {
@@ -132,29 +139,63 @@ mod tests {
         socket
     }
 
-    /// DREF: five bytes, an f32, then the path (X-Plane's layout).
-    #[test]
-    fn a_pipe_that_just_ends_gives_the_controls_back() {
-        let simulator = simulator();
-        let told = stand_guard(script(&simulator, "").as_bytes()).unwrap();
-        assert!(told.is_some());
-        let mut released = false;
+    /// Answers as X-Plane's layouts say: DREF is five bytes, an f32, the path;
+    /// RREF five bytes, frequency, index, the path; its reply five bytes, then
+    /// pairs of index and f32.
+    fn answer(simulator: &UdpSocket, deaf_for: u32) -> f32 {
+        let mut joystick = 1.0_f32;
         let mut bytes = [0; 600];
-        while let Ok(length) = simulator.recv(&mut bytes) {
-            let value = f32::from_le_bytes(bytes[5..9].try_into().unwrap());
-            let path = String::from_utf8_lossy(&bytes[9..length]);
-            released |=
-                path.starts_with("sim/operation/override/override_joystick\0") && value == 0.0;
+        let mut written = 0;
+        while let Ok((length, from)) = simulator.recv_from(&mut bytes) {
+            let text = String::from_utf8_lossy(&bytes[..length]).into_owned();
+            if text.starts_with("DREF") && text.contains("override_joystick") {
+                written += 1;
+                if written > deaf_for {
+                    joystick = f32::from_le_bytes(bytes[5..9].try_into().unwrap());
+                }
+            }
+            if text.starts_with("RREF") && bytes[5..9] != [0; 4] {
+                let value = if text.contains("override_joystick") {
+                    joystick
+                } else {
+                    0.0
+                };
+                let mut reply = b"RREF,".to_vec();
+                reply.extend(&bytes[9..13]);
+                reply.extend(value.to_le_bytes());
+                simulator.send_to(&reply, from).unwrap();
+            }
         }
-        assert!(released);
+        joystick
     }
 
     #[test]
-    fn done_means_done() {
+    fn a_pipe_that_just_ends_gives_the_controls_back_until_it_shows() {
+        for deaf_for in [0, 3] {
+            let simulator = simulator();
+            let script = script(&simulator, "");
+            let guard = std::thread::spawn(move || stand_guard(script.as_bytes()).unwrap());
+            assert!(answer(&simulator, deaf_for).abs() < 0.5);
+            let (_, released) = guard.join().unwrap().unwrap();
+            assert_eq!(released, Released::Confirmed);
+        }
+    }
+
+    #[test]
+    fn what_is_free_is_left_alone() {
         let simulator = simulator();
-        let told = stand_guard(script(&simulator, "done\n").as_bytes()).unwrap();
+        let told = stand_guard(script(&simulator, "free\n").as_bytes()).unwrap();
         assert_eq!(told, None);
         assert!(simulator.recv(&mut [0; 600]).is_err(), "something was sent");
+    }
+
+    #[test]
+    fn a_simulator_that_is_gone_holds_nothing() {
+        let simulator = simulator();
+        let script = script(&simulator, "");
+        drop(simulator);
+        let (_, released) = stand_guard(script.as_bytes()).unwrap().unwrap();
+        assert_eq!(released, Released::Gone);
     }
 
     #[test]

@@ -10,14 +10,17 @@ mod fly;
 mod guard;
 #[cfg(feature = "fault-injection")]
 mod injection;
+#[cfg_attr(not(feature = "live"), path = "not_live.rs")]
+mod live;
 mod outcome;
 mod recording;
+mod signals;
 mod status;
 mod tap;
 mod watch;
 
 pub use assemble::{Assembly, AssemblyError, assemble};
-pub use fly::{FlyError, Pace, Plan, fly};
+pub use fly::{FlyError, Length, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
 pub use recording::{RecordingOutcome, RecordingWish};

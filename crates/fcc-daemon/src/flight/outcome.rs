@@ -10,6 +10,9 @@ use serde::Serialize;
 use super::recording::RecordingOutcome;
 use crate::exit::Exit;
 
+/// The scheduling of a loop without a thread of its own.
+const NOT_ASKED: &str = "not asked for";
+
 /// How a flight ended.
 #[derive(Debug, Serialize)]
 pub struct Outcome {
@@ -29,6 +32,9 @@ pub struct Outcome {
     pub records_dropped: u64,
     /// What of the flight got onto the disk; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
+    /// Whether a signal ended it.
+    #[serde(skip)]
+    pub interrupted: bool,
     /// What the program's exit code says.
     #[serde(skip)]
     pub exit: Exit,
@@ -74,7 +80,21 @@ impl Outcome {
             released: report.released,
             records_dropped: report.records_dropped,
             recording,
+            interrupted: false,
             exit,
+        }
+    }
+
+    /// Says more exactly why a flight ended than the loop can.
+    pub(super) fn explain(&mut self, interrupted: bool, refused: bool) {
+        self.interrupted = interrupted;
+        if interrupted {
+            "interrupted by a signal".clone_into(&mut self.ending);
+        } else if refused {
+            "engaging was refused; the last event says why".clone_into(&mut self.ending);
+            if self.exit == Exit::Success {
+                self.exit = Exit::Failure;
+            }
         }
     }
 
@@ -107,7 +127,12 @@ impl Outcome {
 /// What the kernel granted, as other tools read it.
 fn realtime(grants: &RealtimeGrants) -> Realtime {
     Realtime {
-        policy: grants.policy.to_owned(),
+        policy: if grants.policy.is_empty() {
+            NOT_ASKED
+        } else {
+            grants.policy
+        }
+        .to_owned(),
         priority: grants.priority,
         memory_locked: grants.memory_locked,
         refused: grants

@@ -1,12 +1,12 @@
 //! A flight's recording, as the flight sees it.
 
 use std::collections::BTreeMap;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
 use fcc_timer::RealtimeGrants;
-use nix::sys::utsname::uname;
+use nix::sys::utsname::{UtsName, uname};
 use serde::Serialize;
 
 use super::watch::Watch;
@@ -50,12 +50,12 @@ fn about(config: &Config, as_given: Option<String>) -> About {
     About {
         software: concat!("fccd ", env!("CARGO_PKG_VERSION")).to_owned(),
         git_hash: env!("FCCD_GIT_HASH").to_owned(),
-        host: said(machine.as_ref().map(|m| m.nodename())),
+        host: said(machine.as_ref().map(UtsName::nodename)),
         kernel: [
-            said(machine.as_ref().map(|m| m.sysname())),
-            said(machine.as_ref().map(|m| m.release())),
-            said(machine.as_ref().map(|m| m.version())),
-            said(machine.as_ref().map(|m| m.machine())),
+            said(machine.as_ref().map(UtsName::sysname)),
+            said(machine.as_ref().map(UtsName::release)),
+            said(machine.as_ref().map(UtsName::version)),
+            said(machine.as_ref().map(UtsName::machine)),
         ]
         .join(" "),
         aircraft: aircraft.to_owned(),
@@ -90,6 +90,8 @@ fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>
 /// The recording of a flight that is being flown.
 pub(super) struct Recording {
     recorder: Recorder,
+    /// When its status was last published.
+    told: Instant,
 }
 
 /// What of a flight got onto the disk.
@@ -106,6 +108,9 @@ pub struct RecordingOutcome {
     /// Why recording stopped before the flight ended; none if it did not.
     pub stopped: Option<String>,
 }
+
+/// How often watchers are told how the recorder does.
+const TELL_EVERY: Duration = Duration::from_secs(1);
 
 /// What a recording has to know of its loop.
 pub(super) struct LoopFacts {
@@ -166,7 +171,10 @@ impl RecordingWish {
         Recorder::start(about, settings)
             .inspect_err(|error| watch.remark(format!("not recorded: no thread: {error}")))
             .ok()
-            .map(|recorder| Recording { recorder })
+            .map(|recorder| Recording {
+                recorder,
+                told: Instant::now(),
+            })
     }
 }
 
@@ -182,9 +190,13 @@ impl Recording {
     }
 
     /// Passes on what there is to say.
-    pub(super) fn tell(&self, watch: &mut Watch) {
+    pub(super) fn tell(&mut self, watch: &mut Watch) {
         while let Some(news) = self.recorder.news() {
             tell(&news, watch);
+        }
+        if self.told.elapsed() >= TELL_EVERY {
+            self.told = Instant::now();
+            watch.live.recorder(&self.recorder.status());
         }
     }
 

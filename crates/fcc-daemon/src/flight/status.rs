@@ -39,10 +39,11 @@ impl Printer {
                 record.state
             );
         }
-        let heading = measured.heading_rad.value.to_degrees().rem_euclid(360.0);
+        let heading = compass(measured.heading_rad.value);
         let altitude = measured.altitude_m.value * M_FT;
         let airspeed = measured.airspeed_mps.value * MPS_KT;
-        let bank = measured.attitude.value.roll_rad.to_degrees();
+        // Plus zero, for a rounded -0 reads like a fault.
+        let bank = measured.attitude.value.roll_rad.to_degrees().round() + 0.0;
         let aims = &record.setpoints;
         match record.state.state() {
             State::Engaged => {
@@ -52,7 +53,7 @@ impl Printer {
                      heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
                      altitude {altitude:5.0} → {:5.0} ft  airspeed {airspeed:5.1} → {:5.1} kt  \
                      throttle {:3.0} %  {timing}",
-                    aims.heading_rad.to_degrees(),
+                    compass(aims.heading_rad),
                     aims.altitude_m * M_FT,
                     aims.airspeed_mps * MPS_KT,
                     record.outputs.throttle * 100.0,
@@ -71,4 +72,9 @@ impl Printer {
             }
         }
     }
+}
+
+/// As a compass card shows it: whole degrees, 0 to 359.
+fn compass(heading_rad: f64) -> f64 {
+    heading_rad.to_degrees().round().rem_euclid(360.0)
 }

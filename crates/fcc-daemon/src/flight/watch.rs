@@ -7,7 +7,8 @@ use fcc_sim::Truth;
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
 use super::assemble::Assembly;
-use super::fly::Plan;
+use super::fly::{Length, Plan};
+use super::live::Live;
 use super::outcome::EventEntry;
 use super::status;
 use super::tap::TruthReceiver;
@@ -15,6 +16,9 @@ use super::tap::TruthReceiver;
 const M_FT: f64 = 1.0 / 0.304_8;
 const MPS_KT: f64 = 3_600.0 / 1_852.0;
 const G_MPS2: f64 = 9.806_65;
+
+/// The most events that are kept for the end.
+const MOST_EVENTS: usize = 10_000;
 
 /// Takes what the loop tells, and keeps what matters later.
 pub(super) struct Watch {
@@ -26,9 +30,13 @@ pub(super) struct Watch {
     engaged_at_s: Option<f64>,
     now_s: f64,
     tick: u64,
+    woke_ns: i64,
     failed: bool,
+    refused: bool,
     announce: bool,
     status: Option<status::Printer>,
+    /// Who watches from elsewhere.
+    pub(super) live: Live,
 }
 
 impl Watch {
@@ -38,6 +46,7 @@ impl Watch {
         truth: Option<TruthReceiver>,
         plan: Plan,
         names: Names,
+        live: Live,
     ) -> Self {
         Self {
             names,
@@ -48,9 +57,12 @@ impl Watch {
             engaged_at_s: None,
             now_s: 0.0,
             tick: 0,
+            woke_ns: i64::MIN,
             failed: false,
+            refused: false,
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
+            live,
         }
     }
 
@@ -62,14 +74,24 @@ impl Watch {
         }
     }
 
-    /// Seconds since the loop was engaged; none while it is not.
-    pub(super) fn engaged_for_s(&self) -> Option<f64> {
-        self.engaged_at_s.map(|at_s| self.now_s - at_s)
+    /// Whether a flight of this length is over: its time is up, or it cannot be
+    /// flown.
+    pub(super) fn is_over(&self, length: Length) -> bool {
+        // Sums of ticks end this close to a whole second.
+        const ROUNDING_S: f64 = 1e-6;
+        let time_is_up = match length {
+            Length::Open => return false,
+            Length::Engaged(seconds) => self
+                .engaged_at_s
+                .is_some_and(|at_s| self.now_s - at_s >= seconds - ROUNDING_S),
+            Length::Whole(seconds) => self.now_s >= seconds - ROUNDING_S,
+        };
+        time_is_up || self.failed || self.refused
     }
 
-    /// Whether the loop fell into failsafe.
-    pub(super) fn failed(&self) -> bool {
-        self.failed
+    /// Whether engaging was refused.
+    pub(super) const fn was_refused(&self) -> bool {
+        self.refused
     }
 
     /// What was kept: events, and the log of the flight.
@@ -78,8 +100,10 @@ impl Watch {
     }
 
     fn record(&mut self, record: &FlightRecord) {
+        self.live.record(record);
         self.now_s = self.seconds(record.tick.scheduled.as_nanos());
         self.tick = record.tick.number;
+        self.woke_ns = record.tick.woke.as_nanos();
         let truth = self
             .truth
             .as_mut()
@@ -91,11 +115,14 @@ impl Watch {
                     log.clear();
                 }
             }
+            // Where there is truth, a tick without it is left out: sensors and
+            // truth do not mix in one score.
             let sample = match truth {
-                Some(truth) => true_sample(self.now_s, &truth),
-                None => measured_sample(self.now_s, record),
+                Some(truth) => Some(true_sample(self.now_s, &truth)),
+                None if self.truth.is_some() => None,
+                None => Some(measured_sample(self.now_s, record)),
             };
-            if let Some(log) = &mut self.log {
+            if let Some((log, sample)) = self.log.as_mut().zip(sample) {
                 log.push(sample);
             }
         } else {
@@ -112,6 +139,7 @@ impl Watch {
             tick: event.tick,
             text: event_words(event, &self.names.sensors, &self.names.actuators),
         };
+        self.live.event(event, &entry.text);
         self.failed |= matches!(
             event.kind,
             EventKind::StateChanged {
@@ -119,11 +147,13 @@ impl Watch {
                 ..
             }
         );
+        self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
         self.keep(entry);
     }
 
     /// Something that the loop itself does not know.
     pub(super) fn remark(&mut self, text: String) {
+        self.live.remark(self.tick, self.woke_ns, &text);
         self.keep(EventEntry {
             time_s: self.now_s,
             tick: self.tick,
@@ -142,7 +172,10 @@ impl Watch {
         if self.announce {
             eprintln!("{:8.2} s  {}", entry.time_s, entry.text);
         }
-        self.events.push(entry);
+        // A flight may take weeks; the recording has them all.
+        if self.events.len() < MOST_EVENTS {
+            self.events.push(entry);
+        }
     }
 
     /// Seconds since the first thing the loop told; an event before the first
@@ -171,6 +204,11 @@ impl Names {
             sensors: sensors.collect(),
             actuators: actuators.collect(),
         }
+    }
+
+    /// What is flown: by what it is sensed.
+    pub(super) fn aircraft(&self) -> String {
+        self.sensors.join(", ")
     }
 }
 

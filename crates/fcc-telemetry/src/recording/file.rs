@@ -1,11 +1,9 @@
 //! One file of a recording while it is written.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::io::{self, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
-use std::{fs, mem};
 
 use fcc_core::framework::EventKind;
 use mcap::records::{MessageHeader, Metadata};
@@ -13,9 +11,10 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
 use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
-use super::disk::{Disk, DiskFile};
+use super::disk::Disk;
 use super::end::{END, Tally};
 use super::foxglove::{self, Thinned};
+use super::outlet::Outlet;
 use super::schema::{self, Topic};
 use super::settings::Compression;
 use super::wire::foxglove::log::Level;
@@ -40,6 +39,7 @@ pub(super) struct RecordingFile {
     first_log_ns: Option<u64>,
     last_log_ns: u64,
     sequence: u32,
+    gathered_bytes: u64,
     attitude: Thinned,
     position: Thinned,
     tally: Tally,
@@ -78,6 +78,7 @@ impl RecordingFile {
             first_log_ns: None,
             last_log_ns: about.started_unix_ns,
             sequence: 0,
+            gathered_bytes: 0,
             attitude: Thinned::new(),
             position: Thinned::new(),
             tally: Tally::default(),
@@ -190,6 +191,7 @@ impl RecordingFile {
             publish_time: log_time,
         };
         self.sequence = self.sequence.wrapping_add(1);
+        self.gathered_bytes += self.bytes.len() as u64;
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
 
@@ -214,7 +216,9 @@ impl RecordingFile {
     /// power.
     pub(super) fn commit(&mut self) -> io::Result<()> {
         self.writer.flush().map_err(to_io)?;
-        self.outlet.sync()
+        self.outlet.sync()?;
+        self.gathered_bytes = 0;
+        Ok(())
     }
 
     /// Ends the file as it should end: with the account and an index.
@@ -247,15 +251,14 @@ impl RecordingFile {
         &self.path
     }
 
-    /// Bytes written, synced or not; what gathers in the present chunk is not
-    /// among them.
+    /// Bytes that are safe on the disk.
     pub(super) fn bytes(&self) -> u64 {
-        self.outlet.0.borrow().written
+        self.outlet.synced_bytes()
     }
 
-    /// Bytes that are safe.
-    pub(super) fn synced_bytes(&self) -> u64 {
-        self.outlet.0.borrow().synced
+    /// Bytes that have gathered since, before they are compressed.
+    pub(super) const fn gathered_bytes(&self) -> u64 {
+        self.gathered_bytes
     }
 
     /// How much of a flight the file covers, ns.
@@ -287,78 +290,5 @@ fn to_io(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,
         other => io::Error::other(other),
-    }
-}
-
-/// The way to the disk, in few large writes; shared with the writer of MCAP,
-/// which keeps what it writes to.
-#[derive(Clone)]
-struct Outlet(Rc<RefCell<OutletState>>);
-
-struct OutletState {
-    file: Box<dyn DiskFile>,
-    waiting: Vec<u8>,
-    written: u64,
-    synced: u64,
-    abandoned: bool,
-}
-
-/// What gathers before it is written: a flight in lockstep fills chunks faster
-/// than once a second.
-const WRITE_BYTES: usize = 1 << 20;
-
-impl Outlet {
-    fn new(file: Box<dyn DiskFile>) -> Self {
-        Self(Rc::new(RefCell::new(OutletState {
-            file,
-            waiting: Vec::with_capacity(WRITE_BYTES),
-            written: 0,
-            synced: 0,
-            abandoned: false,
-        })))
-    }
-
-    fn sync(&self) -> io::Result<()> {
-        let state = &mut *self.0.borrow_mut();
-        state.pass_on()?;
-        state.file.sync()?;
-        state.synced = state.written;
-        Ok(())
-    }
-
-    /// Cuts off what is not known to be whole, and writes no more.
-    fn abandon(&self) {
-        let state = &mut *self.0.borrow_mut();
-        if !mem::replace(&mut state.abandoned, true) {
-            // On a disk that failed, this may fail too; readers cope.
-            let _ = state.file.cut_to(state.synced);
-            let _ = state.file.sync();
-        }
-    }
-}
-
-impl OutletState {
-    fn pass_on(&mut self) -> io::Result<()> {
-        if !self.abandoned {
-            self.file.write_all(&self.waiting)?;
-            self.written += self.waiting.len() as u64;
-        }
-        self.waiting.clear();
-        Ok(())
-    }
-}
-
-impl Write for Outlet {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let state = &mut *self.0.borrow_mut();
-        state.waiting.extend_from_slice(bytes);
-        if state.waiting.len() >= WRITE_BYTES {
-            state.pass_on()?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.borrow_mut().pass_on()
     }
 }

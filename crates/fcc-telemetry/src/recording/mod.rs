@@ -15,7 +15,8 @@
 //!
 //! - Every number decodes to the very bits that were recorded.
 //! - A killed process or a lost power supply costs at most the last second:
-//!   each second what was gathered is written as one whole chunk and synced.
+//!   before one is over, what has gathered is written as whole chunks and
+//!   synced.
 //!   An ordinary sequential reader reads such a file up to its cut;
 //!   [`recover`] makes it a finished file.
 //! - What the disk is too slow for is dropped, counted, and told in the file
@@ -25,8 +26,7 @@
 //!   start plus the loop's monotonic time since: it never jumps. What to add
 //!   to a time of the loop to get there is the clock offset in [`About`].
 //!
-//! What compression costs, measured over 1 h at 100 Hz on one core of a
-//! desktop CPU, is in [`Compression`].
+//! What compression costs was measured: see [`Compression`].
 
 mod about;
 mod chunk;
@@ -38,6 +38,8 @@ mod folder;
 mod foxglove;
 mod list;
 mod name;
+mod outlet;
+mod parse;
 mod raw;
 mod reader;
 mod recorder;

@@ -2,17 +2,17 @@
 //! no length it claims is allocated before it is known to be there, and nothing
 //! of a chunk is handed on before its checksum holds.
 //!
-//! The framing is done here because the `mcap` crate's own reader panics on
-//! some lengths that no writer writes (0.26); its parsing of single records is
-//! used where it does not.
+//! The `mcap` crate's own reader (0.26) panics on some lengths that no writer
+//! writes, and allocates what a file claims: it is used for files of our own
+//! making only, in tests.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 
-use mcap::parse_record;
 use mcap::records::{Record, op};
 
 use super::chunk;
+use super::parse::parse;
 
 /// No record of ours is longer: a chunk is 1 MiB, a configuration less.
 pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
@@ -68,7 +68,7 @@ impl RawReader {
                 let (opcode, body, end) = framed(&self.chunk, self.chunk_position)
                     .ok_or_else(|| self.damaged("a chunk's records overlap its end"))?;
                 self.chunk_position = end;
-                let record = parse(opcode, body).map_err(|why| self.damaged(&why))?;
+                let record = parse(opcode, body).map_err(|why| self.damaged(why))?;
                 return Ok(Some(take(record)));
             }
             let opcode = self.read_record()?;
@@ -84,7 +84,7 @@ impl RawReader {
                 | op::MESSAGE
                 | op::ATTACHMENT
                 | op::METADATA => {
-                    let record = parse(opcode, &self.body).map_err(|why| self.damaged(&why))?;
+                    let record = parse(opcode, &self.body).map_err(|why| self.damaged(why))?;
                     return Ok(Some(take(record)));
                 }
                 _ => {}
@@ -140,7 +140,7 @@ impl RawReader {
         let opened = match parse(op::CHUNK, &self.body) {
             Ok(Record::Chunk { header, data }) => chunk::open(&header, &data, &mut self.chunk),
             Ok(_) => Ok(()),
-            Err(why) => Err(why),
+            Err(why) => Err(why.to_owned()),
         };
         opened.map_err(|why| {
             self.chunk.clear();
@@ -164,26 +164,4 @@ fn framed(chunk: &[u8], position: usize) -> Option<(u8, &[u8], usize)> {
     let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
     let body = rest.get(..length)?;
     Some((opcode, body, position + HEAD_BYTES + length))
-}
-
-/// A record without its opcode and length.
-pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
-    if opcode == op::ATTACHMENT && !attachment_is_sound(body) {
-        return Err("an attachment is shorter than it claims".to_owned());
-    }
-    parse_record(opcode, body).map_err(|error| error.to_string())
-}
-
-/// Whether an attachment's lengths fit into it: log time, create time, name,
-/// media type, data, checksum.
-fn attachment_is_sound(body: &[u8]) -> bool {
-    fn past_string(body: &[u8], at: usize) -> Option<usize> {
-        let length = body.get(at..)?.first_chunk::<4>()?;
-        at.checked_add(4)?
-            .checked_add(usize::try_from(u32::from_le_bytes(*length)).ok()?)
-    }
-    past_string(body, 16)
-        .and_then(|at| past_string(body, at))
-        .and_then(|at| at.checked_add(8 + 4))
-        .is_some_and(|least| least <= body.len())
 }

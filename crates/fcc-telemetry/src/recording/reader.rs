@@ -11,7 +11,8 @@ use prost::Message as _;
 
 use super::about::About;
 use super::end::{END, End, Tally};
-use super::raw::{self, RawReader};
+use super::parse::parse;
+use super::raw::RawReader;
 use super::schema::{self, Topic};
 use super::wire::{self, fcc};
 use crate::FlightMessage;
@@ -355,7 +356,7 @@ fn split_record(bytes: &[u8]) -> Option<(Option<Record<'_>>, &[u8])> {
     let (length, rest) = rest.split_first_chunk::<8>()?;
     let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
     let (body, after) = rest.split_at_checked(length)?;
-    Some((raw::parse(*opcode, body).ok(), after))
+    Some((parse(*opcode, body).ok(), after))
 }
 
 fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {

@@ -112,14 +112,18 @@ impl Recorder {
         while !self.thread.is_finished() && began.elapsed() < PATIENCE {
             thread::sleep(POLL);
         }
-        let mut news: Vec<News> = self.news.try_iter().collect();
-        if !self.thread.is_finished() {
-            news.push(News {
-                text: "the recording's end is not on the disk after 10 s: it does not answer"
-                    .to_owned(),
-                is_trouble: true,
-            });
-        }
+        let trouble = if !self.thread.is_finished() {
+            Some("the recording's end is not on the disk after 10 s: it does not answer")
+        } else if self.thread.join().is_err() {
+            Some("recording stopped: the recorder panicked; `fccd recover` saves what is there")
+        } else {
+            None
+        };
+        let trouble = trouble.map(|text| News {
+            text: text.to_owned(),
+            is_trouble: true,
+        });
+        let news = self.news.try_iter().chain(trouble).collect();
         (self.board.read(), news)
     }
 

@@ -16,8 +16,13 @@ use super::status::{Board, News};
 use crate::FlightMessage;
 
 /// How often what has gathered is written and synced. A loss of power costs
-/// this much and the time a sync takes; less is more work for the disk.
-const COMMIT_EVERY: Duration = Duration::from_millis(800);
+/// this much and the time that takes on a busy machine, and must cost less than
+/// a second; more often is more work for the disk.
+const COMMIT_EVERY: Duration = Duration::from_millis(700);
+
+/// What has gathered is written before that if it is this much: a flight in
+/// lockstep fills memory faster than any second passes.
+const COMMIT_BYTES: u64 = 1 << 20;
 
 /// Names tried, and recordings deleted, for one file to begin.
 const MAX_ATTEMPTS: usize = 100;
@@ -92,7 +97,8 @@ impl Writing {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return self.end("the recorder was dropped"),
             }
-            if self.committed.elapsed() >= COMMIT_EVERY {
+            let gathered = self.file.as_ref().map_or(0, RecordingFile::gathered_bytes);
+            if self.committed.elapsed() >= COMMIT_EVERY || gathered >= COMMIT_BYTES {
                 self.commit();
             }
         }
@@ -150,7 +156,7 @@ impl Writing {
         let (ticks, bytes) = self
             .file
             .as_ref()
-            .map_or((0, 0), |file| (file.ticks(), file.synced_bytes()));
+            .map_or((0, 0), |file| (file.ticks(), file.bytes()));
         self.committed_ticks = ticks;
         let (ticks, bytes) = (self.ticks_before + ticks, self.bytes_before + bytes);
         self.board.update(|status| {
@@ -180,7 +186,7 @@ impl Writing {
             return false;
         };
         self.ticks_before += file.ticks();
-        self.bytes_before += file.synced_bytes();
+        self.bytes_before += file.bytes();
         let path = file.path().to_owned();
         let finished = file.finish(ending);
         self.board.update(|status| status.file = None);
@@ -253,7 +259,7 @@ impl Writing {
         };
         let lost = std::mem::take(&mut self.uncommitted);
         self.ticks_before += self.committed_ticks;
-        self.bytes_before += file.synced_bytes();
+        self.bytes_before += file.bytes();
         let path = file.path().to_owned();
         file.abandon();
         self.board.update(|status| {

@@ -46,8 +46,8 @@ pub struct ThrottleDemand {
     pub climb_rate_mps: f64,
     /// Load factor of the turn.
     pub load_factor: f64,
-    /// Whether the aircraft is too slow: then full throttle.
-    pub underspeed: bool,
+    /// The least throttle, 0..=1: full if the aircraft is too slow.
+    pub least_throttle: f64,
 }
 
 /// Airspeed → throttle, with climb and turn fed forward.
@@ -80,6 +80,7 @@ impl AirspeedLoop {
             demand.airspeed_mps,
             estimate.airspeed_mps,
             feed_forward,
+            1.0,
         );
     }
 
@@ -93,7 +94,7 @@ impl AirspeedLoop {
             1.0,
             dt_s,
         );
-        if demand.underspeed { 1.0 } else { throttle }
+        throttle.max(demand.least_throttle)
     }
 
     /// Climbing costs g sin γ, turning the induced drag of the load.

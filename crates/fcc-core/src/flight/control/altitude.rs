@@ -112,10 +112,12 @@ impl AltitudeLoop {
             path,
             path,
             path + self.angle_of_attack(estimate, schedule),
+            1.0,
         );
         let rate = estimate.body_rates.pitch_radps;
         let feed_forward = schedule.moment * self.config.elevator_per_g * turn_load(estimate);
-        self.pitch_rate.engage(elevator, rate, rate, feed_forward);
+        self.pitch_rate
+            .engage(elevator, rate, rate, feed_forward, schedule.moment);
     }
 
     /// One step towards an altitude (m).
@@ -131,12 +133,21 @@ impl AltitudeLoop {
             gain_per_s: self.config.altitude_gain_per_s,
             deceleration: self.config.capture_mps2,
         };
+        let wanted = profile.speed(altitude_m - estimate.altitude_m);
+        self.hold_climb_rate(wanted, estimate, envelope, schedule, dt_s)
+    }
+
+    /// One step towards a climb rate (m/s), as far as the airspeed allows it.
+    pub fn hold_climb_rate(
+        &mut self,
+        climb_rate_mps: f64,
+        estimate: &Estimate,
+        envelope: &Envelope,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> PitchCommand {
         let limits = envelope.climb_limits(estimate.airspeed_mps);
-        let wanted = limit(
-            profile.speed(altitude_m - estimate.altitude_m),
-            limits.min_mps,
-            limits.max_mps,
-        );
+        let wanted = limit(climb_rate_mps, limits.min_mps, limits.max_mps);
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
         let pitch_rad = self.pitch.step_scheduled(
@@ -156,15 +167,20 @@ impl AltitudeLoop {
         )
     }
 
-    /// One step towards a pitch (rad), whatever the altitude.
-    pub fn hold_pitch(
+    /// One step towards the pitch at which level flight is expected, where
+    /// altitude and climb rate are not known.
+    pub fn hold_level_pitch(
         &mut self,
-        pitch_rad: f64,
         estimate: &Estimate,
         envelope: &Envelope,
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
+        let pitch_rad = limit(
+            self.angle_of_attack(estimate, schedule) + self.pitch.integral(),
+            envelope.min_pitch_rad,
+            envelope.max_pitch_rad,
+        );
         self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
     }
 

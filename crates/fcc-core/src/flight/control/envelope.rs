@@ -73,9 +73,26 @@ impl Envelope {
         }
     }
 
-    /// Whether the aircraft is slower than it may be.
-    pub fn is_underspeed(&self, airspeed_mps: f64) -> bool {
-        airspeed_mps < self.min_airspeed_mps
+    /// The nearest airspeed that may be asked for: a margin inside the limits,
+    /// so that level flight there leaves room to climb and to descend.
+    pub fn allowed_airspeed(&self, airspeed_mps: f64) -> f64 {
+        limit(
+            airspeed_mps,
+            self.min_airspeed_mps + self.airspeed_margin_mps,
+            self.max_airspeed_mps - self.airspeed_margin_mps,
+        )
+    }
+
+    /// The least throttle at an airspeed, 0..=1: full at the slowest and
+    /// below, none from half a margin above. It rises evenly in between, so
+    /// that noise at the limit does not make the throttle jump.
+    pub fn least_throttle(&self, airspeed_mps: f64) -> f64 {
+        let half_margin = 0.5 * self.airspeed_margin_mps.max(0.1);
+        limit(
+            (self.min_airspeed_mps + half_margin - airspeed_mps) / half_margin,
+            0.0,
+            1.0,
+        )
     }
 }
 

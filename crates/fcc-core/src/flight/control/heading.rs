@@ -106,12 +106,14 @@ impl HeadingLoop {
             roll_rate,
             roll_rate,
             self.aileron_feed_forward(roll_rate, schedule),
+            schedule.moment,
         );
         self.side_force.engage(
             rudder,
             0.0,
             estimate.side_force_mps2,
             self.rudder_feed_forward(aileron, estimate, schedule),
+            schedule.moment,
         );
     }
 

@@ -54,7 +54,7 @@ impl AirspeedChannel {
             self.airspeed
                 .predict((along_path - GRAVITY_MPS2 * sin_path) * sqrt_density, dt_s);
         }
-        match self.news.of(&measurements.airspeed_mps) {
+        match self.news.of(&measurements.airspeed_mps, dt_s) {
             News::None => {}
             News::First => self.airspeed.reset(measurements.airspeed_mps.value),
             News::Next(since_s) => self

@@ -62,7 +62,7 @@ impl AttitudeChannel {
             self.heading.predict(horizontal, dt_s);
         }
         let attitude = measurements.attitude;
-        match self.attitude_news.of(&attitude) {
+        match self.attitude_news.of(&attitude, dt_s) {
             News::None => {}
             News::First => {
                 self.roll.reset(attitude.value.roll_rad);
@@ -74,7 +74,7 @@ impl AttitudeChannel {
                 self.pitch.correct(attitude.value.pitch_rad, since_s);
             }
         }
-        match self.heading_news.of(&measurements.heading_rad) {
+        match self.heading_news.of(&measurements.heading_rad, dt_s) {
             News::None => {}
             News::First => {
                 // Keep counting turns from where the count was.

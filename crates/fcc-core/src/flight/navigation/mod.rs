@@ -179,7 +179,9 @@ impl Arrival {
         Self { taken: Time::NEVER }
     }
 
-    fn of<T>(&mut self, reading: &Reading<T>) -> News {
+    /// `dt_s` is the plant's time since the last tick: while it stands still,
+    /// a measurement says nothing new.
+    fn of<T>(&mut self, reading: &Reading<T>, dt_s: f64) -> News {
         if reading.is_never() || reading.taken <= self.taken {
             return News::None;
         }
@@ -187,8 +189,10 @@ impl Arrival {
         self.taken = reading.taken;
         if gap > CURRENT {
             News::First
-        } else {
+        } else if dt_s > 0.0 {
             News::Next(gap.as_secs_f64())
+        } else {
+            News::None
         }
     }
 }

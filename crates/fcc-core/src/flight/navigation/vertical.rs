@@ -27,9 +27,17 @@ pub struct VerticalChannel {
     bandwidth_radps: f64,
     state: VerticalState,
     bias_mps2: f64,
-    acceleration_mps2: f64,
+    /// Seconds since the first altitude.
+    age_s: f64,
     news: Arrival,
 }
+
+/// While the filter is young it begins fast, not knowing the climb rate, and
+/// slows down as it learns: with bandwidth `YOUTH / age`, half as fast again as
+/// a straight line fitted to what was seen so far.
+const YOUTH: f64 = 3.0;
+/// The fastest it is, rad/s.
+const MAX_BANDWIDTH_RADPS: f64 = 4.0;
 
 /// An accelerometer whose bias is larger than this is broken, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -44,7 +52,7 @@ impl VerticalChannel {
                 climb_rate_mps: 0.0,
             },
             bias_mps2: 0.0,
-            acceleration_mps2: 0.0,
+            age_s: 0.0,
             news: Arrival::new(),
         }
     }
@@ -57,7 +65,7 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        self.acceleration_mps2 = if is_current(&measurements.specific_force, now) {
+        let measured = if is_current(&measurements.specific_force, now) {
             let force = measurements.specific_force.value;
             let (sin_roll, cos_roll) = (sin(orientation.roll_rad), cos(orientation.roll_rad));
             let (sin_pitch, cos_pitch) = (sin(orientation.pitch_rad), cos(orientation.pitch_rad));
@@ -67,12 +75,13 @@ impl VerticalChannel {
         } else {
             self.bias_mps2
         };
-        let acceleration = self.acceleration_mps2 - self.bias_mps2;
+        let acceleration = measured - self.bias_mps2;
+        self.age_s += dt_s;
         self.state.altitude_m +=
             self.state.climb_rate_mps * dt_s + 0.5 * acceleration * dt_s * dt_s;
         self.state.climb_rate_mps += acceleration * dt_s;
 
-        match self.news.of(&measurements.altitude_m) {
+        match self.news.of(&measurements.altitude_m, dt_s) {
             News::None => {}
             News::First => {
                 self.state = VerticalState {
@@ -80,14 +89,22 @@ impl VerticalChannel {
                     climb_rate_mps: 0.0,
                 };
                 self.bias_mps2 = 0.0;
+                self.age_s = 0.0;
             }
             News::Next(since_s) => {
                 let error = measurements.altitude_m.value - self.state.altitude_m;
-                let w = self.bandwidth_radps;
-                self.state.altitude_m += 3.0 * w * since_s * error;
-                self.state.climb_rate_mps += 3.0 * w * w * since_s * error;
-                self.bias_mps2 =
-                    limit_abs(self.bias_mps2 - w * w * w * since_s * error, MAX_BIAS_MPS2);
+                let (w, young) = (self.bandwidth_radps, YOUTH / self.age_s.max(0.1));
+                if young > w {
+                    // Two poles and no bias: it cannot be told from a climb yet.
+                    let w = young.min(MAX_BANDWIDTH_RADPS);
+                    self.state.altitude_m += 2.0 * w * since_s * error;
+                    self.state.climb_rate_mps += w * w * since_s * error;
+                } else {
+                    self.state.altitude_m += 3.0 * w * since_s * error;
+                    self.state.climb_rate_mps += 3.0 * w * w * since_s * error;
+                    self.bias_mps2 =
+                        limit_abs(self.bias_mps2 - w * w * w * since_s * error, MAX_BIAS_MPS2);
+                }
             }
         }
         self.state

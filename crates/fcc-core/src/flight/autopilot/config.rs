@@ -1,0 +1,67 @@
+//! Everything about the autopilot that is the user's choice.
+
+use core::time::Duration;
+
+use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
+use crate::flight::guidance::TimedPatternConfig;
+use crate::flight::navigation::NavigationConfig;
+
+/// Everything about the autopilot that is the user's choice.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct AutopilotConfig {
+    /// The airspeed at which the gains hold as they are, m/s.
+    pub reference_airspeed_mps: f64,
+    /// Older readings than this are a loss of their sensor.
+    pub max_age: Duration,
+    /// Navigation's time constants.
+    pub navigation: NavigationConfig,
+    /// What is flown once engaged.
+    pub course: Course,
+    /// Gains of the heading loop.
+    pub heading: HeadingConfig,
+    /// Gains of the altitude loop.
+    pub altitude: AltitudeConfig,
+    /// Gains of the airspeed loop.
+    pub airspeed: AirspeedConfig,
+    /// What the loops may ask of the aircraft.
+    pub envelope: Envelope,
+}
+
+impl Default for AutopilotConfig {
+    /// A Cessna 172 and the thesis' pattern.
+    fn default() -> Self {
+        Self {
+            reference_airspeed_mps: 51.444_444, // 100 kt
+            max_age: Duration::from_millis(250),
+            navigation: NavigationConfig::default(),
+            course: Course::TimedPattern(TimedPatternConfig::default()),
+            heading: HeadingConfig::default(),
+            altitude: AltitudeConfig::default(),
+            airspeed: AirspeedConfig::default(),
+            envelope: Envelope::default(),
+        }
+    }
+}
+
+/// What is flown once engaged.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Course {
+    /// Keep what was captured, until ordered otherwise.
+    Hold,
+    /// The timed pattern of the thesis.
+    TimedPattern(TimedPatternConfig),
+}
+
+/// What may be asked of the autopilot while it is engaged. Each changes one
+/// set point, ends a pattern and keeps the other set points as they are.
+#[derive(Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum Order {
+    /// Indicated airspeed, m/s; held to what the envelope allows.
+    Airspeed(f64),
+    /// Magnetic heading, rad; turned to the shorter way from where the nose
+    /// points now.
+    Heading(f64),
+    /// Barometric altitude, m.
+    Altitude(f64),
+}

@@ -1,0 +1,101 @@
+//! `[course]`: what is flown once engaged.
+
+use fcc_core::flight::Course;
+use fcc_core::flight::guidance::TimedPatternConfig;
+use serde::{Deserialize, Serialize};
+
+use super::units::FOOT_M;
+
+const HOLD_S: f64 = 20.0;
+const LEG_S: f64 = 20.0;
+const TURN_DEG: f64 = 90.0;
+const CLIMB_FT: f64 = 150.0;
+
+/// `[course]`: what is flown once engaged.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(try_from = "Keys", tag = "kind", rename_all = "kebab-case")]
+pub enum CourseSection {
+    /// Keep what was captured.
+    Hold,
+    /// The timed pattern of the thesis.
+    TimedPattern {
+        /// How long to hold what was captured.
+        hold_s: f64,
+        /// How long each leg takes.
+        leg_s: f64,
+        /// Turn of each leg, right if positive.
+        turn_deg: f64,
+        /// Climb of every odd leg, taken back in every even one.
+        climb_ft: f64,
+    },
+}
+
+/// The section as it is written: flat, so that what is wrong with a key is
+/// said of that key.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    kind: Kind,
+    hold_s: Option<f64>,
+    leg_s: Option<f64>,
+    turn_deg: Option<f64>,
+    climb_ft: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Hold,
+    TimedPattern,
+}
+
+impl TryFrom<Keys> for CourseSection {
+    type Error = &'static str;
+
+    fn try_from(keys: Keys) -> Result<Self, Self::Error> {
+        let patterns = [keys.hold_s, keys.leg_s, keys.turn_deg, keys.climb_ft];
+        match keys.kind {
+            Kind::Hold if patterns.iter().any(Option::is_some) => Err(
+                "a hold has no hold_s, leg_s, turn_deg or climb_ft: take them out, or choose \
+                 kind = \"timed-pattern\"",
+            ),
+            Kind::Hold => Ok(Self::Hold),
+            Kind::TimedPattern => Ok(Self::TimedPattern {
+                hold_s: keys.hold_s.unwrap_or(HOLD_S),
+                leg_s: keys.leg_s.unwrap_or(LEG_S),
+                turn_deg: keys.turn_deg.unwrap_or(TURN_DEG),
+                climb_ft: keys.climb_ft.unwrap_or(CLIMB_FT),
+            }),
+        }
+    }
+}
+
+impl Default for CourseSection {
+    fn default() -> Self {
+        Self::TimedPattern {
+            hold_s: HOLD_S,
+            leg_s: LEG_S,
+            turn_deg: TURN_DEG,
+            climb_ft: CLIMB_FT,
+        }
+    }
+}
+
+impl From<&CourseSection> for Course {
+    fn from(section: &CourseSection) -> Self {
+        match *section {
+            CourseSection::Hold => Self::Hold,
+            CourseSection::TimedPattern {
+                hold_s,
+                leg_s,
+                turn_deg,
+                climb_ft,
+            } => Self::TimedPattern(TimedPatternConfig {
+                hold_s,
+                leg_s,
+                turn_rad: turn_deg.to_radians(),
+                climb_m: climb_ft * FOOT_M,
+            }),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! Puts together, tick by tick, what came into the loop, and notices what is
+//! missing.
+
+use fcc_core::flight::Order as Command;
+use fcc_core::framework::{EventKind, Message, Order, Tick};
+use fcc_telemetry::{FlightEvent, FlightMessage};
+
+/// Why a recording cannot be flown again from some tick on.
+#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Cut {
+    /// It begins after the loop did.
+    #[error(
+        "the recording begins in tick {tick}, with the loop already running, and what the \
+         loop knew by then is not in it: give the recordings before it too, oldest first"
+    )]
+    BeginsLate {
+        /// Its first tick.
+        tick: u64,
+    },
+    /// Something is missing in the middle.
+    #[error(
+        "what was recorded of ticks {first} to {last} is not whole, and every later tick \
+         depends on it"
+    )]
+    Gap {
+        /// The first tick of which something is missing.
+        first: u64,
+        /// The last tick of which something is missing.
+        last: u64,
+    },
+    /// Time went back.
+    #[error(
+        "tick {tick} follows tick {after}: that is another flight, or the recordings are not \
+         given oldest first"
+    )]
+    AnotherFlight {
+        /// The tick that does not follow.
+        tick: u64,
+        /// The tick before it.
+        after: u64,
+    },
+    /// Events are missing, and they may have been orders.
+    #[error("events of ticks {first} to {last} are missing, and there may be orders among them")]
+    EventsMissing {
+        /// The tick of the first.
+        first: u64,
+        /// The tick of the last.
+        last: u64,
+    },
+    /// An order is not with the record of its tick.
+    #[error("an order of tick {tick} is not recorded beside the record of its tick")]
+    OrderOutOfPlace {
+        /// The order's tick.
+        tick: u64,
+    },
+    /// A part of the loop panicked in flight; how far that tick got is not
+    /// known.
+    #[error("a part of the loop panicked in tick {tick}: how far that tick got is not recorded")]
+    Panicked {
+        /// The tick.
+        tick: u64,
+    },
+    /// The replay's own loop stopped, and the recorded one did not.
+    #[error("the loop stopped before tick {tick} when it was flown again, and went on in flight")]
+    StoppedEarly {
+        /// The first tick it did not perform.
+        tick: u64,
+    },
+}
+
+/// Puts together what came into the loop from outside in each tick.
+#[derive(Debug, Default)]
+pub(super) struct Sequence {
+    last: Option<Tick>,
+    /// The tick of what waits for its record.
+    awaited: Option<u64>,
+    orders: Vec<Order<Command>>,
+    told_to_stop: bool,
+    panicked: bool,
+}
+
+/// What came into the loop in one tick, beside measurements.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct Inputs {
+    /// In the sequence they were read.
+    pub(super) orders: Vec<Order<Command>>,
+    /// Whether the stop flag was seen.
+    pub(super) told_to_stop: bool,
+}
+
+impl Sequence {
+    /// Takes the next message; a record comes back as the inputs of its tick.
+    ///
+    /// # Errors
+    /// When from here on it is not known what came into the loop.
+    pub(super) fn take(&mut self, message: &FlightMessage) -> Result<Option<Inputs>, Cut> {
+        match message {
+            Message::Event(event) => self.event(event).map(|()| None),
+            Message::Tick(record) => self.tick(&record.tick).map(Some),
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent) -> Result<(), Cut> {
+        match event.kind {
+            EventKind::Ordered(order) => {
+                self.await_record(event.tick)?;
+                self.orders.push(order);
+            }
+            EventKind::ToldToStop => {
+                self.await_record(event.tick)?;
+                self.told_to_stop = true;
+            }
+            // One without a record after it happened between ticks.
+            EventKind::Panicked => {
+                self.panicked = self.last.is_none_or(|last| event.tick > last.number);
+            }
+            EventKind::EventsDropped { first, last, .. } => {
+                return Err(Cut::EventsMissing { first, last });
+            }
+            // Said even where every record is there: events may not be.
+            EventKind::NotRecorded { first, last, .. } => {
+                return Err(Cut::Gap { first, last });
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn await_record(&mut self, tick: u64) -> Result<(), Cut> {
+        if self.last.is_some_and(|last| tick <= last.number) {
+            return Err(Cut::OrderOutOfPlace { tick });
+        }
+        self.awaited = Some(tick);
+        Ok(())
+    }
+
+    fn tick(&mut self, tick: &Tick) -> Result<Inputs, Cut> {
+        self.follows(tick)?;
+        if let Some(awaited) = self.awaited.take()
+            && awaited != tick.number
+        {
+            return Err(Cut::OrderOutOfPlace { tick: awaited });
+        }
+        if self.panicked {
+            return Err(Cut::Panicked { tick: tick.number });
+        }
+        self.last = Some(*tick);
+        Ok(Inputs {
+            orders: std::mem::take(&mut self.orders),
+            told_to_stop: std::mem::take(&mut self.told_to_stop),
+        })
+    }
+
+    /// Whether a tick comes right after the one before, or is the loop's
+    /// first: deadlines count from 1, and those missed are said.
+    fn follows(&self, tick: &Tick) -> Result<(), Cut> {
+        let number = tick.number;
+        // The first tick since the one served before, missed or not.
+        let due = number.saturating_sub(tick.missed);
+        let Some(last) = self.last else {
+            return match due {
+                1 => Ok(()),
+                _ => Err(Cut::BeginsLate { tick: number }),
+            };
+        };
+        let next = last.number.saturating_add(1);
+        if number < next || due < next || tick.scheduled <= last.scheduled {
+            return Err(Cut::AnotherFlight {
+                tick: number,
+                after: last.number,
+            });
+        }
+        if due > next {
+            return Err(Cut::Gap {
+                first: next,
+                last: due - 1,
+            });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Event, Record, State, Time};
+
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    fn record(number: u64, missed: u64) -> FlightMessage {
+        let scheduled = Time::from_nanos(number as i64 * 25 * MS);
+        let tick = Tick {
+            number,
+            scheduled,
+            woke: scheduled,
+            missed,
+            dt_s: 0.025,
+        };
+        Message::Tick(Record::new(tick, State::Standby))
+    }
+
+    fn event(tick: u64, kind: EventKind<Command>) -> FlightMessage {
+        Message::Event(Event {
+            tick,
+            time: Time::NEVER,
+            kind,
+        })
+    }
+
+    const HEADING: Order<Command> = Order::Controller(Command::Heading(1.0));
+
+    /// The cut that ends a sequence of messages, if one does.
+    fn cut(messages: &[FlightMessage]) -> Option<Cut> {
+        let mut sequence = Sequence::default();
+        messages
+            .iter()
+            .find_map(|message| sequence.take(message).err())
+    }
+
+    #[test]
+    fn orders_and_the_stop_flag_go_with_their_tick() {
+        let mut sequence = Sequence::default();
+        let messages = [
+            event(1, EventKind::Ordered(HEADING)),
+            event(1, EventKind::Ordered(Order::Engage)),
+            record(1, 0),
+            record(2, 0),
+            event(4, EventKind::ToldToStop),
+            record(4, 1),
+        ];
+        let told: Vec<_> = messages
+            .iter()
+            .filter_map(|message| sequence.take(message).unwrap())
+            .map(|inputs| (inputs.orders, inputs.told_to_stop))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                (vec![HEADING, Order::Engage], false),
+                (vec![], false),
+                (vec![], true)
+            ]
+        );
+    }
+
+    #[test]
+    fn missed_ticks_are_no_gap_and_missing_records_are() {
+        assert_eq!(cut(&[record(3, 2), record(4, 0), record(9, 4)]), None);
+        let begins_late = Some(Cut::BeginsLate { tick: 3 });
+        assert_eq!(cut(&[record(3, 1)]), begins_late);
+        let gap = Some(Cut::Gap { first: 2, last: 4 });
+        assert_eq!(cut(&[record(1, 0), record(7, 2)]), gap);
+    }
+
+    #[test]
+    fn what_the_recorder_lost_is_a_gap_where_every_record_is_there_too() {
+        let lost = EventKind::NotRecorded {
+            count: 1,
+            first: 2,
+            last: 2,
+        };
+        let gap = Some(Cut::Gap { first: 2, last: 2 });
+        assert_eq!(cut(&[record(1, 0), event(2, lost), record(2, 0)]), gap);
+    }
+
+    #[test]
+    fn an_order_after_its_record_is_out_of_place() {
+        let late = event(1, EventKind::Ordered(HEADING));
+        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 1 });
+        assert_eq!(cut(&[record(1, 0), late]), out_of_place);
+        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 2 });
+        let early = event(2, EventKind::Ordered(HEADING));
+        assert_eq!(cut(&[early, record(1, 0)]), out_of_place);
+    }
+
+    #[test]
+    fn a_panic_in_a_tick_ends_it_and_one_after_the_last_does_not() {
+        let panicked = Some(Cut::Panicked { tick: 2 });
+        let panic = |tick| event(tick, EventKind::Panicked);
+        assert_eq!(cut(&[record(1, 0), panic(2), record(2, 0)]), panicked);
+        assert_eq!(cut(&[record(1, 0), panic(1)]), None);
+    }
+}

@@ -1,0 +1,121 @@
+//! Flights in lockstep, and all that the loop told of them.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use fcc_core::flight::{Measurements, Order as Command};
+use fcc_core::framework::{Message, Order, Sensor, SensorFault, State, Tick};
+use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
+use fcc_daemon::flight::assemble;
+use fcc_daemon::replay::{Identity, Replay, Run, run};
+use fcc_runtime::{Machine, Parts};
+use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_timer::ManualTimer;
+
+/// What happens in a flight, beside gusts.
+#[derive(Default)]
+pub(crate) struct Happenings {
+    /// Orders given before a step.
+    pub(crate) orders: Vec<(u64, Order<Command>)>,
+    /// Ticks in which the sensors are silent.
+    pub(crate) silent: Vec<RangeInclusive<u64>>,
+    /// Deadlines for which the loop wakes late.
+    pub(crate) late: Vec<(u64, Duration)>,
+    /// Set the stop flag before this step.
+    pub(crate) stop_before: Option<u64>,
+    /// How long to fly, steps.
+    pub(crate) steps: u64,
+}
+
+/// Gusts, noise and delay: all that the built-in aircraft has.
+pub(crate) fn rough() -> Config {
+    Config {
+        built_in: Some(BuiltInSection {
+            gusts: GustsChoice::Moderate,
+            noise: true,
+            delay_ms: 50,
+            wind_kt: 20.0,
+            seed: 7,
+            ..BuiltInSection::default()
+        }),
+        ..Config::default()
+    }
+}
+
+/// Flies, and gives all that was told.
+pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage> {
+    let assembly = assemble(config).unwrap();
+    let mut timer = ManualTimer::new(config.tick.period()).unwrap();
+    for (number, by) in &happenings.late {
+        timer = timer.late_at(*number, *by);
+    }
+    let silenced = |inner| {
+        Box::new(Silenced {
+            inner,
+            silent: happenings.silent.clone(),
+        }) as Box<dyn Sensor<Measurements>>
+    };
+    let parts = Parts {
+        timer: Box::new(timer),
+        sensors: assembly.sensors.into_iter().map(silenced).collect(),
+        controller: assembly.autopilot,
+        actuators: assembly.actuators,
+    };
+    let (mut machine, mut link) = Machine::new(parts, &assembly.loop_config).unwrap();
+    machine.start().unwrap();
+    let mut messages = Vec::new();
+    for step in 1..=happenings.steps {
+        for (_, order) in happenings.orders.iter().filter(|(at, _)| *at == step) {
+            link.orders.send(*order).unwrap();
+        }
+        if happenings.stop_before == Some(step) {
+            link.stop.stop();
+        }
+        let state = machine.step();
+        messages.extend(std::iter::from_fn(|| link.messages.receive()));
+        if state == State::Stopped {
+            break;
+        }
+    }
+    messages
+}
+
+/// A sensor that says nothing for a while.
+struct Silenced {
+    inner: Box<dyn Sensor<Measurements>>,
+    silent: Vec<RangeInclusive<u64>>,
+}
+
+impl Sensor<Measurements> for Silenced {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let mut away = Measurements::default();
+        if self.silent.iter().any(|span| span.contains(&tick.number)) {
+            // The aircraft flies on unseen.
+            self.inner.sample(tick, &mut away)?;
+            return Err(SensorFault::Silent);
+        }
+        self.inner.sample(tick, into)
+    }
+
+    fn name(&self) -> &'static str {
+        self.inner.name()
+    }
+}
+
+/// Flies a recording again.
+pub(crate) fn again(config: &Config, messages: &[FlightMessage]) -> (Run, Identity) {
+    let mut identity = Identity::default();
+    let replay = Replay::new(config).unwrap();
+    let run = run(replay, messages.iter().copied(), |recorded, again| {
+        identity.take(recorded, again);
+    });
+    (run, identity)
+}
+
+pub(crate) fn records(messages: &[FlightMessage]) -> Vec<FlightRecord> {
+    let record = |message: &FlightMessage| match message {
+        Message::Tick(record) => Some(*record),
+        Message::Event(_) => None,
+    };
+    messages.iter().filter_map(record).collect()
+}

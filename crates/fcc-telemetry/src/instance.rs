@@ -1,0 +1,57 @@
+//! What a daemon is called by those who watch.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// What a daemon is called by those who watch: letters, digits, `-`, `_` and
+/// `.`, at most 32 of them. Two daemons on one machine need two names.
+///
+/// ```
+/// use fcc_telemetry::Instance;
+///
+/// let instance: Instance = "left-wing".parse()?;
+/// assert_eq!(instance.to_string(), "left-wing");
+/// assert!("left/wing".parse::<Instance>().is_err());
+/// assert_eq!(Instance::default().to_string(), "fccd");
+/// # Ok::<(), fcc_telemetry::InstanceError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Instance(String);
+
+/// Longest name: it has to fit into a service's.
+const MAX_LETTERS: usize = 32;
+
+/// A name that no daemon can have.
+#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
+#[error(
+    "'{0}' is no name for an instance: choose 1 to {MAX_LETTERS} letters, digits, '-', '_' or '.'"
+)]
+pub struct InstanceError(String);
+
+impl FromStr for Instance {
+    type Err = InstanceError;
+
+    fn from_str(name: &str) -> Result<Self, InstanceError> {
+        let good = (1..=MAX_LETTERS).contains(&name.len())
+            && name
+                .bytes()
+                .all(|letter| letter.is_ascii_alphanumeric() || b"-_.".contains(&letter));
+        if good {
+            Ok(Self(name.to_owned()))
+        } else {
+            Err(InstanceError(name.to_owned()))
+        }
+    }
+}
+
+impl Default for Instance {
+    fn default() -> Self {
+        Self("fccd".to_owned())
+    }
+}
+
+impl fmt::Display for Instance {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

@@ -1,0 +1,81 @@
+//! How a run stands, each second.
+
+use super::{LatenessCounts, Text};
+
+/// How a run stands: published each second.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[repr(C)]
+pub struct Status {
+    /// Wake-up of the last tick, ns on the loop's clock.
+    pub time_ns: i64,
+    /// Ticks since the loop's start.
+    pub ticks: u64,
+    /// Periods that passed unserved since the loop's start.
+    pub missed: u64,
+    /// Lateness that half of all ticks stayed within, ns.
+    pub lateness_p50_ns: u64,
+    /// Lateness that 99 % stayed within, ns.
+    pub lateness_p99_ns: u64,
+    /// Lateness that 99.9 % stayed within, ns.
+    pub lateness_p99_9_ns: u64,
+    /// The latest wake-up, ns.
+    pub lateness_max_ns: u64,
+    /// How many ticks woke how late.
+    pub lateness_counts: LatenessCounts,
+    /// Records that were not published: the telemetry thread was held up, or
+    /// shared memory was full.
+    pub not_published: u64,
+    /// CPU time that the telemetry thread has used, ns.
+    pub cpu_ns: u64,
+    /// Programs that watch the records.
+    pub watchers: u32,
+    /// See [`RecorderState`].
+    pub recorder_state: u32,
+    /// Records in the file.
+    pub recorded: u64,
+    /// Records that did not make it into the file.
+    pub not_recorded: u64,
+    /// Size of the file.
+    pub recording_bytes: u64,
+    /// The file's name, or why there is none.
+    pub recording: Text<128>,
+}
+
+/// What the recorder is doing.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[repr(u32)]
+pub enum RecorderState {
+    /// Nothing was asked of it.
+    #[default]
+    Off = 0,
+    /// It writes.
+    Recording = 1,
+    /// It cannot write: the disk is full, or the folder read-only.
+    Stopped = 2,
+}
+
+/// What is known of the recorder.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct RecorderStatus {
+    /// What it is doing.
+    pub state: RecorderState,
+    /// Records in the file.
+    pub recorded: u64,
+    /// Records that did not make it into the file.
+    pub not_recorded: u64,
+    /// Size of the file.
+    pub bytes: u64,
+    /// The file's name, or why there is none.
+    pub name: String,
+}
+
+impl Status {
+    /// What the recorder is doing; off where the number means nothing.
+    pub fn recorder(&self) -> RecorderState {
+        match self.recorder_state {
+            1 => RecorderState::Recording,
+            2 => RecorderState::Stopped,
+            _ => RecorderState::Off,
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The reading end.
+
+use std::time::{Duration, Instant};
+
+use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
+use iceoryx2::prelude::{PortFactory, ZeroCopySend, ipc};
+
+use super::record::Found;
+use super::services::{self, Access, EVENT, INFO, RECORD, STATUS, Service};
+use super::space;
+use super::{Event, Info, LAYOUT, Status, WatchError};
+use crate::{FlightRecord, Instance};
+
+/// How long a daemon may take to say who it is.
+const PATIENCE: Duration = Duration::from_secs(1);
+const LOOK_EVERY: Duration = Duration::from_millis(5);
+
+type In<T> = Subscriber<ipc::Service, T, ()>;
+
+/// Watches a daemon on this machine, from this or another process.
+///
+/// ```no_run
+/// use fcc_telemetry::Instance;
+/// use fcc_telemetry::live::Watcher;
+///
+/// let mut watcher = Watcher::open(&Instance::default())?;
+/// println!("{} Hz by {}", watcher.info().rate_hz, watcher.info().timer);
+/// while watcher.is_alive() {
+///     if let Some(record) = watcher.latest()? {
+///         println!("{} m", record.measurements.altitude_m.value);
+///     }
+///     std::thread::sleep(std::time::Duration::from_millis(100));
+/// }
+/// # Ok::<(), fcc_telemetry::live::WatchError>(())
+/// ```
+#[derive(Debug)]
+pub struct Watcher {
+    instance: Instance,
+    info: Info,
+    records: In<Found>,
+    events: In<Event>,
+    statuses: In<Status>,
+    service: Service<Found>,
+    // Last: it cleans up after the others.
+    access: Access,
+}
+
+impl Watcher {
+    /// Begins to watch. The newest record, the newest status and up to 64
+    /// events of the past are there at once.
+    ///
+    /// # Errors
+    /// When no daemon of this name runs here, when it is of a version with
+    /// another layout, and when there is no room for another watcher.
+    pub fn open(instance: &Instance) -> Result<Self, WatchError> {
+        if let Some(words) = space::too_little(space::WATCHER_BYTES) {
+            return Err(WatchError::NoSharedMemory(words));
+        }
+        let access = services::access().map_err(WatchError::NoSharedMemory)?;
+        let info = read_info(&access, instance)?;
+        if !info.is_understood() {
+            return Err(WatchError::OtherLayout {
+                instance: instance.clone(),
+                software: info.software.as_str().to_owned(),
+                layout: info.layout,
+                own: LAYOUT,
+            });
+        }
+        let service = RECORD.watch::<Found>(&access, instance)?;
+        Ok(Self {
+            info,
+            records: subscribe(&service, instance)?,
+            events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
+            statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
+            service,
+            access,
+            instance: instance.clone(),
+        })
+    }
+
+    /// Who publishes.
+    pub const fn info(&self) -> &Info {
+        &self.info
+    }
+
+    /// The newest record that was not given yet; those before it are passed
+    /// over.
+    ///
+    /// # Errors
+    /// When what is there is no record, or shared memory fails.
+    pub fn latest(&mut self) -> Result<Option<FlightRecord>, WatchError> {
+        let mut newest = None;
+        while let Some(found) = next(&self.records)? {
+            newest = Some(found);
+        }
+        newest.map(|found| self.record(&found)).transpose()
+    }
+
+    /// The next record; none if there is none yet. Whoever looks less often
+    /// than each second at 1 kHz misses records: their ticks' numbers tell.
+    ///
+    /// # Errors
+    /// When what is there is no record, or shared memory fails.
+    pub fn next_record(&mut self) -> Result<Option<FlightRecord>, WatchError> {
+        next(&self.records)?
+            .map(|found| self.record(&found))
+            .transpose()
+    }
+
+    /// The next event; none if there is none yet.
+    ///
+    /// # Errors
+    /// When shared memory fails.
+    pub fn next_event(&mut self) -> Result<Option<Event>, WatchError> {
+        next(&self.events)
+    }
+
+    /// The newest status that was not given yet.
+    ///
+    /// # Errors
+    /// When shared memory fails.
+    pub fn latest_status(&mut self) -> Result<Option<Status>, WatchError> {
+        let mut newest = None;
+        while let Some(status) = next(&self.statuses)? {
+            newest = Some(status);
+        }
+        Ok(newest)
+    }
+
+    /// Whether the daemon still publishes. Worth asking when nothing has come
+    /// for a while: it looks at the processes.
+    pub fn is_alive(&self) -> bool {
+        publishes(&self.access, &self.service)
+    }
+
+    fn record(&self, found: &Found) -> Result<FlightRecord, WatchError> {
+        found
+            .record()
+            .ok_or_else(|| WatchError::Damaged(self.instance.clone()))
+    }
+}
+
+fn publishes<T: std::fmt::Debug + ZeroCopySend>(access: &Access, service: &Service<T>) -> bool {
+    // One that was killed is still in the list until somebody cleans up.
+    access.try_cleanup_dead_nodes();
+    service.dynamic_config().number_of_publishers() > 0
+}
+
+/// What a daemon says of itself.
+fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
+    let service = INFO.watch::<Info>(access, instance)?;
+    let infos = subscribe(&service, instance)?;
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        let mut newest = None;
+        while let Some(info) = next(&infos)? {
+            newest = Some(info);
+        }
+        if let Some(info) = newest {
+            return Ok(info);
+        }
+        // Another watcher may hold the service open when the daemon is gone.
+        if Instant::now() > deadline || service.dynamic_config().number_of_publishers() == 0 {
+            return Err(WatchError::NotRunning(instance.clone()));
+        }
+        std::thread::sleep(LOOK_EVERY);
+    }
+}
+
+fn subscribe<T: std::fmt::Debug + ZeroCopySend + 'static>(
+    service: &Service<T>,
+    instance: &Instance,
+) -> Result<In<T>, WatchError> {
+    service
+        .subscriber_builder()
+        .create()
+        .map_err(|error| match error {
+            SubscriberCreateError::ExceedsMaxSupportedSubscribers => {
+                WatchError::TooMany(instance.clone())
+            }
+            error => WatchError::NoSharedMemory(format!("{error:?}")),
+        })
+}
+
+fn next<T: std::fmt::Debug + ZeroCopySend + Copy + 'static>(
+    from: &In<T>,
+) -> Result<Option<T>, WatchError> {
+    match from.receive() {
+        Ok(sample) => Ok(sample.map(|sample| *sample)),
+        Err(error) => Err(WatchError::NoSharedMemory(format!("{error:?}"))),
+    }
+}

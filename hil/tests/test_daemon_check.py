@@ -1,0 +1,152 @@
+"""`fccd check`: what is wrong in a configuration, in which line, at which key, what is right."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from test_daemon_commands import run
+
+WRONG = {
+    "an unknown key": (
+        '[x-plane]\nsimulater = "127.0.0.1:49000"\n',
+        2,
+        "x-plane.simulater",
+        "`simulator`",
+    ),
+    "an unknown section": ("[x-plane]\n[lop]\nrate_hz = 40\n", 2, "lop", "`loop`"),
+    "a key without its unit": (
+        "[built-in]\n[autopilot.envelope]\nmax_bank = 30\n",
+        3,
+        "autopilot.envelope.max_bank",
+        "`max_bank_deg`",
+    ),
+    "a text for a number": (
+        '[x-plane]\n\n[loop]\nrate_hz = "forty"\n',
+        4,
+        "loop.rate_hz",
+        "a number, 1 to 2000",
+    ),
+    "a fraction for a count": (
+        "[x-plane]\nengines = 1.5\n",
+        2,
+        "x-plane.engines",
+        "a whole number, 1 to 8",
+    ),
+    "a number for a text": ("[x-plane]\nengage_switch = 3\n", 2, "x-plane.engage_switch", "text"),
+    "a number for a truth": ("[x-plane]\n[realtime]\nstrict = 1\n", 3, "realtime.strict", "true"),
+    "too large": ("[x-plane]\n[loop]\nrate_hz = 5000\n", 3, "loop.rate_hz", "1 to 2000"),
+    "too small": ("[x-plane]\nengines = -1\n", 2, "x-plane.engines", "1 to 8"),
+    "no number": ("[x-plane]\n[failsafe]\nhold_s = nan\n", 3, "failsafe.hold_s", "0 to 600"),
+    "an unknown timer": (
+        '[x-plane]\n[loop]\ntimer = "quartz"\n',
+        3,
+        "loop.timer",
+        "timerfd, posix or nanosleep",
+    ),
+    "an unknown choice": (
+        '[x-plane]\n[failsafe]\nthen = "land"\n',
+        3,
+        "failsafe.then",
+        '"standby" or "stop"',
+    ),
+    "no dataref": (
+        '[x-plane]\nengage_switch = "sim/with space"\n',
+        2,
+        "x-plane.engage_switch",
+        "letters, digits, / _ [ ]",
+    ),
+    "a name for an address": (
+        '[x-plane]\nsimulator = "localhost:49000"\n',
+        2,
+        "x-plane.simulator",
+        "127.0.0.1:49000",
+    ),
+    "rows without a port": ('[x-plane]\ninput = "data"\n', 1, "x-plane.local_port", "target port"),
+    "two aircraft": ("[x-plane]\n[built-in]\n", 2, "built-in", "keep the section"),
+    "no aircraft": ("[loop]\nrate_hz = 40\n", None, None, "[x-plane]"),
+    "a range upside down": (
+        "[built-in]\n[autopilot.envelope]\nmin_airspeed_kt = 120\nmax_airspeed_kt = 110\n",
+        3,
+        "autopilot.envelope.min_airspeed_kt",
+        "less than max_airspeed_kt",
+    ),
+    "a leg of a hold": ('[x-plane]\n[course]\nkind = "hold"\nleg_s = 3\n', 2, "course", "leg_s"),
+    "an unknown course": ('[x-plane]\n[course]\nkind = "loop"\n', 3, "course.kind", '"hold"'),
+    "twice the same": ("[x-plane]\nengines = 1\nengines = 2\n", 3, "x-plane.engines", "keep one"),
+    "no TOML": ("[x-plane\n", 1, None, "]"),
+}
+
+
+@pytest.mark.parametrize(("text", "line", "key", "right"), WRONG.values(), ids=WRONG.keys())
+def test_what_is_wrong_where_and_what_would_be_right(
+    fccd: Path, tmp_path: Path, text: str, line: int | None, key: str | None, right: str
+) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text(text)
+    ended = run([fccd, "check", file])
+    assert ended.returncode == 2
+    (said,) = ended.stderr.splitlines()
+    place = f"{file}:{line}: " if line else f"{file}: "
+    assert said.startswith(place + (f"{key}: " if key else ""))
+    assert right in said
+
+    as_json = run([fccd, "check", file, "--json"])
+    assert as_json.returncode == 2
+    checked = json.loads(as_json.stdout)
+    assert checked["file"] == str(file)
+    assert checked["ok"] is False
+    (problem,) = checked["problems"]
+    assert (problem["line"], problem["key"]) == (line, key)
+    assert right in problem["message"]
+
+
+def test_every_problem_is_named_in_the_order_of_the_file(fccd: Path, tmp_path: Path) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text("[x-plane]\nengines = 9\nrate_hz = 0\n[failsafe]\nhold_s = -1\n")
+    ended = run([fccd, "check", file])
+    starts = [line.rpartition(": is ")[0] for line in ended.stderr.splitlines()]
+    assert starts == [
+        f"{file}:2: x-plane.engines",
+        f"{file}:3: x-plane.rate_hz",
+        f"{file}:5: failsafe.hold_s",
+    ]
+
+
+def test_what_is_no_text(fccd: Path, tmp_path: Path) -> None:
+    file = tmp_path / "latin-1.toml"
+    file.write_bytes("[x-plane]\n# für\n".encode("latin-1"))
+    ended = run([fccd, "check", file])
+    assert ended.returncode == 2
+    assert ended.stderr.startswith(f"{file}:2: ")
+    assert "UTF-8" in ended.stderr
+
+
+def test_what_is_not_there(fccd: Path, tmp_path: Path) -> None:
+    file = tmp_path / "missing.toml"
+    ended = run([fccd, "check", file])
+    assert ended.returncode == 2
+    assert ended.stderr.startswith(f"{file}: ")
+    assert "config/" in ended.stderr
+    checked = json.loads(run([fccd, "check", file, "--json"]).stdout)
+    assert checked["ok"] is False
+
+
+@pytest.mark.parametrize("section", ["x-plane", "built-in"])
+def test_what_is_right(fccd: Path, tmp_path: Path, section: str) -> None:
+    file = tmp_path / "right.toml"
+    file.write_text(f"[{section}]\n")
+    ended = run([fccd, "check", file])
+    assert (ended.returncode, ended.stderr) == (0, "")
+    checked = json.loads(run([fccd, "check", file, "--json"]).stdout)
+    assert checked == {"file": str(file), "ok": True, "problems": []}
+
+
+def test_run_refuses_what_check_refuses(fccd: Path, tmp_path: Path) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text("[x-plane]\nengines = 9\n")
+    ended = run([fccd, "run", "--config", file, "--json"])
+    assert ended.returncode == 2
+    assert ended.stdout == ""
+    assert f"{file}:2: x-plane.engines" in ended.stderr

@@ -1,0 +1,82 @@
+"""A flight of JSBSim, recorded by the daemon and flown again from its file."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from daemon_under_test import DaemonUnderTest, engage, write_config
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Mode, Settings
+
+OUTPUTS_PER_TICK = 15
+"""4 surfaces, 6 set points, step, state, blockers, faults, whether sent."""
+
+SUCCESS = 0
+FAILSAFE = 3
+NOT_REPLAYED = 8
+
+QUICK_PATTERN = 'kind = "timed-pattern"\nhold_s = 2.0\nleg_s = 3.0'
+
+
+def replay(fccd: Path, *words: str | Path) -> tuple[int, dict[str, Any]]:
+    """Run `fccd replay` and return its exit code and what it found."""
+    done = subprocess.run(
+        [fccd, "replay", *words, "--json"], capture_output=True, text=True, check=False
+    )
+    return done.returncode, json.loads(done.stdout) if done.stdout else {}
+
+
+def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Path) -> None:
+    """All that happens to a flight: the pattern, a switch, a silent simulator, a signal."""
+    recordings = tmp_path / "recordings"
+    with StandInProcess(Settings(port=0)) as simulator:
+        config = write_config(
+            tmp_path, simulator.port, others="[failsafe]\nhold_s = 1.0", course=QUICK_PATTERN
+        )
+        words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
+        words += ["--recordings", recordings]
+        with DaemonUnderTest(words, tmp_path) as daemon:
+            engage(simulator, daemon)
+            for _ in range(7):  # seconds: a status line each
+                daemon.wait_for("heading")
+            simulator.write(ENGAGE_SWITCH, 0.0)
+            daemon.wait_for("engaged -> standby")
+            engage(simulator, daemon)
+            simulator.set_mode(Mode.FROZEN)
+            daemon.wait_for("engaged -> failsafe")
+            daemon.wait_for("failsafe -> standby")
+            simulator.set_mode(Mode.RUNNING)
+            daemon.wait_until_ready()
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == FAILSAFE
+
+    (recording,) = recordings.iterdir()
+    exit_code, found = replay(fccd, recording)
+    assert exit_code == SUCCESS, found
+    assert found["identity"]["differing"] == 0
+    assert found["unflown"] is None
+    assert found["cuts"] == []
+    assert found["ticks"] == ending.report["timing"]["ticks"] > 400
+    assert found["identity"]["outputs"] == found["ticks"] * OUTPUTS_PER_TICK
+
+    # The configuration that was given is the one that was recorded; another is not.
+    exit_code, found = replay(fccd, recording, "--config", config)
+    assert exit_code == SUCCESS
+    assert all(quantity["differing"] == 0 for quantity in found["deviation"]["quantities"])
+    config.write_text(config.read_text() + "[autopilot.altitude]\npitch_rate_gain = 0.5\n")
+    exit_code, found = replay(fccd, recording, "--config", config)
+    assert exit_code == SUCCESS
+    differing = {q["name"] for q in found["deviation"]["quantities"] if q["differing"] > 0}
+    assert differing == {"elevator"}
+
+
+def test_a_file_that_is_no_recording_is_refused(fccd: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.mcap"
+    other.write_bytes(b"not a recording")
+    assert replay(fccd, other) == (NOT_REPLAYED, {})

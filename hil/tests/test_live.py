@@ -1,0 +1,162 @@
+"""A flight watched from outside: by Python, by `fccd top`, and by many that are killed."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import live
+import pytest
+from daemon_under_test import DaemonUnderTest, wait_until
+
+EXAMPLE = Path(live.__file__)
+SUCCESS = 0
+FAILURE = 1
+PATIENCE_S = 15.0
+
+# What the built-in aircraft begins with (config/built-in.toml).
+ALTITUDE_M = 3_000 * 0.3048
+AIRSPEED_MPS = 100 * 1852 / 3600
+
+
+@pytest.fixture
+def instance(request: pytest.FixtureRequest) -> str:
+    """Return a name that no other daemon has."""
+    return f"t{os.getpid()}-{abs(hash(request.node.name)) % 10**6}"
+
+
+def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnderTest:
+    path = scratch / "fccd.toml"
+    path.write_text(f'[built-in]\nengage_at_s = 0.5\n[course]\nkind = "hold"\n{config}')
+    words: list[str | Path] = [fccd, "fly", "--config", path, "--instance", instance, "--json"]
+    return DaemonUnderTest([*words, "--seconds", "600"], scratch)
+
+
+def watch(instance: str, daemon: DaemonUnderTest) -> live.Watcher:
+    """Watch as soon as there is something to watch."""
+    daemon.wait_for("standby -> engaged")
+    return live.Watcher(instance)
+
+
+def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
+    words: list[str | Path] = [fccd, "top", "--instance", instance, "--json"]
+    return subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+
+
+def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> None:
+    assert ctypes.sizeof(live.Record) == 512
+    records: list[live.Record] = []
+    with fly(fccd, tmp_path, instance) as daemon:
+        watcher = watch(instance, daemon)
+        assert watcher.info.rate_hz == 40.0
+        assert watcher.info.process_id == daemon.pid
+        assert watcher.info.timer == b"timerfd"
+
+        def has_come() -> bool:
+            records.extend(watcher.records())
+            return len(records) >= 80
+
+        wait_until(has_come, "80 records have come")
+        events = [event.text.decode() for event in watcher.events()]
+        taken = snapshot(fccd, instance)
+        ending = daemon.end(signal.SIGTERM)
+    # One record for each tick, in order.
+    for last, record in itertools.pairwise(records):
+        assert record.tick.number == last.tick.number + 1 + record.tick.missed
+        assert record.tick.scheduled_ns - last.tick.scheduled_ns == round(record.tick.dt_s * 1e9)
+    newest = records[-1]
+    measured = newest.measurements
+    assert live.STATES[newest.state.phase] == "engaged"
+    assert newest.sent == 1
+    assert newest.blockers == 0
+    assert measured.engage_switch.value == 1
+    # It holds what it began with: noisy sensors, still air.
+    assert measured.altitude_m.value == pytest.approx(ALTITUDE_M, abs=15.0)
+    assert newest.setpoints.altitude_m == pytest.approx(ALTITUDE_M, abs=15.0)
+    assert measured.airspeed_mps.value == pytest.approx(AIRSPEED_MPS, abs=3.0)
+    assert math.cos(measured.heading_rad.value) > math.cos(math.radians(5.0))
+    assert measured.specific_force.value.z_mps2 == pytest.approx(-9.81, abs=2.0)
+    assert measured.attitude.taken_ns == newest.tick.woke_ns
+    assert 0.0 < newest.outputs.throttle <= 1.0
+    assert 0 < newest.stages.total_ns < 25_000_000
+    assert "standby -> engaged" in events
+    assert ending.exit_code == SUCCESS
+
+    assert taken.returncode == SUCCESS, taken.stderr
+    seen = json.loads(taken.stdout)
+    assert seen["tick"]["state"] == "engaged"
+    assert seen["tick"]["actual"]["altitude_ft"] == pytest.approx(3_000, abs=50)
+    assert seen["run"]["watchers"] >= 1
+    assert seen["run"]["not_published"] == 0
+    assert [event["text"] for event in seen["events"]] == events
+
+
+def test_without_a_daemon_both_say_so(fccd: Path, instance: str) -> None:
+    asked = snapshot(fccd, instance)
+    assert asked.returncode == FAILURE
+    assert f"no fccd named '{instance}' runs here: start one" in asked.stderr
+    with pytest.raises(live.LiveError, match=f"no fccd named '{instance}' runs here"):
+        live.Watcher(instance)
+
+
+def test_two_daemons_of_one_name_both_fly(fccd: Path, tmp_path: Path, instance: str) -> None:
+    scratch = tmp_path / "second"
+    scratch.mkdir()
+    with fly(fccd, tmp_path, instance) as first:
+        first.wait_for("standby -> engaged")
+        with fly(fccd, scratch, instance) as second:
+            second.wait_for("another fccd publishes as")
+            second.wait_for("standby -> engaged")
+            assert second.end(signal.SIGTERM).exit_code == SUCCESS
+        assert live.Watcher(instance).info.process_id == first.pid
+
+
+def test_a_killed_daemon_leaves_its_name(fccd: Path, tmp_path: Path, instance: str) -> None:
+    with fly(fccd, tmp_path, instance) as first:
+        watch(instance, first)
+        first.end(signal.SIGKILL)
+    with fly(fccd, tmp_path, instance) as second:
+        assert watch(instance, second).info.process_id == second.pid
+        assert "no live telemetry" not in second.said
+
+
+def test_fifty_watchers_some_killed_cost_no_record(
+    fccd: Path, tmp_path: Path, instance: str
+) -> None:
+    came, at_once = 50, 10
+    with fly(fccd, tmp_path, instance, "[loop]\nrate_hz = 1000\n") as daemon:
+        daemon.wait_for("standby -> engaged")
+        here: list[subprocess.Popen[Any]] = []
+        for number in range(came):
+            words: list[str | Path] = (
+                [fccd, "top", "--instance", instance, "--json"]
+                if number % 2
+                else [sys.executable, EXAMPLE, instance]
+            )
+            here.append(
+                subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            )
+            time.sleep(0.05)
+            if len(here) > at_once:
+                _end(here.pop(0))
+        for process in here:
+            _end(process)
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["records_dropped"] == 0
+    assert ending.report["failsafes"] == 0
+    assert "live telemetry" not in ending.said
+
+
+def _end(process: subprocess.Popen[Any]) -> None:
+    process.kill()
+    process.wait()
