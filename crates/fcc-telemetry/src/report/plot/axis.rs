@@ -39,9 +39,9 @@ impl Axis {
     pub(super) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
         let step = nice_step((to - from) / count.max(1) as f64);
         // Two ticks are the least to read a scale from.
-        let step = [step, 0.5 * step, 0.2 * step]
-            .into_iter()
-            .map(nice_step)
+        let finer = |step: &f64| Some(nice_step(0.4 * step));
+        let step = std::iter::successors(Some(step), finer)
+            .take(3)
             .find(|step| multiples(from, to, *step).count() >= 2)
             .unwrap_or(step);
         Self {
@@ -178,6 +178,8 @@ mod tests {
     fn ticks_are_round_numbers() {
         let axis = Axis::exactly((-0.3, 1.1), 6, "");
         assert_eq!(words(&axis), ["0.0", "0.5", "1.0"]);
+        let axis = Axis::exactly((-0.27, 0.36), 3, "");
+        assert_eq!(words(&axis), ["\u{2212}0.2", "0.0", "0.2"]);
         let axis = Axis::exactly((2_987.0, 3_162.0), 5, "");
         assert_eq!(words(&axis), ["3000", "3050", "3100", "3150"]);
         assert_eq!(number(-0.001, 1), "0.0");
