@@ -153,7 +153,10 @@ def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
     """Sent to this machine alone: what multicast reaches is the network's affair."""
     with StandInProcess(Settings(port=0, beacon=("127.0.0.1", 49707))) as simulator:
         config = tmp_path / "fccd.toml"
-        config.write_text('[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n')
+        config.write_text(
+            '[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n'
+            f'[recording]\nfolder = "{tmp_path}/recordings"\n'
+        )
         with start(fccd, tmp_path, config) as daemon:
             engage(simulator, daemon)
             ending = daemon.end(signal.SIGTERM)
