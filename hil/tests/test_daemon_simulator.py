@@ -154,7 +154,10 @@ def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) ->
 def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
         config = tmp_path / "fccd.toml"
-        config.write_text('[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n')
+        config.write_text(
+            '[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n'
+            f'[recording]\nfolder = "{tmp_path}/recordings"\n'
+        )
         with start(fccd, tmp_path, config) as daemon:
             daemon.wait_for(f"X-Plane at 127.0.0.1:{simulator.port} answers")
             engage(simulator, daemon)
