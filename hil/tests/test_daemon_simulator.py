@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import socket
+import time
 from pathlib import Path
 
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
@@ -49,6 +50,25 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
         "engaged -> standby",
         "standby -> stopped",
     ]
+
+
+def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.FROZEN)
+        daemon.wait_for("engaged -> failsafe")
+        # What is written to it now piles up until nothing more fits.
+        time.sleep(2.0)
+        daemon.send(signal.SIGTERM)
+        daemon.wait_for("failsafe -> stopped")
+        assert daemon.is_running, "the release was not seen to take effect"
+        simulator.set_mode(Mode.RUNNING)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["released"] is True
 
 
 def test_a_killed_simulator_ends_the_program_where_that_is_wanted(
