@@ -29,7 +29,7 @@ def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signa
     assert ending.report["timing"]["rate_hz"] == 40.0
     assert ending.report["timing"]["ticks"] > 0
     assert ending.report["flight"] is None, "a hold has no legs to score"
-    assert ending.report["ending"] == "told to stop"
+    assert ending.report["ending"] == "interrupted by a signal"
     assert ending.report["released"] is True
     assert ending.report["failsafes"] == 0
     assert "Accept incoming connections" not in ending.said

@@ -51,7 +51,7 @@ def run(words: Words, **options: Any) -> dict[str, Any]:
 def write_config(scratch: Path, rate_hz: int, recording: str = "") -> Path:
     path = scratch / "fccd.toml"
     path.write_text(
-        f"[built-in]\nengage_at_s = 0.5\n[loop]\nrate_hz = {rate_hz}\n[recording]\n{recording}\n"
+        f"[built-in]\nengage_at_s = 1.5\n[loop]\nrate_hz = {rate_hz}\n[recording]\n{recording}\n"
     )
     return path
 
