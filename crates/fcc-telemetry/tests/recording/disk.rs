@@ -3,7 +3,7 @@
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
 use std::thread;
@@ -17,14 +17,17 @@ use fcc_telemetry::recording::{
 
 use crate::flight::{about, flight, only_file, record, settings};
 
-/// A disk that holds so many bytes and not one more.
+/// A disk that holds so many bytes and not one more, until a file that takes up
+/// its room is gone.
 struct Small {
     free: Arc<AtomicU64>,
+    in_the_way: Option<PathBuf>,
 }
 
 struct SmallFile {
     file: Box<dyn DiskFile>,
     free: Arc<AtomicU64>,
+    in_the_way: Option<PathBuf>,
 }
 
 impl Disk for Small {
@@ -32,6 +35,7 @@ impl Disk for Small {
         Ok(Box::new(SmallFile {
             file: FileSystem.create(path)?,
             free: Arc::clone(&self.free),
+            in_the_way: self.in_the_way.clone(),
         }))
     }
 }
@@ -39,6 +43,10 @@ impl Disk for Small {
 impl Write for SmallFile {
     /// As a file system does: what still fits is written, torn in the middle.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // Deleting makes room at once, as it does on a disk.
+        if self.in_the_way.as_ref().is_some_and(|file| !file.exists()) {
+            self.free.store(u64::MAX, Ordering::SeqCst);
+        }
         let free = self.free.load(Ordering::SeqCst) as usize;
         if free == 0 {
             return Err(io::ErrorKind::StorageFull.into());
@@ -94,6 +102,7 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let disk = Small {
         free: Arc::clone(&free),
+        in_the_way: None,
     };
     let mut recorder =
         Recorder::start_on(Box::new(disk), about(), settings(folder.path())).unwrap();
@@ -141,18 +150,10 @@ fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
         std::fs::write(path, [0; 1_000]).unwrap();
     }
     let free = Arc::new(AtomicU64::new(u64::MAX));
-    // Deleting makes room.
-    let room = Arc::clone(&free);
-    let gone = old.clone();
-    thread::spawn(move || {
-        while gone.exists() {
-            thread::sleep(Duration::from_millis(1));
-        }
-        room.store(u64::MAX, Ordering::SeqCst);
-    });
     let mut recorder = Recorder::start_on(
         Box::new(Small {
             free: Arc::clone(&free),
+            in_the_way: Some(old.clone()),
         }),
         about(),
         RecorderSettings {
