@@ -45,7 +45,7 @@ pub use kind::{TimerKind, UnknownTimer};
 pub use manual::ManualTimer;
 pub use nanosleep::Nanosleep;
 pub use posix::PosixTimer;
-pub use realtime::{RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
+pub use realtime::{CpuWish, RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
 pub use stats::{TimingStats, TimingSummary};
 pub use timer::{Expiry, Timer, TimerError};
 pub use timerfd::TimerFd;
