@@ -85,13 +85,15 @@ impl Deadlines {
     /// the one served before.
     pub(crate) fn woken(&mut self, passed: u64, woke_ns: i64) -> Expiry {
         self.served = self.served.saturating_add(passed);
+        let scheduled_ns = self.due_ns(self.served);
         Expiry {
             number: self.served,
-            scheduled_ns: self.due_ns(self.served),
+            scheduled_ns,
             woke_ns,
             missed: passed.saturating_sub(1),
             early_wake_ns: 0,
             spun_ns: 0,
+            kernel_lateness_ns: woke_ns.saturating_sub(scheduled_ns),
         }
     }
 

@@ -51,8 +51,12 @@ pub struct Expiry {
     /// How long before the deadline the kernel was asked to wake the thread,
     /// ns; 0 for a timer that does not wake early ([`crate::EarlyWake`]).
     pub early_wake_ns: u64,
-    /// How long the thread then spun until the deadline, ns.
+    /// How long the thread then spun towards the deadline, ns.
     pub spun_ns: u64,
+    /// How late the kernel woke the thread, ns after the time it was asked to:
+    /// the lateness that there would be without waking early. Where the thread
+    /// did not sleep, the lateness that there is.
+    pub kernel_lateness_ns: i64,
 }
 
 impl Expiry {
@@ -61,15 +65,6 @@ impl Expiry {
     #[must_use]
     pub const fn lateness_ns(&self) -> i64 {
         self.woke_ns.saturating_sub(self.scheduled_ns)
-    }
-
-    /// How late the kernel woke the thread, ns after the time it was asked to:
-    /// the lateness that there would be without waking early.
-    #[must_use]
-    pub const fn kernel_lateness_ns(&self) -> i64 {
-        self.lateness_ns()
-            .saturating_add_unsigned(self.early_wake_ns)
-            .saturating_sub_unsigned(self.spun_ns)
     }
 }
 

@@ -149,23 +149,29 @@ impl Early {
         let alarm_ns = deadlines.alarm_ns();
         let due_ns = deadlines.due_ns(deadlines.next());
         let mut now_ns = monotonic_ns();
+        let mut kernel_lateness_ns = None;
         if now_ns < alarm_ns {
             while now_ns < alarm_ns {
                 kernel.sleep_until(alarm_ns)?;
                 now_ns = monotonic_ns();
             }
             // Only of a thread that slept it can be said how long waking took.
-            self.margin.observe(now_ns.saturating_sub(alarm_ns));
+            let late_ns = now_ns.saturating_sub(alarm_ns);
+            self.margin.observe(late_ns);
+            kernel_lateness_ns = Some(late_ns);
         }
-        let roused_ns = now_ns;
+        // Beyond the deadline it is not the spin that takes the time.
+        let spun_ns = due_ns.saturating_sub(now_ns).max(0).unsigned_abs();
         while now_ns < due_ns {
             spin_loop();
             now_ns = monotonic_ns();
         }
+        let expiry = deadlines.woken_uncounted(now_ns);
         Ok(Expiry {
             early_wake_ns: self.margin.ns().unsigned_abs(),
-            spun_ns: now_ns.saturating_sub(roused_ns).unsigned_abs(),
-            ..deadlines.woken_uncounted(now_ns)
+            spun_ns,
+            kernel_lateness_ns: kernel_lateness_ns.unwrap_or(expiry.kernel_lateness_ns),
+            ..expiry
         })
     }
 }

@@ -3,7 +3,7 @@
 //! A CPU without work goes to sleep, and waking from a deep sleep takes longer
 //! than from a light one, up to hundreds of microseconds. Whoever holds this
 //! device open with a number in it, µs, keeps the kernel from states that take
-//! longer to leave (Linux, Documentation/power/pm_qos_interface).
+//! longer to leave (Linux, "PM Quality Of Service Interface").
 
 use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
