@@ -256,9 +256,8 @@ mod tests {
             if self.stale > 0 {
                 self.stale -= 1;
             } else {
-                while monotonic_ns() < alarm_ns {
-                    spin_loop();
-                }
+                let left_ns = alarm_ns.saturating_sub(monotonic_ns()).max(0);
+                std::thread::sleep(Duration::from_nanos(left_ns.unsigned_abs()));
             }
             Ok(())
         }
@@ -266,7 +265,8 @@ mod tests {
 
     #[test]
     fn an_alarm_left_over_does_not_serve_a_deadline() {
-        let period = Period::new(Duration::from_millis(2)).unwrap();
+        // Long, so that the wait begins before the alarm on any machine.
+        let period = Period::new(Duration::from_millis(300)).unwrap();
         let mut early = Early::new(&EarlyWake::default(), period).unwrap();
         let mut deadlines = Deadlines::new(monotonic_ns(), period);
         deadlines.wake_early(early.margin_ns());
@@ -275,5 +275,8 @@ mod tests {
         assert_eq!(kernel.stale, 0);
         assert!(expiry.woke_ns >= expiry.scheduled_ns);
         assert_eq!(expiry.early_wake_ns, 250_000);
+        // From the alarm on, first the kernel takes its time, then the spin.
+        let late_ns = expiry.kernel_lateness_ns.unsigned_abs();
+        assert_eq!(expiry.spun_ns, 250_000_u64.saturating_sub(late_ns));
     }
 }
