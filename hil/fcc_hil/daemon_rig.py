@@ -78,6 +78,7 @@ class DaemonRig(StandInRig):
     def leave_recording(self, path: Path) -> list[Path]:
         """End the daemon and move its recording to a path, or those of its parts beside it."""
         self.truth()
+        self.set_faults([])
         self.daemon.stop()
         parts = sorted(self._recordings.glob("*.mcap"))
         left = []
@@ -90,6 +91,10 @@ class DaemonRig(StandInRig):
 
     def close(self) -> None:
         """End the daemon, then the stand-in: it has to see the controls released."""
+        if not self._is_closed:
+            # A daemon that hears nothing waits long for the release to show.
+            with contextlib.suppress(StandInError):
+                self.set_faults([])
         self.daemon.__exit__(None, None, None)
         super().close()
 

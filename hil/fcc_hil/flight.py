@@ -241,9 +241,7 @@ class Flight:
             overshoots_less_than(stretch, limit, change),
         )
 
-    def never(
-        self, what: Condition | str, *, from_: float = 0.0, to: float | None = None
-    ) -> None:
+    def never(self, what: Condition | str, *, from_: float = 0.0, to: float | None = None) -> None:
         """Require that a condition, `abs(bank) > 35`, or a state, "failsafe", never comes."""
         __tracebackhide__ = True
         if isinstance(what, str):
@@ -288,9 +286,7 @@ class Flight:
         found = self._find(text, since_s)
         if found is None:
             # What comes too late is still worth a word, and so is what is just seen.
-            self.rig.fly_to(
-                until_s + later_s + 1.0, lambda: self._find(text, since_s) is not None
-            )
+            self.rig.fly_to(until_s + later_s + 1.0, lambda: self._find(text, since_s) is not None)
             found = self._find(text, since_s)
         seen_s = until_s if found is None else found.time_s
         self._flown_to_s = max(self._flown_to_s, seen_s)
@@ -330,9 +326,7 @@ class Flight:
         before = course.set_points(max(0.0, start_s - _ROW_S), captured)
         return Leg(begun, start_s, course.hold_s + begun * course.leg_s, before, points)
 
-    def _stretch(
-        self, quantity: Quantity, at: float | None, from_s: float, to_s: float
-    ) -> Stretch:
+    def _stretch(self, quantity: Quantity, at: float | None, from_s: float, to_s: float) -> Stretch:
         truth = self.rig.truth()
         time_s = truth["time_s"] - self.engaged_at_s
         shown = (time_s >= from_s - _TOLERANCE_S) & (time_s <= to_s + _TOLERANCE_S)

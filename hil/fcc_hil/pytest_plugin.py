@@ -159,9 +159,7 @@ def autopilot(request: pytest.FixtureRequest) -> fcc.Machine:
 
 
 @pytest.fixture
-def daemon(
-    request: pytest.FixtureRequest, tmp_path: Path
-) -> Iterator[DaemonRig | RemoteRig]:
+def daemon(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[DaemonRig | RemoteRig]:
     """Fly with the daemon in real time: one of this machine, or with --fccd that of HOST."""
     from .daemon_rig import DaemonRig  # noqa: PLC0415 - as the flight in lockstep has its own
 
@@ -220,9 +218,7 @@ def _autopilot(request: pytest.FixtureRequest) -> AutopilotMark:
     return _marked(request, "autopilot", autopilot_mark)
 
 
-def _marked(
-    request: pytest.FixtureRequest, name: str, make: Callable[..., Wished]
-) -> Wished:
+def _marked(request: pytest.FixtureRequest, name: str, make: Callable[..., Wished]) -> Wished:
     mark = request.node.get_closest_marker(name)
     try:
         return make() if mark is None else make(*mark.args, **mark.kwargs)

@@ -101,5 +101,6 @@ def never(condition: Condition, time_s: Samples, values: Samples) -> Verdict:
         return Verdict(is_met=True, flown=f"{quantity} comes to {most}")
     return Verdict(
         is_met=False,
-        flown=f"{quantity} is {condition.side} it from {time_s[hits[0]]:.2f} s on and comes to {most}",
+        flown=f"{quantity} is {condition.side} it from {time_s[hits[0]]:.2f} s on, "
+        f"and comes to {most}",
     )

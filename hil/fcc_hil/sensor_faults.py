@@ -88,9 +88,7 @@ class FaultySensors:
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
         """Change the faults; those that stay go on where they were."""
         ordered = sorted(faults, key=lambda fault: _ORDER[fault.kind])
-        self._running = {
-            fault: self._running.get(fault) or _Running(fault) for fault in ordered
-        }
+        self._running = {fault: self._running.get(fault) or _Running(fault) for fault in ordered}
 
     def read(self, time_s: float, state: State) -> tuple[State | None, frozenset[str]]:
         """Return what the sensors say of a state, and the channels of which nothing comes.
@@ -112,10 +110,18 @@ class FaultySensors:
         if everything:
             return None, NOTHING_MISSING
         came = {name: value for name, value in said.items() if value is not None}
-        return replace(state, **came), frozenset(said.keys() - came.keys())
+        return _with(state, came), frozenset(said.keys() - came.keys())
 
 
 _Values = dict[str, float | None]
+
+
+def _with(state: State, values: dict[str, float]) -> State:
+    """Return a copy of a state with some of its fields changed."""
+    changed = replace(state)
+    for name, value in values.items():
+        setattr(changed, name, value)
+    return changed
 
 
 class _Running:
@@ -307,7 +313,8 @@ class Faults:
             raise ValueError(f"lasts is {lasts:g} s: give more than 0, or leave it out")
         if not 0.0 < share <= 1.0:
             raise ValueError(f"share is {share:g}: give a fraction above 0 and up to 1")
-        name, channels, words = EVERYTHING, (), f"{kind.value} of {EVERYTHING}"
+        name, words = EVERYTHING, f"{kind.value} of {EVERYTHING}"
+        channels: tuple[str, ...] = ()
         if sensor == EVERYTHING:
             if kind is not Kind.LOSS:
                 raise ValueError(f"{kind.value} of everything: only its loss can be told")
