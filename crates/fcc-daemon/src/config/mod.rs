@@ -112,17 +112,25 @@ impl Config {
         Self::read(text, file)?.checked(text, file)
     }
 
-    /// The autopilot's part of a text, for who flies an aircraft of their own:
-    /// no `[x-plane]` and no `[built-in]` is needed.
+    /// Checks a text for who flies an aircraft of their own: no `[x-plane]`
+    /// and no `[built-in]` is needed.
     ///
     /// # Errors
     /// As [`Config::parse`].
-    pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
+    pub fn parse_without_aircraft(text: &str, file: &str) -> Result<Self, ConfigError> {
         let mut config = Self::read(text, file)?;
         if config.x_plane.is_none() {
             config.built_in.get_or_insert_default();
         }
-        Ok(config.checked(text, file)?.autopilot_config())
+        config.checked(text, file)
+    }
+
+    /// The autopilot's part of such a text.
+    ///
+    /// # Errors
+    /// As [`Config::parse`].
+    pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
+        Ok(Self::parse_without_aircraft(text, file)?.autopilot_config())
     }
 
     fn read(text: &str, file: &str) -> Result<Self, ConfigError> {

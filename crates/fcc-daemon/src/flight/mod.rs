@@ -26,7 +26,7 @@ pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Length, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
-pub use recording::{RecordingOutcome, RecordingWish};
+pub use recording::{RecordingOutcome, RecordingWish, about};
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
 
