@@ -2,6 +2,7 @@
 //! the aircraft, as fast as the machine can.
 
 mod autopilot;
+mod machine;
 mod values;
 
 use pyo3::prelude::*;
@@ -13,5 +14,6 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<values::PyMeasurements>()?;
     module.add_class::<values::PySurfaces>()?;
     module.add_class::<values::PySetpoints>()?;
+    machine::register(module)?;
     Ok(())
 }

@@ -32,7 +32,7 @@ impl RecordingWish {
 }
 
 /// What is known of a flight by its configuration and its machine.
-fn about(config: &Config, as_given: Option<String>) -> About {
+pub fn about(config: &Config, as_given: Option<String>) -> About {
     let aircraft = match config.aircraft() {
         Aircraft::XPlane(_) => "x-plane",
         Aircraft::BuiltIn(_) => "built-in",

@@ -5,8 +5,8 @@ use fcc_core::flight::{
     SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{
-    ActuatorFault, Cause, EventKind, Flags, Message, Order, Reading, SensorFault, StageTimes,
-    State, Switch, Tick, Time,
+    ActuatorFault, Cause, EventKind, Flags, Message, Order, Reading, SensorFault, Stage,
+    StageTimes, State, Switch, Tick, Time,
 };
 use fcc_telemetry::recording::{Compression, Recorder, RecorderSettings, Recording};
 use fcc_telemetry::{FlightMessage, FlightRecord};
@@ -152,6 +152,7 @@ fn any_state() -> impl Strategy<Value = State> {
         Just(State::Engaged),
         Just(State::Stopped),
         Just(State::Failsafe(Cause::InvalidOutput)),
+        Just(State::Failsafe(Cause::Overrun)),
         any::<u32>().prop_map(|bits| State::Failsafe(Cause::Faults(Flags::from_bits(bits)))),
     ]
 }
@@ -346,9 +347,29 @@ fn every_event_comes_back() {
         EventKind::Panicked,
         EventKind::TimerFailed,
         EventKind::ToldToStop,
+        EventKind::OverrunsOver { count, first, last },
+        EventKind::Hung {
+            silent_ns: u64::MAX,
+        },
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];
+    for stage in [
+        Stage::Timer,
+        Stage::Sensors,
+        Stage::Navigation,
+        Stage::Guidance,
+        Stage::Control,
+        Stage::Actuators,
+        Stage::Tick,
+    ] {
+        kinds.push(EventKind::Overrun {
+            of: stage,
+            took_ns: u64::MAX,
+            budget_ns: 1,
+            longest: Stage::Control,
+        });
+    }
     for order in [
         Order::Engage,
         Order::Disengage,

@@ -23,6 +23,7 @@ use std::path::Path;
 use cpus::Cpus;
 pub use grants::{RealtimeGrants, RealtimeRefused, Refusal};
 pub use latency::LatencyLimit;
+pub use scheduling::{take_priority_from, this_thread};
 
 /// What a thread would like to have.
 ///
