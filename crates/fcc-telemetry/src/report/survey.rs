@@ -102,6 +102,8 @@ impl Survey {
             scheduled_ns: tick.scheduled.as_nanos(),
             woke_ns: tick.woke.as_nanos(),
             missed: tick.missed,
+            early_wake_ns: record.early_wake_ns,
+            ..Expiry::default()
         });
         self.durations.record(record);
         self.states.take(time_s, record.state.state());

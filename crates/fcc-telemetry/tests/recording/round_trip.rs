@@ -99,6 +99,9 @@ fn bits(record: &FlightRecord) -> Vec<u64> {
         record.sensor_faults,
         record.actuator_faults,
         record.records_dropped,
+        record.overruns,
+        record.page_faults,
+        record.early_wake_ns,
         u64::from(record.state.phase()),
         u64::from(record.state.cause()),
         u64::from(record.state.flags().bits()),
@@ -268,7 +271,7 @@ fn any_record() -> impl Strategy<Value = FlightRecord> {
     (
         (tick, stages, any_measurements(), setpoints, any_surfaces()),
         (
-            any::<[u64; 3]>(),
+            any::<[u64; 6]>(),
             any_state(),
             any::<[u32; 2]>(),
             any::<bool>(),
@@ -285,6 +288,9 @@ fn any_record() -> impl Strategy<Value = FlightRecord> {
                 sensor_faults: counts[0],
                 actuator_faults: counts[1],
                 records_dropped: counts[2],
+                overruns: counts[3],
+                page_faults: counts[4],
+                early_wake_ns: counts[5],
                 state: state.into(),
                 blockers: Flags::from_bits(flags[0]),
                 faults: Flags::from_bits(flags[1]),
