@@ -55,6 +55,7 @@ impl AutopilotSection {
             altitude: AltitudeConfig::from(&self.altitude),
             airspeed: AirspeedConfig::from(&self.airspeed),
             envelope: Envelope::from(&self.envelope),
+            ..AutopilotConfig::default()
         }
     }
 }

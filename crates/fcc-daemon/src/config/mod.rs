@@ -12,6 +12,7 @@ mod error;
 mod places;
 mod ranges;
 mod recording;
+mod restart;
 mod runtime;
 mod telemetry;
 mod units;
@@ -31,6 +32,7 @@ pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
+pub use restart::{RestartMode, RestartSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
 pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
@@ -50,6 +52,8 @@ pub struct Config {
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// What becomes of a flight that was cut off.
+    pub restart: RestartSection,
     /// Who may watch, live.
     pub telemetry: TelemetrySection,
     /// What is flown.
@@ -136,10 +140,11 @@ impl Config {
 
     /// The core's configuration.
     pub fn autopilot_config(&self) -> AutopilotConfig {
-        self.autopilot.to_core(
-            &self.course,
-            Duration::from_millis(self.failsafe.sensor_max_age_ms),
-        )
+        let max_age = Duration::from_millis(self.failsafe.sensor_max_age_ms);
+        AutopilotConfig {
+            settling: self.restart.mode.settling(),
+            ..self.autopilot.to_core(&self.course, max_age)
+        }
     }
 
     /// What the loop is told.

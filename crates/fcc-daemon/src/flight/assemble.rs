@@ -6,6 +6,7 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
+use super::restart::RestartWish;
 use super::tap::{TruthReceiver, tap};
 use crate::config::{Aircraft, Config, TelemetrySection, XPlaneSection};
 
@@ -21,6 +22,9 @@ pub struct Assembly {
     pub loop_config: LoopConfig,
     /// Who may watch, live.
     pub(super) telemetry: TelemetrySection,
+    /// How it is to be taken up if it is cut off; not with an aircraft that
+    /// ends when the program does.
+    pub(super) restart: Option<RestartWish>,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -57,6 +61,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
                 telemetry: config.telemetry.clone(),
+                restart: None,
                 truth: Some(truth),
                 x_plane: None,
             })
@@ -70,6 +75,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 actuators: vec![Box::new(actuator)],
                 loop_config,
                 telemetry: config.telemetry.clone(),
+                restart: Some(RestartWish::of(config)),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

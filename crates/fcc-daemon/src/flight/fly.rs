@@ -14,6 +14,7 @@ use super::assemble::Assembly;
 use super::connection::Connection;
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::restart::Restart;
 use super::signals::{self, Kept};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
@@ -134,9 +135,19 @@ pub fn fly(
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
+            let mut news = None;
+            if let Some(wish) = assembly.restart {
+                (watch.restart, news) = Restart::begin(wish);
+            }
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
-                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                watch.service.tell();
+                let news = [
+                    news.take(),
+                    watch.poll_restart(&mut link.orders, connection.as_mut()),
+                    connection.as_mut().and_then(Connection::poll),
+                ];
+                for words in news.into_iter().flatten() {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
@@ -148,6 +159,7 @@ pub fn fly(
                 thread::sleep(FETCH_EVERY);
             }
             drain(&mut link, &mut watch, recording.as_mut(), plan);
+            watch.service.stopping();
             (handle.join(), recording, interrupted)
         }
         Pace::Lockstep => {
@@ -162,6 +174,9 @@ pub fn fly(
         }
     };
     let confirmed = connection.is_none_or(Connection::end);
+    if let Some(restart) = watch.restart.take() {
+        restart.end();
+    }
     if !confirmed {
         watch.remark(
             "X-Plane did not show that it has its controls back; the guard process goes on \

@@ -3,9 +3,11 @@
 //!
 //! The environment says what goes wrong:
 //! - `FCCD_PANIC_AT_S`: so many seconds after engaging, control panics;
-//! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN.
+//! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN;
+//! - `FCCD_HANG_AT_S`: so many seconds after engaging, control never returns.
 
 use std::fmt;
+use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
@@ -16,6 +18,7 @@ pub struct Faulty {
     autopilot: Autopilot,
     panic_at_s: Option<f64>,
     nan_at_s: Option<f64>,
+    hang_at_s: Option<f64>,
     engaged_at: Time,
 }
 
@@ -27,6 +30,7 @@ impl Faulty {
             autopilot,
             panic_at_s: seconds("FCCD_PANIC_AT_S"),
             nan_at_s: seconds("FCCD_NAN_AT_S"),
+            hang_at_s: seconds("FCCD_HANG_AT_S"),
             engaged_at: Time::NEVER,
         }
     }
@@ -73,6 +77,10 @@ impl Controller for Faulty {
 
     fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         assert!(!self.is_due(self.panic_at_s, tick), "injected panic");
+        while self.is_due(self.hang_at_s, tick) {
+            // One that span under SCHED_FIFO would take the whole CPU with it.
+            std::thread::sleep(Duration::from_millis(10));
+        }
         let mut surfaces = self.autopilot.control(tick, measurements);
         if self.is_due(self.nan_at_s, tick) {
             surfaces.elevator = f64::NAN;
