@@ -61,6 +61,7 @@ impl AutopilotSection {
             altitude: AltitudeConfig::from(&self.altitude),
             airspeed: AirspeedConfig::from(&self.airspeed),
             envelope: Envelope::from(&self.envelope),
+            ..AutopilotConfig::default()
         }
     }
 }

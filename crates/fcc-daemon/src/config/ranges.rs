@@ -29,6 +29,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),
+    ("restart.max_age_s", 1.0, 600.0),
     ("course.hold_s", 0.0, 86_400.0),
     ("course.leg_s", 1.0, 86_400.0),
     ("course.turn_deg", -179.0, 179.0),

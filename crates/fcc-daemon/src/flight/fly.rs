@@ -16,6 +16,7 @@ use super::connection::Connection;
 use super::hang::{HangWatch, Hung};
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::restart::Restart;
 use super::signals::{self, Kept};
 use super::sole::Sole;
 use super::tally::Tally;
@@ -161,6 +162,10 @@ pub fn fly(
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
+            let mut news = None;
+            if let Some(wish) = assembly.restart {
+                (watch.restart, news) = Restart::begin(wish);
+            }
             let mut hung = None;
             while hung.is_none() && !link.messages.is_over() {
                 drain(
@@ -170,7 +175,13 @@ pub fn fly(
                     Some(&mut tally),
                     plan,
                 );
-                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                watch.service.tell();
+                let news = [
+                    news.take(),
+                    watch.poll_restart(&mut link.orders, connection.as_mut()),
+                    connection.as_mut().and_then(Connection::poll),
+                ];
+                for words in news.into_iter().flatten() {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
@@ -189,6 +200,7 @@ pub fn fly(
                 Some(&mut tally),
                 plan,
             );
+            watch.service.stopping();
             let report = match hung {
                 None => handle.join(),
                 Some(hung) => {
@@ -215,6 +227,9 @@ pub fn fly(
         }
     };
     let confirmed = connection.is_none_or(Connection::end);
+    if let Some(restart) = watch.restart.take() {
+        restart.end();
+    }
     if !confirmed {
         watch.remark(
             "X-Plane did not show that it has its controls back; the guard process goes on \

@@ -1,15 +1,19 @@
 //! Takes what the loop tells, and keeps what matters later.
 
-use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_core::flight::{Course, Order};
 use fcc_core::framework::{EventKind, Message, State};
+use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
 use super::assemble::Assembly;
+use super::connection::Connection;
 use super::fly::{Length, Plan};
 use super::live::Live;
 use super::outcome::EventEntry;
+use super::restart::Restart;
+use super::service::Service;
 use super::status;
 use super::tap::TruthReceiver;
 
@@ -37,6 +41,10 @@ pub(super) struct Watch {
     status: Option<status::Printer>,
     /// Who watches from elsewhere.
     pub(super) live: Live,
+    /// Who started this.
+    pub(super) service: Service,
+    /// What would have to be known to start again in flight.
+    pub(super) restart: Option<Restart>,
 }
 
 impl Watch {
@@ -63,11 +71,17 @@ impl Watch {
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
             live,
+            service: Service::from_environment(),
+            restart: None,
         }
     }
 
     /// Takes one message.
     pub(super) fn take(&mut self, message: &FlightMessage) {
+        self.service.take(message);
+        if let Some(restart) = &mut self.restart {
+            restart.take(message);
+        }
         match message {
             Message::Tick(record) => self.record(record),
             Message::Event(event) => self.event(event),
@@ -149,6 +163,19 @@ impl Watch {
         );
         self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
         self.keep(entry);
+    }
+
+    /// Goes on with what a restart in flight asks for; what is new, in words.
+    pub(super) fn poll_restart(
+        &mut self,
+        orders: &mut OrderSender<Order>,
+        connection: Option<&mut Connection>,
+    ) -> Option<String> {
+        self.restart.as_mut()?.poll(orders, || {
+            if let Some(connection) = connection {
+                connection.relieve_guard();
+            }
+        })
     }
 
     /// Something that the loop itself does not know.

@@ -1,8 +1,9 @@
 //! What is recorded comes back with the very same bits.
 
+use fcc_core::flight::guidance::Targets;
 use fcc_core::flight::{
-    Attitude, BodyRates, Measurements, Order as Command, Plant, PlantState, Position, Setpoints,
-    SpecificForce, Surfaces, Velocity,
+    Attitude, BodyRates, Measurements, Order as Command, Plant, PlantState, Position, Resume,
+    Setpoints, SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, Message, Order, Reading, SensorFault, Stage,
@@ -14,6 +15,21 @@ use proptest::prelude::*;
 
 use crate::flight::{
     STARTED_UNIX_NS, about, event, flight, only_file, record, record_all, settings,
+};
+
+const RESUME: Resume = Resume {
+    targets: Targets {
+        airspeed_mps: 51.4,
+        heading_rad: -0.0,
+        altitude_m: 914.4,
+    },
+    pattern_s: Some(0.0),
+    surfaces: Surfaces {
+        throttle: 0.7,
+        elevator: -0.1,
+        aileron: 1e-300,
+        rudder: 0.3,
+    },
 };
 
 /// Records, reads, and gives what came back from a file that must be whole.
@@ -377,6 +393,11 @@ fn every_event_comes_back() {
         Order::Controller(Command::Airspeed(-0.0)),
         Order::Controller(Command::Heading(6.1)),
         Order::Controller(Command::Altitude(f64::INFINITY)),
+        Order::Controller(Command::Resume(RESUME)),
+        Order::Controller(Command::Resume(Resume {
+            pattern_s: None,
+            ..RESUME
+        })),
     ] {
         kinds.push(EventKind::Ordered(order));
     }

@@ -3,6 +3,7 @@
 mod config;
 pub mod flags;
 mod plant_clock;
+mod resume;
 
 use core::fmt;
 use core::time::Duration;
@@ -11,6 +12,7 @@ use libm::cos;
 
 pub use config::{AutopilotConfig, Course, Order};
 use plant_clock::PlantClock;
+pub use resume::Resume;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
@@ -25,9 +27,6 @@ const UPSET_RAD: f64 = 1.047;
 /// A switch that was read once and is silent for longer than this cannot
 /// switch off any more.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
-
-/// Navigation has to have watched for so long before the autopilot takes over.
-const SETTLING: Duration = Duration::from_secs(1);
 
 /// Navigation, guidance and control as one [`Controller`].
 #[derive(Clone, Debug)]
@@ -91,6 +90,17 @@ impl Autopilot {
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
         }
+    }
+
+    /// Takes over with throttle and surfaces where they stand.
+    fn take_over(&mut self, standing: &Surfaces) {
+        let estimate = *self.navigation.estimate();
+        let schedule = self.schedule();
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
+        self.altitude.engage(standing.elevator, &estimate, schedule);
+        let demand = self.throttle_demand(estimate.climb_rate_mps);
+        self.airspeed.engage(standing.throttle, &demand, &estimate);
     }
 
     fn stale(&self, now: Time) -> Flags {
@@ -193,7 +203,8 @@ impl Controller for Autopilot {
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(
                 flags::SETTLING,
-                self.watching_since.is_never() || tick.woke.since(self.watching_since) < SETTLING,
+                self.watching_since.is_never()
+                    || tick.woke.since(self.watching_since) < self.config.settling,
             )
             .with(
                 flags::TOO_SLOW,
@@ -221,12 +232,15 @@ impl Controller for Autopilot {
             Order::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
             Order::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
             Order::Altitude(m) => write!(f, "altitude {m:.1} m"),
+            Order::Resume(Resume { pattern_s, .. }) => match pattern_s {
+                Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
+                None => f.write_str("go on with what was flown"),
+            },
         }
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         let estimate = *self.navigation.estimate();
-        let schedule = self.schedule();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             heading_rad: estimate.heading_rad,
@@ -244,11 +258,7 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
-        self.heading
-            .engage(standing.aileron, standing.rudder, &estimate, schedule);
-        self.altitude.engage(standing.elevator, &estimate, schedule);
-        let demand = self.throttle_demand(estimate.climb_rate_mps);
-        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.take_over(&standing);
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
@@ -349,9 +359,12 @@ impl Controller for Autopilot {
                 self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
             Order::Altitude(m) if m.is_finite() => self.targets.altitude_m = m,
-            _ => return,
+            Order::Resume(ref resume) => self.resume(resume),
+            _ => {}
         }
-        self.course = None;
+        if order.ends_pattern() {
+            self.course = None;
+        }
     }
 
     fn setpoints(&self) -> Setpoints {
