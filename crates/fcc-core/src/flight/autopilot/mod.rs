@@ -1,16 +1,20 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod capture;
 mod config;
 pub mod flags;
 mod plant_clock;
+mod scale;
 
 use core::fmt;
 use core::time::Duration;
 
 use libm::cos;
 
+use capture::Capture;
 pub use config::{AutopilotConfig, Course, Order};
 use plant_clock::PlantClock;
+pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
@@ -38,6 +42,7 @@ pub struct Autopilot {
     navigation: Navigation,
     course: Option<TimedPattern>,
     targets: Targets,
+    capture: Option<Capture>,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -54,6 +59,7 @@ impl Autopilot {
             navigation: Navigation::new(&config.navigation),
             course: None,
             targets: Targets::default(),
+            capture: None,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -204,6 +210,8 @@ impl Controller for Autopilot {
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
         self.course = match self.config.course {
             Course::Hold => None,
             Course::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
@@ -224,8 +232,16 @@ impl Controller for Autopilot {
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        let marked = self.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
         if let Some(pattern) = &mut self.course {
+            pattern.shift_altitude(shift_m);
             self.targets = pattern.step(self.clock.step_s());
+        } else {
+            self.targets.altitude_m += shift_m;
         }
     }
 
@@ -308,6 +324,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.course = None;
+        self.capture = None;
         self.setpoints = Setpoints::default();
     }
 
@@ -320,7 +337,10 @@ impl Controller for Autopilot {
                 let now_rad = self.navigation.estimate().heading_rad;
                 self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
-            Order::Altitude(m) if m.is_finite() => self.targets.altitude_m = m,
+            Order::Altitude(m) if m.is_finite() => {
+                self.targets.altitude_m = m;
+                self.capture = None;
+            }
             _ => return,
         }
         self.course = None;
