@@ -1,18 +1,22 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod capture;
 mod config;
 pub mod flags;
 mod plant_clock;
 mod resume;
+mod scale;
 
 use core::fmt;
 use core::time::Duration;
 
 use libm::cos;
 
+use capture::Capture;
 pub use config::{AutopilotConfig, Course, Order};
 use plant_clock::PlantClock;
 pub use resume::Resume;
+pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
@@ -38,6 +42,7 @@ pub struct Autopilot {
     frozen: FrozenWatch,
     course: Option<TimedPattern>,
     targets: Targets,
+    capture: Option<Capture>,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -55,6 +60,7 @@ impl Autopilot {
             frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
             course: None,
             targets: Targets::default(),
+            capture: None,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -246,6 +252,8 @@ impl Controller for Autopilot {
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
         self.course = match self.config.course {
             Course::Hold => None,
             Course::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
@@ -262,8 +270,16 @@ impl Controller for Autopilot {
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        let marked = self.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
         if let Some(pattern) = &mut self.course {
+            pattern.shift_altitude(shift_m);
             self.targets = pattern.step(self.clock.step_s());
+        } else {
+            self.targets.altitude_m += shift_m;
         }
     }
 
@@ -346,6 +362,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.course = None;
+        self.capture = None;
         self.setpoints = Setpoints::default();
     }
 
@@ -358,7 +375,10 @@ impl Controller for Autopilot {
                 let now_rad = self.navigation.estimate().heading_rad;
                 self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
-            Order::Altitude(m) if m.is_finite() => self.targets.altitude_m = m,
+            Order::Altitude(m) if m.is_finite() => {
+                self.targets.altitude_m = m;
+                self.capture = None;
+            }
             Order::Resume(ref resume) => self.resume(resume),
             _ => {}
         }

@@ -82,6 +82,8 @@ impl Autopilot {
         };
         self.course = course.map(|pattern| pattern.captured_at(captured));
         self.targets = self.course.as_ref().map_or(captured, TimedPattern::targets);
+        // What was captured is known as well as it ever will be.
+        self.capture = None;
         self.take_over(&resume.surfaces);
     }
 }

@@ -77,6 +77,11 @@ impl TimedPattern {
         }
     }
 
+    /// The captured altitude turned out to be this much higher, m.
+    pub fn shift_altitude(&mut self, by_m: f64) {
+        self.captured.altitude_m += by_m;
+    }
+
     /// The targets now; then `dt_s` seconds pass.
     pub fn step(&mut self, dt_s: f64) -> Targets {
         let targets = self.targets();
