@@ -4,6 +4,7 @@ use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::{EventKind, Message, State};
 use fcc_sim::Truth;
+use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
 use super::assemble::Assembly;
@@ -12,10 +13,6 @@ use super::live::Live;
 use super::outcome::EventEntry;
 use super::status;
 use super::tap::TruthReceiver;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
-const G_MPS2: f64 = 9.806_65;
 
 /// The most events that are kept for the end.
 const MOST_EVENTS: usize = 10_000;
