@@ -96,8 +96,14 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
         publisher.record(&record(number));
     }
     publisher.flush();
-    // The next status knows all of it.
-    sleep(Duration::from_millis(1_200));
+    // The status that knows all of it has been published.
+    let mut first = Watcher::open(&instance).unwrap();
+    wait_for("a status of ten ticks", || {
+        first
+            .latest_status()
+            .unwrap()
+            .filter(|status| status.ticks == 10)
+    });
 
     let mut watcher = Watcher::open(&instance).unwrap();
     let newest = wait_for("the newest record", || watcher.latest().unwrap());
