@@ -143,12 +143,12 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     ]);
     for entry in entries {
         let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
-        let seconds = entry.duration_s;
+        let tenths = (entry.duration_s * 10.0).round() as u64;
         table.add_row(vec![
             name.to_string_lossy().into_owned(),
             entry.started.replace('T', " ").replace('Z', ""),
             entry.aircraft.clone(),
-            format!("{}:{:04.1}", (seconds / 60.0) as u64, seconds % 60.0),
+            format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
             entry.state.clone(),
