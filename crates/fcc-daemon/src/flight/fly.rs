@@ -136,13 +136,14 @@ pub fn fly(
             watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
-                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                let said = [
+                    connection.as_mut().and_then(Connection::poll),
+                    watch.live.poll(),
+                ];
+                for words in said.into_iter().flatten() {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
-                    watch.remark(words);
-                }
-                if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
                 thread::sleep(FETCH_EVERY);

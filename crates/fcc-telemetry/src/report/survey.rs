@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::{Message, Tick};
+use fcc_core::framework::{Message, Tick, Time};
 use fcc_timer::{Expiry, TimerError, TimingStats};
 
 use super::box_plot::BoxPlot;
@@ -19,6 +19,7 @@ use super::states::States;
 use super::thesis::ThesisFigures;
 use super::track::Track;
 use super::{Report, Timing};
+use crate::recording::Remark;
 use crate::{FlightEvent, FlightMessage, FlightRecord, TimingReport};
 
 /// Takes the messages of a flight in the order they were recorded, and keeps
@@ -116,15 +117,24 @@ impl Survey {
         Ok(())
     }
 
+    /// Takes words that are no event of the loop.
+    pub fn take_remark(&mut self, remark: &Remark) {
+        let time_s = self.seconds(remark.time);
+        let tick = self.continuity.last_tick;
+        self.events.remark(time_s, tick, &remark.text);
+    }
+
+    /// When something happened; before the first tick, or in it, is at 0.
+    fn seconds(&self, time: Time) -> f64 {
+        match self.began_ns {
+            Some(began_ns) if !time.is_never() => since(began_ns, time.as_nanos()).max(0.0),
+            _ => 0.0,
+        }
+    }
+
     /// Takes an event.
     pub fn take_event(&mut self, event: &FlightEvent) {
-        // What happens before the first tick, or in it, happens at 0.
-        let time_s = match self.began_ns {
-            Some(began_ns) if !event.time.is_never() => {
-                (since(began_ns, event.time.as_nanos())).max(0.0)
-            }
-            _ => 0.0,
-        };
+        let time_s = self.seconds(event.time);
         if events::is_order_to_autopilot(event.kind)
             && let Some(scoring) = &mut self.scoring
         {
@@ -192,7 +202,7 @@ fn timing(stats: &TimingStats, origin: &Origin) -> Timing {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::framework::{Flags, StateCode, Time};
+    use fcc_core::framework::{Flags, StateCode};
     use proptest::prelude::*;
 
     use super::*;
@@ -201,7 +211,8 @@ mod tests {
     fn record() -> impl Strategy<Value = FlightRecord> {
         let numbers = || prop::array::uniform8(any::<f64>());
         let times = (any::<i64>(), any::<i64>(), any::<i64>());
-        let counts = (0_u64..50, 0_u64..5, any::<u64>(), 0_u8..4);
+        let missed = prop_oneof![0_u64..5, any::<u64>()];
+        let counts = (0_u64..50, missed, any::<u64>(), 0_u8..4);
         (times, counts, numbers(), numbers()).prop_map(
             |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
                 let tick = Tick {
