@@ -185,6 +185,33 @@ mod tests {
     use super::super::timing::{Lateness, Period, Realtime};
     use super::*;
 
+    #[test]
+    fn a_minute_less_a_moment_is_listed_as_a_minute() {
+        let entry = |duration_s| Entry {
+            path: "flight.mcap".into(),
+            started: "2026-11-20T04:21:33Z".to_owned(),
+            part: 1,
+            aircraft: "built-in".to_owned(),
+            duration_s,
+            ticks: 2_400,
+            worst_lateness_us: 12.34,
+            state: "stopped".to_owned(),
+            ending: "ordered to stop".to_owned(),
+            not_recorded: 0,
+            file: Wholeness::Whole,
+        };
+        let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
+        for words in [
+            " 1:00.0 ",
+            " 10:00.0 ",
+            " 0:05.3 ",
+            " 62:05.0 ",
+            " 12.3 µs ",
+        ] {
+            assert!(text.contains(words), "{words} is not in\n{text}");
+        }
+    }
+
     /// The thesis' table 6.1, its own figures through our table.
     #[test]
     fn prints_the_thesis_table_as_the_thesis_does() {

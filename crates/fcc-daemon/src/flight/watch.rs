@@ -117,7 +117,7 @@ impl Watch {
             let sample = match truth {
                 Some(truth) => Some(true_sample(self.now_s, &truth)),
                 None if self.truth.is_some() => None,
-                None => Some(measured_sample(self.now_s, record)),
+                None => Some(Sample::measured(record, self.now_s)),
             };
             if let Some((log, sample)) = self.log.as_mut().zip(sample) {
                 log.push(sample);
@@ -223,16 +223,5 @@ fn true_sample(time_s: f64, truth: &Truth) -> Sample {
         altitude_ft: truth.altitude_m * M_FT,
         airspeed_kt: truth.indicated_airspeed_mps * MPS_KT,
         lateral_g: truth.specific_force.y_mps2 / G_MPS2,
-    }
-}
-
-fn measured_sample(time_s: f64, record: &FlightRecord) -> Sample {
-    let measured = &record.measurements;
-    Sample {
-        time_s,
-        heading_deg: measured.heading_rad.value.to_degrees(),
-        altitude_ft: measured.altitude_m.value * M_FT,
-        airspeed_kt: measured.airspeed_mps.value * MPS_KT,
-        lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
     }
 }

@@ -2,11 +2,11 @@
 //! before is lost, and what is lost is told once there is room again.
 
 use std::fs::File;
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use fcc_core::framework::Message;
 use fcc_telemetry::recording::{
@@ -16,25 +16,39 @@ use fcc_telemetry::recording::{
 use crate::disks::{Small, gaps, ticks, wait_for, wait_for_ticks};
 use crate::flight::{about, flight, only_file, record, settings};
 
-#[test]
-fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
-    let folder = tempfile::tempdir().unwrap();
+/// A recorder on a disk with room for all, and what of that is free.
+fn recorder(settings: RecorderSettings, in_the_way: Option<&Path>) -> (Recorder, Arc<AtomicU64>) {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let disk = Small {
         free: Arc::clone(&free),
-        in_the_way: None,
+        in_the_way: in_the_way.map(Path::to_owned),
     };
-    let mut recorder =
-        Recorder::start_on(Box::new(disk), about(), settings(folder.path())).unwrap();
+    let recorder = Recorder::start_on(Box::new(disk), about(), settings).unwrap();
+    (recorder, free)
+}
+
+/// Records 40 ticks that are safe.
+fn begin_well(recorder: &mut Recorder) {
     for message in &flight(40) {
         recorder.take(message);
     }
-    wait_for_ticks(&recorder, 40);
-    // Room for a part of the next chunk.
-    free.store(100, Ordering::SeqCst);
-    for number in 41..=80 {
+    wait_for_ticks(recorder, 40);
+}
+
+fn take(recorder: &mut Recorder, numbers: RangeInclusive<u64>) {
+    for number in numbers {
         recorder.take(&Message::Tick(record(number)));
     }
+}
+
+#[test]
+fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut recorder, free) = recorder(settings(folder.path()), None);
+    begin_well(&mut recorder);
+    // Room for a part of the next chunk.
+    free.store(100, Ordering::SeqCst);
+    take(&mut recorder, 41..=80);
     let (status, news) = recorder.finish("ordered to stop");
 
     let stopped = status.stopped.unwrap();
@@ -69,38 +83,17 @@ fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
     for path in [&old, &kept, &unrelated] {
         std::fs::write(path, [0; 1_000]).unwrap();
     }
-    let free = Arc::new(AtomicU64::new(u64::MAX));
-    let mut recorder = Recorder::start_on(
-        Box::new(Small {
-            free: Arc::clone(&free),
-            in_the_way: Some(old.clone()),
-        }),
-        about(),
-        RecorderSettings {
-            keep_total_bytes: Some(1_000_000_000),
-            ..settings(folder.path())
-        },
-    )
-    .unwrap();
-    for message in &flight(40) {
-        recorder.take(message);
-    }
-    wait_for_ticks(&recorder, 40);
+    let limits = RecorderSettings {
+        keep_total_bytes: Some(1_000_000_000),
+        ..settings(folder.path())
+    };
+    let (mut recorder, free) = recorder(limits, Some(&old));
+    begin_well(&mut recorder);
     free.store(10, Ordering::SeqCst);
-    for number in 41..=50 {
-        recorder.take(&Message::Tick(record(number)));
-    }
-    let began = Instant::now();
-    while old.exists() && began.elapsed() < Duration::from_secs(10) {
-        thread::sleep(Duration::from_millis(5));
-    }
+    take(&mut recorder, 41..=50);
     // The file that follows is begun as soon as there is room.
-    while recorder.status().files.len() < 2 && began.elapsed() < Duration::from_secs(10) {
-        thread::sleep(Duration::from_millis(5));
-    }
-    for number in 51..=60 {
-        recorder.take(&Message::Tick(record(number)));
-    }
+    wait_for(&recorder, |status| status.files.len() == 2);
+    take(&mut recorder, 51..=60);
     let (status, news) = recorder.finish("ordered to stop");
     assert_eq!(status.stopped, None, "{news:?}");
     assert!(!old.exists() && kept.exists() && unrelated.exists());
@@ -131,24 +124,14 @@ fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
         .path()
         .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
     std::fs::write(&old, [0; 1_000]).unwrap();
-    let free = Arc::new(AtomicU64::new(u64::MAX));
-    let disk = Small {
-        free: Arc::clone(&free),
-        in_the_way: Some(old.clone()),
-    };
     let limits = RecorderSettings {
         keep_total_bytes: Some(1_000_000_000),
         ..settings(folder.path())
     };
-    let mut recorder = Recorder::start_on(Box::new(disk), about(), limits).unwrap();
-    for message in &flight(40) {
-        recorder.take(message);
-    }
-    wait_for_ticks(&recorder, 40);
+    let (mut recorder, free) = recorder(limits, Some(&old));
+    begin_well(&mut recorder);
     free.store(10, Ordering::SeqCst);
-    for number in 41..=50 {
-        recorder.take(&Message::Tick(record(number)));
-    }
+    take(&mut recorder, 41..=50);
     let (status, news) = recorder.finish("ordered to stop");
     assert_eq!(status.stopped, None, "{news:?}");
     assert!(!old.exists());
@@ -164,42 +147,29 @@ fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
 #[test]
 fn a_disk_that_has_room_again_is_recorded_to_again() {
     let folder = tempfile::tempdir().unwrap();
-    let free = Arc::new(AtomicU64::new(u64::MAX));
-    let disk = Small {
-        free: Arc::clone(&free),
-        in_the_way: None,
-    };
     let eager = RecorderSettings {
         retry_every: Duration::from_millis(20),
         ..settings(folder.path())
     };
-    let mut recorder = Recorder::start_on(Box::new(disk), about(), eager).unwrap();
+    let (mut recorder, free) = recorder(eager, None);
     wait_for(&recorder, |status| status.file.is_some());
     let beginning = std::fs::metadata(only_file(folder.path())).unwrap().len();
-    for message in &flight(40) {
-        recorder.take(message);
-    }
-    wait_for_ticks(&recorder, 40);
+    begin_well(&mut recorder);
     free.store(0, Ordering::SeqCst);
-    for number in 41..=80 {
-        recorder.take(&Message::Tick(record(number)));
-    }
+    take(&mut recorder, 41..=80);
     wait_for(&recorder, |status| status.stopped.is_some());
     // Room for a file to begin, and for nothing in it. It fails at its first
     // commit, and nothing of it stays.
     free.store(beginning + 10, Ordering::SeqCst);
-    wait_for(&recorder, |status| status.file.is_some());
-    for number in 81..=90 {
-        recorder.take(&Message::Tick(record(number)));
-    }
-    wait_for(&recorder, |status| status.file.is_none());
+    take(&mut recorder, 81..=90);
+    wait_for(&recorder, |status| {
+        free.load(Ordering::SeqCst) == 0 && status.file.is_none()
+    });
     assert_eq!(recorder.status().files, [only_file(folder.path())]);
 
     free.store(u64::MAX, Ordering::SeqCst);
     wait_for(&recorder, |status| status.file.is_some());
-    for number in 91..=100 {
-        recorder.take(&Message::Tick(record(number)));
-    }
+    take(&mut recorder, 91..=100);
     let (status, news) = recorder.finish("ordered to stop");
     assert_eq!((status.stopped, status.not_recorded), (None, 50));
     assert_eq!((status.ticks, status.files.len()), (50, 2));

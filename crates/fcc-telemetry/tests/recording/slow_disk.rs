@@ -1,7 +1,6 @@
 //! A disk that is too slow: nobody waits for it, and what it costs is told.
 
 use std::sync::{Arc, Condvar, Mutex};
-use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventKind, Message};
 use fcc_telemetry::FlightMessage;
@@ -29,14 +28,10 @@ fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
     .unwrap();
     // The disk hangs in the file's first sync: the recorder's thread takes
     // nothing, and 16 messages fit on the way to it.
-    let began = Instant::now();
+    // Whoever waited for the disk would wait here for ever.
     for number in 1..=1_000 {
         recorder.take(&Message::Tick(record(number)));
     }
-    assert!(
-        began.elapsed() < Duration::from_secs(2),
-        "somebody waited for the disk"
-    );
     let dropped = recorder.status().not_recorded;
     assert_eq!(dropped, 1_000 - capacity as u64);
     set(&gate, true);
