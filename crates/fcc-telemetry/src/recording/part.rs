@@ -18,6 +18,8 @@ pub(super) struct Part {
     uncommitted: Lost,
     /// Gaps told in the file since: the messages in them are lost already.
     gaps: Lost,
+    /// Remarks made in the file since.
+    remarks: Vec<String>,
 }
 
 /// What is left of a part when the disk has failed.
@@ -31,6 +33,8 @@ pub(super) struct Abandoned {
     pub(super) gaps: Lost,
     /// Messages that were given to it, and are lost.
     pub(super) lost: Lost,
+    /// Remarks that were made in it, and are not.
+    pub(super) remarks: Vec<String>,
 }
 
 impl Part {
@@ -40,6 +44,7 @@ impl Part {
             committed_ticks: 0,
             uncommitted: Lost::default(),
             gaps: Lost::default(),
+            remarks: Vec::new(),
         }
     }
 
@@ -54,6 +59,7 @@ impl Part {
 
     /// Takes words that are not an event of the loop.
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
+        self.remarks.push(text.clone());
         self.file.remark(text)
     }
 
@@ -64,6 +70,7 @@ impl Part {
         self.committed_ticks = self.file.ticks();
         self.uncommitted = Lost::default();
         self.gaps = Lost::default();
+        self.remarks.clear();
         Ok(())
     }
 
@@ -89,6 +96,7 @@ impl Part {
             bytes,
             gaps: self.gaps,
             lost: self.uncommitted,
+            remarks: self.remarks,
         }
     }
 

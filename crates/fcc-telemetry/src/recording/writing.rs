@@ -319,11 +319,15 @@ impl Writing {
             bytes,
             gaps,
             lost,
+            remarks,
         } = part.abandon();
         self.ticks_before += ticks;
         self.bytes_before += bytes;
         self.lost.join(gaps);
         self.lost.join(lost);
+        for text in remarks {
+            self.note(text);
+        }
         if !kept {
             self.about.part -= 1;
         }
