@@ -1,6 +1,7 @@
 //! The recorder's thread: files begun, fed, committed each second, ended; and
 //! begun again where the disk had failed.
 
+use std::fmt::Write as _;
 use std::io;
 use std::mem;
 use std::path::PathBuf;
@@ -62,6 +63,8 @@ pub(super) struct Writing {
     words: Vec<String>,
     /// When what had gathered was committed, or a file was to begin.
     acted: Instant,
+    /// Whether the flight is over, and nothing is tried again.
+    over: bool,
     /// Records and bytes in the parts before this one.
     ticks_before: u64,
     bytes_before: u64,
@@ -86,6 +89,7 @@ impl Writing {
             trouble: None,
             words: Vec::new(),
             acted: Instant::now(),
+            over: false,
             ticks_before: 0,
             bytes_before: 0,
         }
@@ -211,6 +215,7 @@ impl Writing {
     }
 
     fn end(mut self, ending: &str) {
+        self.over = true;
         // A second time where a full disk got room, and another file, just now.
         for _ in 0..2 {
             self.tell_gap(None);
@@ -381,12 +386,14 @@ impl Writing {
     fn stop(&mut self, why: String) {
         let is_new = self.trouble.replace(why).is_none();
         if is_new {
-            let text = format!(
-                "recording stopped: {}. The flight goes on unrecorded; recording is tried again \
-                 every {} s",
-                self.trouble_words(),
-                self.settings.retry_every.as_secs_f64()
-            );
+            let mut text = format!("recording stopped: {}", self.trouble_words());
+            if !self.over {
+                let every_s = self.settings.retry_every.as_secs_f64();
+                let _ = write!(
+                    text,
+                    ". The flight goes on unrecorded; recording is tried again every {every_s} s"
+                );
+            }
             self.tell(text, true);
         }
         self.post_trouble();

@@ -142,6 +142,22 @@ fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
     assert_all_is_there_or_told(second, 41, 50);
 }
 
+/// Where there is no room for what comes last, nothing is promised any more.
+#[test]
+fn a_recording_that_cannot_be_ended_says_so_and_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut recorder, free) = recorder(settings(folder.path()), None);
+    begin_well(&mut recorder);
+    free.store(0, Ordering::SeqCst);
+    let (status, news) = recorder.finish("ordered to stop");
+    assert!(status.stopped.unwrap().contains("fccd recover"), "{news:?}");
+    let last = &news.last().unwrap().text;
+    assert!(last.starts_with("recording stopped: "), "{last}");
+    assert!(!last.contains("tried again"), "{last}");
+    assert_eq!((status.ticks, status.not_recorded), (40, 0));
+    assert_eq!(recover(&status.files[0], |_| {}).unwrap().ticks, 40);
+}
+
 /// As a full disk on which somebody makes room, or one that is plugged in
 /// again.
 #[test]
