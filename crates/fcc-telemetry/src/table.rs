@@ -143,12 +143,12 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     ]);
     for entry in entries {
         let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
-        let seconds = entry.duration_s;
+        let tenths = (entry.duration_s * 10.0).round() as u64;
         table.add_row(vec![
             name.to_string_lossy().into_owned(),
             entry.started.replace('T', " ").replace('Z', ""),
             entry.aircraft.clone(),
-            format!("{}:{:04.1}", (seconds / 60.0) as u64, seconds % 60.0),
+            format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
             entry.state.clone(),
@@ -184,6 +184,33 @@ pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
 mod tests {
     use super::super::timing::{Lateness, Period, Realtime};
     use super::*;
+
+    #[test]
+    fn a_minute_less_a_moment_is_listed_as_a_minute() {
+        let entry = |duration_s| Entry {
+            path: "flight.mcap".into(),
+            started: "2026-11-20T04:21:33Z".to_owned(),
+            part: 1,
+            aircraft: "built-in".to_owned(),
+            duration_s,
+            ticks: 2_400,
+            worst_lateness_us: 12.34,
+            state: "stopped".to_owned(),
+            ending: "ordered to stop".to_owned(),
+            not_recorded: 0,
+            file: Wholeness::Whole,
+        };
+        let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
+        for words in [
+            " 1:00.0 ",
+            " 10:00.0 ",
+            " 0:05.3 ",
+            " 62:05.0 ",
+            " 12.3 µs ",
+        ] {
+            assert!(text.contains(words), "{words} is not in\n{text}");
+        }
+    }
 
     /// The thesis' table 6.1, its own figures through our table.
     #[test]

@@ -176,18 +176,16 @@ pub fn fly(
                     plan,
                 );
                 watch.service.tell();
-                let news = [
+                let said = [
                     news.take(),
                     watch.poll_restart(&mut link.orders, connection.as_mut()),
                     connection.as_mut().and_then(Connection::poll),
+                    watch.live.poll(),
                 ];
-                for words in news.into_iter().flatten() {
+                for words in said.into_iter().flatten() {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
-                    watch.remark(words);
-                }
-                if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
                 hung = watchdog.as_ref().and_then(|(watchdog, _)| watchdog.hung());

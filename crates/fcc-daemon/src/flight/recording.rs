@@ -105,7 +105,8 @@ pub struct RecordingOutcome {
     pub bytes: u64,
     /// Records and events that were dropped: the disk was too slow or full.
     pub not_recorded: u64,
-    /// Why recording stopped before the flight ended; none if it did not.
+    /// Why the flight's end is not recorded, and what of it is lost; none if it
+    /// is.
     pub stopped: Option<String>,
 }
 

@@ -5,6 +5,7 @@ use fcc_core::flight::{Course, Order};
 use fcc_core::framework::{EventKind, Message, State};
 use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
+use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
 use super::assemble::Assembly;
@@ -16,10 +17,6 @@ use super::restart::Restart;
 use super::service::Service;
 use super::status;
 use super::tap::TruthReceiver;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
-const G_MPS2: f64 = 9.806_65;
 
 /// The most events that are kept for the end.
 const MOST_EVENTS: usize = 10_000;
@@ -134,7 +131,7 @@ impl Watch {
             let sample = match truth {
                 Some(truth) => Some(true_sample(self.now_s, &truth)),
                 None if self.truth.is_some() => None,
-                None => Some(measured_sample(self.now_s, record)),
+                None => Some(Sample::measured(record, self.now_s)),
             };
             if let Some((log, sample)) = self.log.as_mut().zip(sample) {
                 log.push(sample);
@@ -253,16 +250,5 @@ fn true_sample(time_s: f64, truth: &Truth) -> Sample {
         altitude_ft: truth.altitude_m * M_FT,
         airspeed_kt: truth.indicated_airspeed_mps * MPS_KT,
         lateral_g: truth.specific_force.y_mps2 / G_MPS2,
-    }
-}
-
-fn measured_sample(time_s: f64, record: &FlightRecord) -> Sample {
-    let measured = &record.measurements;
-    Sample {
-        time_s,
-        heading_deg: measured.heading_rad.value.to_degrees(),
-        altitude_ft: measured.altitude_m.value * M_FT,
-        airspeed_kt: measured.airspeed_mps.value * MPS_KT,
-        lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
     }
 }

@@ -4,9 +4,9 @@ use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, Flags, State};
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::live::{RecorderState, Status};
+use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 
-use super::flight::{M_FT, MPS_KT};
 use super::picture::Picture;
 
 /// One moment of a flight. What has not been measured or told is null.
