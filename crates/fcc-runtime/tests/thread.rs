@@ -10,7 +10,7 @@ use std::time::Duration;
 use bench::{Puppet, Stage, parts};
 use fcc_core::framework::State;
 use fcc_runtime::{Ending, Link, Loop, LoopConfig, LoopHandle, Message, Order, Parts, SpawnError};
-use fcc_timer::{RealtimeWishes, Strictness, TimerKind};
+use fcc_timer::{CpuWish, RealtimeWishes, Strictness, TimerKind};
 
 /// 500 Hz.
 const PERIOD: Duration = Duration::from_millis(2);
@@ -106,7 +106,7 @@ fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
     let config = LoopConfig {
         realtime: RealtimeWishes {
             // No machine has this many.
-            cpu: Some(1_000_000),
+            cpu: Some(CpuWish::Number(1_000_000)),
             strictness: Strictness::Strict,
             ..RealtimeWishes::default()
         },
