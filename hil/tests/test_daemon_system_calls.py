@@ -48,7 +48,6 @@ class Clock:
     """In that call's arguments."""
     also: frozenset[str] = frozenset()
 
-
     moves_by: str = ""
     """The call that sets the timer anew, when the early wake's margin is another."""
 
