@@ -9,6 +9,7 @@ mod autopilot;
 mod budget;
 mod built_in;
 mod course;
+mod cpu;
 mod error;
 mod places;
 mod ranges;
@@ -32,10 +33,13 @@ pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
+pub use cpu::CpuChoice;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
 pub use restart::{RestartMode, RestartSection};
-pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use runtime::{
+    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
+};
 pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 

@@ -8,7 +8,7 @@ use std::time::Duration;
 use fcc_core::framework::{Event, EventKind, Message, State};
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_telemetry::recording::RecordingPace;
-use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use fcc_timer::{ManualTimer, Timer, TimerError};
 use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
@@ -101,7 +101,7 @@ pub fn fly(
     let period = tick.period();
     let _sole = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
-        Pace::RealTime => build(tick.timer, period)?,
+        Pace::RealTime => tick.build_timer()?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
     };
     let timer_name = timer.name();
@@ -250,10 +250,6 @@ pub fn fly(
     let mut outcome = Outcome::new(timer_name, report, events, score, recording);
     outcome.explain(interrupted, refused);
     Ok(outcome)
-}
-
-fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
-    kind.build(period)
 }
 
 fn run_in_lockstep(
