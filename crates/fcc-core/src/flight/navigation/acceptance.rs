@@ -44,10 +44,10 @@ const HEADING_RAD: Reach = Reach {
     at_once: 0.26,
     per_s: 3.14,
 };
-/// A gust, and the roll acceleration of full aileron several times over.
+/// A gust, and the roll acceleration of full aileron twice over.
 const RATES_RADPS: Reach = Reach {
     at_once: 1.0,
-    per_s: 20.0,
+    per_s: 8.0,
 };
 /// 3 g at once, as a hard landing, and what a gust builds up.
 const SPECIFIC_FORCE_MPS2: Reach = Reach {
