@@ -63,6 +63,9 @@ impl Cockpit {
     fn new(course: Course) -> Self {
         let config = AutopilotConfig {
             course,
+            // What it feels here is the same to the last bit until it is told
+            // otherwise.
+            frozen_after: Duration::ZERO,
             ..AutopilotConfig::default()
         };
         let mut cockpit = Self {
@@ -367,7 +370,7 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
     cockpit
         .autopilot
         .command(&Order::Heading(100.0_f64.to_radians()));
-    cockpit.feel.altitude_m += 20.0;
+    cockpit.feel.altitude_m += 14.0;
     cockpit.feel.roll_deg = 5.0;
     let before = cockpit.steps(20);
     let estimated = *cockpit.autopilot.estimated();
@@ -401,12 +404,29 @@ fn a_jump_of_the_simulator_is_a_fault() {
     assert!(cockpit.faults().contains(flags::PLANT_JUMPED));
 }
 
+/// 300 m in a tick: not believed while it is news, and a loss when the last good
+/// altitude is too old.
+#[test]
+fn a_jump_of_a_sensor_is_its_loss() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    cockpit.feel.altitude_m += 300.0;
+    for _ in 0..10 {
+        cockpit.step();
+        assert_eq!(cockpit.faults(), Flags::NONE);
+        let altitude_m = cockpit.autopilot.estimated().altitude_m;
+        assert!((altitude_m - LEVEL.altitude_m).abs() < 1.0, "{altitude_m}");
+    }
+    cockpit.step();
+    assert_eq!(cockpit.faults(), flags::ALTITUDE | flags::REJECTED);
+}
+
 #[test]
 fn failsafe_levels_the_wings_while_the_attitude_is_known() {
     let mut cockpit = Cockpit::engaged(Course::Hold);
     cockpit.step();
-    cockpit.feel.roll_deg = 20.0;
     for _ in 0..40 {
+        cockpit.feel.roll_deg += 0.5;
         cockpit.observe();
     }
     let out = (0..8).fold(Surfaces::default(), |_, _| {

@@ -33,21 +33,21 @@ struct Reach {
     per_s: f64,
 }
 
-/// 10° of a sensor that finds its way back after a gap, and a roll of one turn
-/// a second; light aerobatic aircraft roll so.
+/// 10° of a sensor that finds its way back after a gap, and a roll of half a
+/// turn a second: twice what trainers do.
 const ATTITUDE_RAD: Reach = Reach {
     at_once: 0.175,
-    per_s: 6.3,
+    per_s: 3.14,
 };
 /// 15° of a compass that swings, and half a turn a second: a fast spin.
 const HEADING_RAD: Reach = Reach {
     at_once: 0.26,
     per_s: 3.14,
 };
-/// A gust, and the roll acceleration of full aileron several times over.
+/// A gust, and the roll acceleration of full aileron twice over.
 const RATES_RADPS: Reach = Reach {
     at_once: 1.0,
-    per_s: 20.0,
+    per_s: 8.0,
 };
 /// 3 g at once, as a hard landing, and what a gust builds up.
 const SPECIFIC_FORCE_MPS2: Reach = Reach {
@@ -65,6 +65,11 @@ const HEIGHT_M: Reach = Reach {
     per_s: 60.0,
 };
 
+/// The reach grows for so long, s: through a few lost datagrams. A source that
+/// goes on to say what cannot be is not to be believed for its persistence
+/// before its loss was seen.
+const GROWS_FOR_S: f64 = 0.1;
+
 /// A source that goes on for so many times the age at which a reading is too
 /// old has convinced us: it is the old value that was wrong, or the aircraft
 /// was put somewhere else. By then its loss was seen.
@@ -72,7 +77,7 @@ const CONVINCED_AFTER: u32 = 4;
 
 impl Reach {
     fn holds(&self, difference: f64, gap_s: f64) -> bool {
-        difference.abs() <= self.at_once + self.per_s * gap_s
+        difference.abs() <= self.at_once + self.per_s * gap_s.min(GROWS_FOR_S)
     }
 }
 
