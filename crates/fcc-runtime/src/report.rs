@@ -27,6 +27,8 @@ pub struct LoopReport {
     pub sensor_faults: u64,
     /// Failed writes and releases of actuators.
     pub actuator_faults: u64,
+    /// Ticks that overran their budget.
+    pub overruns: u64,
     /// Records that nobody fetched in time.
     pub records_dropped: u64,
     /// Events that nobody fetched in time.
@@ -56,6 +58,9 @@ pub enum Ending {
     TimerFailed(TimerError),
     /// The timer had no more deadlines to give.
     TimerEnded,
+    /// It hung, and its watchdog ended it. Nobody is left to give an account
+    /// but who watched it.
+    Hung,
     /// Whoever stepped the [`Machine`](crate::Machine) finished it.
     Finished,
 }
@@ -70,6 +75,7 @@ impl fmt::Display for Ending {
             Self::Panicked(words) => write!(f, "a part panicked: {words}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),
+            Self::Hung => f.write_str("the loop hung"),
             Self::Finished => f.write_str("finished"),
         }
     }

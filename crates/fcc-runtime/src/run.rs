@@ -139,6 +139,12 @@ impl LoopHandle {
         self.stop.stop();
     }
 
+    /// Leaves the loop alone for good: for one that hangs, which nobody can
+    /// wait for.
+    pub fn abandon(mut self) {
+        drop(self.thread.take());
+    }
+
     /// Waits for the loop's end; does not cause it.
     ///
     /// # Panics

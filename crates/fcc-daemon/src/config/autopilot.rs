@@ -45,10 +45,16 @@ impl Default for AutopilotSection {
 impl AutopilotSection {
     /// The core's configuration: this section, a course, and how old a reading
     /// may become.
-    pub fn to_core(&self, course: &CourseSection, max_age: Duration) -> AutopilotConfig {
+    pub fn to_core(
+        &self,
+        course: &CourseSection,
+        max_age: Duration,
+        frozen_after: Duration,
+    ) -> AutopilotConfig {
         AutopilotConfig {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
             max_age,
+            frozen_after,
             navigation: NavigationConfig::from(&self.navigation),
             course: Course::from(course),
             heading: HeadingConfig::from(&self.heading),

@@ -6,6 +6,7 @@
 //! refused with line, key and range.
 
 mod autopilot;
+mod budget;
 mod built_in;
 mod course;
 mod error;
@@ -22,11 +23,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_runtime::LoopConfig;
+use fcc_runtime::{Budget, LoopConfig};
 use fcc_timer::RealtimeWishes;
 use serde::{Deserialize, Serialize};
 
 pub use autopilot::AutopilotSection;
+pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
 pub use error::{ConfigError, Problem};
@@ -44,6 +46,10 @@ pub struct Config {
     pub tick: LoopSection,
     /// What is asked of the kernel.
     pub realtime: RealtimeSection,
+    /// How long ticks may take.
+    pub budget: BudgetSection,
+    /// When the loop hangs.
+    pub watchdog: WatchdogSection,
     /// The engage switch.
     pub engage: EngageSection,
     /// What happens when sensors fall silent.
@@ -147,6 +153,7 @@ impl Config {
         self.autopilot.to_core(
             &self.course,
             Duration::from_millis(self.failsafe.sensor_max_age_ms),
+            Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
         )
     }
 
@@ -156,6 +163,7 @@ impl Config {
             switch_off: self.engage.switch_off.into(),
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
+            budget: Budget::from(&self.budget),
             realtime: RealtimeWishes::from(&self.realtime),
             ..LoopConfig::default()
         }

@@ -15,7 +15,16 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("realtime.cpu", 0.0, 1_023.0),
     ("realtime.stack_prefault_kib", 0.0, 4_096.0),
     ("realtime.timer_slack_ns", 0.0, 1e9),
+    ("budget.tick_us", 1.0, 1e6),
+    ("budget.sensors_us", 1.0, 1e6),
+    ("budget.navigation_us", 1.0, 1e6),
+    ("budget.guidance_us", 1.0, 1e6),
+    ("budget.control_us", 1.0, 1e6),
+    ("budget.actuators_us", 1.0, 1e6),
+    ("budget.failsafe_after", 0.0, 1e6),
+    ("watchdog.hang_after_ms", 50.0, 60_000.0),
     ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
+    ("failsafe.sensor_frozen_s", 0.0, 60.0),
     ("failsafe.hold_s", 0.0, 600.0),
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
@@ -162,6 +171,24 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
             ),
         );
     }
+    let budget = &config.budget;
+    let stages = [
+        ("budget.sensors_us", budget.sensors_us),
+        ("budget.navigation_us", budget.navigation_us),
+        ("budget.guidance_us", budget.guidance_us),
+        ("budget.control_us", budget.control_us),
+        ("budget.actuators_us", budget.actuators_us),
+    ];
+    for (key, stage_us) in stages {
+        if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
+            && stage_us > tick_us
+        {
+            complain(
+                key,
+                format!("is {stage_us}: choose no more than tick_us, {tick_us}"),
+            );
+        }
+    }
     if config.x_plane.is_some() && config.built_in.is_some() {
         complain(
             "built-in",
@@ -205,7 +232,7 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{BuiltInSection, XPlaneSection};
+    use crate::config::{BudgetSection, BuiltInSection, XPlaneSection};
 
     /// A new key without a range would be a key whose nonsense is believed.
     #[test]
@@ -216,6 +243,16 @@ mod tests {
             ..Config::default()
         };
         config.realtime.cpu = Some(1);
+        let us = Some(1);
+        config.budget = BudgetSection {
+            tick_us: us,
+            sensors_us: us,
+            navigation_us: us,
+            guidance_us: us,
+            control_us: us,
+            actuators_us: us,
+            failsafe_after: us,
+        };
         let values = toml::Value::try_from(&config).unwrap();
         let mut missing = Vec::new();
         walk("", &values, &mut missing);

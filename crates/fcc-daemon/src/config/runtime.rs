@@ -128,6 +128,9 @@ pub struct EngageSection {
 pub struct FailsafeSection {
     /// Readings older than this are a loss of their sensor.
     pub sensor_max_age_ms: u64,
+    /// Readings that stay the same to the last bit for so long while the
+    /// aircraft moves are a loss of their sensor; 0 for never.
+    pub sensor_frozen_s: f64,
     /// How long wings are held level before the controls are released.
     pub hold_s: f64,
     /// What comes after.
@@ -138,6 +141,7 @@ impl Default for FailsafeSection {
     fn default() -> Self {
         Self {
             sensor_max_age_ms: 250,
+            sensor_frozen_s: 2.0,
             hold_s: 5.0,
             then: Then::Standby,
         }

@@ -7,7 +7,7 @@ use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::tap::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config, TelemetrySection, XPlaneSection};
+use crate::config::{Aircraft, Config, TelemetrySection, WatchdogSection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -19,6 +19,8 @@ pub struct Assembly {
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     /// What the loop is told.
     pub loop_config: LoopConfig,
+    /// When the loop hangs.
+    pub(super) watchdog: WatchdogSection,
     /// Who may watch, live.
     pub(super) telemetry: TelemetrySection,
     /// What is true of a simulated aircraft, tick by tick; none where only
@@ -56,6 +58,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
+                watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
                 truth: Some(truth),
                 x_plane: None,
@@ -69,6 +72,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(actuator)],
                 loop_config,
+                watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
                 truth: None,
                 x_plane: Some((status, section.clone())),

@@ -5,16 +5,20 @@ use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::Duration;
 
-use fcc_core::framework::State;
-use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_core::framework::{Event, EventKind, Message, State};
+use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::hang::{HangWatch, Hung};
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
 use super::signals::{self, Kept};
+use super::sole::Sole;
+use super::tally::Tally;
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -67,6 +71,15 @@ pub enum FlyError {
     /// not begin.
     #[error("signals cannot be caught: {0}")]
     Signals(#[source] io::Error),
+    /// Another daemon flies this simulator.
+    #[error(
+        "another fccd on this machine flies X-Plane at {0}: end that one first, or fly another \
+         X-Plane"
+    )]
+    Taken(String),
+    /// There is no watchdog, and a flight without one was not asked for.
+    #[error("the watchdog: {0}")]
+    Watchdog(#[source] io::Error),
 }
 
 /// How often what the loop tells is fetched: often enough to look alive, and
@@ -85,6 +98,7 @@ pub fn fly(
     recording: Option<RecordingWish>,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
+    let _sole = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
         Pace::RealTime => build(tick.timer, period)?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
@@ -111,12 +125,13 @@ pub fn fly(
         wish.prepare(facts, &mut watch);
     }
     // Before the loop's thread exists, so that nothing real-time is inherited.
+    let held_at = assembly.x_plane.clone();
     let mut connection = assembly
         .x_plane
         .map(|(status, section)| Connection::watch(status, &section));
     let parts = Parts {
         timer,
-        sensors: assembly.sensors,
+        sensors: super::sensors(assembly.sensors),
         controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
@@ -124,18 +139,37 @@ pub fn fly(
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
+            let watchdog = assembly.watchdog.enabled.then(|| {
+                let config = WatchdogConfig {
+                    hang_after: assembly.watchdog.hang_after(period),
+                    loop_priority: assembly.loop_config.realtime.priority,
+                };
+                HangWatch::start(link.pulse.clone(), link.stop.clone(), &config, held_at)
+            });
+            let watchdog = watchdog.transpose().map_err(FlyError::Watchdog)?;
+            let mut tally = Tally::new(period)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for refusal in &handle.grants().refused {
                 watch.remark(refusal.to_string());
+            }
+            for refusal in watchdog.iter().flat_map(|(_, grants)| &grants.refused) {
+                watch.remark(format!("watchdog: {refusal}"));
             }
             let grants = Some(handle.grants());
             let mut recording =
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
-            while !link.messages.is_over() {
-                drain(&mut link, &mut watch, recording.as_mut(), plan);
+            let mut hung = None;
+            while hung.is_none() && !link.messages.is_over() {
+                drain(
+                    &mut link,
+                    &mut watch,
+                    recording.as_mut(),
+                    Some(&mut tally),
+                    plan,
+                );
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
@@ -145,10 +179,29 @@ pub fn fly(
                 if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
+                hung = watchdog.as_ref().and_then(|(watchdog, _)| watchdog.hung());
                 thread::sleep(FETCH_EVERY);
             }
-            drain(&mut link, &mut watch, recording.as_mut(), plan);
-            (handle.join(), recording, interrupted)
+            drain(
+                &mut link,
+                &mut watch,
+                recording.as_mut(),
+                Some(&mut tally),
+                plan,
+            );
+            let report = match hung {
+                None => handle.join(),
+                Some(hung) => {
+                    tell_of_hang(hung, &tally, &mut watch, recording.as_mut());
+                    let grants = handle.grants().clone();
+                    handle.abandon();
+                    // Not dismissed, the guard gives the controls back once
+                    // more: a loop that wakes up now may yet take them.
+                    connection = None;
+                    tally.report(hung, timer_name, grants)
+                }
+            };
+            (report, recording, interrupted)
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
@@ -199,10 +252,10 @@ fn run_in_lockstep(
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
     while machine.step() != State::Stopped {
-        drain(link, watch, recording.as_deref_mut(), plan);
+        drain(link, watch, recording.as_deref_mut(), None, plan);
     }
     let report = machine.finish();
-    drain(link, watch, recording, plan);
+    drain(link, watch, recording, None, plan);
     Ok(report)
 }
 
@@ -211,10 +264,14 @@ fn drain(
     link: &mut Link<Pilot>,
     watch: &mut Watch,
     mut recording: Option<&mut Recording>,
+    mut tally: Option<&mut Tally>,
     plan: Plan,
 ) {
     while let Some(message) = link.messages.receive() {
         watch.take(&message);
+        if let Some(tally) = &mut tally {
+            tally.take(&message);
+        }
         if let Some(recording) = &mut recording {
             recording.take(&message);
         }
@@ -225,4 +282,47 @@ fn drain(
     if let Some(recording) = recording {
         recording.tell(watch);
     }
+}
+
+/// Claims the simulator for this process, if it is one.
+fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
+    let Some((_, section)) = &assembly.x_plane else {
+        return Ok(None);
+    };
+    match Sole::claim(section.simulator) {
+        Ok(sole) => Ok(Some(sole)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            Err(FlyError::Taken(match section.simulator {
+                Simulator::At(address) => address.to_string(),
+                Simulator::Beacon => "the address of its beacon".to_owned(),
+            }))
+        }
+        // Where there are no such names, nobody is kept from flying.
+        Err(_) => Ok(None),
+    }
+}
+
+/// Records that the loop hung, after the last it told.
+fn tell_of_hang(hung: Hung, tally: &Tally, watch: &mut Watch, recording: Option<&mut Recording>) {
+    let last = &tally.last().tick;
+    let message = Message::Event(Event {
+        tick: last.number,
+        time: last.woke,
+        kind: EventKind::Hung {
+            silent_ns: hung.silent.as_nanos() as u64,
+        },
+    });
+    watch.take(&message);
+    if let Some(recording) = recording {
+        recording.take(&message);
+    }
+    watch.remark(
+        if hung.released {
+            "the watchdog gave the controls back and ends the program"
+        } else {
+            "the watchdog ends the program; it is not known that the controls are back: the guard \
+             process goes on trying for two minutes"
+        }
+        .to_owned(),
+    );
 }

@@ -26,6 +26,8 @@ pub struct Outcome {
     pub ending: String,
     /// How often it fell into failsafe.
     pub failsafes: u64,
+    /// Ticks that overran their budget.
+    pub overruns: u64,
     /// Whether control was given back.
     pub released: bool,
     /// Records that nobody fetched in time.
@@ -62,6 +64,7 @@ impl Outcome {
         let exit = match report.ending {
             _ if !report.released => Exit::NotReleased,
             Ending::Panicked(_) => Exit::Panicked,
+            Ending::Hung => Exit::Hung,
             Ending::TimerFailed(_) => Exit::Failure,
             _ if report.failsafes > 0 => Exit::Failsafe,
             _ => Exit::Success,
@@ -77,6 +80,7 @@ impl Outcome {
             events,
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
+            overruns: report.overruns,
             released: report.released,
             records_dropped: report.records_dropped,
             recording,

@@ -127,13 +127,14 @@ pub(super) fn level(event: &FlightEvent) -> log::Level {
         }
         | EventKind::Released { ok: false }
         | EventKind::TimerFailed => log::Level::Error,
-        EventKind::Panicked => log::Level::Fatal,
+        EventKind::Panicked | EventKind::Hung { .. } => log::Level::Fatal,
         EventKind::EngageRefused { .. }
         | EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
         | EventKind::RecordsDropped { .. }
         | EventKind::EventsDropped { .. }
-        | EventKind::NotRecorded { .. } => log::Level::Warning,
+        | EventKind::NotRecorded { .. }
+        | EventKind::Overrun { .. } => log::Level::Warning,
         _ => log::Level::Info,
     }
 }

@@ -132,7 +132,7 @@ impl Cell {
 type Column = fn(&FlightRecord) -> Cell;
 
 /// In the order of the record.
-const COLUMNS: [(&str, Column); 68] = [
+const COLUMNS: [(&str, Column); 71] = [
     ("tick", |r| Cell::Count(r.tick.number)),
     ("scheduled_ns", |r| Cell::at(r.tick.scheduled)),
     ("woke_ns", |r| Cell::at(r.tick.woke)),
@@ -287,6 +287,9 @@ const COLUMNS: [(&str, Column); 68] = [
     ("sensor_faults", |r| Cell::Count(r.sensor_faults)),
     ("actuator_faults", |r| Cell::Count(r.actuator_faults)),
     ("records_dropped", |r| Cell::Count(r.records_dropped)),
+    ("overruns", |r| Cell::Count(r.overruns)),
+    ("page_faults", |r| Cell::Count(r.page_faults)),
+    ("early_wake_ns", |r| Cell::Count(r.early_wake_ns)),
 ];
 
 fn state(record: &FlightRecord) -> &'static str {

@@ -68,14 +68,16 @@ impl Events {
 
 fn weight(kind: EventKind<Order>) -> Weight {
     match kind {
-        EventKind::StateChanged { .. } | EventKind::Panicked | EventKind::TimerFailed => {
-            Weight::State
-        }
+        EventKind::StateChanged { .. }
+        | EventKind::Panicked
+        | EventKind::TimerFailed
+        | EventKind::Hung { .. } => Weight::State,
         EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
         | EventKind::RecordsDropped { .. }
         | EventKind::EventsDropped { .. }
         | EventKind::NotRecorded { .. }
+        | EventKind::Overrun { .. }
         | EventKind::Released { ok: false } => Weight::Wrong,
         EventKind::Ordered(_) | EventKind::EngageRefused { .. } => Weight::Asked,
         _ => Weight::Minor,

@@ -5,8 +5,8 @@ use fcc_core::flight::{
     SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{
-    ActuatorFault, Cause, EventKind, Flags, Message, Order, Reading, SensorFault, StageTimes,
-    State, Switch, Tick, Time,
+    ActuatorFault, Cause, EventKind, Flags, Message, Order, Reading, SensorFault, Stage,
+    StageTimes, State, Switch, Tick, Time,
 };
 use fcc_telemetry::recording::{Compression, Recorder, RecorderSettings, Recording};
 use fcc_telemetry::{FlightMessage, FlightRecord};
@@ -99,6 +99,9 @@ fn bits(record: &FlightRecord) -> Vec<u64> {
         record.sensor_faults,
         record.actuator_faults,
         record.records_dropped,
+        record.overruns,
+        record.page_faults,
+        record.early_wake_ns,
         u64::from(record.state.phase()),
         u64::from(record.state.cause()),
         u64::from(record.state.flags().bits()),
@@ -149,6 +152,7 @@ fn any_state() -> impl Strategy<Value = State> {
         Just(State::Engaged),
         Just(State::Stopped),
         Just(State::Failsafe(Cause::InvalidOutput)),
+        Just(State::Failsafe(Cause::Overrun)),
         any::<u32>().prop_map(|bits| State::Failsafe(Cause::Faults(Flags::from_bits(bits)))),
     ]
 }
@@ -268,7 +272,7 @@ fn any_record() -> impl Strategy<Value = FlightRecord> {
     (
         (tick, stages, any_measurements(), setpoints, any_surfaces()),
         (
-            any::<[u64; 3]>(),
+            any::<[u64; 6]>(),
             any_state(),
             any::<[u32; 2]>(),
             any::<bool>(),
@@ -285,6 +289,9 @@ fn any_record() -> impl Strategy<Value = FlightRecord> {
                 sensor_faults: counts[0],
                 actuator_faults: counts[1],
                 records_dropped: counts[2],
+                overruns: counts[3],
+                page_faults: counts[4],
+                early_wake_ns: counts[5],
                 state: state.into(),
                 blockers: Flags::from_bits(flags[0]),
                 faults: Flags::from_bits(flags[1]),
@@ -340,9 +347,29 @@ fn every_event_comes_back() {
         EventKind::Panicked,
         EventKind::TimerFailed,
         EventKind::ToldToStop,
+        EventKind::OverrunsOver { count, first, last },
+        EventKind::Hung {
+            silent_ns: u64::MAX,
+        },
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];
+    for stage in [
+        Stage::Timer,
+        Stage::Sensors,
+        Stage::Navigation,
+        Stage::Guidance,
+        Stage::Control,
+        Stage::Actuators,
+        Stage::Tick,
+    ] {
+        kinds.push(EventKind::Overrun {
+            of: stage,
+            took_ns: u64::MAX,
+            budget_ns: 1,
+            longest: Stage::Control,
+        });
+    }
     for order in [
         Order::Engage,
         Order::Disengage,

@@ -17,6 +17,7 @@ mod slack;
 mod stack;
 
 pub use grants::{RealtimeGrants, RealtimeRefused, Refusal};
+pub use scheduling::{take_priority_from, this_thread};
 
 /// What a thread would like to have.
 ///

@@ -13,6 +13,9 @@ pub struct AutopilotConfig {
     pub reference_airspeed_mps: f64,
     /// Older readings than this are a loss of their sensor.
     pub max_age: Duration,
+    /// Readings that stay the same to the last bit for so long, while others
+    /// say that the aircraft moved, are frozen; zero never calls one so.
+    pub frozen_after: Duration,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// What is flown once engaged.
@@ -33,6 +36,7 @@ impl Default for AutopilotConfig {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
             max_age: Duration::from_millis(250),
+            frozen_after: Duration::from_secs(2),
             navigation: NavigationConfig::default(),
             course: Course::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

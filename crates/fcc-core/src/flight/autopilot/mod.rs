@@ -14,7 +14,7 @@ use plant_clock::PlantClock;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
-use super::navigation::{Estimate, Navigation, accept};
+use super::navigation::{Estimate, FrozenWatch, Navigation, accept};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
 use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
@@ -36,6 +36,7 @@ pub struct Autopilot {
     /// The last measurements that can be true.
     accepted: Measurements,
     navigation: Navigation,
+    frozen: FrozenWatch,
     course: Option<TimedPattern>,
     targets: Targets,
     heading: HeadingLoop,
@@ -52,6 +53,7 @@ impl Autopilot {
         Self {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation),
+            frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
             course: None,
             targets: Targets::default(),
             heading: HeadingLoop::new(config.heading),
@@ -92,7 +94,19 @@ impl Autopilot {
     }
 
     fn stale(&self, now: Time) -> Flags {
-        let measurements = &self.accepted;
+        self.too_old(&self.accepted, now)
+    }
+
+    /// What stands still while the aircraft moves; on the ground nothing does.
+    fn frozen(&self) -> Flags {
+        if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
+            Flags::NONE
+        } else {
+            flags::frozen(self.frozen.frozen())
+        }
+    }
+
+    fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
         let max_age = self.config.max_age;
         Flags::NONE
             .with(
@@ -122,9 +136,13 @@ impl Autopilot {
     }
 
     /// What neither engaging nor staying engaged can do with.
-    fn unsafe_to_fly(&self, now: Time) -> Flags {
+    fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
         let switch = self.accepted.engage_switch;
-        self.stale(now)
+        let stale = self.stale(now);
+        // As they came some are not too old: those were not accepted.
+        let rejected = stale != self.too_old(measurements, now);
+        (stale | self.frozen())
+            .with(flags::REJECTED, rejected)
             .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
             .with(flags::PLANT_STALLED, self.clock.is_stalled())
             .with(
@@ -145,23 +163,33 @@ impl Controller for Autopilot {
     type Order = Order;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        accept(&mut self.accepted, measurements);
+        accept(&mut self.accepted, measurements, self.config.max_age);
         if self.plant_is(PlantState::Jumped) {
+            // It is not where it was, so nothing is too far from the last.
+            self.accepted = Measurements::default();
+            accept(&mut self.accepted, measurements, self.config.max_age);
             self.navigation.reset(&self.config.navigation);
+            self.frozen = FrozenWatch::new(self.config.frozen_after.as_secs_f64());
             self.clock = PlantClock::default();
             self.watching_since = Time::NEVER;
         }
         self.clock.step(tick, &self.accepted, self.config.max_age);
         self.navigation
             .step(tick.woke, &self.accepted, self.clock.step_s());
+        self.frozen.step(
+            tick.woke,
+            &self.accepted,
+            self.navigation.estimate(),
+            self.clock.step_s(),
+        );
         if self.watching_since.is_never() && self.stale(tick.woke).is_empty() {
             self.watching_since = tick.woke;
         }
     }
 
-    fn blockers(&self, tick: &Tick, _measurements: &Measurements) -> Flags {
+    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        self.unsafe_to_fly(tick.woke)
+        self.unsafe_to_fly(tick.woke, measurements)
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(
                 flags::SETTLING,
@@ -177,8 +205,8 @@ impl Controller for Autopilot {
             )
     }
 
-    fn faults(&self, tick: &Tick, _measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke)
+    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.unsafe_to_fly(tick.woke, measurements)
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -269,7 +297,7 @@ impl Controller for Autopilot {
     /// climb rate is; the trims that the loops had found where they are not;
     /// trim throttle.
     fn failsafe(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        let gone = self.stale(tick.woke);
+        let gone = flags::gone(self.stale(tick.woke), self.frozen());
         let throttle = self.config.airspeed.trim_throttle;
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;

@@ -8,6 +8,7 @@
 mod acceptance;
 mod air_data;
 mod attitude;
+mod frozen;
 mod vertical;
 
 use core::time::Duration;
@@ -19,6 +20,7 @@ use crate::framework::{Reading, Time};
 pub(crate) use acceptance::accept;
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
+pub(crate) use frozen::{Frozen, FrozenWatch};
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
