@@ -4,8 +4,8 @@
 //! skip what it missed, where it offers that.
 
 use anyhow::Context as _;
-use clap::{Parser, Subcommand};
-use fcc_timer::TimerKind;
+use clap::{Args, Parser, Subcommand};
+use fcc_timer::{EarlyWake, TimerKind};
 use rtsc::time::{Interval, MissedTickBehavior};
 use ticklog::{Run, TickLog, monotonic_ns};
 use tokio::time::{self, MissedTickBehavior as TokioMissed};
@@ -20,37 +20,54 @@ struct Cli {
 #[derive(Subcommand)]
 enum Peer {
     /// Our timerfd.
-    Timerfd(Run),
+    Timerfd(Ours),
     /// Our POSIX timer.
-    Posix(Run),
+    Posix(Ours),
     /// Our `clock_nanosleep`.
-    Nanosleep(Run),
+    Nanosleep(Ours),
     /// The interval of `rtsc`.
     Rtsc(Run),
     /// The interval of `tokio`, in a runtime of one thread.
     Tokio(Run),
 }
 
+#[derive(Args)]
+struct Ours {
+    #[command(flatten)]
+    run: Run,
+    /// Wake early and spin to the deadline
+    #[arg(long)]
+    spin: bool,
+}
+
 fn main() -> anyhow::Result<()> {
     match Cli::parse().peer {
-        Peer::Timerfd(run) => ours(TimerKind::Timerfd, run),
-        Peer::Posix(run) => ours(TimerKind::Posix, run),
-        Peer::Nanosleep(run) => ours(TimerKind::Nanosleep, run),
+        Peer::Timerfd(ours) => ours.tick(TimerKind::Timerfd),
+        Peer::Posix(ours) => ours.tick(TimerKind::Posix),
+        Peer::Nanosleep(ours) => ours.tick(TimerKind::Nanosleep),
         Peer::Rtsc(run) => rtsc(run),
         Peer::Tokio(run) => tokio(run),
     }
 }
 
-fn ours(kind: TimerKind, run: Run) -> anyhow::Result<()> {
-    let mut timer = kind.build(run.period())?;
-    let mut log = TickLog::new(run)?;
-    timer.start()?;
-    let first = timer.wait()?;
-    log.set_origin(first.scheduled_ns - run.period().as_nanos() as i64);
-    while log.tick() {
-        timer.wait()?;
+impl Ours {
+    /// As the daemon does it, with what it does by default.
+    fn tick(self, kind: TimerKind) -> anyhow::Result<()> {
+        let period = self.run.period();
+        let mut timer = if self.spin {
+            kind.build_early(period, &EarlyWake::default())?
+        } else {
+            kind.build(period)?
+        };
+        let mut log = TickLog::new(self.run)?;
+        timer.start()?;
+        let first = timer.wait()?;
+        log.set_origin(first.scheduled_ns - period.as_nanos() as i64);
+        while log.tick() {
+            timer.wait()?;
+        }
+        log.print()
     }
-    log.print()
 }
 
 fn rtsc(run: Run) -> anyhow::Result<()> {
