@@ -30,6 +30,7 @@ fn the_built_in_example_says_every_default() {
     };
     // Only said where there is a choice to make.
     expected.realtime.cpu = Some(3);
+    expected.restart.state_file = Some("recordings/fccd.flight".into());
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
     let keys = uncommented(BUILT_IN).matches(" = ").count();
@@ -44,6 +45,7 @@ fn the_x_plane_example_says_every_default() {
         ..Config::default()
     };
     expected.realtime.cpu = Some(3);
+    expected.restart.state_file = Some("recordings/fccd.flight".into());
     let full = Config::parse(&uncommented(X_PLANE), "x-plane.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
 }
