@@ -34,6 +34,24 @@ def test_systemd_hears_of_the_start_the_states_and_the_end(fccd: Path, tmp_path:
     assert ending.exit_code == SUCCESS
 
 
+def test_a_systemd_that_does_not_listen_holds_nothing_up(fccd: Path, tmp_path: Path) -> None:
+    with (
+        ServiceManager() as manager,
+        flight(fccd, tmp_path, environment=manager.environment(watchdog_s=0.1)) as (
+            simulator,
+            daemon,
+        ),
+    ):
+        engage(simulator, daemon)
+        # Long enough to fill every queue there is.
+        for _ in range(5):
+            daemon.wait_for("engaged ")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["records_dropped"] == 0
+
+
 def test_a_loop_that_hangs_gives_no_sign_and_is_cleaned_up_after(
     faulty_fccd: Path, tmp_path: Path
 ) -> None:

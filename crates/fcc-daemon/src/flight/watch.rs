@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::flight::{Course, Order};
-use fcc_core::framework::{EventKind, Message, State};
+use fcc_core::framework::{self, EventKind, Message, State};
 use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
@@ -162,6 +162,13 @@ impl Watch {
             }
         );
         self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
+        if matches!(
+            event.kind,
+            EventKind::Ordered(framework::Order::Controller(_))
+        ) {
+            // What is flown is not the pattern from its beginning: no score.
+            self.log = None;
+        }
         self.keep(entry);
     }
 
