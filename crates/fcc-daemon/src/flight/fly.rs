@@ -14,7 +14,6 @@ use super::assemble::Assembly;
 use super::connection::Connection;
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
-use super::restart::Restart;
 use super::signals::{self, Kept};
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
@@ -135,30 +134,9 @@ pub fn fly(
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
-            let mut news = None;
-            if let Some(wish) = assembly.restart {
-                (watch.restart, news) = Restart::begin(wish);
-            }
-            while !link.messages.is_over() {
-                drain(&mut link, &mut watch, recording.as_mut(), plan);
-                watch.service.tell();
-                let news = [
-                    news.take(),
-                    watch.poll_restart(&mut link.orders, connection.as_mut()),
-                    connection.as_mut().and_then(Connection::poll),
-                ];
-                for words in news.into_iter().flatten() {
-                    if let Some(recording) = &recording {
-                        recording.remark(&words);
-                    }
-                    watch.remark(words);
-                }
-                if let Some(words) = watch.live.poll() {
-                    watch.remark(words);
-                }
-                thread::sleep(FETCH_EVERY);
-            }
-            drain(&mut link, &mut watch, recording.as_mut(), plan);
+            let news = watch.begin_restart(assembly.restart);
+            let (recorder, connection) = (recording.as_mut(), connection.as_mut());
+            follow(&mut link, &mut watch, recorder, connection, plan, news);
             watch.service.stopping();
             (handle.join(), recording, interrupted)
         }
@@ -219,6 +197,38 @@ fn run_in_lockstep(
     let report = machine.finish();
     drain(link, watch, recording, plan);
     Ok(report)
+}
+
+/// Fetches what a loop in its own thread tells, until it is over, and passes on
+/// what those around it have to say; `news` is what there is from before.
+fn follow(
+    link: &mut Link<Pilot>,
+    watch: &mut Watch,
+    mut recording: Option<&mut Recording>,
+    mut connection: Option<&mut Connection>,
+    plan: Plan,
+    mut news: Option<String>,
+) {
+    while !link.messages.is_over() {
+        drain(link, watch, recording.as_deref_mut(), plan);
+        watch.service.tell();
+        let said = [
+            news.take(),
+            watch.poll_restart(&mut link.orders, connection.as_deref_mut()),
+            connection.as_deref_mut().and_then(Connection::poll),
+        ];
+        for words in said.into_iter().flatten() {
+            if let Some(recording) = &recording {
+                recording.remark(&words);
+            }
+            watch.remark(words);
+        }
+        if let Some(words) = watch.live.poll() {
+            watch.remark(words);
+        }
+        thread::sleep(FETCH_EVERY);
+    }
+    drain(link, watch, recording, plan);
 }
 
 /// Fetches all there is, and stops the loop when its time is up.

@@ -12,7 +12,7 @@ use super::connection::Connection;
 use super::fly::{Length, Plan};
 use super::live::Live;
 use super::outcome::EventEntry;
-use super::restart::Restart;
+use super::restart::{Restart, RestartWish};
 use super::service::Service;
 use super::status;
 use super::tap::TruthReceiver;
@@ -170,6 +170,14 @@ impl Watch {
             self.log = None;
         }
         self.keep(entry);
+    }
+
+    /// Looks at what a flight before this one left, and keeps this one for the
+    /// next; what there is to say.
+    pub(super) fn begin_restart(&mut self, wish: Option<RestartWish>) -> Option<String> {
+        let (restart, words) = Restart::begin(wish?);
+        self.restart = restart;
+        words
     }
 
     /// Goes on with what a restart in flight asks for; what is new, in words.
