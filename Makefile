@@ -14,11 +14,19 @@ HARSH    ?=
 # For bench-live, such as LIVE="--seconds 60 --watchers 200".
 LIVE     ?=
 
+# For bench-timing, such as TIMING="--rates 40 --seconds 20 --rounds 5".
+TIMING   ?=
+
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
 # The same with faults on purpose, for tests.
 FAULTY   := $(TARGET)/release/fccd-faulty
+# A workspace of its own, built with the same compiler.
+TIMING_TARGET := $(abspath $(TARGET))/bench-timing
+BENCH_TIMING  := cargo build --locked --release --manifest-path bench/timing/Cargo.toml --target-dir $(TIMING_TARGET)
+# As in Cargo.lock: runner and library have to be of one version.
+GUNGRAUN := 0.20.0
 VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
@@ -26,7 +34,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
+.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -79,7 +87,23 @@ fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly to
 	    cargo +nightly fuzz run $$target -- -max_total_time=60 || exit 1; \
 	done
 
-bench: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
+bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what a tick costs: time, instructions, memory, system calls (4 minutes)
+	@test "$$(gungraun-runner --version 2>/dev/null)" = "gungraun-runner $(GUNGRAUN)" || \
+	    cargo install --locked --version $(GUNGRAUN) gungraun-runner
+	cargo bench --locked -p bench-tick --bench time
+	cargo bench --locked -p bench-tick --bench instructions
+	cargo build --locked --release -p bench-tick
+	$(TARGET)/release/costs
+	$(TARGET)/release/latency --fccd $(FCCD)
+
+bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their peers, idle and under stress (22 minutes; TIMING=)
+	$(BENCH_TIMING) -p copper --features copper/high-precision
+	cp $(TIMING_TARGET)/release/peer-copper $(TIMING_TARGET)/release/peer-copper-precise
+	$(BENCH_TIMING)
+	$(TIMING_TARGET)/release/bench-timing --json target/bench-timing.json \
+	    --markdown target/bench-timing.md --plot target/bench-timing.svg $(TIMING)
+
+bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
@@ -111,6 +135,17 @@ $(STAMPS)/python: hil/pyproject.toml
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace
 	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/valgrind:
+	@command -v valgrind >/dev/null || ./scripts/apt-install valgrind
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/rt-tests:
+	@command -v cyclictest >/dev/null || ./scripts/apt-install rt-tests
+	@command -v stress-ng >/dev/null || ./scripts/apt-install stress-ng
+	@command -v chrt >/dev/null && command -v taskset >/dev/null || ./scripts/apt-install util-linux
+	@command -v python3 >/dev/null || ./scripts/apt-install python3
+	@mkdir -p $(STAMPS) target && touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module

@@ -38,9 +38,7 @@ def test_an_altimeter_that_errs_is_followed(flight: Flight, faults: Faults) -> N
 
 
 @pytest.mark.parametrize("fault", ["loss", "duplicate", "reorder"])
-def test_a_sensor_that_stutters_does_not_matter(
-    flight: Flight, faults: Faults, fault: str
-) -> None:
+def test_a_sensor_that_stutters_does_not_matter(flight: Flight, faults: Faults, fault: str) -> None:
     """A fifth of what heading and airspeed say is lost, doubled or out of order."""
     flight.engages(by=3)
     getattr(faults, fault)(heading, share=0.2)

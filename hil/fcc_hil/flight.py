@@ -78,7 +78,7 @@ class Flight:
         self._engaged_at_s: float | None = None
         self._captured: SetPoints | None = None
         # How far the test has flown, since the aircraft was set up.
-        self._flown_to_s = rig.time_s
+        self._flown_to_s = 0.0
 
     def __repr__(self) -> str:
         return f"<Flight of {self.rig.name}: {self.state} at {self._flown_to_s:.2f} s>"

@@ -138,7 +138,7 @@ def test_bad_amounts_are_refused_by_name(kind: str, name: str, value: object) ->
 def test_sensors_that_do_not_exist_are_refused(kind: str, name: str) -> None:
     if name == "everything":
         return
-    with pytest.raises(ValueError, match="there is no quantity .*heading"):
+    with pytest.raises(ValueError, match=r"there is no quantity .*heading"):
         _make(kind, name)
 
 

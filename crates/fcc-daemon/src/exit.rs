@@ -27,6 +27,8 @@ pub enum Exit {
     NotReplayed = 8,
     /// The loop hung; its watchdog released the controls and ended the program.
     Hung = 9,
+    /// The machine lacks something that a real-time loop needs.
+    MachineLacks = 10,
 }
 
 /// For `--help`.
@@ -41,7 +43,8 @@ Exit codes:
   6  a part of the loop panicked; the controls were released
   7  a recording flown again gave other outputs
   8  a recording could not be flown again to its end; nothing else differs
-  9  the loop hung; the watchdog released the controls and ended the program";
+  9  the loop hung; the watchdog released the controls and ended the program
+ 10  the machine lacks something that a real-time loop needs (doctor)";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

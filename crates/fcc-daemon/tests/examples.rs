@@ -2,7 +2,7 @@
 //! taken away, they are the defaults.
 #![cfg(test)]
 
-use fcc_daemon::config::{BudgetSection, BuiltInSection, Config, XPlaneSection};
+use fcc_daemon::config::{BudgetSection, BuiltInSection, Config, CpuChoice, XPlaneSection};
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
@@ -21,7 +21,8 @@ fn uncommented(text: &str) -> String {
 /// What is only said where there is a choice to make. Of the budgets, the
 /// tick's and how many are failsafe are what they would be at 40 Hz.
 fn say_the_choices(config: &mut Config) {
-    config.realtime.cpu = Some(3);
+    config.realtime.cpu = Some(CpuChoice::Number(3));
+    config.realtime.cpu_dma_latency_us = Some(0);
     config.budget = BudgetSection {
         tick_us: Some(25_000),
         sensors_us: Some(5_000),

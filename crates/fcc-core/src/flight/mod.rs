@@ -16,7 +16,7 @@ pub mod navigation;
 mod setpoints;
 mod surfaces;
 
-pub use autopilot::{Autopilot, AutopilotConfig, Course, Order, flags};
+pub use autopilot::{Autopilot, AutopilotConfig, Course, Order, Resume, Scale, flags};
 pub use measurements::{
     Attitude, BodyRates, Measurements, Plant, PlantState, Position, SpecificForce, Velocity,
 };

@@ -9,10 +9,12 @@ mod autopilot;
 mod budget;
 mod built_in;
 mod course;
+mod cpu;
 mod error;
 mod places;
 mod ranges;
 mod recording;
+mod restart;
 mod runtime;
 mod telemetry;
 mod units;
@@ -31,9 +33,13 @@ pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
+pub use cpu::CpuChoice;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
-pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use restart::{RestartMode, RestartSection};
+pub use runtime::{
+    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
+};
 pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 
@@ -56,6 +62,8 @@ pub struct Config {
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// What becomes of a flight that was cut off.
+    pub restart: RestartSection,
     /// Who may watch, live.
     pub telemetry: TelemetrySection,
     /// What is flown.
@@ -150,11 +158,14 @@ impl Config {
 
     /// The core's configuration.
     pub fn autopilot_config(&self) -> AutopilotConfig {
-        self.autopilot.to_core(
-            &self.course,
-            Duration::from_millis(self.failsafe.sensor_max_age_ms),
-            Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
-        )
+        AutopilotConfig {
+            settling: self.restart.mode.settling(),
+            ..self.autopilot.to_core(
+                &self.course,
+                Duration::from_millis(self.failsafe.sensor_max_age_ms),
+                Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
+            )
+        }
     }
 
     /// What the loop is told.

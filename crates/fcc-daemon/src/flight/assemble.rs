@@ -6,6 +6,7 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
+use super::restart::RestartWish;
 use super::tap::{TruthReceiver, tap};
 use crate::config::{Aircraft, Config, TelemetrySection, WatchdogSection, XPlaneSection};
 
@@ -23,6 +24,9 @@ pub struct Assembly {
     pub(super) watchdog: WatchdogSection,
     /// Who may watch, live.
     pub(super) telemetry: TelemetrySection,
+    /// How it is to be taken up if it is cut off; not with an aircraft that
+    /// ends when the program does.
+    pub(super) restart: Option<RestartWish>,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -60,6 +64,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 loop_config,
                 watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
+                restart: None,
                 truth: Some(truth),
                 x_plane: None,
             })
@@ -74,6 +79,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 loop_config,
                 watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
+                restart: Some(RestartWish::of(config)),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

@@ -8,7 +8,7 @@ use std::time::Duration;
 use fcc_core::framework::{Event, EventKind, Message, State};
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_telemetry::recording::RecordingPace;
-use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use fcc_timer::{ManualTimer, Timer, TimerError};
 use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
@@ -16,6 +16,7 @@ use super::connection::Connection;
 use super::hang::{HangWatch, Hung};
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::restart::Restart;
 use super::signals::{self, Kept};
 use super::sole::Sole;
 use super::tally::Tally;
@@ -100,7 +101,7 @@ pub fn fly(
     let period = tick.period();
     let _sole = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
-        Pace::RealTime => build(tick.timer, period)?,
+        Pace::RealTime => tick.build_timer()?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
     };
     let timer_name = timer.name();
@@ -161,6 +162,10 @@ pub fn fly(
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
+            let mut news = None;
+            if let Some(wish) = assembly.restart {
+                (watch.restart, news) = Restart::begin(wish);
+            }
             let mut hung = None;
             while hung.is_none() && !link.messages.is_over() {
                 drain(
@@ -170,13 +175,17 @@ pub fn fly(
                     Some(&mut tally),
                     plan,
                 );
-                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
+                watch.service.tell();
+                let said = [
+                    news.take(),
+                    watch.poll_restart(&mut link.orders, connection.as_mut()),
+                    connection.as_mut().and_then(Connection::poll),
+                    watch.live.poll(),
+                ];
+                for words in said.into_iter().flatten() {
                     if let Some(recording) = &recording {
                         recording.remark(&words);
                     }
-                    watch.remark(words);
-                }
-                if let Some(words) = watch.live.poll() {
                     watch.remark(words);
                 }
                 hung = watchdog.as_ref().and_then(|(watchdog, _)| watchdog.hung());
@@ -189,6 +198,7 @@ pub fn fly(
                 Some(&mut tally),
                 plan,
             );
+            watch.service.stopping();
             let report = match hung {
                 None => handle.join(),
                 Some(hung) => {
@@ -215,6 +225,9 @@ pub fn fly(
         }
     };
     let confirmed = connection.is_none_or(Connection::end);
+    if let Some(restart) = watch.restart.take() {
+        restart.end();
+    }
     if !confirmed {
         watch.remark(
             "X-Plane did not show that it has its controls back; the guard process goes on \
@@ -237,10 +250,6 @@ pub fn fly(
     let mut outcome = Outcome::new(timer_name, report, events, score, recording);
     outcome.explain(interrupted, refused);
     Ok(outcome)
-}
-
-fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
-    kind.build(period)
 }
 
 fn run_in_lockstep(

@@ -44,6 +44,8 @@ impl Tally {
                     scheduled_ns: tick.scheduled.as_nanos(),
                     woke_ns: tick.woke.as_nanos(),
                     missed: tick.missed,
+                    early_wake_ns: record.early_wake_ns,
+                    ..Expiry::default()
                 });
                 self.ticks += 1;
                 self.last = *record;

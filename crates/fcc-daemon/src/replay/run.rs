@@ -74,6 +74,8 @@ impl Replay {
             scheduled_ns: tick.scheduled.as_nanos(),
             woke_ns: tick.woke.as_nanos(),
             missed: tick.missed,
+            early_wake_ns: recorded.early_wake_ns,
+            ..Expiry::default()
         };
         self.machine.tick_again(expiry, recorded.stages);
         while self.link.messages.receive().is_some() {}

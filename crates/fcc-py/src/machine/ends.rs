@@ -46,10 +46,10 @@ pub(super) struct Missing(u8);
 
 impl Missing {
     /// Reads the names of sensors.
-    pub(super) fn named(names: &[String]) -> PyResult<Self> {
+    pub(super) fn named(names: Vec<String>) -> PyResult<Self> {
         let mut missing = Self::default();
         for name in names {
-            let part = Part::ALL.iter().find(|(known, _)| known == name);
+            let part = Part::ALL.iter().find(|(known, _)| *known == name);
             let Some((_, part)) = part else {
                 let known: Vec<_> = Part::ALL.iter().map(|(known, _)| *known).collect();
                 return Err(PyValueError::new_err(format!(

@@ -59,8 +59,8 @@ impl Flown {
         }
     }
 
-    pub(super) fn take(&mut self, message: FlightMessage) {
-        self.messages.push(message);
+    pub(super) fn take(&mut self, message: &FlightMessage) {
+        self.messages.push(*message);
     }
 
     /// The events since the last call.
@@ -92,7 +92,7 @@ impl Flown {
         };
         let settings = RecorderSettings {
             pace: RecordingPace::Lockstep,
-            ..RecorderSettings::new(&folder)
+            ..RecorderSettings::new(folder)
         };
         let mut recorder = Recorder::start(about, settings)?;
         for message in &self.messages {

@@ -100,7 +100,7 @@ impl PyMachine {
         standing: Option<(f64, f64, f64, f64)>,
         switch: Option<bool>,
     ) -> PyResult<Option<PySurfaces>> {
-        let missing = Missing::named(&missing)?;
+        let missing = Missing::named(missing)?;
         let standing = standing.map(surfaces).transpose()?;
         let period_s = self.period_s;
         let stepped = self.stepped();
@@ -260,7 +260,7 @@ impl Stepped {
 
     fn fetch(&mut self) {
         while let Some(message) = self.link.messages.receive() {
-            self.flown.take(message);
+            self.flown.take(&message);
         }
     }
 }

@@ -136,7 +136,7 @@ pub(super) fn only_cpu() -> Option<usize> {
     }
 }
 
-fn allowed_cpus() -> Vec<usize> {
+pub(super) fn allowed_cpus() -> Vec<usize> {
     sched_getaffinity(Pid::from_raw(THIS_THREAD)).map_or_else(
         |_| Vec::new(),
         |set| {

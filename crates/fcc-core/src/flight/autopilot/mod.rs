@@ -1,16 +1,22 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod capture;
 mod config;
 pub mod flags;
 mod plant_clock;
+mod resume;
+mod scale;
 
 use core::fmt;
 use core::time::Duration;
 
 use libm::cos;
 
+use capture::Capture;
 pub use config::{AutopilotConfig, Course, Order};
 use plant_clock::PlantClock;
+pub use resume::Resume;
+pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
@@ -26,9 +32,6 @@ const UPSET_RAD: f64 = 1.047;
 /// switch off any more.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
-/// Navigation has to have watched for so long before the autopilot takes over.
-const SETTLING: Duration = Duration::from_secs(1);
-
 /// Navigation, guidance and control as one [`Controller`].
 #[derive(Clone, Debug)]
 pub struct Autopilot {
@@ -39,6 +42,7 @@ pub struct Autopilot {
     frozen: FrozenWatch,
     course: Option<TimedPattern>,
     targets: Targets,
+    capture: Option<Capture>,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -56,6 +60,7 @@ impl Autopilot {
             frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
             course: None,
             targets: Targets::default(),
+            capture: None,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -91,6 +96,17 @@ impl Autopilot {
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
         }
+    }
+
+    /// Takes over with throttle and surfaces where they stand.
+    fn take_over(&mut self, standing: &Surfaces) {
+        let estimate = *self.navigation.estimate();
+        let schedule = self.schedule();
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
+        self.altitude.engage(standing.elevator, &estimate, schedule);
+        let demand = self.throttle_demand(estimate.climb_rate_mps);
+        self.airspeed.engage(standing.throttle, &demand, &estimate);
     }
 
     fn stale(&self, now: Time) -> Flags {
@@ -193,7 +209,8 @@ impl Controller for Autopilot {
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(
                 flags::SETTLING,
-                self.watching_since.is_never() || tick.woke.since(self.watching_since) < SETTLING,
+                self.watching_since.is_never()
+                    || tick.woke.since(self.watching_since) < self.config.settling,
             )
             .with(
                 flags::TOO_SLOW,
@@ -221,17 +238,22 @@ impl Controller for Autopilot {
             Order::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
             Order::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
             Order::Altitude(m) => write!(f, "altitude {m:.1} m"),
+            Order::Resume(Resume { pattern_s, .. }) => match pattern_s {
+                Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
+                None => f.write_str("go on with what was flown"),
+            },
         }
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         let estimate = *self.navigation.estimate();
-        let schedule = self.schedule();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
         self.course = match self.config.course {
             Course::Hold => None,
             Course::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
@@ -244,16 +266,20 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
-        self.heading
-            .engage(standing.aileron, standing.rudder, &estimate, schedule);
-        self.altitude.engage(standing.elevator, &estimate, schedule);
-        let demand = self.throttle_demand(estimate.climb_rate_mps);
-        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.take_over(&standing);
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        let marked = self.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
         if let Some(pattern) = &mut self.course {
+            pattern.shift_altitude(shift_m);
             self.targets = pattern.step(self.clock.step_s());
+        } else {
+            self.targets.altitude_m += shift_m;
         }
     }
 
@@ -336,6 +362,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.course = None;
+        self.capture = None;
         self.setpoints = Setpoints::default();
     }
 
@@ -348,10 +375,16 @@ impl Controller for Autopilot {
                 let now_rad = self.navigation.estimate().heading_rad;
                 self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
-            Order::Altitude(m) if m.is_finite() => self.targets.altitude_m = m,
-            _ => return,
+            Order::Altitude(m) if m.is_finite() => {
+                self.targets.altitude_m = m;
+                self.capture = None;
+            }
+            Order::Resume(ref resume) => self.resume(resume),
+            _ => {}
         }
-        self.course = None;
+        if order.ends_pattern() {
+            self.course = None;
+        }
     }
 
     fn setpoints(&self) -> Setpoints {

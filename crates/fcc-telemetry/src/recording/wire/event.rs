@@ -1,6 +1,7 @@
 //! An event as a message.
 
-use fcc_core::flight::Order as Command;
+use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::{Order as Command, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Event, EventKind, Flags, Order, SensorFault, Stage, Time,
 };
@@ -186,6 +187,7 @@ fn order_out(order: Order<Command>) -> Option<WireOrder> {
         Order::Controller(Command::Airspeed(mps)) => WireOrder::AirspeedMps(mps),
         Order::Controller(Command::Heading(rad)) => WireOrder::HeadingRad(rad),
         Order::Controller(Command::Altitude(m)) => WireOrder::AltitudeM(m),
+        Order::Controller(Command::Resume(resume)) => WireOrder::Resume(resume_out(&resume)),
         Order::Controller(_) => return None,
     })
 }
@@ -198,5 +200,36 @@ fn order_in(order: fcc::Order) -> Result<Order<Command>, Unknown> {
         WireOrder::AirspeedMps(mps) => Order::Controller(Command::Airspeed(mps)),
         WireOrder::HeadingRad(rad) => Order::Controller(Command::Heading(rad)),
         WireOrder::AltitudeM(m) => Order::Controller(Command::Altitude(m)),
+        WireOrder::Resume(resume) => Order::Controller(Command::Resume(resume_in(&resume))),
     })
+}
+
+fn resume_out(resume: &Resume) -> fcc::Resume {
+    fcc::Resume {
+        airspeed_mps: resume.targets.airspeed_mps,
+        heading_rad: resume.targets.heading_rad,
+        altitude_m: resume.targets.altitude_m,
+        pattern_s: resume.pattern_s,
+        throttle: resume.surfaces.throttle,
+        elevator: resume.surfaces.elevator,
+        aileron: resume.surfaces.aileron,
+        rudder: resume.surfaces.rudder,
+    }
+}
+
+fn resume_in(resume: &fcc::Resume) -> Resume {
+    Resume {
+        targets: Targets {
+            airspeed_mps: resume.airspeed_mps,
+            heading_rad: resume.heading_rad,
+            altitude_m: resume.altitude_m,
+        },
+        pattern_s: resume.pattern_s,
+        surfaces: Surfaces {
+            throttle: resume.throttle,
+            elevator: resume.elevator,
+            aileron: resume.aileron,
+            rudder: resume.rudder,
+        },
+    }
 }
