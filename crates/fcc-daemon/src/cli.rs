@@ -52,6 +52,12 @@ pub enum Command {
         /// Which shell
         shell: Shell,
     },
+    /// Write manual pages into a folder; for who makes a package
+    #[command(hide = true)]
+    Man {
+        /// Where to
+        folder: PathBuf,
+    },
 }
 
 /// `fccd fly`.

@@ -23,6 +23,7 @@ fn uncommented(text: &str) -> String {
 fn say_the_choices(config: &mut Config) {
     config.realtime.cpu = Some(CpuChoice::Number(3));
     config.realtime.cpu_dma_latency_us = Some(0);
+    config.restart.state_file = Some("recordings/fccd.flight".into());
     config.budget = BudgetSection {
         tick_us: Some(25_000),
         sensors_us: Some(5_000),

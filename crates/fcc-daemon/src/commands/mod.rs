@@ -15,7 +15,8 @@ mod timing;
 #[cfg(feature = "live")]
 mod top;
 
-use std::io;
+use std::path::Path;
+use std::{fs, io};
 
 use clap::CommandFactory;
 use serde::Serialize;
@@ -42,6 +43,17 @@ pub fn run(cli: Cli) -> Exit {
             clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());
             Exit::Success
         }
+        Command::Man { folder } => man(&folder),
+    }
+}
+
+/// Writes a manual page for the program and for each command.
+fn man(folder: &Path) -> Exit {
+    let written =
+        fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
+    match written {
+        Ok(()) => Exit::Success,
+        Err(error) => fail(&format!("{}: {error}", folder.display())),
     }
 }
 

@@ -2,10 +2,8 @@
 
 use std::io;
 use std::sync::atomic::Ordering;
-use std::thread;
-use std::time::Duration;
 
-use fcc_core::framework::{Event, EventKind, Message, State};
+use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError};
@@ -13,10 +11,10 @@ use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
 use super::connection::Connection;
-use super::hang::{HangWatch, Hung};
+use super::follow::Follower;
+use super::hang::HangWatch;
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
-use super::restart::Restart;
 use super::signals::{self, Kept};
 use super::sole::Sole;
 use super::tally::Tally;
@@ -82,10 +80,6 @@ pub enum FlyError {
     #[error("the watchdog: {0}")]
     Watchdog(#[source] io::Error),
 }
-
-/// How often what the loop tells is fetched: often enough to look alive, and
-/// seldom enough to cost nothing.
-const FETCH_EVERY: Duration = Duration::from_millis(20);
 
 /// Flies an assembly until it is told to stop, by the plan, by a signal
 /// (TERM, INT, HUP) or by the aircraft's switch.
@@ -162,47 +156,20 @@ pub fn fly(
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
-            let mut news = None;
-            if let Some(wish) = assembly.restart {
-                (watch.restart, news) = Restart::begin(wish);
-            }
-            let mut hung = None;
-            while hung.is_none() && !link.messages.is_over() {
-                drain(
-                    &mut link,
-                    &mut watch,
-                    recording.as_mut(),
-                    Some(&mut tally),
-                    plan,
-                );
-                watch.service.tell();
-                let said = [
-                    news.take(),
-                    watch.poll_restart(&mut link.orders, connection.as_mut()),
-                    connection.as_mut().and_then(Connection::poll),
-                    watch.live.poll(),
-                ];
-                for words in said.into_iter().flatten() {
-                    if let Some(recording) = &recording {
-                        recording.remark(&words);
-                    }
-                    watch.remark(words);
-                }
-                hung = watchdog.as_ref().and_then(|(watchdog, _)| watchdog.hung());
-                thread::sleep(FETCH_EVERY);
-            }
-            drain(
-                &mut link,
-                &mut watch,
-                recording.as_mut(),
-                Some(&mut tally),
+            let news = watch.begin_restart(assembly.restart);
+            let watched_by = watchdog.as_ref().map(|(watchdog, _)| watchdog);
+            let hung = Follower {
+                link: &mut link,
+                watch: &mut watch,
+                recording: recording.as_mut(),
+                tally: Some(&mut tally),
                 plan,
-            );
+            }
+            .follow(connection.as_mut(), watched_by, news);
             watch.service.stopping();
             let report = match hung {
                 None => handle.join(),
                 Some(hung) => {
-                    tell_of_hang(hung, &tally, &mut watch, recording.as_mut());
                     let grants = handle.grants().clone();
                     handle.abandon();
                     // Not dismissed, the guard gives the controls back once
@@ -256,41 +223,23 @@ fn run_in_lockstep(
     mut machine: Machine<Pilot>,
     link: &mut Link<Pilot>,
     watch: &mut Watch,
-    mut recording: Option<&mut Recording>,
+    recording: Option<&mut Recording>,
     plan: Plan,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
+    let mut follower = Follower {
+        link,
+        watch,
+        recording,
+        tally: None,
+        plan,
+    };
     while machine.step() != State::Stopped {
-        drain(link, watch, recording.as_deref_mut(), None, plan);
+        follower.drain();
     }
     let report = machine.finish();
-    drain(link, watch, recording, None, plan);
+    follower.drain();
     Ok(report)
-}
-
-/// Fetches all there is, and stops the loop when its time is up.
-fn drain(
-    link: &mut Link<Pilot>,
-    watch: &mut Watch,
-    mut recording: Option<&mut Recording>,
-    mut tally: Option<&mut Tally>,
-    plan: Plan,
-) {
-    while let Some(message) = link.messages.receive() {
-        watch.take(&message);
-        if let Some(tally) = &mut tally {
-            tally.take(&message);
-        }
-        if let Some(recording) = &mut recording {
-            recording.take(&message);
-        }
-        if watch.is_over(plan.length) {
-            link.stop.stop();
-        }
-    }
-    if let Some(recording) = recording {
-        recording.tell(watch);
-    }
 }
 
 /// Claims the simulator for this process, if it is one.
@@ -309,29 +258,4 @@ fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
         // Where there are no such names, nobody is kept from flying.
         Err(_) => Ok(None),
     }
-}
-
-/// Records that the loop hung, after the last it told.
-fn tell_of_hang(hung: Hung, tally: &Tally, watch: &mut Watch, recording: Option<&mut Recording>) {
-    let last = &tally.last().tick;
-    let message = Message::Event(Event {
-        tick: last.number,
-        time: last.woke,
-        kind: EventKind::Hung {
-            silent_ns: hung.silent.as_nanos() as u64,
-        },
-    });
-    watch.take(&message);
-    if let Some(recording) = recording {
-        recording.take(&message);
-    }
-    watch.remark(
-        if hung.released {
-            "the watchdog gave the controls back and ends the program"
-        } else {
-            "the watchdog ends the program; it is not known that the controls are back: the guard \
-             process goes on trying for two minutes"
-        }
-        .to_owned(),
-    );
 }

@@ -7,6 +7,7 @@
 mod assemble;
 mod connection;
 mod fly;
+mod follow;
 mod guard;
 mod hang;
 #[cfg(feature = "fault-injection")]

@@ -2,8 +2,12 @@
 //!
 //! The watchdog's sign comes from the loop's own progress: it is sent by who
 //! fetches the loop's records, and only when new ones have come. A loop that
-//! hangs falls silent here, and so does a daemon that no longer fetches.
+//! hangs falls silent here, and so does a daemon that no longer fetches. A
+//! thread passes it on, for systemd may be busy, and then telling it takes as
+//! long as that.
 
+use std::sync::mpsc::{self, SyncSender};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::{Controller, Flags, Message, State, StateCode};
@@ -14,11 +18,15 @@ use super::Pilot;
 
 /// Signs per time-out of the watchdog: one may be late, or two.
 const SIGNS_PER_TIMEOUT: u32 = 4;
+/// What waits to be told; what finds no room is told next time.
+const WAITING: usize = 8;
+/// How long the end of a flight waits until systemd knows of it.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Tells systemd how the flight goes; where nobody listens, nothing comes of
 /// it.
 pub(super) struct Service {
-    listens: bool,
+    teller: Option<Teller>,
     sign_every: Option<Duration>,
     signed: Option<Instant>,
     /// What the newest record says, if it has not been looked at.
@@ -37,7 +45,7 @@ impl Service {
     /// Speaks with whoever the environment names.
     pub(super) fn from_environment() -> Self {
         Self {
-            listens: std::env::var_os("NOTIFY_SOCKET").is_some(),
+            teller: std::env::var_os("NOTIFY_SOCKET").and_then(|_| Teller::start()),
             sign_every: sd_notify::watchdog_enabled().map(|within| within / SIGNS_PER_TIMEOUT),
             signed: None,
             news: None,
@@ -54,29 +62,73 @@ impl Service {
 
     /// Passes on what is new: nothing if no tick came since the last time.
     pub(super) fn tell(&mut self) {
-        let Some(now) = self.news.take().filter(|_| self.listens) else {
+        let (Some(now), Some(teller)) = (self.news.take(), &self.teller) else {
             return;
         };
         if self.told != Some(now) {
-            let status = now.words();
-            let status = NotifyState::Status(&status);
-            match self.told.replace(now) {
-                None => send(&[NotifyState::Ready, status]),
-                Some(_) => send(&[status]),
+            let words = now.words();
+            let news = match self.told {
+                None => News::Ready(words),
+                Some(_) => News::Status(words),
+            };
+            if teller.tell(news) {
+                self.told = Some(now);
             }
         }
         if let Some(every) = self.sign_every
             && self.signed.is_none_or(|at| at.elapsed() >= every)
+            && teller.tell(News::Alive)
         {
             self.signed = Some(Instant::now());
-            send(&[NotifyState::Watchdog]);
         }
     }
 
     /// The loop is over, and what is left may take its time.
-    pub(super) fn stopping(&self) {
-        if self.listens {
-            send(&[NotifyState::Stopping, NotifyState::Status("ending")]);
+    pub(super) fn stopping(&mut self) {
+        if let Some(teller) = self.teller.take() {
+            teller.tell(News::Stopping);
+            teller.end();
+        }
+    }
+}
+
+/// What there is to tell.
+enum News {
+    Ready(String),
+    Status(String),
+    Alive,
+    Stopping,
+}
+
+/// The thread that tells it.
+struct Teller {
+    news: SyncSender<News>,
+    thread: thread::JoinHandle<()>,
+}
+
+impl Teller {
+    /// None where there is no thread to be had: systemd will say that it heard
+    /// nothing.
+    fn start() -> Option<Self> {
+        let (news, heard) = mpsc::sync_channel(WAITING);
+        let thread = thread::Builder::new()
+            .name("fcc-notify".to_owned())
+            .spawn(move || heard.iter().for_each(|news| send(&news)))
+            .ok()?;
+        Some(Self { news, thread })
+    }
+
+    /// Whether there was room for it.
+    fn tell(&self, news: News) -> bool {
+        self.news.try_send(news).is_ok()
+    }
+
+    /// Waits for a while until all is told.
+    fn end(self) {
+        drop(self.news);
+        let begun = Instant::now();
+        while !self.thread.is_finished() && begun.elapsed() < PATIENCE {
+            thread::sleep(Duration::from_millis(1));
         }
     }
 }
@@ -104,7 +156,14 @@ impl Condition {
     }
 }
 
-/// A manager that does not listen is no reason to stop flying.
-fn send(states: &[NotifyState<'_>]) {
-    let _ = sd_notify::notify(states);
+fn send(news: &News) {
+    // A manager that does not listen is no reason to stop flying.
+    let _ = match news {
+        News::Ready(words) => sd_notify::notify(&[NotifyState::Ready, NotifyState::Status(words)]),
+        News::Status(words) => sd_notify::notify(&[NotifyState::Status(words)]),
+        News::Alive => sd_notify::notify(&[NotifyState::Watchdog]),
+        News::Stopping => {
+            sd_notify::notify(&[NotifyState::Stopping, NotifyState::Status("ending")])
+        }
+    };
 }

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::flight::{Course, Order};
-use fcc_core::framework::{EventKind, Message, State};
+use fcc_core::framework::{self, EventKind, Message, State};
 use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
@@ -13,7 +13,7 @@ use super::connection::Connection;
 use super::fly::{Length, Plan};
 use super::live::Live;
 use super::outcome::EventEntry;
-use super::restart::Restart;
+use super::restart::{Restart, RestartWish};
 use super::service::Service;
 use super::status;
 use super::tap::TruthReceiver;
@@ -159,7 +159,22 @@ impl Watch {
             }
         );
         self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
+        if matches!(
+            event.kind,
+            EventKind::Ordered(framework::Order::Controller(_))
+        ) {
+            // What is flown is not the pattern from its beginning: no score.
+            self.log = None;
+        }
         self.keep(entry);
+    }
+
+    /// Looks at what a flight before this one left, and keeps this one for the
+    /// next; what there is to say.
+    pub(super) fn begin_restart(&mut self, wish: Option<RestartWish>) -> Option<String> {
+        let (restart, words) = Restart::begin(wish?);
+        self.restart = restart;
+        words
     }
 
     /// Goes on with what a restart in flight asks for; what is new, in words.

@@ -84,7 +84,7 @@ fn state_directory() -> Option<PathBuf> {
 /// Tells configurations apart that fly differently.
 fn fingerprint(config: &Config) -> u32 {
     let flown = Config {
-        course: config.course.clone(),
+        course: config.course,
         autopilot: config.autopilot.clone(),
         x_plane: config.x_plane.clone(),
         ..Config::default()

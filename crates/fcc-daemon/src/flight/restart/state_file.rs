@@ -133,7 +133,7 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
 fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
     let (head, body) = match bytes.iter().position(|byte| *byte == b'\n') {
         Some(end) => bytes.split_at(end),
-        None => (bytes, &bytes[..0]),
+        None => (bytes, [].as_slice()),
     };
     let head = std::str::from_utf8(head).map_err(|_| StateFileError::Foreign)?;
     let mut words = head.split(' ');

@@ -97,7 +97,8 @@ fn a_cold_restart_says_so_once() {
 
 #[test]
 fn what_cannot_be_trusted_is_not_taken_up() {
-    let reasons: [(&str, u64, fn(&mut Saved)); 4] = [
+    type Change = fn(&mut Saved);
+    let reasons: [(&str, u64, Change); 4] = [
         ("longer than restart.max_age_s, 10 s", 11, |_| {}),
         ("before this machine was last started", 2, |saved| {
             saved.at.boot = "another".to_owned();
