@@ -119,8 +119,8 @@ def add(commands: Any) -> None:
 
 def _suite(options: argparse.Namespace) -> int:
     from .suite import report  # noqa: PLC0415 - needs the module fcc, which others do not
-    from .suite.cases import cases, scenario_of  # noqa: PLC0415
     from .suite.flying import fly_all  # noqa: PLC0415
+    from .suite.matrix import cases, scenario_of  # noqa: PLC0415
     from .suite.speed import measure  # noqa: PLC0415
 
     chosen = [

@@ -19,8 +19,8 @@ from fcc_hil.commands import seeds
 from fcc_hil.configurations import configuration, pattern_of, value_of, with_values
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.suite import Case, cases, fly_all, fly_case
-from fcc_hil.suite.cases import HEAVY, LIGHT, SEEDS, scenario_of
 from fcc_hil.suite.limits import broken, limits
+from fcc_hil.suite.matrix import HEAVY, LIGHT, SEEDS, scenario_of
 from fcc_hil.suite.speed import measure
 
 QUICK = [case for case in cases() if case.is_quick]
@@ -101,7 +101,7 @@ def test_the_command_writes_table_json_and_picture(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
     impossible = replace(cases()[1], limits=limits(altitude_rms_ft=0.0))
-    monkeypatch.setattr("fcc_hil.suite.cases.cases", lambda: [impossible])
+    monkeypatch.setattr("fcc_hil.suite.matrix.cases", lambda: [impossible])
     assert commands.main(asked) == 1
     assert "altitude_rms_ft" in capsys.readouterr().out
     assert commands.main(["suite", "--only", "nothing"]) == 1

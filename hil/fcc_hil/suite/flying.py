@@ -19,8 +19,8 @@ from ..pattern import Leg
 from ..peer import fly_peer
 from ..score import LegScore, Score, score, worst
 from ..truth import Truth
-from .cases import Case
 from .limits import broken
+from .matrix import Case
 
 
 @dataclass(frozen=True)
