@@ -10,7 +10,7 @@ from pathlib import Path
 
 import fcc
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fcc_hil import __main__ as commands
@@ -144,11 +144,13 @@ def test_a_value_is_set_and_the_rest_is_left() -> None:
         value_of("[course", "course.leg_s", 20.0)
 
 
+@settings(deadline=None)
 @given(st.lists(st.integers(0, 10_000), min_size=1, max_size=20))
 def test_seeds_are_read_as_written(numbers: list[int]) -> None:
     assert seeds(",".join(map(str, numbers))) == tuple(numbers)
 
 
+@settings(deadline=None)
 @given(st.text(max_size=20))
 def test_other_text_is_refused_or_seeds(text: str) -> None:
     try:

@@ -9,7 +9,7 @@ from pathlib import Path
 import fcc
 import pytest
 from distributed import LocalCluster
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fcc_hil import __main__ as commands
@@ -80,6 +80,7 @@ def test_surfaces_that_shake_cost() -> None:
     assert cost == pytest.approx(4.0 / 3.0 / 0.5)
 
 
+@settings(deadline=None)
 @given(st.text(max_size=40))
 def test_a_cost_is_known_or_refused_in_words(text: str) -> None:
     try:
