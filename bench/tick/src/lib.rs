@@ -3,7 +3,7 @@
 //! stages by themselves ([`Stages`]). The benches take the time and count the
 //! instructions, the programs count system calls and bytes of memory, and
 //! follow a datagram there and back. `make bench` runs them all;
-//! `docs/timing.md` says what they gave.
+//! `docs/benchmarks.md` says what they gave.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

@@ -2,7 +2,7 @@
 //! taken away, they are the defaults.
 #![cfg(test)]
 
-use fcc_daemon::config::{BuiltInSection, Config, XPlaneSection};
+use fcc_daemon::config::{BuiltInSection, Config, CpuChoice, XPlaneSection};
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
@@ -29,7 +29,8 @@ fn the_built_in_example_says_every_default() {
         ..Config::default()
     };
     // Only said where there is a choice to make.
-    expected.realtime.cpu = Some(3);
+    expected.realtime.cpu = Some(CpuChoice::Number(3));
+    expected.realtime.cpu_dma_latency_us = Some(0);
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
     let keys = uncommented(BUILT_IN).matches(" = ").count();
@@ -43,7 +44,8 @@ fn the_x_plane_example_says_every_default() {
         x_plane: Some(XPlaneSection::default()),
         ..Config::default()
     };
-    expected.realtime.cpu = Some(3);
+    expected.realtime.cpu = Some(CpuChoice::Number(3));
+    expected.realtime.cpu_dma_latency_us = Some(0);
     let full = Config::parse(&uncommented(X_PLANE), "x-plane.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
 }

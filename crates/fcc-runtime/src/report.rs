@@ -33,6 +33,9 @@ pub struct LoopReport {
     pub events_dropped: u64,
     /// CPU time that the loop's thread spent from the timer's start on.
     pub cpu_time: Duration,
+    /// Page faults of the loop's thread from the timer's start on; none where
+    /// they were not counted.
+    pub page_faults: Option<u64>,
     /// What the kernel granted the loop's thread; `None` if it had none of its
     /// own.
     pub grants: Option<RealtimeGrants>,

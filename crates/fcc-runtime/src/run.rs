@@ -108,6 +108,7 @@ impl<C: Controller> Loop<C> {
 type Started = Result<RealtimeGrants, SpawnError>;
 
 fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
+    machine.count_page_faults();
     while machine.state() != State::Stopped {
         machine.step();
     }

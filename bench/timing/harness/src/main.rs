@@ -1,6 +1,6 @@
 //! Runs our clocks and their peers in turn, under the same conditions, and
 //! compares when they ticked. What is measured and how is told in
-//! `docs/timing.md`.
+//! `docs/benchmarks.md`.
 
 mod load;
 mod machine;

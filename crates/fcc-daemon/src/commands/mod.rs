@@ -2,6 +2,7 @@
 //! people on standard error, and ends with a code that means something.
 
 mod check;
+mod doctor;
 mod fly;
 mod guard;
 mod list;
@@ -34,6 +35,7 @@ pub fn run(cli: Cli) -> Exit {
         #[cfg(feature = "live")]
         Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),
+        Command::Doctor(args) => doctor::doctor(&args),
         Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {

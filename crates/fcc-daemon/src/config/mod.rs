@@ -8,6 +8,7 @@
 mod autopilot;
 mod built_in;
 mod course;
+mod cpu;
 mod error;
 mod places;
 mod ranges;
@@ -29,9 +30,12 @@ use serde::{Deserialize, Serialize};
 pub use autopilot::AutopilotSection;
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
+pub use cpu::CpuChoice;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
-pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use runtime::{
+    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
+};
 pub use telemetry::TelemetrySection;
 pub use x_plane::XPlaneSection;
 

@@ -11,8 +11,14 @@ use super::{Config, Problem};
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
     ("loop.rate_hz", 1.0, 2_000.0),
+    ("loop.early_wake.min_us", 0.0, 10_000.0),
+    ("loop.early_wake.max_us", 1.0, 10_000.0),
+    ("loop.early_wake.guard_us", 0.0, 10_000.0),
+    ("loop.early_wake.quantile", 0.5, 0.9999),
+    ("loop.early_wake.cpu_cap_percent", 0.0, 50.0),
     ("realtime.priority", 0.0, 99.0),
     ("realtime.cpu", 0.0, 1_023.0),
+    ("realtime.cpu_dma_latency_us", 0.0, 1e6),
     ("realtime.stack_prefault_kib", 0.0, 4_096.0),
     ("realtime.timer_slack_ns", 0.0, 1e9),
     ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
@@ -152,6 +158,16 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
 
 /// What one value means for another.
 fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
+    let early = &config.tick.early_wake;
+    if early.min_us > early.max_us {
+        complain(
+            "loop.early_wake.min_us",
+            format!(
+                "is {}: choose no more than max_us, {}",
+                early.min_us, early.max_us
+            ),
+        );
+    }
     let envelope = &config.autopilot.envelope;
     if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
         complain(
@@ -205,7 +221,7 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{BuiltInSection, XPlaneSection};
+    use crate::config::{BuiltInSection, CpuChoice, XPlaneSection};
 
     /// A new key without a range would be a key whose nonsense is believed.
     #[test]
@@ -215,7 +231,8 @@ mod tests {
             built_in: Some(BuiltInSection::default()),
             ..Config::default()
         };
-        config.realtime.cpu = Some(1);
+        config.realtime.cpu = Some(CpuChoice::Number(1));
+        config.realtime.cpu_dma_latency_us = Some(0);
         let values = toml::Value::try_from(&config).unwrap();
         let mut missing = Vec::new();
         walk("", &values, &mut missing);

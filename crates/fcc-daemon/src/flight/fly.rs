@@ -8,7 +8,7 @@ use std::time::Duration;
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_telemetry::recording::RecordingPace;
-use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use fcc_timer::{ManualTimer, Timer, TimerError};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
@@ -84,10 +84,9 @@ pub fn fly(
     plan: Plan,
     recording: Option<RecordingWish>,
 ) -> Result<Outcome, FlyError> {
-    let period = tick.period();
     let timer: Box<dyn Timer> = match plan.pace {
-        Pace::RealTime => build(tick.timer, period)?,
-        Pace::Lockstep => Box::new(ManualTimer::new(period)?),
+        Pace::RealTime => tick.build_timer()?,
+        Pace::Lockstep => Box::new(ManualTimer::new(tick.period())?),
     };
     let timer_name = timer.name();
     let course = assembly.autopilot.config().course;
@@ -184,10 +183,6 @@ pub fn fly(
     let mut outcome = Outcome::new(timer_name, report, events, score, recording);
     outcome.explain(interrupted, refused);
     Ok(outcome)
-}
-
-fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
-    kind.build(period)
 }
 
 fn run_in_lockstep(

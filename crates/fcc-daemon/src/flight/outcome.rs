@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table};
 use fcc_timer::RealtimeGrants;
+use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
 use super::recording::RecordingOutcome;
@@ -67,12 +68,16 @@ impl Outcome {
             _ => Exit::Success,
         };
         Self {
-            timing: TimingReport::new(
-                timer,
-                &report.timing,
-                realtime(&report.grants.unwrap_or_default()),
-            )
-            .with_cpu_time(report.cpu_time.as_secs_f64()),
+            timing: TimingReport {
+                page_faults: report.page_faults,
+                ..TimingReport::new(
+                    timer,
+                    &report.timing,
+                    realtime(&report.grants.unwrap_or_default()),
+                )
+            }
+            .with_cpu_time(report.cpu_time.as_secs_f64())
+            .with_spin_time(report.timing.spun_s),
             flight,
             events,
             ending: report.ending.to_string(),
@@ -134,7 +139,12 @@ fn realtime(grants: &RealtimeGrants) -> Realtime {
         }
         .to_owned(),
         priority: grants.priority,
+        cpu: grants.cpu,
+        cpu_because: grants.cpu_because.clone(),
         memory_locked: grants.memory_locked,
+        stack_prefaulted: grants.stack_prefaulted,
+        timer_slack_ns: grants.timer_slack_ns,
+        cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
         refused: grants
             .refused
             .iter()

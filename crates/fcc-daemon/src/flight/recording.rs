@@ -6,6 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
 use fcc_timer::RealtimeGrants;
+use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
 use serde::Serialize;
 
@@ -157,7 +158,12 @@ impl RecordingWish {
         let realtime = grants.map_or_else(Realtime::default, |grants| Realtime {
             policy: grants.policy.to_owned(),
             priority: grants.priority,
+            cpu: grants.cpu,
+            cpu_because: grants.cpu_because.clone(),
             memory_locked: grants.memory_locked,
+            stack_prefaulted: grants.stack_prefaulted,
+            timer_slack_ns: grants.timer_slack_ns,
+            cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
             refused: grants.refused.iter().map(ToString::to_string).collect(),
         });
         let about = About {

@@ -30,6 +30,7 @@ pub struct Survey {
     /// When the first tick was due: the report counts from there.
     began_ns: Option<i64>,
     timing: Option<TimingStats>,
+    page_faults: u64,
     continuity: Continuity,
     durations: Durations,
     states: States,
@@ -49,6 +50,7 @@ impl Survey {
             scoring: pattern.map(Scoring::new),
             began_ns: None,
             timing: None,
+            page_faults: 0,
             continuity: Continuity::default(),
             durations: Durations::default(),
             states: States::default(),
@@ -105,6 +107,7 @@ impl Survey {
             early_wake_ns: record.early_wake_ns,
             ..Expiry::default()
         });
+        self.page_faults = self.page_faults.max(record.page_faults);
         self.durations.record(record);
         self.states.take(time_s, record.state.state());
         self.lines.take(record, time_s);
@@ -146,7 +149,9 @@ impl Survey {
             }
             None => (None, None),
         };
-        let timing = self.timing.map(|stats| timing(&stats, &self.origin));
+        let timing = self
+            .timing
+            .map(|stats| timing(&stats, self.page_faults, &self.origin));
         let mut report = Report {
             origin: self.origin,
             end,
@@ -181,11 +186,14 @@ fn period(tick: &Tick) -> Duration {
     Duration::try_from_secs_f64(period_s).unwrap_or_default()
 }
 
-fn timing(stats: &TimingStats, origin: &Origin) -> Timing {
+fn timing(stats: &TimingStats, page_faults: u64, origin: &Origin) -> Timing {
     let summary = stats.summary();
     let periods: Vec<_> = stats.period_counts().collect();
     Timing {
-        table: TimingReport::new(&origin.timer, &summary, origin.realtime.clone()),
+        table: TimingReport {
+            page_faults: Some(page_faults),
+            ..TimingReport::new(&origin.timer, &summary, origin.realtime.clone())
+        },
         period_box_ms: BoxPlot::of(&periods),
         lateness_histogram: log_histogram(stats.lateness_counts()),
         thesis: ThesisFigures::at(summary.rate_hz),
