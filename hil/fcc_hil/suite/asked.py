@@ -4,23 +4,12 @@ from __future__ import annotations
 
 from types import MappingProxyType
 
+from ..table import COLUMNS
 from .limits import Limits, limits
-
-_COLUMNS = (
-    "heading_settle_s",
-    "heading_overshoot_deg",
-    "heading_rms_deg",
-    "altitude_settle_s",
-    "altitude_overshoot_ft",
-    "altitude_rms_ft",
-    "turn_loss_ft",
-    "airspeed_error_kt",
-    "lateral_acceleration_g",
-)
 
 
 def _row(*figures: float) -> Limits:
-    return limits(**dict(zip(_COLUMNS, figures, strict=True)))
+    return limits(**dict(zip(COLUMNS, figures, strict=True)))
 
 
 SMOOTH = MappingProxyType(
