@@ -18,6 +18,9 @@ _COLUMNS: tuple[tuple[str, str, int], ...] = (
     ("lateral_acceleration_g", "lateral g", 3),
 )
 
+COLUMNS = tuple(name for name, _, _ in _COLUMNS)
+TITLES = tuple(title for _, title, _ in _COLUMNS)
+
 
 def _cell(legs: Sequence[LegScore], name: str, digits: int) -> str:
     values = [dict(leg)[name] for leg in legs]

@@ -119,8 +119,8 @@ def _beginnings() -> Iterator[Case]:
             mean_altitude_rms_ft=TAKEN_OVER[aircraft],
             hold_heading_error_deg=1.0,
             hold_altitude_error_ft=TAKEN_OVER[aircraft],
-            largest_bank_deg=35.0,
-            lateral_acceleration_g=0.1,
+            largest_bank_deg=40.0,
+            lateral_acceleration_g=0.15,
         )
         yield Case(
             f"{aircraft}: engaged {beginning.value}",

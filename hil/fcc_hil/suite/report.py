@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..table import table
+from ..table import COLUMNS, TITLES, table
 from .flying import Outcome
 from .speed import Speed
 
@@ -14,7 +14,7 @@ def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
     """Return the table, mean/worst over the legs, then every limit that was broken."""
     flown = [(_title(outcome), outcome.score) for outcome in outcomes]
     parts = [table([(title, figures) for title, figures in flown if figures is not None])]
-    parts += [_further(outcomes)]
+    parts += [part for part in (_asked(outcomes), _further(outcomes)) if part]
     if speed is not None:
         parts.append(speed.words())
     bad = [outcome for outcome in outcomes if outcome.broken]
@@ -37,6 +37,23 @@ def document(outcomes: Iterable[Outcome], speed: Speed | None = None) -> dict[st
 
 def _title(outcome: Outcome) -> str:
     return f"{outcome.case.name}{' (!)' if outcome.broken else ''}"
+
+
+def _asked(outcomes: Sequence[Outcome]) -> str:
+    """Return the limits of the table's columns, one row for each set of them."""
+    rows: dict[tuple[float, ...], str] = {}
+    for outcome in outcomes:
+        asked = outcome.case.limits
+        if all(column in asked for column in COLUMNS):
+            rows.setdefault(tuple(asked[column] for column in COLUMNS), outcome.case.name)
+    if not rows:
+        return ""
+    lines = [
+        f"| {name} | {' | '.join(f'{most:.3g}' for most in mosts)} |"
+        for mosts, name in rows.items()
+    ]
+    head = f"| limit of the worst leg, from here on | {' | '.join(TITLES)} |"
+    return "\n".join([head, "|---" * (len(COLUMNS) + 1) + "|", *lines])
 
 
 def _further(outcomes: Sequence[Outcome]) -> str:
