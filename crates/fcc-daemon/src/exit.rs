@@ -25,6 +25,8 @@ pub enum Exit {
     /// A recording could not be flown again, or not to its end; nothing that
     /// was differs.
     NotReplayed = 8,
+    /// The daemon refused an order.
+    Refused = 9,
 }
 
 /// For `--help`.
@@ -38,7 +40,8 @@ Exit codes:
   5  control may not have been released
   6  a part of the loop panicked; the controls were released
   7  a recording flown again gave other outputs
-  8  a recording could not be flown again to its end; nothing else differs";
+  8  a recording could not be flown again to its end; nothing else differs
+  9  the daemon refused the order";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -15,6 +15,7 @@ mod recording;
 mod runtime;
 mod telemetry;
 mod units;
+mod values;
 mod wording;
 mod x_plane;
 
@@ -33,6 +34,7 @@ pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
 pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
 pub use telemetry::TelemetrySection;
+pub(crate) use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -112,11 +114,20 @@ impl Config {
     /// # Errors
     /// As [`Config::parse`].
     pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
+        Ok(Self::parse_or_built_in(text, file)?.autopilot_config())
+    }
+
+    /// Checks a text in which the aircraft need not be said: it is the built-in
+    /// one then.
+    ///
+    /// # Errors
+    /// As [`Config::parse`].
+    pub fn parse_or_built_in(text: &str, file: &str) -> Result<Self, ConfigError> {
         let mut config = Self::read(text, file)?;
         if config.x_plane.is_none() {
             config.built_in.get_or_insert_default();
         }
-        Ok(config.checked(text, file)?.autopilot_config())
+        config.checked(text, file)
     }
 
     fn read(text: &str, file: &str) -> Result<Self, ConfigError> {

@@ -136,6 +136,7 @@ pub fn fly(
             watch.live.describe(tick, handle.grants(), &aircraft);
             while !link.messages.is_over() {
                 drain(&mut link, &mut watch, recording.as_mut(), plan);
+                watch.live.pass_orders(&mut link.orders);
                 if let Some(words) = connection.as_mut().and_then(Connection::poll) {
                     if let Some(recording) = &recording {
                         recording.remark(&words);

@@ -12,6 +12,8 @@ mod guard;
 mod injection;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
 mod live;
+#[cfg(feature = "live")]
+mod orders;
 mod outcome;
 mod recording;
 mod signals;
@@ -24,6 +26,7 @@ pub use fly::{FlyError, Length, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
 pub use recording::{RecordingOutcome, RecordingWish};
+pub use watch::true_sample;
 
 /// What the loop runs.
 #[cfg(not(feature = "fault-injection"))]

@@ -10,6 +10,7 @@ use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
 use super::lateness::Lateness;
+use super::order::{Desk, Rings};
 use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
@@ -28,14 +29,16 @@ const STATUS_EVERY: Duration = Duration::from_secs(1);
 /// Whether publishing began.
 pub(super) type Started = Result<(), PublishError>;
 
-/// Publishes what comes by the ring, until nobody can put anything there.
+/// Publishes what comes by the ring, until nobody can put anything there, and
+/// takes orders if there are rings for them.
 pub(super) fn publish(
     instance: &Instance,
+    orders: Option<Rings>,
     mut items: Consumer<Item>,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::open(instance) {
+    let mut thread = match Publishing::open(instance, orders) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this; if it has given up, nobody does.
@@ -62,9 +65,13 @@ pub(super) fn publish(
             thread.tell_status();
         }
         if over {
+            thread.close();
             return;
         }
         thread.greet();
+        if let Some(desk) = &mut thread.desk {
+            desk.serve();
+        }
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
@@ -78,6 +85,7 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
 }
 
 struct Publishing {
+    desk: Option<Desk>,
     records: Out<Published>,
     service: Service<Published>,
     events: Out<Event>,
@@ -93,7 +101,7 @@ struct Publishing {
 }
 
 impl Publishing {
-    fn open(instance: &Instance) -> Result<Self, PublishError> {
+    fn open(instance: &Instance, orders: Option<Rings>) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
@@ -103,7 +111,11 @@ impl Publishing {
         let (service, records) = RECORD.publish(&access, instance)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
+        let desk = orders
+            .map(|rings| Desk::open(&access, instance, rings))
+            .transpose()?;
         Ok(Self {
+            desk,
             records,
             service,
             events,
@@ -116,6 +128,13 @@ impl Publishing {
             paused: false,
             access,
         })
+    }
+
+    /// Nothing comes any more: nor will answers.
+    fn close(&mut self) {
+        if let Some(desk) = self.desk.take() {
+            desk.close();
+        }
     }
 
     /// Pauses while shared memory is nearly full; gives words when that changes.
