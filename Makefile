@@ -19,6 +19,8 @@ TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
 # The same with faults on purpose, for tests.
 FAULTY   := $(TARGET)/release/fccd-faulty
+# Where the Python module's wheels go.
+WHEELS   := $(TARGET)/wheels
 VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
@@ -26,7 +28,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
+.PHONY: help wheels faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -89,6 +91,10 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
 
+wheels: $(STAMPS)/rust $(STAMPS)/wheel-tools ## Build the Python module's wheels for x86-64 and ARM, and try one
+	./scripts/build-wheels $(abspath $(VENV))/bin $(WHEELS)
+	./scripts/try-wheel $(WHEELS)
+
 clean: ## Remove what was built
 	cargo clean
 	rm -rf $(VENV) $(STAMPS)
@@ -111,6 +117,11 @@ $(STAMPS)/python: hil/pyproject.toml
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace
 	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/wheel-tools: $(STAMPS)/python
+	@command -v aarch64-linux-gnu-gcc >/dev/null || ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+	$(PYTHON) -m pip install --quiet 'ziglang>=0.13'
+	@touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module

@@ -30,7 +30,7 @@ impl PyAutopilot {
     #[pyo3(signature = (config = None))]
     fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         Ok(Self {
-            stepped: Stepped::new(autopilot_config(config)?),
+            stepped: Stepped::new(&autopilot_config(config)?),
         })
     }
 

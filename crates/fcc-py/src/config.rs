@@ -42,6 +42,10 @@ impl PyConfig {
 
     /// Reads and checks a file, as `fccd check` does.
     #[staticmethod]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "pyo3 hands paths over by value"
+    )]
     fn load(path: PathBuf) -> PyResult<Self> {
         Config::load(&path)
             .map(|config| Self { config })

@@ -28,7 +28,7 @@ impl PyFleet {
     fn new(configs: &Bound<'_, PyAny>) -> PyResult<Self> {
         let autopilots = configs
             .try_iter()?
-            .map(|config| Ok(Stepped::new(autopilot_config(Some(&config?))?)))
+            .map(|config| Ok(Stepped::new(&autopilot_config(Some(&config?))?)))
             .collect::<PyResult<Vec<_>>>()?;
         if autopilots.is_empty() {
             return Err(PyValueError::new_err(

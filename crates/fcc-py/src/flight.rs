@@ -182,7 +182,7 @@ pub(crate) fn fly(
             conduct(py, parts, &config, &raised, log)
         }
     }?;
-    flown.into_flight(py)
+    Ok(flown.into_flight(py))
 }
 
 fn default_seconds(config: &Config) -> f64 {
@@ -249,7 +249,7 @@ where
         }
         if left.is_multiple_of(TICKS_PER_LOOK) || looked.elapsed() > LOOK_EVERY {
             looked = Instant::now();
-            Python::attach(Python::check_signals)?;
+            listen()?;
         }
     }
     let took = began.elapsed();
@@ -267,6 +267,14 @@ where
     })
 }
 
+#[expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "the method itself is for one lifetime, and not for any"
+)]
+fn listen() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
 /// What a flight leaves.
 struct Flown {
     log: Log,
@@ -277,7 +285,7 @@ struct Flown {
 }
 
 impl Flown {
-    fn into_flight(self, py: Python<'_>) -> PyResult<PyFlight> {
+    fn into_flight(self, py: Python<'_>) -> PyFlight {
         let realtime = Realtime {
             policy: "not asked for".to_owned(),
             priority: 0,
@@ -288,7 +296,7 @@ impl Flown {
         // A leg that was not flown to its end has no figures, and the flight
         // no score.
         let score = log.score.and_then(|score| score.score().ok());
-        Ok(PyFlight {
+        PyFlight {
             records: structured::records(py, log.rows).unbind(),
             truth: structured::truths(py, log.truths).unbind(),
             events: log.events,
@@ -298,7 +306,7 @@ impl Flown {
             ending: self.report.ending.to_string(),
             score: score.filter(|score| !score.legs.is_empty()),
             timing: TimingReport::new(self.report.timer, &self.report.timing, realtime),
-        })
+        }
     }
 }
 

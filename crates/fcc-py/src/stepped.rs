@@ -20,9 +20,9 @@ pub(crate) struct Stepped {
 }
 
 impl Stepped {
-    pub(crate) fn new(config: AutopilotConfig) -> Self {
+    pub(crate) fn new(config: &AutopilotConfig) -> Self {
         Self {
-            autopilot: Autopilot::new(config),
+            autopilot: Autopilot::new(*config),
             tick: Tick::default(),
             time_s: 0.0,
             engaged: false,

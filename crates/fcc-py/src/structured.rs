@@ -113,7 +113,7 @@ fn make(
     clippy::expect_used,
     reason = "the module does not load where a dtype cannot be made, and later it is only looked up"
 )]
-fn prepared<'py>(dtype: PyResult<Bound<'py, PyArrayDescr>>) -> Bound<'py, PyArrayDescr> {
+fn prepared(dtype: PyResult<Bound<'_, PyArrayDescr>>) -> Bound<'_, PyArrayDescr> {
     dtype.expect("made when the module was loaded")
 }
 

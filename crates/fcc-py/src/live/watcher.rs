@@ -4,8 +4,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Time;
-use fcc_telemetry::Instance;
 use fcc_telemetry::live::{Event, Info, RecorderState, Status, WatchError, Watcher};
+use fcc_telemetry::{FlightRecord, Instance};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -61,9 +61,7 @@ impl PyWatcher {
     fn latest<'py>(&self, py: Python<'py>, timeout_s: f64) -> PyResult<Option<Bound<'py, PyAny>>> {
         let patience = Duration::from_secs_f64(within("timeout_s", timeout_s, 0.0, 3_600.0)?);
         let found = self.wait(py, Some(patience), Watcher::latest)?;
-        found
-            .map(|record| row(py, RecordRow::from(&record)))
-            .transpose()
+        found.map(|record| row(py, &record)).transpose()
     }
 
     /// All records that came since they were last asked for, oldest first, as
@@ -123,9 +121,7 @@ impl PyWatcher {
 
     fn __next__<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let found = self.wait(py, None, Watcher::next_record)?;
-        found
-            .map(|record| row(py, RecordRow::from(&record)))
-            .transpose()
+        found.map(|record| row(py, &record)).transpose()
     }
 
     fn __repr__(&self) -> String {
@@ -199,8 +195,10 @@ impl PyWatcher {
 }
 
 /// One record as numpy's scalar.
-fn row(py: Python<'_>, row: RecordRow) -> PyResult<Bound<'_, PyAny>> {
-    structured::records(py, vec![row]).as_any().get_item(0)
+fn row<'py>(py: Python<'py>, record: &FlightRecord) -> PyResult<Bound<'py, PyAny>> {
+    structured::records(py, vec![RecordRow::from(record)])
+        .as_any()
+        .get_item(0)
 }
 
 fn event_of(event: &Event) -> PyEvent {

@@ -109,7 +109,8 @@ impl PyMeasurements {
     }
 
     /// As a row of 11 numbers, in the order of `fcc.MEASUREMENTS`.
-    fn to_array<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    #[pyo3(name = "to_array")]
+    fn array<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.to_row().to_pyarray(py)
     }
 

@@ -66,7 +66,8 @@ impl PySurfaces {
     }
 
     /// As a row of 4 numbers: throttle, elevator, aileron, rudder.
-    fn to_array<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+    #[pyo3(name = "to_array")]
+    fn array<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         [self.throttle, self.elevator, self.aileron, self.rudder].to_pyarray(py)
     }
 

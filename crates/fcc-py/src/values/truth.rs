@@ -28,6 +28,7 @@ impl PyTruth {
             .ok_or_else(|| PyAttributeError::new_err(format!("'Truth' has no '{name}'")))
     }
 
+    #[expect(clippy::unused_self, reason = "Python asks the instance")]
     fn __dir__(&self) -> Vec<&'static str> {
         Truth::NAMES.to_vec()
     }
