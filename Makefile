@@ -68,7 +68,9 @@ lint-rust: $(STAMPS)/rust
 
 lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff check hil
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi
 	$(PYTHON) -m ruff format --check hil
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi
 	cd hil && ../$(PYTHON) -m mypy
 
 deny: $(STAMPS)/rust

@@ -10,12 +10,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import fcc
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
-
-import fcc
 
 HOLD = '[course]\nkind = "hold"\n'
 LEVEL = fcc.BuiltInAircraft().step(None)
@@ -45,10 +44,12 @@ ALLOWED = (fcc.Error, ValueError, TypeError, OverflowError)
 
 def answers(call: Callable[[], Any]) -> None:
     """Answer or raise one of the allowed exceptions, in words."""
+    words = "answered"
     try:
         call()
     except ALLOWED as error:
-        assert str(error).strip(), type(error)
+        words = str(error)
+    assert words.strip()
 
 
 def engaged() -> fcc.Autopilot:
@@ -59,91 +60,94 @@ def engaged() -> fcc.Autopilot:
     return autopilot
 
 
-CALLS: dict[str, Callable[..., Any]] = {
+ONE: dict[str, Callable[..., Any]] = {
     "Autopilot": fcc.Autopilot,
-    "Autopilot.observe": lambda *given: engaged().observe(*given),
     "Autopilot.observe dt": lambda dt: engaged().observe(LEVEL, dt),
-    "Autopilot.observe_series": lambda *given: engaged().observe_series(*given),
     "Autopilot.engage": lambda given: engaged().engage(LEVEL, throttle=given),
     "Autopilot.step dt": lambda dt: engaged().step(LEVEL, dt),
-    "Autopilot.fly": lambda *given: engaged().fly(*given),
-    "Autopilot.failsafe": lambda *given: engaged().failsafe(*given),
-    "Autopilot.order": lambda a, b: engaged().order(airspeed_mps=a, heading_rad=b),
     "Fleet": fcc.Fleet,
-    "Fleet.engage": lambda a, b: fcc.Fleet([HOLD]).engage(a, b),
-    "Fleet.observe": lambda *given: fcc.Fleet([HOLD]).observe(*given),
-    "Fleet.step": lambda *given: fcc.Fleet([HOLD]).step(*given),
     "Loop": fcc.Loop,
     "Loop.step": lambda given: fcc.Loop().step(given),
     "Loop.step missed": lambda given: fcc.Loop().step(LEVEL, missed=given),
     "Loop.step switch": lambda given: fcc.Loop().step(LEVEL, switch=given),
-    "Loop.order": lambda a, b: fcc.Loop().order(altitude_m=a, heading_rad=b),
     "BuiltInAircraft": fcc.BuiltInAircraft,
-    "BuiltInAircraft.step": lambda *given: fcc.BuiltInAircraft().step(*given),
     "BuiltInAircraft.step dt": lambda dt: fcc.BuiltInAircraft().step(None, dt),
     "Measurements": lambda given: fcc.Measurements(pitch_rad=given),  # type: ignore[call-arg]
     "Measurements.from_array": fcc.Measurements.from_array,
-    "Surfaces": lambda a, b: fcc.Surfaces(throttle=a, elevator=b),
     "Config": fcc.Config,
     "Config.load": fcc.Config.load,
     "Config[]": lambda given: fcc.Config()[given],
-    "Config.replace": lambda a, b: fcc.Config().replace({a: b}),
     "Config.replace gain": lambda given: fcc.Config().replace({"loop.rate_hz": given}),
     "fly seconds": lambda given: fcc.fly(seconds=given if given in (0, None) else math.nan),
     "fly config": lambda given: fcc.fly(given, seconds=0.1),
-    "Pid": lambda *given: fcc.Pid(*given),
-    "Pid limits": lambda a, b: fcc.Pid(output_min=a, output_max=b),
-    "Pid.step": lambda a, b: fcc.Pid(1.0).step(a, 0.0, b),
-    "Pid.engage": lambda a, b: fcc.Pid(1.0).engage(a, b, 0.0),
     "LowPass": fcc.LowPass,
-    "LowPass.step": lambda a, b: fcc.LowPass(1.0).step(a, b),
-    "LowPass.run": lambda a, b: fcc.LowPass(1.0).run(a, b),
     "LowPass.reset": lambda given: fcc.LowPass(1.0).reset(given),
     "HighPass": fcc.HighPass,
-    "HighPass.step": lambda a, b: fcc.HighPass(1.0).step(a, b),
-    "HighPass.run": lambda a, b: fcc.HighPass(1.0).run(a, b),
     "RateLimit": fcc.RateLimit,
-    "RateLimit.step": lambda a, b: fcc.RateLimit(1.0).step(a, b),
-    "RateLimit.run": lambda a, b: fcc.RateLimit(1.0).run(a, b),
     "Complementary": fcc.Complementary,
-    "Complementary.predict": lambda a, b: fcc.Complementary(1.0).predict(a, b),
-    "Complementary.correct": lambda a, b: fcc.Complementary(1.0).correct(a, b),
-    "SquareRootProfile": lambda a, b: fcc.SquareRootProfile(a, b),
     "SquareRootProfile.speed": lambda given: fcc.SquareRootProfile(1.0, 1.0).speed(given),
     "pressure_pa": fcc.pressure_pa,
     "pressure_altitude_m": fcc.pressure_altitude_m,
     "density_ratio": fcc.density_ratio,
-    "true_airspeed_mps": lambda a, b: fcc.true_airspeed_mps(a, b),
     "wrap_pi": fcc.wrap_pi,
     "wrap_two_pi": fcc.wrap_two_pi,
-    "quaternion_from_euler": lambda a, b: fcc.quaternion_from_euler(a, b, 0.0),
     "euler_from_quaternion": fcc.euler_from_quaternion,
-    "body_to_earth": lambda a, b: fcc.body_to_earth(a, b),
-    "earth_to_body": lambda a, b: fcc.earth_to_body(a, b),
-    "Timer": lambda *given: fcc.Timer(*given),
     "Recording": fcc.Recording,
     "list_recordings": fcc.list_recordings,
     "recover": fcc.recover,
     "report": fcc.report,
-    "replay": lambda *given: fcc.replay(*given),
     "Watcher": fcc.Watcher,
     "Commander": fcc.Commander,
 }
+"""What is called with one argument."""
+TWO: dict[str, Callable[..., Any]] = {
+    "Autopilot.observe": lambda a, b: engaged().observe(a, b),
+    "Autopilot.observe_series": lambda a, b: engaged().observe_series(a, b),
+    "Autopilot.fly": lambda a, b: engaged().fly(a, b),
+    "Autopilot.failsafe": lambda a, b: engaged().failsafe(a, b),
+    "Autopilot.order": lambda a, b: engaged().order(airspeed_mps=a, heading_rad=b),
+    "Fleet.engage": lambda a, b: fcc.Fleet([HOLD]).engage(a, b),
+    "Fleet.observe": lambda a, b: fcc.Fleet([HOLD]).observe(a, b),
+    "Fleet.step": lambda a, b: fcc.Fleet([HOLD]).step(a, b),
+    "Loop.order": lambda a, b: fcc.Loop().order(altitude_m=a, heading_rad=b),
+    "BuiltInAircraft.step": lambda a, b: fcc.BuiltInAircraft().step(a, b),
+    "Surfaces": lambda a, b: fcc.Surfaces(throttle=a, elevator=b),
+    "Config.replace": lambda a, b: fcc.Config().replace({a: b}),
+    "Pid": fcc.Pid,
+    "Pid limits": lambda a, b: fcc.Pid(output_min=a, output_max=b),
+    "Pid.step": lambda a, b: fcc.Pid(1.0).step(a, 0.0, b),
+    "Pid.engage": lambda a, b: fcc.Pid(1.0).engage(a, b, 0.0),
+    "LowPass.step": lambda a, b: fcc.LowPass(1.0).step(a, b),
+    "LowPass.run": lambda a, b: fcc.LowPass(1.0).run(a, b),
+    "HighPass.step": lambda a, b: fcc.HighPass(1.0).step(a, b),
+    "HighPass.run": lambda a, b: fcc.HighPass(1.0).run(a, b),
+    "RateLimit.step": lambda a, b: fcc.RateLimit(1.0).step(a, b),
+    "RateLimit.run": lambda a, b: fcc.RateLimit(1.0).run(a, b),
+    "Complementary.predict": lambda a, b: fcc.Complementary(1.0).predict(a, b),
+    "Complementary.correct": lambda a, b: fcc.Complementary(1.0).correct(a, b),
+    "SquareRootProfile": fcc.SquareRootProfile,
+    "true_airspeed_mps": fcc.true_airspeed_mps,
+    "quaternion_from_euler": lambda a, b: fcc.quaternion_from_euler(a, b, 0.0),
+    "body_to_earth": fcc.body_to_earth,
+    "earth_to_body": fcc.earth_to_body,
+    "Timer": fcc.Timer,
+    "replay": fcc.replay,
+}
+"""What is called with two."""
 
-def _takes_two(call: Callable[..., Any]) -> bool:
-    code = getattr(call, "__code__", None)
-    return code is not None and code.co_argcount == 2
+
+@pytest.mark.parametrize("name", ONE)
+@settings(max_examples=60, deadline=None)
+@given(thing=things)
+def test_anything_is_answered_or_refused_in_words(name: str, thing: object) -> None:
+    answers(lambda: ONE[name](thing))
 
 
-@pytest.mark.parametrize("name", CALLS)
-@settings(
-    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
-@given(data=st.data())
-def test_anything_is_answered_or_refused_in_words(name: str, data: st.DataObject) -> None:
-    call = CALLS[name]
-    given_ = [data.draw(things) for _ in range(2 if _takes_two(call) else 1)]
-    answers(lambda: call(*given_))
+@pytest.mark.parametrize("name", TWO)
+@settings(max_examples=60, deadline=None)
+@given(a=things, b=things)
+def test_any_two_are_answered_or_refused_in_words(name: str, a: object, b: object) -> None:
+    answers(lambda: TWO[name](a, b))
 
 
 FINITE = ["LowPass.step", "Pid.step", "RateLimit.step", "wrap_pi", "pressure_pa", "density_ratio"]
@@ -152,9 +156,8 @@ FINITE = ["LowPass.step", "Pid.step", "RateLimit.step", "wrap_pi", "pressure_pa"
 @pytest.mark.parametrize("name", FINITE)
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_named(name: str, value: float) -> None:
-    call = CALLS[name]
     with pytest.raises(ValueError, match=r"is (NaN|-?inf)"):
-        call(*([value, 0.025] if _takes_two(call) else [value]))
+        ONE[name](value) if name in ONE else TWO[name](value, 0.025)
 
 
 @given(shape=st.tuples(st.integers(0, 5), st.integers(0, 14)).filter(lambda shape: shape[1] != 11))

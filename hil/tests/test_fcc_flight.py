@@ -6,10 +6,9 @@ import threading
 import time
 import warnings
 
+import fcc
 import numpy as np
 import pytest
-
-import fcc
 
 FOOT_M = 0.3048
 SLOWEST_TIMES_REAL_TIME = 100.0

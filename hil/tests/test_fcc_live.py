@@ -9,11 +9,10 @@ import signal
 import subprocess
 from pathlib import Path
 
+import fcc
 import numpy as np
 import pytest
 from daemon_under_test import DaemonUnderTest, wait_until
-
-import fcc
 
 PATIENCE_S = 15.0
 FAILURE = 1

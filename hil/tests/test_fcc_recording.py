@@ -5,11 +5,10 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
+import fcc
 import numpy as np
 import pytest
 from recordings import EVENT, RECORD, by_index, only_recording
-
-import fcc
 
 SECONDS = 25
 

@@ -48,8 +48,8 @@ impl PyLowPass {
     }
 
     /// Takes an input held for `dt` s; the output.
-    fn step(&mut self, input: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("input", input)?, passed_s(dt)?))
+    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
+        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
     }
 
     /// Takes a series of inputs, each held for `dt` s; the outputs.
@@ -88,8 +88,8 @@ impl PyHighPass {
     }
 
     /// Takes an input held for `dt` s; the output.
-    fn step(&mut self, input: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("input", input)?, passed_s(dt)?))
+    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
+        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
     }
 
     /// Takes a series of inputs, each held for `dt` s; the outputs.
@@ -122,8 +122,8 @@ impl PyRateLimit {
     }
 
     /// Moves towards an input for `dt` s; the output.
-    fn step(&mut self, input: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("input", input)?, passed_s(dt)?))
+    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
+        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
     }
 
     /// Moves towards a series of inputs, each for `dt` s; the outputs.
