@@ -15,7 +15,8 @@ def flown(seconds: float, loop: fcc.Loop, aircraft: fcc.BuiltInAircraft) -> None
     """Fly on by the loop."""
     surfaces = None
     for _ in range(round(seconds / loop.period_s)):
-        surfaces = loop.step(aircraft.step(surfaces, loop.period_s), switch=aircraft.switch)
+        measured = aircraft.step(surfaces, loop.period_s)
+        surfaces = loop.step(measured, switch=aircraft.switch, standing=aircraft.controls)
 
 
 def series(seconds: float = 10.0) -> np.ndarray:

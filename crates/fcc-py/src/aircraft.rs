@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use fcc_core::flight::Measurements;
+use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
 use fcc_daemon::config::Aircraft;
 use fcc_sim::{SimConfig, Simulation};
@@ -106,9 +106,17 @@ impl PyAircraft {
         self.inner().measured.engage_switch.value == Switch::On
     }
 
-    /// The throttle of its trim, 0..1: where to take over from.
+    /// Where its controls stand: what was commanded last, or the trim.
     #[getter]
-    fn trim_throttle(&self) -> f64 {
-        self.inner().simulation.trim.throttle
+    fn controls(&self) -> PySurfaces {
+        let inner = self.inner();
+        if inner.measured.surfaces.is_never() {
+            let throttle = inner.simulation.trim.throttle;
+            return PySurfaces::from(Surfaces {
+                throttle,
+                ..Surfaces::default()
+            });
+        }
+        inner.measured.surfaces.value.into()
     }
 }

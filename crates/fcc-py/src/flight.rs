@@ -13,7 +13,7 @@ use fcc_sim::{SimConfig, Simulation, TruthHandle};
 use fcc_telemetry::{FlightLog, FlightMessage, FlightScore, Realtime, TimingReport};
 use fcc_timer::{ManualTimer, Timer, TimerError};
 use numpy::PyArray1;
-use pyo3::exceptions::PyRuntimeWarning;
+use pyo3::exceptions::{PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arguments::within;
@@ -31,6 +31,8 @@ const DEFAULT_LEGS: f64 = 8.0;
 const DEFAULT_HOLD_S: f64 = 60.0;
 /// The longest flight, s: a week.
 const LONGEST_S: f64 = 604_800.0;
+/// Ticks whose records and truths are kept at most: 3.5 GB of them.
+const MOST_KEPT: u64 = 5_000_000;
 /// How often an interruption from the keyboard is looked for.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// Ticks between looks at the clock in lockstep.
@@ -154,7 +156,7 @@ pub(crate) fn fly(
         sensors.push(Box::new(GuestSensor { call, raised }));
     }
     let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
-    let log = Log::new(&config, &sensors, simulation.truth, ticks, keep);
+    let log = Log::new(&config, &sensors, simulation.truth, ticks, keep)?;
     let autopilot = Autopilot::new(config.autopilot_config());
     let actuators: Vec<Box<dyn fcc_core::framework::Actuator<Surfaces>>> =
         vec![Box::new(simulation.actuator)];
@@ -331,9 +333,14 @@ impl Log {
         truth: TruthHandle,
         ticks: u64,
         keep: bool,
-    ) -> Self {
+    ) -> PyResult<Self> {
+        if keep && ticks > MOST_KEPT {
+            return Err(PyValueError::new_err(format!(
+                "{ticks} ticks are too many to keep: fly at most {MOST_KEPT}, or give keep=False"
+            )));
+        }
         let room = if keep { ticks as usize } else { 0 };
-        Self {
+        Ok(Self {
             sensors: sensors.iter().map(|s| s.name().to_owned()).collect(),
             truth,
             ticks,
@@ -347,7 +354,7 @@ impl Log {
                 Course::Hold => None,
             },
             engaged: false,
-        }
+        })
     }
 
     fn take(&mut self, message: &FlightMessage) {

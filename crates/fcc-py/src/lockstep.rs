@@ -45,7 +45,8 @@ struct Inner {
     measured: Producer<Measurements>,
     period_ns: i64,
     number: u64,
-    standing: Surfaces,
+    /// Where the controls stand, once that is known.
+    standing: Option<Surfaces>,
     rows: Vec<RecordRow>,
     events: Vec<PyEvent>,
 }
@@ -89,7 +90,7 @@ impl PyLoop {
                 measured,
                 period_ns: period.as_nanos() as i64,
                 number: 0,
-                standing: Surfaces::default(),
+                standing: None,
                 rows: Vec::new(),
                 events: Vec::new(),
             }),
@@ -101,7 +102,8 @@ impl PyLoop {
     ///
     /// `measurements` None is sensors that say nothing: readings grow old.
     /// `switch` is the engage switch, None where there is none. `standing` is
-    /// where the controls stand, by default what was sent last. `missed` are
+    /// where the controls stand, by default what was sent last; before that it
+    /// is not known, and the autopilot takes over with its trim throttle. `missed` are
     /// periods that pass unserved before this tick.
     #[pyo3(signature = (measurements, *, switch = None, standing = None, missed = 0))]
     fn step(
@@ -118,7 +120,7 @@ impl PyLoop {
         }
         let mut inner = self.inner();
         if let Some(standing) = standing {
-            inner.standing = checked_surfaces(standing.to_core())?;
+            inner.standing = Some(checked_surfaces(standing.to_core())?);
         }
         Ok(inner
             .step(measurements, switch, missed)
@@ -224,7 +226,7 @@ impl Inner {
             let told = Measured {
                 now: Time::from_nanos(at_ns),
                 plant_s: at_ns as f64 * 1e-9,
-                standing: Some(self.standing),
+                standing: self.standing,
                 switch: switch.map(|on| if on { Switch::On } else { Switch::Off }),
             };
             // The sensor has emptied the ring in the tick before.
@@ -245,8 +247,8 @@ impl Inner {
         }
         let record = self.machine.record();
         let sent = record.sent.then_some(record.outputs)?;
-        self.standing = sent;
-        Some(sent)
+        self.standing = Some(sent);
+        self.standing
     }
 }
 

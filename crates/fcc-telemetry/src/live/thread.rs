@@ -69,9 +69,7 @@ pub(super) fn publish(
             return;
         }
         thread.greet();
-        if let Some(desk) = &mut thread.desk {
-            desk.serve();
-        }
+        thread.take_orders();
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
@@ -128,6 +126,13 @@ impl Publishing {
             paused: false,
             access,
         })
+    }
+
+    /// Takes and answers orders; they wait while shared memory is nearly full.
+    fn take_orders(&mut self) {
+        if let Some(desk) = self.desk.as_mut().filter(|_| !self.paused) {
+            desk.serve();
+        }
     }
 
     /// Nothing comes any more: nor will answers.
