@@ -177,7 +177,7 @@ def test_a_wrong_step_is_said(dt: float) -> None:
 
 
 def test_ranges_are_said() -> None:
-    for call, words in {
+    said: dict[Callable[[], object], str] = {
         (lambda: fcc.pressure_pa(30_000.0)): "altitude_m is 30000: choose -500 to 20000",
         (lambda: fcc.pressure_altitude_m(-1.0)): "pressure_pa is -1: choose 1000 to 120000",
         (lambda: fcc.Timer(0.0)): "period_s is 0: choose 0.00001 to 3600",
@@ -188,7 +188,8 @@ def test_ranges_are_said() -> None:
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
         (lambda: fcc.Loop().step(None, missed=10**9)): "missed is 1000000000",
-    }.items():
+    }
+    for call, words in said.items():
         with pytest.raises(ValueError, match=words):
             call()
 

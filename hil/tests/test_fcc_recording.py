@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import fcc
 import numpy as np
@@ -32,14 +34,15 @@ def test_every_number_is_what_another_reader_finds(recording: Path) -> None:
     records = found.records
     assert records.dtype == fcc.RECORD
     assert len(found) == len(records) == len(expected) > SECONDS * 40
-    for column, of in {
+    columns: dict[str, Callable[[Any], Any]] = {
         "tick": lambda r: r.tick,
         "woke_ns": lambda r: r.woke_ns,
         "total_time_ns": lambda r: r.stages.total_ns,
         "pitch_rad": lambda r: r.measurements.attitude.pitch_rad,
         "commanded_elevator": lambda r: r.outputs.elevator,
         "desired_altitude_m": lambda r: r.setpoints.altitude_m,
-    }.items():
+    }
+    for column, of in columns.items():
         assert records[column].tolist() == [of(record) for record in expected], column
     texts = [message.content.text for message in messages if message.topic == EVENT]
     assert [event.text for event in found.events] == texts
