@@ -14,6 +14,9 @@ HARSH    ?=
 # For bench-live, such as LIVE="--seconds 60 --watchers 200".
 LIVE     ?=
 
+# For bench-timing, such as TIMING="--rates 40 --seconds 20 --rounds 5".
+TIMING   ?=
+
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
@@ -21,6 +24,11 @@ FCCD     := $(TARGET)/release/fccd
 FAULTY   := $(TARGET)/release/fccd-faulty
 # Where the Python module's wheels go.
 WHEELS   := $(TARGET)/wheels
+# A workspace of its own, built with the same compiler.
+TIMING_TARGET := $(abspath $(TARGET))/bench-timing
+BENCH_TIMING  := cargo build --locked --release --manifest-path bench/timing/Cargo.toml --target-dir $(TIMING_TARGET)
+# As in Cargo.lock: runner and library have to be of one version.
+GUNGRAUN := 0.20.0
 VENV     := .venv
 PYTHON   := $(VENV)/bin/python
 STAMPS   := .stamps
@@ -28,7 +36,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: help wheels faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-live doc build clean
+.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,14 +53,14 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 	$(PYTHON) -m fcc_hil fly --aircraft $(AIRCRAFT) --legs $(LEGS) --seed $(SEED) --port $(PORT) \
 	    --fccd $(FCCD) --config target/x-plane.toml --json $(JSON) --plot $(PLOT) $(HARSH)
 
-test: lint test-rust test-python ## Run every check and every test
+test: lint test-rust check-cross test-python ## Run every check and every test
 
 test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon --no-default-features
 
-test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace
+test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
 
 faulty: $(STAMPS)/rust
@@ -67,9 +75,9 @@ lint-rust: $(STAMPS)/rust
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
 
 lint-python: $(STAMPS)/python-module
-	$(PYTHON) -m ruff check hil
+	$(PYTHON) -m ruff check hil deploy
 	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi
-	$(PYTHON) -m ruff format --check hil
+	$(PYTHON) -m ruff format --check hil deploy
 	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi
 	cd hil && ../$(PYTHON) -m mypy
 
@@ -83,7 +91,51 @@ fuzz: ## Fuzz every parser of outside data for a minute each (needs a nightly to
 	    cargo +nightly fuzz run $$target -- -max_total_time=60 || exit 1; \
 	done
 
-bench: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
+# The boards: a Raspberry Pi with 64 bits, and a BeagleBone or a Pi with 32.
+BOARDS := aarch64-unknown-linux-gnu armv7-unknown-linux-gnueabihf
+
+check-cross: $(STAMPS)/cross ## Check that the daemon builds for the boards
+	for board in $(BOARDS); do \
+	    ./scripts/cross $$board check --locked -p fcc-daemon || exit 1; \
+	done
+
+test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests as they would there
+	for board in $(BOARDS); do ./scripts/test-cross $$board $(FCCD) || exit 1; done
+
+# Of this machine, or DEB_TARGET=aarch64-unknown-linux-gnu and the like.
+DEB_TARGET ?=
+PACKAGE    := target/package
+
+deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TARGET=)
+	@command -v cargo-deb >/dev/null || cargo install --locked --version 3.8.0 cargo-deb
+	rm -rf $(PACKAGE) && mkdir -p $(PACKAGE)
+	$(FCCD) man $(PACKAGE)/man
+	$(FCCD) completions bash > $(PACKAGE)/fccd.bash
+	$(FCCD) completions zsh > $(PACKAGE)/_fccd
+	$(FCCD) completions fish > $(PACKAGE)/fccd.fish
+	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
+	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
+
+test-deb: deb $(STAMPS)/python ## Look into the Debian package
+	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy
+
+bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what a tick costs: time, instructions, memory, system calls (4 minutes)
+	@test "$$(gungraun-runner --version 2>/dev/null)" = "gungraun-runner $(GUNGRAUN)" || \
+	    cargo install --locked --version $(GUNGRAUN) gungraun-runner
+	cargo bench --locked -p bench-tick --bench time
+	cargo bench --locked -p bench-tick --bench instructions
+	cargo build --locked --release -p bench-tick
+	$(TARGET)/release/costs
+	$(TARGET)/release/latency --fccd $(FCCD)
+
+bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their peers, idle and under stress (22 minutes; TIMING=)
+	$(BENCH_TIMING) -p copper --features copper/high-precision
+	cp $(TIMING_TARGET)/release/peer-copper $(TIMING_TARGET)/release/peer-copper-precise
+	$(BENCH_TIMING)
+	$(TIMING_TARGET)/release/bench-timing --json target/bench-timing.json \
+	    --markdown target/bench-timing.md --plot target/bench-timing.svg $(TIMING)
+
+bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
@@ -124,6 +176,33 @@ $(STAMPS)/wheel-tools: $(STAMPS)/python
 	@command -v aarch64-linux-gnu-gcc >/dev/null || ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 	$(PYTHON) -m pip install --quiet 'ziglang>=0.13'
 	@touch $@
+
+$(STAMPS)/valgrind:
+	@command -v valgrind >/dev/null || ./scripts/apt-install valgrind
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/rt-tests:
+	@command -v cyclictest >/dev/null || ./scripts/apt-install rt-tests
+	@command -v stress-ng >/dev/null || ./scripts/apt-install stress-ng
+	@command -v chrt >/dev/null && command -v taskset >/dev/null || ./scripts/apt-install util-linux
+	@command -v python3 >/dev/null || ./scripts/apt-install python3
+	@mkdir -p $(STAMPS) target && touch $@
+
+$(STAMPS)/systemd:
+	@command -v systemd-analyze >/dev/null || ./scripts/apt-install systemd
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/cross: $(STAMPS)/rust
+	@command -v aarch64-linux-gnu-gcc >/dev/null && command -v arm-linux-gnueabihf-gcc >/dev/null || \
+	    ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross \
+	        gcc-arm-linux-gnueabihf libc6-dev-armhf-cross
+	rustup target add $(BOARDS)
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/qemu:
+	@command -v qemu-aarch64 >/dev/null && command -v qemu-arm >/dev/null || \
+	    ./scripts/apt-install qemu-user
+	@mkdir -p $(STAMPS) && touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module

@@ -10,4 +10,47 @@ each other:
 - `pattern` is the timed pattern, `score` measures a flight through it, `peer`
   flies it with JSBSim's own autopilot;
 - `fly` puts the daemon, the stand-in and the score together.
+- `pytest_plugin` makes a test of a flight: `flight` holds it against requirements on
+  what was flown, by `quantities`, with `sensor_faults` in the way, on one of the rigs
+  (`lockstep_rig`, `daemon_rig`, `remote_rig`).
 """
+
+from .quantities import (
+    aileron,
+    airspeed,
+    altitude,
+    attitude,
+    bank,
+    body_rates,
+    climb,
+    elevator,
+    heading,
+    lateral,
+    pitch,
+    pitch_rate,
+    roll_rate,
+    rudder,
+    specific_force,
+    throttle,
+    yaw_rate,
+)
+
+__all__ = [
+    "aileron",
+    "airspeed",
+    "altitude",
+    "attitude",
+    "bank",
+    "body_rates",
+    "climb",
+    "elevator",
+    "heading",
+    "lateral",
+    "pitch",
+    "pitch_rate",
+    "roll_rate",
+    "rudder",
+    "specific_force",
+    "throttle",
+    "yaw_rate",
+]

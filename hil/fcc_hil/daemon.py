@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import signal
 import subprocess
@@ -29,14 +30,17 @@ def command(fccd: Path, config: Path | None) -> list[str]:
 class Daemon:
     """A running daemon; a context manager that ends it on the way out."""
 
-    def __init__(self, words: Sequence[str]) -> None:
-        """Start it. What it says to people (stderr) goes where ours goes."""
+    def __init__(self, words: Sequence[str], says_to: Path | None = None) -> None:
+        """Start it. What it says to people (stderr) goes to a file, or where ours goes."""
+        self._says_to = says_to
         # A file, not a pipe: nobody has to read while it runs, and it never blocks.
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed in __exit__
         try:
-            self._process = subprocess.Popen(
-                list(words), stdout=self._output, stdin=subprocess.DEVNULL
-            )
+            with contextlib.ExitStack() as stack:
+                said = None if says_to is None else stack.enter_context(says_to.open("wb"))
+                self._process = subprocess.Popen(
+                    list(words), stdout=self._output, stderr=said, stdin=subprocess.DEVNULL
+                )
         except OSError as error:
             self._output.close()
             raise DaemonError(
@@ -65,6 +69,11 @@ class Daemon:
     def pid(self) -> int:
         """Return its process id."""
         return self._process.pid
+
+    @property
+    def said(self) -> str:
+        """Return what it has said to people so far, if that goes to a file."""
+        return "" if self._says_to is None else self._says_to.read_text("utf-8", "replace")
 
     def stop(self, by: signal.Signals = signal.SIGTERM) -> int:
         """Ask it to end and wait; after 5 s kill it. Returns its exit code."""

@@ -171,6 +171,28 @@ _READABLE_SINCE_12: dict[str, Getter] = {
 }
 
 
+_TELLS: dict[str, tuple[str, ...]] = {
+    "pitch_rad": (_P + "theta",),
+    "roll_rad": (_P + "phi",),
+    "heading_rad": (_P + "psi", _P + "mag_psi"),
+    "roll_rate_radps": (_P + "Prad", _P + "P"),
+    "pitch_rate_radps": (_P + "Qrad", _P + "Q"),
+    "yaw_rate_radps": (_P + "Rrad", _P + "R"),
+    "specific_force_x_mps2": (_P + "local_ax", _F + "g_axil"),
+    "specific_force_y_mps2": (_P + "local_ay", _F + "g_side"),
+    "specific_force_z_mps2": (_P + "local_az", _F + "g_nrml"),
+    "airspeed_mps": (_P + "indicated_airspeed",),
+    "altitude_m": ("sim/cockpit2/gauges/indicators/altitude_ft_pilot",),
+}
+"""Which datarefs go with a field of `state.State` when its sensor falls silent. Of the
+accelerations, told along the world's axes, any one takes all three."""
+
+
+def withheld(missing: frozenset[str]) -> frozenset[str]:
+    """Return the datarefs that are not sent while these fields of the state are missing."""
+    return frozenset(path for field in missing for path in _TELLS[field])
+
+
 def getter(path: str, cockpit: Cockpit, dialect: Dialect) -> Getter | None:
     """Return what reads a dataref, or None if this version of X-Plane has none of that name."""
     found = _READABLE.get(path)

@@ -16,13 +16,15 @@ import gc
 import multiprocessing
 import os
 import signal
+from collections.abc import Sequence
 from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any, cast
 
 from .cockpit import Release, Write
+from .sensor_faults import SensorFault
 from .standin import Mode, Progress, Settings, StandIn
-from .truth import Truth
+from .truth import Row, Truth
 
 _START_S = 30.0
 _ANSWER_S = 10.0
@@ -59,6 +61,12 @@ class _Orders:
     def truth(self) -> Truth:
         return Truth(self.simulator.truth)
 
+    def rows(self, first: int) -> list[Row]:
+        return self.simulator.truth[first:]
+
+    def set_sensor_faults(self, faults: Sequence[SensorFault]) -> None:
+        self.simulator.sensors.set_faults(faults)
+
     def journal(self) -> list[Write]:
         return self.simulator.cockpit.journal
 
@@ -81,7 +89,7 @@ class _Orders:
         self.running = False
 
 
-def _wish_for_real_time() -> str:
+def wish_for_real_time() -> str:
     """Ask for a real-time priority; return what was granted."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
@@ -99,7 +107,7 @@ def _serve(settings: Settings, pipe: Connection) -> None:
         pipe.send(error)
         return
     pipe.send(simulator.port)
-    orders = _Orders(simulator, _wish_for_real_time())
+    orders = _Orders(simulator, wish_for_real_time())
 
     def each_frame() -> bool:
         try:
@@ -170,6 +178,14 @@ class StandInProcess:
     def truth(self) -> Truth:
         """Return what was flown so far, 40 rows to a second of simulated time."""
         return cast(Truth, self._ask("truth"))
+
+    def rows(self, first: int) -> list[Row]:
+        """Return the rows of the truth from number `first` on, as `truth.row` makes them."""
+        return cast("list[Row]", self._ask("rows", first))
+
+    def set_sensor_faults(self, faults: Sequence[SensorFault]) -> None:
+        """Put faults into the sensors in place of those that were."""
+        self._ask("set_sensor_faults", list(faults))
 
     def journal(self) -> list[Write]:
         """Return every write to a dataref so far."""

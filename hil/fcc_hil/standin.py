@@ -16,7 +16,7 @@ from enum import Enum
 from typing import Any
 
 from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, Cockpit
-from .datarefs import Readout, getter
+from .datarefs import Readout, getter, withheld
 from .faults import Address, Faults, FaultyLink
 from .frames import FrameClock
 from .noise import SensorNoise
@@ -35,6 +35,8 @@ from .protocol import (
     parse,
 )
 from .rows import row_values
+from .sensor_faults import FaultySensors
+from .state import State
 from .subscriptions import Subscriptions
 from .truth import STEPS_PER_ROW, Row, row
 
@@ -134,6 +136,8 @@ class StandIn:
         self._inbound: FaultyLink[Address] = FaultyLink(settings.inbound, settings.seed)
         self._outbound: FaultyLink[Address] = FaultyLink(settings.outbound, settings.seed + 1)
         self._noise = SensorNoise(settings.seed) if settings.noise else None
+        self.sensors = FaultySensors()
+        """What breaks on the way from the true state to what is sent."""
         self._frame_time_s = 0.0
         self._next_beacon_s = 0.0
         self._next_data_s = 0.0
@@ -173,7 +177,7 @@ class StandIn:
     def read(self, path: str) -> float | None:
         """Return a dataref as a client would see it now, without sensor noise; None if unknown."""
         read = getter(path, self.cockpit, self.dialect)
-        return None if read is None else read(self._readout(noisy=False))
+        return None if read is None else read(self._readout(self.plant.state()))
 
     def write(self, path: str, value: float) -> float:
         """Set a dataref from inside the simulator; returns the simulated time of it."""
@@ -212,6 +216,7 @@ class StandIn:
             "inbound": asdict(self._inbound.counts),
             "outbound": asdict(self._outbound.counts),
             "frames": self.clock.report(),
+            "engines": self.plant.engines,
         }
 
     def _set_up_aircraft(self) -> None:
@@ -301,10 +306,9 @@ class StandIn:
             if self.plant.steps % STEPS_PER_ROW == 0:
                 self.truth.append(row(self.plant.state(), self.plant.controls))
 
-    def _readout(self, *, noisy: bool) -> Readout:
-        state = self.plant.state()
+    def _readout(self, state: State) -> Readout:
         return Readout(
-            state=self._noise.apply(state) if noisy and self._noise else state,
+            state=state,
             cockpit=self.cockpit,
             dialect=self.dialect,
             flight_time_s=self.plant.time_s + self._time_offset_s,
@@ -316,10 +320,15 @@ class StandIn:
 
     def _send(self) -> None:
         now_s = time.monotonic()
-        readout = self._readout(noisy=True)
-        for client, datagram in self._subscriptions.due(self._frame_time_s, readout):
-            self._outbound.offer(now_s, client, datagram)
-        self._offer_data_output(now_s, readout)
+        state = self.plant.state()
+        sensed = self._noise.apply(state) if self._noise else state
+        said, missing = self.sensors.read(self.plant.time_s, sensed)
+        if said is not None:
+            readout = self._readout(said)
+            paths = withheld(missing)
+            for client, datagram in self._subscriptions.due(self._frame_time_s, readout, paths):
+                self._outbound.offer(now_s, client, datagram)
+            self._offer_data_output(now_s, readout)
         for client, datagram in self._outbound.due(now_s):
             self._transmit(client, datagram)
         target = self.settings.beacon

@@ -95,14 +95,16 @@ class Subscriptions:
                 listing[client] = paths
         return listing
 
-    def due(self, now_s: float, readout: Readout) -> list[tuple[Address, bytes]]:
-        """Return the datagrams that are due on this frame."""
+    def due(
+        self, now_s: float, readout: Readout, withheld: frozenset[str] = frozenset()
+    ) -> list[tuple[Address, bytes]]:
+        """Return the datagrams that are due on this frame, without what is withheld."""
         datagrams = []
         for client, state in self._clients.items():
             pairs = [
                 (index, value.read(readout))
                 for index, value in state.values.items()
-                if value.due.take(now_s)
+                if value.due.take(now_s) and value.path not in withheld
             ]
             if self._shuffle is not None:
                 self._shuffle(pairs)

@@ -72,6 +72,18 @@ WRONG = {
         "autopilot.envelope.min_airspeed_kt",
         "less than max_airspeed_kt",
     ),
+    "a stage longer than its tick": (
+        "[built-in]\n[budget]\ntick_us = 900\ncontrol_us = 1000\n",
+        4,
+        "budget.control_us",
+        "no more than tick_us",
+    ),
+    "a hang that is none": (
+        "[built-in]\n[watchdog]\nhang_after_ms = 5\n",
+        3,
+        "watchdog.hang_after_ms",
+        "50 to 60000",
+    ),
     "a leg of a hold": ('[x-plane]\n[course]\nkind = "hold"\nleg_s = 3\n', 2, "course", "leg_s"),
     "an unknown course": ('[x-plane]\n[course]\nkind = "loop"\n', 3, "course.kind", '"hold"'),
     "twice the same": ("[x-plane]\nengines = 1\nengines = 2\n", 3, "x-plane.engines", "keep one"),

@@ -20,10 +20,22 @@ TIMING = {
     "lateness_us",
     "realtime",
     "cpu_percent",
+    "page_faults",
+    "early_wake",
 }
 PERIOD = {"mean", "median", "min", "max", "range", "within_2_percent"}
 LATENESS = {"p50", "p99", "p99_9", "max"}
-REALTIME = {"policy", "priority", "memory_locked", "refused"}
+REALTIME = {
+    "policy",
+    "priority",
+    "cpu",
+    "cpu_because",
+    "memory_locked",
+    "stack_prefaulted",
+    "timer_slack_ns",
+    "cpu_dma_latency_us",
+    "refused",
+}
 LEG = {
     "heading_settle_s",
     "heading_overshoot_deg",

@@ -1,4 +1,4 @@
-"""What the loop asks of the kernel while it flies: its timer and its socket, nothing else.
+"""What the loop asks of the kernel while it flies: its timer, its socket, its page faults.
 
 The daemon runs under `strace`, engaged against the stand-in. Between the first and the
 last wake-up of the loop's thread every system call is looked at: an allocation that
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import collections
 import contextlib
+import itertools
 import os
 import re
 import shutil
@@ -47,9 +48,23 @@ class Clock:
     """In that call's arguments."""
     also: frozenset[str] = frozenset()
 
+    moves_by: str = ""
+    """The call that sets the timer anew, when the early wake's margin is another."""
 
-TIMERFD = Clock("timerfd", "read", "[timerfd]")
-POSIX = Clock("posix", "rt_sigtimedwait", "SI_TIMER", frozenset({"timer_getoverrun"}))
+
+COUNTS_PAGE_FAULTS = "getrusage"
+"""Once a tick, after its last write."""
+# The early wake's margin is looked at once in so many ticks.
+REVIEW_TICKS = 32
+
+TIMERFD = Clock("timerfd", "read", "[timerfd]", moves_by="timerfd_settime")
+POSIX = Clock(
+    "posix",
+    "rt_sigtimedwait",
+    "SI_TIMER",
+    frozenset({"timer_getoverrun"}),
+    moves_by="timer_settime",
+)
 NANOSLEEP = Clock("nanosleep", "clock_nanosleep", "TIMER_ABSTIME")
 
 
@@ -65,12 +80,16 @@ def test_only_the_timers_and_the_sockets_calls(
     counts = collections.Counter(name for name, _ in calls)
     # On machines where it is no system call at all, it does not show.
     counts.pop("clock_gettime", 0)
-    assert set(counts) == {clock.waits_by, "recvfrom", "sendto"} | clock.also
+    allowed = {clock.waits_by, "recvfrom", "sendto", COUNTS_PAGE_FAULTS}
+    assert set(counts) == allowed | clock.also
 
     flown = counts[clock.waits_by]
     assert flown >= ticks
     assert all(clock.waits_on in words for name, words in calls if name == clock.waits_by)
-    assert all(counts[name] == flown for name in clock.also)
+    assert all(counts[name] == flown for name in clock.also | {COUNTS_PAGE_FAULTS})
+    # Nothing of the tick is left to do when page faults are counted.
+    following = [after for (name, _), (after, _) in itertools.pairwise(calls) if is_count(name)]
+    assert set(following) == {clock.waits_by}
     # Each tick reads until there is nothing left, and writes all controls once engaged.
     emptied = [words for name, words in calls if name == "recvfrom" and "EAGAIN" in words]
     assert len(emptied) == flown
@@ -79,14 +98,35 @@ def test_only_the_timers_and_the_sockets_calls(
     assert len(sockets) == 1
 
 
-def traced_flight(fccd: Path, scratch: Path, clock: Clock, ticks: int) -> list[tuple[str, str]]:
+@pytest.mark.parametrize("clock", [TIMERFD, POSIX, NANOSLEEP], ids=lambda clock: clock.name)
+def test_waking_early_asks_no_more_of_the_kernel(fccd: Path, tmp_path: Path, clock: Clock) -> None:
+    early = "[loop.early_wake]\nenabled = true\n"
+    calls = between_ticks(traced_flight(fccd, tmp_path, clock, 1_000, early), clock)
+    counts = collections.Counter(name for name, _ in calls)
+    counts.pop("clock_gettime", 0)
+    moved = counts.pop(clock.moves_by, 0)
+    assert set(counts) == {clock.waits_by, "recvfrom", "sendto", COUNTS_PAGE_FAULTS}
+    assert moved <= counts[COUNTS_PAGE_FAULTS] / REVIEW_TICKS + 1
+    # The margin is moved between ticks, too.
+    following = {after for (name, _), (after, _) in itertools.pairwise(calls) if is_count(name)}
+    # A tick that took longer than its period is followed by the next at once.
+    assert following <= {clock.waits_by, clock.moves_by, "recvfrom", "clock_gettime"}
+
+
+def is_count(name: str) -> bool:
+    return name == COUNTS_PAGE_FAULTS
+
+
+def traced_flight(
+    fccd: Path, scratch: Path, clock: Clock, ticks: int, more: str = ""
+) -> list[tuple[str, str]]:
     """Fly until the loop has ticked so often while engaged; return its thread's calls."""
     strace = shutil.which("strace")
     assert strace, "strace is missing: `apt-get install strace`"
     trace = scratch / "trace"
     tracer: list[str | Path] = [strace, "-ff", "-y", "-s", "0", "-o", trace]
     with StandInProcess(Settings(port=0)) as simulator:
-        loop = f'[loop]\nrate_hz = {RATE_HZ}\ntimer = "{clock.name}"'
+        loop = f'[loop]\nrate_hz = {RATE_HZ}\ntimer = "{clock.name}"\n{more}'
         config = write_config(scratch, simulator.port, others=loop)
         words = [*tracer, fccd, "run", "--config", config, "--json"]
         with DaemonUnderTest(words, scratch) as traced:

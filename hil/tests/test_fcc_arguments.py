@@ -66,10 +66,11 @@ ONE: dict[str, Callable[..., Any]] = {
     "Autopilot.engage": lambda given: engaged().engage(LEVEL, throttle=given),
     "Autopilot.step dt": lambda dt: engaged().step(LEVEL, dt),
     "Fleet": fcc.Fleet,
-    "Loop": fcc.Loop,
-    "Loop.step": lambda given: fcc.Loop().step(given),
-    "Loop.step missed": lambda given: fcc.Loop().step(LEVEL, missed=given),
-    "Loop.step switch": lambda given: fcc.Loop().step(LEVEL, switch=given),
+    "Machine": fcc.Machine,
+    "Machine.step": lambda given: fcc.Machine().step(given),
+    "Machine.step missing": lambda given: fcc.Machine().step(LEVEL, missing=given),
+    "Machine.step standing": lambda given: fcc.Machine().step(LEVEL, standing=given),
+    "Machine.step switch": lambda given: fcc.Machine().step(LEVEL, switch=given),
     "BuiltInAircraft": fcc.BuiltInAircraft,
     "BuiltInAircraft.step dt": lambda dt: fcc.BuiltInAircraft().step(None, dt),
     "Measurements": lambda given: fcc.Measurements(pitch_rad=given),  # type: ignore[call-arg]
@@ -109,7 +110,7 @@ TWO: dict[str, Callable[..., Any]] = {
     "Fleet.engage": lambda a, b: fcc.Fleet([HOLD]).engage(a, b),
     "Fleet.observe": lambda a, b: fcc.Fleet([HOLD]).observe(a, b),
     "Fleet.step": lambda a, b: fcc.Fleet([HOLD]).step(a, b),
-    "Loop.order": lambda a, b: fcc.Loop().order(altitude_m=a, heading_rad=b),
+    "Machine.order": lambda a, b: fcc.Machine().order(altitude_m=a, heading_rad=b),
     "BuiltInAircraft.step": lambda a, b: fcc.BuiltInAircraft().step(a, b),
     "Surfaces": lambda a, b: fcc.Surfaces(throttle=a, elevator=b),
     "Config.replace": lambda a, b: fcc.Config().replace({a: b}),
@@ -187,7 +188,7 @@ def test_ranges_are_said() -> None:
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
-        (lambda: fcc.Loop().step(None, missed=10**9)): "missed is 1000000000",
+        (lambda: fcc.Machine().step(None, missing=["tail"])): "there is no sensor 'tail'",
     }
     for call, words in said.items():
         with pytest.raises(ValueError, match=words):

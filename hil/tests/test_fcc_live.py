@@ -17,7 +17,7 @@ from daemon_under_test import DaemonUnderTest, wait_until
 PATIENCE_S = 15.0
 FAILURE = 1
 USAGE = 2
-REFUSED = 9
+REFUSED = 11
 
 
 @pytest.fixture

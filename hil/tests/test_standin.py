@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import select
 import socket
 import struct
@@ -17,6 +18,7 @@ from fcc_hil.cockpit import (
     THROTTLE_USE,
     YOKE_ROLL,
 )
+from fcc_hil.sensor_faults import Faults
 from fcc_hil.standin import PAUSE_TOGGLE, Mode, Settings, StandIn
 
 TIME = "sim/time/total_flight_time_sec"
@@ -298,3 +300,28 @@ def test_a_client_that_is_gone_disturbs_nobody(bench: Bench) -> None:
 def test_a_port_in_use_is_said_in_words(bench: Bench) -> None:
     with pytest.raises(OSError, match=r"cannot listen on 127\.0\.0\.1.*--port"):
         StandIn(Settings(port=bench.simulator.port))
+
+
+def test_a_broken_sensor_is_broken_on_the_wire_and_not_in_flight(bench: Bench) -> None:
+    altimeter = "sim/cockpit2/gauges/indicators/altitude_ft_pilot"
+    airspeed = "sim/flightmodel/position/indicated_airspeed"
+    bench.client.subscribe(1, altimeter)
+    bench.client.subscribe(2, airspeed)
+    bench.client.subscribe(3, TIME)
+    good = bench.frames(2)
+    faults = Faults(lambda: bench.simulator.plant.time_s, bench.simulator.sensors.set_faults)
+    faults.loss("airspeed")
+    faults.bias("altitude", by=100)
+    values = bench.frames(1)
+    assert set(values) == {1, 3}
+    assert values[1] == pytest.approx(good[1] + 100.0, abs=1.0)
+    assert bench.simulator.read(altimeter) == pytest.approx(good[1], abs=1.0), "as it truly is"
+    faults.end()
+    faults.nan("airspeed")
+    values = bench.frames(1)
+    assert math.isnan(values[2])
+    assert values[1] == pytest.approx(good[1], abs=1.0)
+    faults.loss("everything")
+    assert bench.frames(3) == {}
+    faults.end()
+    assert set(bench.frames(1)) == {1, 2, 3}

@@ -7,7 +7,7 @@ use clap_complete::Shell;
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
-use crate::config::GustsChoice;
+use crate::config::{CpuChoice, GustsChoice};
 use crate::exit::EXIT_CODES;
 
 /// A real-time flight control computer in software.
@@ -42,6 +42,8 @@ pub enum Command {
     Order(OrderArgs),
     /// Check a configuration file
     Check(CheckArgs),
+    /// Say what this machine offers a real-time loop, and what it lacks
+    Doctor(DoctorArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
     /// Give X-Plane's controls back if the daemon is killed; started by the
@@ -52,6 +54,12 @@ pub enum Command {
     Completions {
         /// Which shell
         shell: Shell,
+    },
+    /// Write manual pages into a folder; for who makes a package
+    #[command(hide = true)]
+    Man {
+        /// Where to
+        folder: PathBuf,
     },
 }
 
@@ -160,8 +168,19 @@ pub struct TimingArgs {
     #[arg(long, default_value_t = 80, value_parser = clap::value_parser!(u8).range(0..=99))]
     pub priority: u8,
     /// The CPU that the loop's thread is bound to
+    #[arg(long, value_name = "auto|N")]
+    pub cpu: Option<CpuChoice>,
+    /// Wake a margin before each deadline and spin the rest of the time
     #[arg(long)]
-    pub cpu: Option<usize>,
+    pub early_wake: bool,
+    /// The longest margin
+    #[arg(long, value_name = "US", value_parser = margin_us, requires = "early_wake",
+          allow_negative_numbers = true)]
+    pub max_margin: Option<f64>,
+    /// The largest share of a core to spend on spinning
+    #[arg(long, value_name = "PERCENT", value_parser = cpu_cap_percent, requires = "early_wake",
+          allow_negative_numbers = true)]
+    pub cpu_cap: Option<f64>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
@@ -252,6 +271,18 @@ pub struct CheckArgs {
     pub json: bool,
 }
 
+/// `fccd doctor`.
+#[derive(Args, Debug)]
+pub struct DoctorArgs {
+    /// Folder that the machine's files are under: the disk of another one, with
+    /// its /proc and /sys copied
+    #[arg(long, value_name = "DIR", default_value = "/")]
+    pub root: PathBuf,
+    /// Print the findings as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// `fccd report`.
 #[derive(Args, Debug)]
 pub struct ReportArgs {
@@ -270,6 +301,14 @@ pub struct ReportArgs {
 
 fn positive_seconds(text: &str) -> Result<f64, String> {
     number_within(text, 0.1, 1e6, "seconds")
+}
+
+fn margin_us(text: &str) -> Result<f64, String> {
+    number_within(text, 1.0, 10_000.0, "µs")
+}
+
+fn cpu_cap_percent(text: &str) -> Result<f64, String> {
+    number_within(text, 0.0, 50.0, "percent")
 }
 
 fn rate_hz(text: &str) -> Result<f64, String> {

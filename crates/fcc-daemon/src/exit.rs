@@ -25,8 +25,12 @@ pub enum Exit {
     /// A recording could not be flown again, or not to its end; nothing that
     /// was differs.
     NotReplayed = 8,
+    /// The loop hung; its watchdog released the controls and ended the program.
+    Hung = 9,
+    /// The machine lacks something that a real-time loop needs.
+    MachineLacks = 10,
     /// The daemon refused an order.
-    Refused = 9,
+    Refused = 11,
 }
 
 /// For `--help`.
@@ -41,7 +45,9 @@ Exit codes:
   6  a part of the loop panicked; the controls were released
   7  a recording flown again gave other outputs
   8  a recording could not be flown again to its end; nothing else differs
-  9  the daemon refused the order";
+  9  the loop hung; the watchdog released the controls and ended the program
+ 10  the machine lacks something that a real-time loop needs (doctor)
+ 11  the daemon refused the order";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`config`] | reads and checks the configuration file |
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
+//! | [`doctor`] | says what the machine offers a real-time loop, and what it lacks |
 //! | [`flight`] | makes a loop of a configuration, flies it and watches |
 //! | [`replay`] | flies a recording again and compares |
 //!
@@ -13,6 +14,7 @@
 pub mod cli;
 pub mod commands;
 pub mod config;
+pub mod doctor;
 pub mod exit;
 pub mod flight;
 pub mod replay;

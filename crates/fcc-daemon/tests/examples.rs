@@ -2,7 +2,7 @@
 //! taken away, they are the defaults.
 #![cfg(test)]
 
-use fcc_daemon::config::{BuiltInSection, Config, XPlaneSection};
+use fcc_daemon::config::{BudgetSection, BuiltInSection, Config, CpuChoice, XPlaneSection};
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");
@@ -18,6 +18,23 @@ fn uncommented(text: &str) -> String {
         .join("\n")
 }
 
+/// What is only said where there is a choice to make. Of the budgets, the
+/// tick's and how many are failsafe are what they would be at 40 Hz.
+fn say_the_choices(config: &mut Config) {
+    config.realtime.cpu = Some(CpuChoice::Number(3));
+    config.realtime.cpu_dma_latency_us = Some(0);
+    config.restart.state_file = Some("recordings/fccd.flight".into());
+    config.budget = BudgetSection {
+        tick_us: Some(25_000),
+        sensors_us: Some(5_000),
+        navigation_us: Some(1_000),
+        guidance_us: Some(1_000),
+        control_us: Some(1_000),
+        actuators_us: Some(5_000),
+        failsafe_after: Some(20),
+    };
+}
+
 fn as_value(config: &Config) -> toml::Value {
     toml::Value::try_from(config).unwrap()
 }
@@ -28,8 +45,7 @@ fn the_built_in_example_says_every_default() {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
-    // Only said where there is a choice to make.
-    expected.realtime.cpu = Some(3);
+    say_the_choices(&mut expected);
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
     let keys = uncommented(BUILT_IN).matches(" = ").count();
@@ -43,7 +59,7 @@ fn the_x_plane_example_says_every_default() {
         x_plane: Some(XPlaneSection::default()),
         ..Config::default()
     };
-    expected.realtime.cpu = Some(3);
+    say_the_choices(&mut expected);
     let full = Config::parse(&uncommented(X_PLANE), "x-plane.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
 }

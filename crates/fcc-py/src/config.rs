@@ -35,7 +35,7 @@ impl PyConfig {
     #[new]
     #[pyo3(signature = (text = ""))]
     fn new(text: &str) -> PyResult<Self> {
-        Config::parse_or_built_in(text, NAME)
+        Config::parse_without_aircraft(text, NAME)
             .map(|config| Self { config })
             .map_err(|error| refused(&error))
     }

@@ -1,16 +1,17 @@
 //! Something that happened once.
 
-use fcc_core::framework::EventKind;
+use fcc_core::framework::{EventKind, Time};
 use fcc_telemetry::{FlightEvent, event_words};
 use pyo3::prelude::*;
 
 /// Something that happened once: the number of its tick, when that tick woke
-/// in ns on the loop's clock (None before the first), what kind of thing it
-/// was, and in words.
+/// in s and in ns on the loop's clock (0 and None before the first), what kind
+/// of thing it was, and in words.
 #[pyclass(name = "Event", module = "fcc", frozen, get_all)]
 #[derive(Clone)]
 pub(crate) struct PyEvent {
     pub(crate) tick: u64,
+    pub(crate) time_s: f64,
     pub(crate) time_ns: Option<i64>,
     pub(crate) kind: &'static str,
     pub(crate) text: String,
@@ -35,11 +36,17 @@ impl PyEvent {
     pub(crate) fn of(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> Self {
         Self {
             tick: event.tick,
+            time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(event),
             text: event_words(event, sensors, actuators),
         }
     }
+}
+
+/// An instant in s on the loop's clock; 0 for never.
+pub(crate) fn seconds(time: Time) -> f64 {
+    time.as_nanos().max(0) as f64 * 1e-9
 }
 
 fn kind_of(event: &FlightEvent) -> &'static str {
@@ -58,6 +65,9 @@ fn kind_of(event: &FlightEvent) -> &'static str {
         EventKind::Released { .. } => "released",
         EventKind::Panicked => "panicked",
         EventKind::TimerFailed => "timer-failed",
+        EventKind::Overrun { .. } => "overrun",
+        EventKind::OverrunsOver { .. } => "overruns-over",
+        EventKind::Hung { .. } => "hung",
         _ => "other",
     }
 }

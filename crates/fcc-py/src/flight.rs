@@ -22,7 +22,6 @@ use crate::errors;
 use crate::events::PyEvent;
 use crate::guests::{GuestController, GuestSensor, Raised};
 use crate::json;
-use crate::lockstep::state_name;
 use crate::structured::{self, RecordRow, TruthRecord};
 
 /// The legs that a flight has if nobody says how long it is to be.
@@ -63,7 +62,7 @@ pub(crate) struct PyFlight {
     took_s: f64,
     /// The loop's state at the end.
     #[pyo3(get)]
-    state: &'static str,
+    state: String,
     /// Why the loop ended, in words.
     #[pyo3(get)]
     ending: String,
@@ -105,7 +104,7 @@ impl PyFlight {
 /// The flight ends `seconds` after the engage switch goes on (by default as
 /// long as `fccd fly` takes: the hold and 8 legs, or 60 s without a pattern),
 /// or when the loop stops. With `keep` False no records and truths are kept: a
-/// row of both is 704 bytes. The GIL is released meanwhile: several flights
+/// row of both is some 730 bytes. The GIL is released meanwhile: several flights
 /// run side by side in threads.
 ///
 /// `sensor(time_s, measurements)` is called in every tick with what the
@@ -304,7 +303,7 @@ impl Flown {
             events: log.events,
             seconds: self.seconds,
             took_s: self.took.as_secs_f64(),
-            state: state_name(self.state),
+            state: self.state.to_string(),
             ending: self.report.ending.to_string(),
             score: score.filter(|score| !score.legs.is_empty()),
             timing: TimingReport::new(self.report.timer, &self.report.timing, realtime),

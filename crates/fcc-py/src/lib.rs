@@ -4,7 +4,7 @@
 //! | module | what Python gets |
 //! |---|---|
 //! | `autopilot`, `fleet` | the autopilot stepped by hand; many of them together |
-//! | `lockstep` | the daemon's loop, a call a tick, around a plant of one's own |
+//! | `machine` | the daemon's loop, a call a tick, around a plant of one's own |
 //! | `flight`, `guests` | a whole flight of the built-in aircraft in one call, with Python in the loop if it must be |
 //! | `aircraft` | the built-in aircraft alone |
 //! | `config` | configurations, by key |
@@ -31,7 +31,7 @@ mod guests;
 mod json;
 #[cfg(feature = "live")]
 mod live;
-mod lockstep;
+mod machine;
 mod recordings;
 mod stepped;
 mod structured;
@@ -69,7 +69,7 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<config::PyConfig>()?;
     module.add_class::<autopilot::PyAutopilot>()?;
     module.add_class::<fleet::PyFleet>()?;
-    module.add_class::<lockstep::PyLoop>()?;
+    module.add_class::<machine::PyMachine>()?;
     module.add_class::<aircraft::PyAircraft>()?;
     module.add_class::<flight::PyFlight>()?;
     module.add_function(wrap_pyfunction!(flight::fly, module)?)?;

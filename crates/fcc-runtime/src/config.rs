@@ -5,6 +5,8 @@ use std::time::Duration;
 use fcc_core::framework::{Actuator, Controller, Sensor, SwitchOff};
 use fcc_timer::{RealtimeWishes, Timer};
 
+use crate::overruns::Budget;
+
 /// What a loop is made of.
 pub struct Parts<C: Controller> {
     /// When to wake.
@@ -30,6 +32,9 @@ pub struct LoopConfig {
     pub failsafe_hold: Duration,
     /// What comes when failsafe is over.
     pub after_failsafe: AfterFailsafe,
+    /// How long ticks may take. A period, and no budget for single stages, by
+    /// default.
+    pub budget: Budget,
     /// How many orders may wait to be read; at least 1. 64 by default.
     pub orders_capacity: usize,
     /// How many ticks' records may wait to be fetched; at least 1. 4,096 by
@@ -47,6 +52,7 @@ impl Default for LoopConfig {
             switch_max_age: Duration::from_secs(1),
             failsafe_hold: Duration::from_secs(10),
             after_failsafe: AfterFailsafe::Standby,
+            budget: Budget::default(),
             orders_capacity: 64,
             messages_capacity: 4_096,
             realtime: RealtimeWishes::default(),

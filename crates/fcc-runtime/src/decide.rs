@@ -45,6 +45,9 @@ impl<C: Controller> Machine<C> {
         if self.state == State::Engaged && !faults.is_empty() {
             self.fail(Cause::Faults(faults), tick);
         }
+        if self.state == State::Engaged && self.overruns.are_too_many() {
+            self.fail(Cause::Overrun, tick);
+        }
         let let_go = before.holds_control() && self.state != before;
 
         if matches!(self.state, State::Failsafe(_))
@@ -62,7 +65,7 @@ impl<C: Controller> Machine<C> {
             return;
         }
         let blockers = self.record.blockers;
-        if let_go || !blockers.is_empty() {
+        if let_go || self.overruns.are_too_many() || !blockers.is_empty() {
             let kind = EventKind::EngageRefused { blockers };
             self.outbox.events.push(tick, kind);
         } else {

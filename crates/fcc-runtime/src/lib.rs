@@ -15,6 +15,9 @@
 //! - The actuators are released on every way out: let go, switched off, the
 //!   failsafe's end, an order to stop, the stop flag, a timer that fails, a
 //!   panic in a part, the loop being dropped.
+//! - A tick that overruns its [`Budget`] is counted and told of, and the phase
+//!   is kept; as many in a row as configured lead to failsafe. A loop that
+//!   hangs is seen by a watchdog ([`watch`]).
 //! - Outputs that the controller itself calls invalid are never sent.
 //! - It changes its state by [`State::after`](fcc_core::framework::State::after)
 //!   and by nothing else, and each change is an [`Event`].
@@ -98,12 +101,15 @@ mod link;
 mod machine;
 mod orders;
 mod outbox;
+mod overruns;
 mod panics;
+mod pulse;
 mod report;
 mod run;
 mod sensors;
 mod stopwatch;
 mod switch;
+mod watchdog;
 
 // The words a loop is spoken with, so that its users need no other crate.
 pub use fcc_core::framework::{
@@ -113,5 +119,8 @@ pub use fcc_core::framework::{
 pub use config::{AfterFailsafe, LoopConfig, Parts};
 pub use link::{Link, MessageReceiver, OrderSender, OrdersFull, StopHandle};
 pub use machine::Machine;
+pub use overruns::Budget;
+pub use pulse::{Felt, Pulse};
 pub use report::{Ending, LoopReport};
 pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};
+pub use watchdog::{Hang, WatchdogConfig, watch};

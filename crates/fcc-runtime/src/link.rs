@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use fcc_core::framework::{Controller, MessageOf, Order};
 use rtrb::{Consumer, Producer};
 
+use crate::pulse::Pulse;
+
 /// How the world outside speaks with a loop.
 pub struct Link<C: Controller> {
     /// Orders in.
@@ -14,6 +16,8 @@ pub struct Link<C: Controller> {
     pub messages: MessageReceiver<C>,
     /// The stop flag.
     pub stop: StopHandle,
+    /// Whether it makes progress.
+    pub pulse: Pulse,
 }
 
 /// Sends orders to a loop; never waits.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Cause, Controller, Order, Record, RecordOf, State, SwitchOff, Tick, Time,
+    Cause, Controller, Order, Record, RecordOf, StageTimes, State, SwitchOff, Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, usage};
 use rtrb::{Consumer, RingBuffer};
@@ -14,7 +14,9 @@ use crate::decide::Telling;
 use crate::link::{Link, MessageReceiver, OrderSender, StopHandle};
 use crate::orders;
 use crate::outbox::{EVENT_SLOTS, Outbox};
+use crate::overruns::Overruns;
 use crate::panics;
+use crate::pulse::Pulse;
 use crate::report::{Ending, LoopReport};
 use crate::sensors::Sensors;
 use crate::stopwatch::Stopwatch;
@@ -40,12 +42,14 @@ pub struct Machine<C: Controller> {
     pub(crate) orders: Consumer<Order<C::Order>>,
     pub(crate) outbox: Outbox<C>,
     pub(crate) stop: StopHandle,
+    pulse: Pulse,
 
     pub(crate) state: State,
     pub(crate) switch: EngageSwitch,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
     pub(crate) record: RecordOf<C>,
+    pub(crate) overruns: Overruns,
 
     pub(crate) timing: TimingStats,
     pub(crate) ticks: u64,
@@ -53,6 +57,7 @@ pub struct Machine<C: Controller> {
     pub(crate) last_failsafe: Option<Cause>,
     pub(crate) ending: Option<Ending>,
     cpu_at_start_ns: i64,
+    faults_at_start: Option<u64>,
 }
 
 impl<C: Controller> Machine<C> {
@@ -66,10 +71,12 @@ impl<C: Controller> Machine<C> {
         let (messages, messages_out) =
             RingBuffer::new(config.messages_capacity.max(1).saturating_add(EVENT_SLOTS));
         let stop = StopHandle::default();
+        let pulse = Pulse::default();
         let link = Link {
             orders: OrderSender::new(orders_in),
             messages: MessageReceiver::new(messages_out),
             stop: stop.clone(),
+            pulse: pulse.clone(),
         };
         let period = parts.timer.period();
         let machine = Self {
@@ -84,17 +91,20 @@ impl<C: Controller> Machine<C> {
             orders,
             outbox: Outbox::new(messages),
             stop,
+            pulse,
             state: State::Standby,
             switch: EngageSwitch::new(config.switch_max_age),
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
+            overruns: Overruns::new(config.budget, period),
             timing: TimingStats::new(period)?,
             ticks: 0,
             failsafes: 0,
             last_failsafe: None,
             ending: None,
             cpu_at_start_ns: 0,
+            faults_at_start: None,
         };
         Ok((machine, link))
     }
@@ -105,7 +115,20 @@ impl<C: Controller> Machine<C> {
     /// What the timer says.
     pub fn start(&mut self) -> Result<(), TimerError> {
         self.cpu_at_start_ns = usage::thread_cpu_ns();
+        self.pulse.begin();
         self.timer.start()
+    }
+
+    /// Counts the page faults of the calling thread from here on; without this,
+    /// as in lockstep, none are counted.
+    pub(crate) fn count_page_faults(&mut self) {
+        self.faults_at_start = Some(usage::page_faults().all());
+    }
+
+    /// Page faults since they have been counted.
+    fn page_faults(&self) -> Option<u64> {
+        let before = self.faults_at_start?;
+        Some(usage::page_faults().all().saturating_sub(before))
     }
 
     /// Waits for the timer and performs one tick; gives the state after it.
@@ -129,9 +152,20 @@ impl<C: Controller> Machine<C> {
     /// A panic in a part stops the machine and releases the actuators; it does
     /// not leave this call.
     pub fn tick(&mut self, expiry: Expiry) -> State {
+        self.perform(expiry, None)
+    }
+
+    /// Performs a tick again, of which is recorded how long its stages took:
+    /// the overruns of now are those of then.
+    pub fn tick_again(&mut self, expiry: Expiry, stages: StageTimes) -> State {
+        self.perform(expiry, Some(stages))
+    }
+
+    fn perform(&mut self, expiry: Expiry, recorded: Option<StageTimes>) -> State {
         if self.state == State::Stopped {
             return self.state;
         }
+        self.pulse.beat();
         let tick = Tick {
             number: expiry.number,
             scheduled: Time::from_nanos(expiry.scheduled_ns),
@@ -140,11 +174,18 @@ impl<C: Controller> Machine<C> {
             dt_s: self.period_s * (expiry.missed + 1) as f64,
         };
         self.record = Record::new(tick, self.state);
+        self.overruns.begin(&tick, &mut self.outbox.events);
         if let Err(words) = panics::caught(|| self.turn(&tick)) {
             self.leave(Ending::Panicked(words));
         }
+        if let Some(stages) = recorded {
+            self.record.stages = stages;
+        }
+        self.overruns
+            .end(&tick, &self.record.stages, &mut self.outbox.events);
         self.ticks += 1;
         self.timing.record(&expiry);
+        self.record.early_wake_ns = expiry.early_wake_ns;
         self.tell();
         self.state
     }
@@ -214,6 +255,10 @@ impl<C: Controller> Machine<C> {
         self.record.sensor_faults = self.sensors.faults();
         self.record.actuator_faults = self.actuators.faults();
         self.record.records_dropped = self.outbox.records_dropped();
+        self.record.overruns = self.overruns.total();
+        // A system call of 0.2 µs, here where nothing waits for it: each tick,
+        // so that a fault is found beside what happened in its tick.
+        self.record.page_faults = self.page_faults().unwrap_or(0);
         self.outbox.send(&self.record);
     }
 
@@ -234,6 +279,7 @@ impl<C: Controller> Machine<C> {
 
     /// Ends the loop, if it has not ended, and gives the account of it.
     pub fn finish(mut self) -> LoopReport {
+        let page_faults = self.page_faults();
         self.close();
         let cpu_ns = usage::thread_cpu_ns().saturating_sub(self.cpu_at_start_ns);
         LoopReport {
@@ -246,9 +292,11 @@ impl<C: Controller> Machine<C> {
             released: self.actuators.are_released(),
             sensor_faults: self.sensors.faults(),
             actuator_faults: self.actuators.faults(),
+            overruns: self.overruns.total(),
             records_dropped: self.outbox.records_dropped(),
             events_dropped: self.outbox.events_dropped(),
             cpu_time: Duration::from_nanos(u64::try_from(cpu_ns).unwrap_or(0)),
+            page_faults,
             grants: None,
         }
     }
@@ -261,6 +309,7 @@ impl<C: Controller> Machine<C> {
             self.release(&at, Telling::Success);
         }
         self.outbox.close(&at);
+        self.pulse.end();
     }
 }
 

@@ -27,12 +27,17 @@ pub struct LoopReport {
     pub sensor_faults: u64,
     /// Failed writes and releases of actuators.
     pub actuator_faults: u64,
+    /// Ticks that overran their budget.
+    pub overruns: u64,
     /// Records that nobody fetched in time.
     pub records_dropped: u64,
     /// Events that nobody fetched in time.
     pub events_dropped: u64,
     /// CPU time that the loop's thread spent from the timer's start on.
     pub cpu_time: Duration,
+    /// Page faults of the loop's thread from the timer's start on; none where
+    /// they were not counted.
+    pub page_faults: Option<u64>,
     /// What the kernel granted the loop's thread; `None` if it had none of its
     /// own.
     pub grants: Option<RealtimeGrants>,
@@ -56,6 +61,9 @@ pub enum Ending {
     TimerFailed(TimerError),
     /// The timer had no more deadlines to give.
     TimerEnded,
+    /// It hung, and its watchdog ended it. Nobody is left to give an account
+    /// but who watched it.
+    Hung,
     /// Whoever stepped the [`Machine`](crate::Machine) finished it.
     Finished,
 }
@@ -70,6 +78,7 @@ impl fmt::Display for Ending {
             Self::Panicked(words) => write!(f, "a part panicked: {words}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),
+            Self::Hung => f.write_str("the loop hung"),
             Self::Finished => f.write_str("finished"),
         }
     }

@@ -108,6 +108,7 @@ impl<C: Controller> Loop<C> {
 type Started = Result<RealtimeGrants, SpawnError>;
 
 fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
+    machine.count_page_faults();
     while machine.state() != State::Stopped {
         machine.step();
     }
@@ -137,6 +138,12 @@ impl LoopHandle {
     /// Asks the loop to end at its next tick.
     pub fn stop(&self) {
         self.stop.stop();
+    }
+
+    /// Leaves the loop alone for good: for one that hangs, which nobody can
+    /// wait for.
+    pub fn abandon(mut self) {
+        drop(self.thread.take());
     }
 
     /// Waits for the loop's end; does not cause it.

@@ -2,8 +2,9 @@
 
 use fcc_timer::Timer;
 
-/// Times one stage after the other. What it reads goes into the record and
-/// nowhere else: no decision of the loop depends on it.
+/// Times one stage after the other. What it reads goes into the record, and
+/// what is decided of it is decided of the record (see
+/// [`overruns`](crate::overruns)).
 pub(crate) struct Stopwatch {
     lap_ns: i64,
 }

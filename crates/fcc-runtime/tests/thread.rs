@@ -8,9 +8,9 @@ use std::thread;
 use std::time::Duration;
 
 use bench::{Puppet, Stage, parts};
-use fcc_core::framework::State;
+use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_runtime::{Ending, Link, Loop, LoopConfig, LoopHandle, Message, Order, Parts, SpawnError};
-use fcc_timer::{RealtimeWishes, Strictness, TimerKind};
+use fcc_timer::{CpuWish, EarlyWake, RealtimeWishes, Strictness, TimerKind};
 
 /// 500 Hz.
 const PERIOD: Duration = Duration::from_millis(2);
@@ -106,7 +106,7 @@ fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
     let config = LoopConfig {
         realtime: RealtimeWishes {
             // No machine has this many.
-            cpu: Some(1_000_000),
+            cpu: Some(CpuWish::Number(1_000_000)),
             strictness: Strictness::Strict,
             ..RealtimeWishes::default()
         },
@@ -138,4 +138,86 @@ fn here_it_runs_until_the_timer_ends() {
     assert!(matches!(report.ending, Ending::TimerEnded));
     assert!(report.grants.is_none());
     assert_eq!(stage.log().held, [false, false]);
+}
+
+/// A sensor that takes new memory in one tick, as none should.
+struct Greedy {
+    tick: u64,
+    kept: Vec<u8>,
+}
+
+impl<M> Sensor<M> for Greedy {
+    fn sample(&mut self, tick: &Tick, _: &mut M) -> Result<(), SensorFault> {
+        const PAGES: usize = 64;
+        if tick.number >= self.tick && self.kept.is_empty() {
+            self.kept = vec![0; PAGES * 4096];
+            for byte in self.kept.iter_mut().step_by(4096) {
+                *byte = 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "greedy"
+    }
+}
+
+#[test]
+fn page_faults_are_in_the_record_of_their_tick() {
+    const GREEDY: u64 = 20;
+    let stage = Stage::default();
+    let mut greedy = Parts {
+        timer: TimerKind::Timerfd.build(PERIOD).unwrap(),
+        ..parts(&stage)
+    };
+    greedy.sensors.push(Box::new(Greedy {
+        tick: GREEDY,
+        kept: Vec::new(),
+    }));
+    let (this, mut link) = Loop::new(greedy, &LoopConfig::default()).unwrap();
+    let handle = this.spawn().unwrap();
+    // By tick number: the faults counted until then.
+    let mut counted = Vec::new();
+    while counted.last().is_none_or(|(number, _)| *number < GREEDY) {
+        match link.messages.receive() {
+            Some(Message::Tick(record)) => counted.push((record.tick.number, record.page_faults)),
+            Some(_) => {}
+            None => thread::sleep(PERIOD),
+        }
+    }
+    handle.stop();
+    let report = handle.join();
+    let faults: Vec<u64> = counted.iter().map(|(_, faults)| *faults).collect();
+    assert!(faults.is_sorted());
+    // Fewer than one a page: the kernel may hand out larger ones.
+    if let [.., before, after] = faults[..] {
+        assert!(after > before, "{counted:?}");
+    }
+    assert!(report.page_faults.unwrap() >= *faults.last().unwrap());
+}
+
+#[test]
+fn the_margin_of_an_early_timer_is_in_the_record() {
+    let stage = Stage::default();
+    let early = EarlyWake::default();
+    let timed = Parts {
+        timer: TimerKind::Nanosleep.build_early(PERIOD, &early).unwrap(),
+        ..parts(&stage)
+    };
+    let (this, mut link) = Loop::new(timed, &LoopConfig::default()).unwrap();
+    let handle = this.spawn().unwrap();
+    let margin_ns = loop {
+        match link.messages.receive() {
+            Some(Message::Tick(record)) => break record.early_wake_ns,
+            Some(_) => {}
+            None => thread::sleep(PERIOD),
+        }
+    };
+    handle.stop();
+    let timing = handle.join().timing;
+    // It begins with the most it may be.
+    assert_eq!(margin_ns, 250_000);
+    assert_eq!(timing.early_wake_max_us, 250.0);
+    assert!(timing.early_wake_us >= 20.0);
 }

@@ -127,6 +127,9 @@ pub const FIELDS: &[Field] = fields![
     "sensor_faults": U64 = sensor_faults,
     "actuator_faults": U64 = actuator_faults,
     "records_dropped": U64 = records_dropped,
+    "overruns": U64 = overruns,
+    "page_faults": U64 = page_faults,
+    "early_wake_ns": U64 = early_wake_ns,
     // A state's parts are its own: a phase, a cause, the faults that led there.
     "state": U8 = state,
     "state_cause": U8 = state + 1,

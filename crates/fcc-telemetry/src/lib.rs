@@ -15,7 +15,7 @@ pub mod report;
 mod score;
 mod table;
 mod timing;
-mod units;
+pub mod units;
 
 pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};

@@ -49,7 +49,7 @@ mod tests {
     fn the_layout_of_a_record_is_as_written_down() {
         assert_eq!(
             (size_of::<FlightRecord>(), align_of::<FlightRecord>()),
-            (512, 8)
+            (536, 8)
         );
         assert_eq!(
             [
@@ -64,7 +64,7 @@ mod tests {
                 offset_of!(FlightRecord, faults),
                 offset_of!(FlightRecord, sent),
             ],
-            [0, 40, 88, 384, 432, 464, 488, 496, 500, 504]
+            [0, 40, 88, 384, 432, 464, 512, 520, 524, 528]
         );
     }
 }

@@ -5,6 +5,9 @@
 
 use serde::Serialize;
 
+use crate::FlightRecord;
+use crate::units::{G_MPS2, M_FT, MPS_KT};
+
 /// What was flown at one instant, in the units of the score.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Sample {
@@ -18,6 +21,20 @@ pub struct Sample {
     pub airspeed_kt: f64,
     /// Specific force to the right over gravity.
     pub lateral_g: f64,
+}
+
+impl Sample {
+    /// What was measured in a tick.
+    pub fn measured(record: &FlightRecord, time_s: f64) -> Self {
+        let measured = &record.measurements;
+        Self {
+            time_s,
+            heading_deg: measured.heading_rad.value.to_degrees(),
+            altitude_ft: measured.altitude_m.value * M_FT,
+            airspeed_kt: measured.airspeed_mps.value * MPS_KT,
+            lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
+        }
+    }
 }
 
 /// One stretch of a flight with constant set points, and those it comes from;

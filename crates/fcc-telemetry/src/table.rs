@@ -39,6 +39,14 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
         table.add_row(row);
     }
     let mut text = table.to_string();
+    if let Some(realtime) = reports.first().map(|r| &r.realtime)
+        && !realtime.cpu_because.is_empty()
+    {
+        let _ = match realtime.cpu {
+            Some(cpu) => write!(text, "\non CPU {cpu}: {}", realtime.cpu_because),
+            None => write!(text, "\nCPU {}", realtime.cpu_because),
+        };
+    }
     for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
         let _ = write!(text, "\nnot granted: {refused}");
     }
@@ -61,12 +69,29 @@ pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<St
     row("Within ±2 %", &|r| {
         figure(100.0 * r.period_ms.within_2_percent, 3, "%")
     });
-    row("Lateness p50", &|r| figure(r.lateness_us.p50, 1, "µs"));
-    row("Lateness p99", &|r| figure(r.lateness_us.p99, 1, "µs"));
-    row("Lateness p99.9", &|r| figure(r.lateness_us.p99_9, 1, "µs"));
-    row("Lateness max", &|r| figure(r.lateness_us.max, 1, "µs"));
+    row("Lateness p50", &|r| micros(r.lateness_us.p50));
+    row("Lateness p99", &|r| micros(r.lateness_us.p99));
+    row("Lateness p99.9", &|r| micros(r.lateness_us.p99_9));
+    row("Lateness max", &|r| micros(r.lateness_us.max));
     row("CPU", &|r| {
         figure(r.cpu_percent.unwrap_or(f64::NAN), 2, "%")
+    });
+    if reports.iter().any(|r| r.early_wake.is_some()) {
+        row("Woken early by", &|r| {
+            or_unknown(r.early_wake.map_or_else(String::new, |early| {
+                format!("{:.0} µs, ≤ {:.0} µs", early.last_us, early.max_us)
+            }))
+        });
+        row("Spinning", &|r| {
+            let percent = r.early_wake.and_then(|early| early.spin_percent);
+            figure(percent.unwrap_or(f64::NAN), 2, "%")
+        });
+    }
+    row("Page faults", &|r| {
+        or_unknown(
+            r.page_faults
+                .map_or_else(String::new, |faults| faults.to_string()),
+        )
     });
     row("Scheduling", &|r| match r.realtime.priority {
         0 => or_unknown(r.realtime.policy.clone()),
@@ -80,6 +105,15 @@ pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<St
         }
         .to_owned()
     });
+    if reports.iter().any(|r| r.realtime.cpu.is_some()) {
+        row("On CPU", &|r| {
+            or_unknown(
+                r.realtime
+                    .cpu
+                    .map_or_else(String::new, |cpu| cpu.to_string()),
+            )
+        });
+    }
     rows
 }
 
@@ -93,6 +127,11 @@ pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
     } else {
         UNKNOWN.to_owned()
     }
+}
+
+/// A lateness: a spinning loop's is some nanoseconds.
+fn micros(us: f64) -> String {
+    figure(us, if us < 10.0 { 3 } else { 1 }, "µs")
 }
 
 fn or_unknown(text: String) -> String {
@@ -143,12 +182,12 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     ]);
     for entry in entries {
         let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
-        let seconds = entry.duration_s;
+        let tenths = (entry.duration_s * 10.0).round() as u64;
         table.add_row(vec![
             name.to_string_lossy().into_owned(),
             entry.started.replace('T', " ").replace('Z', ""),
             entry.aircraft.clone(),
-            format!("{}:{:04.1}", (seconds / 60.0) as u64, seconds % 60.0),
+            format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
             entry.state.clone(),
@@ -185,6 +224,33 @@ mod tests {
     use super::super::timing::{Lateness, Period, Realtime};
     use super::*;
 
+    #[test]
+    fn a_minute_less_a_moment_is_listed_as_a_minute() {
+        let entry = |duration_s| Entry {
+            path: "flight.mcap".into(),
+            started: "2026-11-20T04:21:33Z".to_owned(),
+            part: 1,
+            aircraft: "built-in".to_owned(),
+            duration_s,
+            ticks: 2_400,
+            worst_lateness_us: 12.34,
+            state: "stopped".to_owned(),
+            ending: "ordered to stop".to_owned(),
+            not_recorded: 0,
+            file: Wholeness::Whole,
+        };
+        let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
+        for words in [
+            " 1:00.0 ",
+            " 10:00.0 ",
+            " 0:05.3 ",
+            " 62:05.0 ",
+            " 12.3 µs ",
+        ] {
+            assert!(text.contains(words), "{words} is not in\n{text}");
+        }
+    }
+
     /// The thesis' table 6.1, its own figures through our table.
     #[test]
     fn prints_the_thesis_table_as_the_thesis_does() {
@@ -211,10 +277,11 @@ mod tests {
             realtime: Realtime {
                 policy: "SCHED_OTHER".to_owned(),
                 priority: 0,
-                memory_locked: false,
-                refused: Vec::new(),
+                ..Realtime::default()
             },
             cpu_percent: Some(1.0),
+            page_faults: Some(0),
+            early_wake: None,
         };
         let text = timing_table(&[report]);
         for figure in [

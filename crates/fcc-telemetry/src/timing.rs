@@ -28,6 +28,11 @@ pub struct TimingReport {
     /// CPU time of the loop's thread over the runtime; none where nobody
     /// measured it.
     pub cpu_percent: Option<f64>,
+    /// Page faults of the loop's thread while it ran; none where nobody
+    /// counted them.
+    pub page_faults: Option<u64>,
+    /// How early the timer woke; none where it did not wake early.
+    pub early_wake: Option<EarlyWake>,
 }
 
 impl TimingReport {
@@ -55,19 +60,50 @@ impl TimingReport {
             },
             realtime,
             cpu_percent: None,
+            page_faults: None,
+            early_wake: (summary.early_wake_max_us > 0.0).then_some(EarlyWake {
+                last_us: summary.early_wake_us,
+                max_us: summary.early_wake_max_us,
+                spin_percent: None,
+            }),
         }
     }
 
     /// Adds the CPU time that the loop's thread took, s.
     #[must_use]
     pub fn with_cpu_time(mut self, cpu_s: f64) -> Self {
-        self.cpu_percent = Some(if self.runtime_s > 0.0 {
-            100.0 * cpu_s / self.runtime_s
-        } else {
-            0.0
-        });
+        self.cpu_percent = Some(self.percent_of_runtime(cpu_s));
         self
     }
+
+    /// Adds the time that the loop's thread spun towards its deadlines, s.
+    #[must_use]
+    pub fn with_spin_time(mut self, spun_s: f64) -> Self {
+        let percent = self.percent_of_runtime(spun_s);
+        if let Some(early_wake) = &mut self.early_wake {
+            early_wake.spin_percent = Some(percent);
+        }
+        self
+    }
+
+    fn percent_of_runtime(&self, time_s: f64) -> f64 {
+        if self.runtime_s > 0.0 {
+            100.0 * time_s / self.runtime_s
+        } else {
+            0.0
+        }
+    }
+}
+
+/// How long before its deadlines a timer woke.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize)]
+pub struct EarlyWake {
+    /// In the last tick.
+    pub last_us: f64,
+    /// At most.
+    pub max_us: f64,
+    /// Share of a core that was spent spinning; none where nobody measured it.
+    pub spin_percent: Option<f64>,
 }
 
 /// Time between wake-ups, ms.
@@ -107,8 +143,18 @@ pub struct Realtime {
     pub policy: String,
     /// 0 for `SCHED_OTHER`.
     pub priority: i32,
+    /// The CPU that the thread is bound to; none if it may run on several.
+    pub cpu: Option<usize>,
+    /// Why this CPU, or why none, if one was asked for.
+    pub cpu_because: String,
     /// Whether the process' memory is locked.
     pub memory_locked: bool,
+    /// Whether the stack was in memory before the first tick.
+    pub stack_prefaulted: bool,
+    /// How late the kernel may make a sleep of the thread, if known.
+    pub timer_slack_ns: Option<u64>,
+    /// How long CPUs may take to wake, if that was granted.
+    pub cpu_dma_latency_us: Option<u32>,
     /// Wishes that were not granted.
     pub refused: Vec<RefusedWish>,
 }

@@ -1,10 +1,10 @@
 //! What people read in: feet, knots and gravities.
 
 /// Feet in a metre.
-pub(crate) const M_FT: f64 = 1.0 / 0.304_8;
+pub const M_FT: f64 = 1.0 / 0.304_8;
 
 /// Knots in a metre per second.
-pub(crate) const MPS_KT: f64 = 3_600.0 / 1_852.0;
+pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// Standard gravity, m/s².
-pub(crate) const G_MPS2: f64 = 9.806_65;
+pub const G_MPS2: f64 = 9.806_65;

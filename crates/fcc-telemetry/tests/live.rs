@@ -96,8 +96,14 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
         publisher.record(&record(number));
     }
     publisher.flush();
-    // The next status knows all of it.
-    sleep(Duration::from_millis(1_200));
+    // The status that knows all of it has been published.
+    let mut first = Watcher::open(&instance).unwrap();
+    wait_for("a status of ten ticks", || {
+        first
+            .latest_status()
+            .unwrap()
+            .filter(|status| status.ticks == 10)
+    });
 
     let mut watcher = Watcher::open(&instance).unwrap();
     let newest = wait_for("the newest record", || watcher.latest().unwrap());
@@ -110,6 +116,27 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
     assert_eq!((status.ticks, status.lateness_max_ns), (10, 5_000));
     assert_eq!(status.recorder(), RecorderState::Recording);
     assert_eq!(status.recording.as_str(), "flight.mcap");
+}
+
+/// Each record is published or counted, also where they come faster than
+/// anybody can publish them.
+#[test]
+fn what_is_not_published_is_counted() {
+    let instance = instance("flood");
+    let mut publisher = started(&instance);
+    let mut watcher = Watcher::open(&instance).unwrap();
+    let given = 50_000;
+    for number in 0..given {
+        publisher.record(&record(number));
+    }
+    // Its ring holds 2,048, and its thread looks every 20 ms.
+    let status = wait_for("a status of all records", || {
+        watcher
+            .latest_status()
+            .unwrap()
+            .filter(|status| status.ticks + status.not_published == given)
+    });
+    assert!(status.ticks >= 2_048, "{status:?}");
 }
 
 #[test]

@@ -45,6 +45,7 @@ pub(crate) struct Deadlines {
     start_ns: i64,
     period_ns: i64,
     served: u64,
+    early_ns: i64,
 }
 
 impl Deadlines {
@@ -53,7 +54,13 @@ impl Deadlines {
             start_ns,
             period_ns: period.ns(),
             served: 0,
+            early_ns: 0,
         }
+    }
+
+    /// Has the kernel wake the thread so long before its deadlines from now on.
+    pub(crate) const fn wake_early(&mut self, margin_ns: i64) {
+        self.early_ns = margin_ns;
     }
 
     /// The number of the next deadline.
@@ -68,11 +75,9 @@ impl Deadlines {
     }
 
     /// When the kernel shall wake the thread for the next deadline: at the
-    /// deadline. To wake early by a margin and spin the rest, the margin would
-    /// be taken off here, and the spin would take the place of the reading of
-    /// the clock with which each timer calls one of the two methods below.
+    /// deadline, or early by a margin, where the rest of the time is spun.
     pub(crate) const fn alarm_ns(&self) -> i64 {
-        self.due_ns(self.next())
+        self.due_ns(self.next()).saturating_sub(self.early_ns)
     }
 
     /// Serves the latest deadline. To be called as soon as the kernel has
@@ -80,11 +85,15 @@ impl Deadlines {
     /// the one served before.
     pub(crate) fn woken(&mut self, passed: u64, woke_ns: i64) -> Expiry {
         self.served = self.served.saturating_add(passed);
+        let scheduled_ns = self.due_ns(self.served);
         Expiry {
             number: self.served,
-            scheduled_ns: self.due_ns(self.served),
+            scheduled_ns,
             woke_ns,
             missed: passed.saturating_sub(1),
+            early_wake_ns: 0,
+            spun_ns: 0,
+            kernel_lateness_ns: woke_ns.saturating_sub(scheduled_ns),
         }
     }
 
@@ -140,6 +149,14 @@ mod tests {
         assert_eq!(expiry.missed, 2);
         assert_eq!(expiry.scheduled_ns, 1_075_000_000);
         assert_eq!(deadlines.alarm_ns(), 1_100_000_000);
+    }
+
+    #[test]
+    fn the_alarm_comes_the_margin_before_the_deadline() {
+        let mut deadlines = every_25_ms();
+        deadlines.wake_early(200_000);
+        assert_eq!(deadlines.alarm_ns(), 1_024_800_000);
+        assert_eq!(deadlines.due_ns(deadlines.next()), 1_025_000_000);
     }
 
     #[test]

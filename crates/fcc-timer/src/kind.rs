@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
-use crate::{Nanosleep, PosixTimer, Timer, TimerError, TimerFd};
+use crate::{EarlyWake, Nanosleep, PosixTimer, Timer, TimerError, TimerFd};
 
 /// The timers that wait in the kernel.
 ///
@@ -51,6 +51,22 @@ impl TimerKind {
             Self::Timerfd => Box::new(TimerFd::new(period)?),
             Self::Posix => Box::new(PosixTimer::new(period)?),
             Self::Nanosleep => Box::new(Nanosleep::new(period)?),
+        })
+    }
+
+    /// Makes a timer of this kind that wakes early and spins to its deadlines.
+    ///
+    /// # Errors
+    /// As [`build`](Self::build), and when a value of `early` is out of range.
+    pub fn build_early(
+        self,
+        period: Duration,
+        early: &EarlyWake,
+    ) -> Result<Box<dyn Timer>, TimerError> {
+        Ok(match self {
+            Self::Timerfd => Box::new(TimerFd::new(period)?.waking_early(early)?),
+            Self::Posix => Box::new(PosixTimer::new(period)?.waking_early(early)?),
+            Self::Nanosleep => Box::new(Nanosleep::new(period)?.waking_early(early)?),
         })
     }
 }

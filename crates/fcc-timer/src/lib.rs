@@ -4,7 +4,8 @@
 //! [`PosixTimer`] and [`Nanosleep`], all on `CLOCK_MONOTONIC` with absolute
 //! deadlines, so that a late tick is late once and the phase is kept. A fourth,
 //! [`ManualTimer`], never waits: it drives a loop in lockstep with a simulator
-//! or a test.
+//! or a test. Below the kernel's own floor of some tens of microseconds the
+//! first three get by waking early and spinning the rest: [`EarlyWake`].
 //!
 //! Around them, what a real-time thread needs of the kernel: [`realtime`] asks
 //! for scheduling, a CPU and locked memory and reads back what was granted,
@@ -28,6 +29,7 @@
 //! ```
 
 mod deadlines;
+mod early;
 mod kind;
 mod manual;
 mod nanosleep;
@@ -38,11 +40,12 @@ mod timer;
 mod timerfd;
 pub mod usage;
 
+pub use early::EarlyWake;
 pub use kind::{TimerKind, UnknownTimer};
 pub use manual::ManualTimer;
 pub use nanosleep::Nanosleep;
 pub use posix::PosixTimer;
-pub use realtime::{RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
+pub use realtime::{CpuWish, RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
 pub use stats::{TimingStats, TimingSummary};
 pub use timer::{Expiry, Timer, TimerError};
 pub use timerfd::TimerFd;

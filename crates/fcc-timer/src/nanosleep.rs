@@ -5,7 +5,8 @@ use nix::time::{ClockId, ClockNanosleepFlags, clock_nanosleep};
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
-use crate::{Expiry, Timer, TimerError};
+use crate::early::{Alarm, Early};
+use crate::{EarlyWake, Expiry, Timer, TimerError};
 
 /// A periodic timer made of sleeps. Nothing runs in the kernel between two
 /// waits, so nothing is counted there: the clock tells which deadlines have
@@ -15,6 +16,7 @@ use crate::{Expiry, Timer, TimerError};
 pub struct Nanosleep {
     period: Period,
     deadlines: Option<Deadlines>,
+    early: Option<Early>,
 }
 
 impl Nanosleep {
@@ -28,36 +30,39 @@ impl Nanosleep {
         Ok(Self {
             period: Period::new(period)?,
             deadlines: None,
+            early: None,
         })
+    }
+
+    /// Has it wake early and spin to its deadlines.
+    ///
+    /// # Errors
+    /// When a value is out of its range.
+    pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
+        self.early = Some(Early::new(early, self.period)?);
+        Ok(self)
     }
 }
 
 impl Timer for Nanosleep {
     fn start(&mut self) -> Result<(), TimerError> {
-        self.deadlines = Some(Deadlines::new(monotonic_ns(), self.period));
+        let mut deadlines = Deadlines::new(monotonic_ns(), self.period);
+        deadlines.wake_early(self.early.as_ref().map_or(0, Early::margin_ns));
+        self.deadlines = Some(deadlines);
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
+        if let Some(early) = &mut self.early {
+            return early.wait(deadlines, &mut Sleep);
+        }
         let alarm_ns = deadlines.alarm_ns();
-        let alarm = timespec(alarm_ns);
         loop {
-            // A time in the past returns at once; an absolute time survives
-            // any number of interruptions without drifting.
-            match clock_nanosleep(
-                ClockId::CLOCK_MONOTONIC,
-                ClockNanosleepFlags::TIMER_ABSTIME,
-                &alarm,
-            ) {
-                Ok(_) => {
-                    let woke_ns = monotonic_ns();
-                    if woke_ns >= alarm_ns {
-                        return Ok(deadlines.woken_uncounted(woke_ns));
-                    }
-                }
-                Err(Errno::EINTR) => {}
-                Err(errno) => return Err(refused("clock_nanosleep")(errno)),
+            Sleep.sleep_until(alarm_ns)?;
+            let woke_ns = monotonic_ns();
+            if woke_ns >= alarm_ns {
+                return Ok(deadlines.woken_uncounted(woke_ns));
             }
         }
     }
@@ -72,5 +77,32 @@ impl Timer for Nanosleep {
 
     fn name(&self) -> &'static str {
         Self::NAME
+    }
+}
+
+/// One sleep after the other: there is no timer in the kernel to set.
+#[derive(Debug)]
+struct Sleep;
+
+impl Alarm for Sleep {
+    fn move_to(&mut self, _: i64) -> Result<(), TimerError> {
+        Ok(())
+    }
+
+    fn sleep_until(&mut self, alarm_ns: i64) -> Result<(), TimerError> {
+        let alarm = timespec(alarm_ns);
+        loop {
+            // A time in the past returns at once; an absolute time survives
+            // any number of interruptions without drifting.
+            match clock_nanosleep(
+                ClockId::CLOCK_MONOTONIC,
+                ClockNanosleepFlags::TIMER_ABSTIME,
+                &alarm,
+            ) {
+                Ok(_) => return Ok(()),
+                Err(Errno::EINTR) => {}
+                Err(errno) => return Err(refused("clock_nanosleep")(errno)),
+            }
+        }
     }
 }

@@ -37,16 +37,26 @@ pub trait Timer: Send {
 }
 
 /// One deadline that was served.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Expiry {
     /// Which deadline of the grid, the first being 1.
     pub number: u64,
     /// When it was due, ns on the timer's clock.
     pub scheduled_ns: i64,
-    /// When the waiting thread woke, ns on the timer's clock.
+    /// When the waiting thread went on, ns on the timer's clock: after the
+    /// kernel woke it and, where it was woken early, the deadline had come.
     pub woke_ns: i64,
     /// Deadlines passed unserved since the one served before.
     pub missed: u64,
+    /// How long before the deadline the kernel was asked to wake the thread,
+    /// ns; 0 for a timer that does not wake early ([`crate::EarlyWake`]).
+    pub early_wake_ns: u64,
+    /// How long the thread then spun towards the deadline, ns.
+    pub spun_ns: u64,
+    /// How late the kernel woke the thread, ns after the time it was asked to:
+    /// the lateness that there would be without waking early. Where the thread
+    /// did not sleep, the lateness that there is.
+    pub kernel_lateness_ns: i64,
 }
 
 impl Expiry {
@@ -73,6 +83,9 @@ pub enum TimerError {
     /// The period is outside what a timer can serve.
     #[error("a period of {0:?} cannot be timed: choose one between 10 µs and 1 hour")]
     Period(Duration),
+    /// An early wake with a value that makes no sense.
+    #[error("early wake: {0}")]
+    EarlyWake(&'static str),
     /// `wait` before `start`.
     #[error("the timer was not started: call start() on the thread that will wait")]
     NotStarted,

@@ -8,7 +8,8 @@ use nix::unistd::read;
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
-use crate::{Expiry, Timer, TimerError};
+use crate::early::{Alarm, Early};
+use crate::{EarlyWake, Expiry, Timer, TimerError};
 
 /// A periodic timer on a timerfd. The kernel counts the expirations, and a
 /// read of the descriptor gives the count since the read before: all but one
@@ -16,8 +17,9 @@ use crate::{Expiry, Timer, TimerError};
 #[derive(Debug)]
 pub struct TimerFd {
     period: Period,
-    descriptor: Descriptor,
+    file: File,
     deadlines: Option<Deadlines>,
+    early: Option<Early>,
 }
 
 impl TimerFd {
@@ -29,42 +31,43 @@ impl TimerFd {
     /// When the period is not between 10 µs and 1 hour, or the operating
     /// system refuses.
     pub fn new(period: Duration) -> Result<Self, TimerError> {
+        let period = Period::new(period)?;
+        let descriptor = Descriptor::new(ClockId::CLOCK_MONOTONIC, TimerFlags::TFD_CLOEXEC)
+            .map_err(refused("timerfd_create"))?;
         Ok(Self {
-            period: Period::new(period)?,
-            descriptor: Descriptor::new(ClockId::CLOCK_MONOTONIC, TimerFlags::TFD_CLOEXEC)
-                .map_err(refused("timerfd_create"))?,
+            period,
+            file: File { descriptor, period },
             deadlines: None,
+            early: None,
         })
+    }
+
+    /// Has it wake early and spin to its deadlines.
+    ///
+    /// # Errors
+    /// When a value is out of its range.
+    pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
+        self.early = Some(Early::new(early, self.period)?);
+        Ok(self)
     }
 }
 
 impl Timer for TimerFd {
     fn start(&mut self) -> Result<(), TimerError> {
-        let deadlines = Deadlines::new(monotonic_ns(), self.period);
-        let first = timespec(deadlines.alarm_ns());
-        self.descriptor
-            .set(
-                Expiration::IntervalDelayed(first, timespec(self.period.ns())),
-                TimerSetTimeFlags::TFD_TIMER_ABSTIME,
-            )
-            .map_err(refused("timerfd_settime"))?;
+        let mut deadlines = Deadlines::new(monotonic_ns(), self.period);
+        deadlines.wake_early(self.early.as_ref().map_or(0, Early::margin_ns));
+        self.file.move_to(deadlines.alarm_ns())?;
         self.deadlines = Some(deadlines);
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
-        let mut count = [0; size_of::<u64>()];
-        loop {
-            match read(&self.descriptor, &mut count) {
-                Ok(_) => {
-                    let woke_ns = monotonic_ns();
-                    return Ok(deadlines.woken(u64::from_ne_bytes(count), woke_ns));
-                }
-                Err(Errno::EINTR) => {}
-                Err(errno) => return Err(refused("read of a timerfd")(errno)),
-            }
+        if let Some(early) = &mut self.early {
+            return early.wait(deadlines, &mut self.file);
         }
+        let passed = self.file.expirations()?;
+        Ok(deadlines.woken(passed, monotonic_ns()))
     }
 
     fn period(&self) -> Duration {
@@ -77,5 +80,41 @@ impl Timer for TimerFd {
 
     fn name(&self) -> &'static str {
         Self::NAME
+    }
+}
+
+/// The timer as the kernel has it.
+#[derive(Debug)]
+struct File {
+    descriptor: Descriptor,
+    period: Period,
+}
+
+impl File {
+    /// Waits for an expiration; how many there were since the last call.
+    fn expirations(&self) -> Result<u64, TimerError> {
+        let mut count = [0; size_of::<u64>()];
+        loop {
+            match read(&self.descriptor, &mut count) {
+                Ok(_) => return Ok(u64::from_ne_bytes(count)),
+                Err(Errno::EINTR) => {}
+                Err(errno) => return Err(refused("read of a timerfd")(errno)),
+            }
+        }
+    }
+}
+
+impl Alarm for File {
+    fn move_to(&mut self, alarm_ns: i64) -> Result<(), TimerError> {
+        self.descriptor
+            .set(
+                Expiration::IntervalDelayed(timespec(alarm_ns), timespec(self.period.ns())),
+                TimerSetTimeFlags::TFD_TIMER_ABSTIME,
+            )
+            .map_err(refused("timerfd_settime"))
+    }
+
+    fn sleep_until(&mut self, _: i64) -> Result<(), TimerError> {
+        self.expirations().map(drop)
     }
 }

@@ -39,6 +39,14 @@ pub struct PageFaults {
     pub major: u64,
 }
 
+impl PageFaults {
+    /// Of both kinds.
+    #[must_use]
+    pub const fn all(self) -> u64 {
+        self.minor.saturating_add(self.major)
+    }
+}
+
 /// Page faults of the calling thread since it began. A loop that runs in
 /// locked memory has none.
 #[must_use]

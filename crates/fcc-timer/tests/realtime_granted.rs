@@ -7,7 +7,7 @@ use std::sync::mpsc;
 use std::thread;
 
 use fcc_timer::usage::page_faults;
-use fcc_timer::{RealtimeGrants, RealtimeWishes};
+use fcc_timer::{CpuWish, RealtimeGrants, RealtimeWishes};
 
 /// What the calling thread has.
 fn present() -> RealtimeGrants {
@@ -70,7 +70,7 @@ fn the_thread_stays_on_the_cpu_it_asked_for() {
             .parse()
             .unwrap();
         let wishes = RealtimeWishes {
-            cpu: Some(cpu),
+            cpu: Some(CpuWish::Number(cpu)),
             ..RealtimeWishes::default()
         };
         let grants = wishes.apply().unwrap();
@@ -80,6 +80,50 @@ fn the_thread_stays_on_the_cpu_it_asked_for() {
     })
     .join()
     .unwrap();
+}
+
+/// Whichever it is: it is one of those allowed, or none, and the reason is told.
+#[test]
+fn the_best_cpu_is_chosen_with_a_reason() {
+    thread::spawn(|| {
+        let wishes = RealtimeWishes {
+            cpu: Some(CpuWish::Auto),
+            ..RealtimeWishes::default()
+        };
+        let grants = wishes.apply().unwrap();
+        assert_eq!(grants.refused, []);
+        assert!(!grants.cpu_because.is_empty());
+        match grants.cpu {
+            Some(cpu) => assert_eq!(nix::sched::sched_getcpu(), Ok(cpu)),
+            None => assert!(grants.cpu_because.starts_with("not bound: ")),
+        }
+    })
+    .join()
+    .unwrap();
+}
+
+/// The kernel's own word: what the device reads as, little while it is held.
+#[test]
+fn cpus_are_kept_from_deep_sleep_as_long_as_the_grants_live() {
+    let device = "/dev/cpu_dma_latency";
+    let wishes = RealtimeWishes {
+        cpu_dma_latency_us: Some(12),
+        ..RealtimeWishes::default()
+    };
+    let grants = wishes.apply().unwrap();
+    let Some(limit) = &grants.cpu_latency else {
+        // A machine without the device, or without the right to it, says so.
+        let [refusal] = grants.refused.as_slice() else {
+            panic!("{:?}", grants.refused);
+        };
+        assert_eq!(refusal.wish, "CPUs awake within 12 µs");
+        assert!(refusal.reason.contains(device), "{refusal}");
+        return;
+    };
+    assert!(limit.us() <= 12);
+    let in_force = || i32::from_ne_bytes(fs::read(device).unwrap().try_into().unwrap());
+    let held_us = in_force();
+    assert!(held_us <= 12, "{held_us}");
 }
 
 #[test]

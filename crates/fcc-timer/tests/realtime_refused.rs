@@ -6,7 +6,7 @@
 use nix::sys::resource::{Resource, setrlimit};
 use std::thread;
 
-use fcc_timer::{RealtimeWishes, Strictness};
+use fcc_timer::{CpuWish, RealtimeWishes, Strictness};
 
 const ALLOWED_BYTES: u64 = 64 << 10;
 
@@ -118,7 +118,7 @@ fn what_cannot_be_is_refused_to_everybody() {
     }
 
     let (grants, refusal) = refused(RealtimeWishes {
-        cpu: Some(100_000),
+        cpu: Some(CpuWish::Number(100_000)),
         ..RealtimeWishes::default()
     });
     assert_eq!(refusal.wish, "CPU 100000");

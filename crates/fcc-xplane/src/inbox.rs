@@ -35,6 +35,9 @@ pub(crate) struct Inbox {
     clock: SimulatorClock,
     values: Values,
     position: Reading<Position>,
+    /// The last accelerations (east, up, south) and what was made of them.
+    accelerations: [f64; 3],
+    force: SpecificForce,
 }
 
 impl Inbox {
@@ -44,6 +47,8 @@ impl Inbox {
             clock: SimulatorClock::new(silent_after),
             values: Values::default(),
             position: Reading::default(),
+            accelerations: [f64::NAN; 3],
+            force: SpecificForce::default(),
         }
     }
 
@@ -272,8 +277,15 @@ impl Inbox {
                 Quantity::Roll,
             ],
         ) {
-            let force = specific_force([east, up, south], [heading, pitch, roll]);
-            into.specific_force = Reading::new(force, taken);
+            // Accelerations that come again to the last bit are of the instant
+            // they first came in: with the attitude of now they would make a
+            // force of no instant, and one that hangs would seem to move.
+            let accelerations = [east, up, south];
+            if accelerations != self.accelerations {
+                self.accelerations = accelerations;
+                self.force = specific_force(accelerations, [heading, pitch, roll]);
+            }
+            into.specific_force = Reading::new(self.force, taken);
         }
         if let Some(([normal, axial, side], taken)) = values.whole(
             Group::Loads,

@@ -22,6 +22,8 @@ pub enum Released {
     /// X-Plane said nothing, or goes on showing an override: it hangs, cannot
     /// be reached, or somebody else holds the override.
     Unconfirmed,
+    /// The release was called off before X-Plane showed it.
+    CalledOff,
 }
 
 /// Between one letting go and the next.
@@ -50,6 +52,20 @@ impl XPlane {
         simulator: SocketAddrV4,
         patience: Duration,
     ) -> Result<Released, OpenError> {
+        Self::release_unless(config, simulator, patience, || false)
+    }
+
+    /// The same, unless it is called off: `is_called_off` is asked every 20 ms
+    /// or sooner, and before anything is sent.
+    ///
+    /// # Errors
+    /// As [`release_and_wait`](Self::release_and_wait).
+    pub fn release_unless(
+        config: &XPlaneConfig,
+        simulator: SocketAddrV4,
+        patience: Duration,
+        is_called_off: impl FnMut() -> bool,
+    ) -> Result<Released, OpenError> {
         config.validate()?;
         let socket = connect(simulator).map_err(|source| OpenError::Bind { port: 0, source })?;
         let mut controls = Controls::new(config)?;
@@ -58,7 +74,7 @@ impl XPlane {
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
-        let outcome = insist(&socket, &mut controls, &requests, patience);
+        let outcome = insist(&socket, &mut controls, &requests, patience, is_called_off);
         for request in &mut requests {
             rref::set_frequency(request, 0);
             let _ = socket.send(request);
@@ -80,6 +96,7 @@ fn insist(
     controls: &mut Controls,
     requests: &[[u8; rref::REQUEST_BYTES]; 2],
     patience: Duration,
+    mut is_called_off: impl FnMut() -> bool,
 ) -> Released {
     let begun = Instant::now();
     let mut sent: Option<Instant> = None;
@@ -88,6 +105,9 @@ fn insist(
     let mut shown: [Option<bool>; 2] = [None; 2];
     let mut datagram = [0; 2_048];
     while begun.elapsed() < patience {
+        if is_called_off() {
+            return Released::CalledOff;
+        }
         if sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
             shown = [None; 2];

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{ActuatorFault, Cause, Controller, Flags, Order, SensorFault, State, Time};
+use super::{ActuatorFault, Cause, Controller, Flags, Order, SensorFault, Stage, State, Time};
 
 /// Something that happened once, unlike a [`Record`](super::Record), of which
 /// there is one per tick; `O` is what may be ordered of the controller.
@@ -39,7 +39,8 @@ pub enum EventKind<O> {
     ToldToStop,
     /// Somebody wanted to engage, and must ask again.
     EngageRefused {
-        /// Why; empty if control was let go in the same tick.
+        /// Why; empty if control was let go in the same tick, or if as many
+        /// ticks in a row overrun as lead to failsafe.
         blockers: Flags,
     },
     /// A sensor went wrong, or goes wrong in another way than before.
@@ -103,6 +104,33 @@ pub enum EventKind<O> {
     Panicked,
     /// The timer failed; why is in the loop's report.
     TimerFailed,
+    /// Ticks begin to overrun. Told once, however many follow:
+    /// [`OverrunsOver`](Self::OverrunsOver) says how many it became.
+    Overrun {
+        /// Whose budget was overrun; the timer's is one period.
+        of: Stage,
+        /// How long it took, or how late the timer woke, ns.
+        took_ns: u64,
+        /// How long it might have taken, ns.
+        budget_ns: u64,
+        /// The stage that took longest in that tick.
+        longest: Stage,
+    },
+    /// No tick has overrun for a second.
+    OverrunsOver {
+        /// How many ticks overran or were missed.
+        count: u64,
+        /// The first of them.
+        first: u64,
+        /// The last of them.
+        last: u64,
+    },
+    /// The loop hung, and its watchdog ended it: told by the watchdog, after
+    /// the last tick.
+    Hung {
+        /// How long the loop had shown no progress, ns.
+        silent_ns: u64,
+    },
 }
 
 impl<O: Copy> EventKind<O> {
@@ -129,6 +157,9 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                         name_flags::<C>(f, flags)
                     }
                     State::Failsafe(Cause::InvalidOutput) => f.write_str(": invalid output"),
+                    State::Failsafe(Cause::Overrun) => {
+                        f.write_str(": too many ticks in a row overran their budget")
+                    }
                     _ => Ok(()),
                 }
             }
@@ -141,7 +172,7 @@ impl<C: Controller> fmt::Display for EventWords<C> {
             }
             EventKind::ToldToStop => f.write_str("told to stop"),
             EventKind::EngageRefused { blockers } if blockers.is_empty() => {
-                f.write_str("not engaged: control was let go at the same time")
+                f.write_str("not engaged: control was let go at the same time, or ticks overrun")
             }
             EventKind::EngageRefused { blockers } => {
                 f.write_str("not engaged: ")?;
@@ -176,8 +207,49 @@ impl<C: Controller> fmt::Display for EventWords<C> {
             }
             EventKind::Panicked => f.write_str("a part of the loop panicked"),
             EventKind::TimerFailed => f.write_str("the timer failed"),
+            EventKind::Overrun {
+                of: Stage::Timer,
+                took_ns,
+                budget_ns,
+                ..
+            } => write!(
+                f,
+                "the timer woke {:.1} ms late: periods of {:.1} ms were missed",
+                ms(took_ns),
+                ms(budget_ns)
+            ),
+            EventKind::Overrun {
+                of,
+                took_ns,
+                budget_ns,
+                longest,
+            } => {
+                write!(
+                    f,
+                    "{of} overran its budget: {:.3} ms of {:.3} ms",
+                    ms(took_ns),
+                    ms(budget_ns)
+                )?;
+                if of == Stage::Tick {
+                    write!(f, ", most of it in {longest}")?;
+                }
+                Ok(())
+            }
+            EventKind::OverrunsOver { count, first, last } => write!(
+                f,
+                "{count} ticks overran or were missed, between {first} and {last}; none for a second"
+            ),
+            EventKind::Hung { silent_ns } => write!(
+                f,
+                "the loop hung: no progress for {:.1} s",
+                ms(silent_ns) * 1e-3
+            ),
         }
     }
+}
+
+fn ms(ns: u64) -> f64 {
+    ns as f64 * 1e-6
 }
 
 fn name_flags<C: Controller>(f: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result {

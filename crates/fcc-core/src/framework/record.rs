@@ -26,6 +26,14 @@ pub struct Record<M, S, O> {
     pub actuator_faults: u64,
     /// Records that found no room in the ring since the loop's start.
     pub records_dropped: u64,
+    /// Ticks that took longer than their budget since the loop's start, this
+    /// one included; missed periods are counted in `tick.missed`.
+    pub overruns: u64,
+    /// Page faults of the loop's thread since the loop's start.
+    pub page_faults: u64,
+    /// How long before the deadline the timer asked to be woken, ns; 0 where
+    /// it does not wake early.
+    pub early_wake_ns: u64,
     /// The loop's state at the tick's end.
     pub state: StateCode,
     /// Why the loop may not engage; empty while engaged.

@@ -38,6 +38,9 @@ pub enum Cause {
     Faults(Flags),
     /// The controller's outputs were not finite or not in range.
     InvalidOutput,
+    /// Ticks overran their budget, or were missed, as many in a row as
+    /// configured.
+    Overrun,
 }
 
 /// What can change the loop's state.

@@ -32,6 +32,7 @@ const STOPPED: u8 = 3;
 const NO_CAUSE: u8 = 0;
 const FAULTS: u8 = 1;
 const INVALID_OUTPUT: u8 = 2;
+const OVERRUN: u8 = 3;
 
 impl StateCode {
     /// From the numbers as stored; none if no state has these.
@@ -49,8 +50,8 @@ impl StateCode {
         self.phase
     }
 
-    /// Why it fell into failsafe: 1 by faults, 2 by an invalid output; 0 in
-    /// every other state.
+    /// Why it fell into failsafe: 1 by faults, 2 by an invalid output, 3 by
+    /// overruns; 0 in every other state.
     pub const fn cause(self) -> u8 {
         self.cause
     }
@@ -66,6 +67,7 @@ impl StateCode {
             (STANDBY, _) => State::Standby,
             (ENGAGED, _) => State::Engaged,
             (FAILSAFE, FAULTS) => State::Failsafe(Cause::Faults(self.flags)),
+            (FAILSAFE, OVERRUN) => State::Failsafe(Cause::Overrun),
             (FAILSAFE, _) => State::Failsafe(Cause::InvalidOutput),
             _ => State::Stopped,
         }
@@ -79,6 +81,7 @@ impl From<State> for StateCode {
             State::Engaged => (ENGAGED, NO_CAUSE, Flags::NONE),
             State::Failsafe(Cause::Faults(flags)) => (FAILSAFE, FAULTS, flags),
             State::Failsafe(Cause::InvalidOutput) => (FAILSAFE, INVALID_OUTPUT, Flags::NONE),
+            State::Failsafe(Cause::Overrun) => (FAILSAFE, OVERRUN, Flags::NONE),
             State::Stopped => (STOPPED, NO_CAUSE, Flags::NONE),
         };
         Self {
@@ -118,6 +121,7 @@ mod tests {
             State::Engaged,
             State::Failsafe(Cause::Faults(Flags::from_bits(0x8000_0001))),
             State::Failsafe(Cause::InvalidOutput),
+            State::Failsafe(Cause::Overrun),
             State::Stopped,
         ] {
             let code = StateCode::from(state);
@@ -132,7 +136,7 @@ mod tests {
         for phase in 0..=u8::MAX {
             for cause in 0..=u8::MAX {
                 let taken = StateCode::from_parts(phase, cause, Flags::NONE).is_some();
-                let known = matches!((phase, cause), (0 | 1 | 3, 0) | (2, 1 | 2));
+                let known = matches!((phase, cause), (0 | 1 | 3, 0) | (2, 1..=3));
                 assert_eq!(taken, known, "{phase} {cause}");
             }
         }

@@ -3,7 +3,7 @@
 use std::io;
 
 use fcc_xplane::Released;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 
 use super::fail;
 use crate::exit::Exit;
@@ -13,7 +13,8 @@ use crate::flight::stand_guard;
 pub(super) fn guard() -> Exit {
     // Whoever ends the daemon by a signal to all its processes wants the
     // controls back first: the guard ends by the daemon's end and no sooner.
-    for signal in [SIGTERM, SIGINT, SIGHUP] {
+    // ABRT is what a service manager's watchdog sends.
+    for signal in [SIGTERM, SIGINT, SIGHUP, SIGABRT] {
         let ignored = signal_hook::flag::register(signal, std::sync::Arc::default());
         if let Err(error) = ignored {
             return fail(&format!("guard: signals cannot be caught: {error}"));
@@ -21,6 +22,12 @@ pub(super) fn guard() -> Exit {
     }
     match stand_guard(io::stdin().lock()) {
         Ok(None | Some((_, Released::Gone))) => Exit::Success,
+        Ok(Some((simulator, Released::CalledOff))) => {
+            eprintln!(
+                "fccd guard: the daemon is gone; another has taken X-Plane at {simulator} over"
+            );
+            Exit::Success
+        }
         Ok(Some((simulator, Released::Confirmed))) => {
             eprintln!("fccd guard: the daemon is gone; X-Plane at {simulator} was released");
             Exit::Success

@@ -2,6 +2,7 @@
 //! people on standard error, and ends with a code that means something.
 
 mod check;
+mod doctor;
 mod fly;
 mod guard;
 mod list;
@@ -16,7 +17,8 @@ mod timing;
 #[cfg(feature = "live")]
 mod top;
 
-use std::io;
+use std::path::Path;
+use std::{fs, io};
 
 use clap::CommandFactory;
 use serde::Serialize;
@@ -38,12 +40,24 @@ pub fn run(cli: Cli) -> Exit {
         #[cfg(feature = "live")]
         Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),
+        Command::Doctor(args) => doctor::doctor(&args),
         Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),
         Command::Completions { shell } => {
             clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());
             Exit::Success
         }
+        Command::Man { folder } => man(&folder),
+    }
+}
+
+/// Writes a manual page for the program and for each command.
+fn man(folder: &Path) -> Exit {
+    let written =
+        fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
+    match written {
+        Ok(()) => Exit::Success,
+        Err(error) => fail(&format!("{}: {error}", folder.display())),
     }
 }
 

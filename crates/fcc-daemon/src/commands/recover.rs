@@ -24,6 +24,12 @@ pub(super) fn recover(args: &RecoverArgs) -> Exit {
                 None => println!("{file}: is whole: {ticks} ticks"),
                 Some(cut) => println!("{file}: was {cut}; is whole now: {ticks} ticks"),
             }
+            if let Some(kept) = recovered.kept {
+                println!(
+                    "{}: the file as it was, as there may be more behind the damage",
+                    kept.display()
+                );
+            }
             Exit::Success
         }
     }

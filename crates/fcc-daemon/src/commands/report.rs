@@ -6,7 +6,7 @@ use std::path::Path;
 
 use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_telemetry::recording::Recording;
+use fcc_telemetry::recording::{Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
 use super::{fail, print_json, progress};
@@ -56,26 +56,33 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
         format!("{folder}: cannot be written: {error}")
     };
     let mut survey = Survey::new(origin, pattern(&recording));
-    let mut messages = recording.messages().map_err(|error| error.to_string())?;
+    let mut items = recording.items().map_err(|error| error.to_string())?;
     let bar = progress::bar(recording.bytes(), "reading");
     let mut taken = 0_u64;
-    while let Some(message) = messages.next() {
-        survey
-            .take(&message)
-            .map_err(|error| format!("{}: {error}", args.file.display()))?;
+    while let Some(item) = items.next() {
+        match &item {
+            Item::Message(message) => survey
+                .take(message)
+                .map_err(|error| format!("{}: {error}", args.file.display()))?,
+            Item::Remark(remark) => survey.take_remark(remark),
+        }
         if let Some(csv) = &mut csv {
-            csv.take(&message).map_err(csv_failed)?;
+            match &item {
+                Item::Message(message) => csv.take(message),
+                Item::Remark(remark) => csv.take_remark(remark),
+            }
+            .map_err(csv_failed)?;
         }
         taken += 1;
         if taken.is_multiple_of(BAR_EVERY) {
-            bar.set_position(messages.bytes_read());
+            bar.set_position(items.bytes_read());
         }
     }
     bar.finish_and_clear();
     if let Some(csv) = csv {
         csv.finish().map_err(csv_failed)?;
     }
-    Ok(survey.finish(FileEnd::of(&recording, messages.cut())))
+    Ok(survey.finish(FileEnd::of(&recording, items.cut())))
 }
 
 fn write_page(args: &ReportArgs, report: &Report) -> Result<(), String> {

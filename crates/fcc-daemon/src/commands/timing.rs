@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{fail, print_json};
 use crate::cli::TimingArgs;
-use crate::config::{BuiltInSection, Config, CourseSection, LoopSection};
+use crate::config::{BuiltInSection, Config, CourseSection, EarlyWakeSection, LoopSection};
 use crate::exit::Exit;
 use crate::flight::{Length, Pace, Plan, assemble, fly};
 
@@ -36,6 +36,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         tick: LoopSection {
             rate_hz,
             timer: args.timer,
+            early_wake: early_wake(args),
         },
         course: CourseSection::Hold,
         built_in: Some(BuiltInSection::default()),
@@ -60,6 +61,18 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         return Err("interrupted by a signal: nothing is reported".to_owned());
     }
     Ok(outcome.timing)
+}
+
+fn early_wake(args: &TimingArgs) -> EarlyWakeSection {
+    let usual = EarlyWakeSection::default();
+    let max_us = args.max_margin.unwrap_or(usual.max_us);
+    EarlyWakeSection {
+        enabled: args.early_wake,
+        min_us: usual.min_us.min(max_us),
+        max_us,
+        cpu_cap_percent: args.cpu_cap.unwrap_or(usual.cpu_cap_percent),
+        ..usual
+    }
 }
 
 /// A bar that fills while a measurement runs; nothing where standard error is

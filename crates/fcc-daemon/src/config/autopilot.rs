@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use fcc_core::flight::navigation::NavigationConfig;
-use fcc_core::flight::{AutopilotConfig, Course};
+use fcc_core::flight::{AutopilotConfig, Course, Scale};
 use serde::{Deserialize, Serialize};
 
 use super::CourseSection;
@@ -16,6 +16,8 @@ use super::units::{FOOT_PER_MINUTE_MPS, KNOT_MPS};
 pub struct AutopilotSection {
     /// The airspeed at which the gains hold as they are.
     pub reference_airspeed_kt: f64,
+    /// How the aircraft differs from the one that the gains were found on.
+    pub scale: ScaleSection,
     /// What the loops may ask of the aircraft.
     pub envelope: EnvelopeSection,
     /// How sensors are blended.
@@ -33,6 +35,7 @@ impl Default for AutopilotSection {
         let core = AutopilotConfig::default();
         Self {
             reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
+            scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
             navigation: NavigationSection::from(&core.navigation),
             heading: HeadingSection::from(&core.heading),
@@ -45,17 +48,25 @@ impl Default for AutopilotSection {
 impl AutopilotSection {
     /// The core's configuration: this section, a course, and how old a reading
     /// may become.
-    pub fn to_core(&self, course: &CourseSection, max_age: Duration) -> AutopilotConfig {
+    pub fn to_core(
+        &self,
+        course: &CourseSection,
+        max_age: Duration,
+        frozen_after: Duration,
+    ) -> AutopilotConfig {
         AutopilotConfig {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
             max_age,
+            frozen_after,
             navigation: NavigationConfig::from(&self.navigation),
             course: Course::from(course),
             heading: HeadingConfig::from(&self.heading),
             altitude: AltitudeConfig::from(&self.altitude),
             airspeed: AirspeedConfig::from(&self.airspeed),
             envelope: Envelope::from(&self.envelope),
+            ..AutopilotConfig::default()
         }
+        .scaled(&Scale::from(&self.scale))
     }
 }
 
@@ -116,6 +127,22 @@ const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 const G_MPS2: f64 = 9.806_65;
 /// The core's unit.
 const SI: f64 = 1.0;
+
+section! {
+    /// `[autopilot.scale]`: factors on the gains below.
+    ScaleSection for Scale {
+        /// More where the elevator does less.
+        elevator => elevator * SI,
+        /// More where the aileron does less.
+        aileron => aileron * SI,
+        /// More where the rudder does less.
+        rudder => rudder * SI,
+        /// More where the engine does less for the aircraft's weight.
+        throttle => throttle * SI,
+        /// Less than 1 for an aircraft that answers slowly.
+        pace => pace * SI,
+    }
+}
 
 section! {
     /// `[autopilot.envelope]`.
@@ -202,6 +229,8 @@ section! {
         climb_rate_gain => climb_rate_gain * SI,
         /// The same, integrated.
         climb_rate_integral_gain_per_s => climb_rate_integral_gain_per_s * SI,
+        /// How far the flight path lags behind the one asked for.
+        flight_path_lag_s => flight_path_lag_s * SI,
         /// Angle of attack that carries 1 g at the reference airspeed.
         angle_of_attack_per_g_deg => angle_of_attack_per_g_rad * DEGREE_RAD,
         /// Pitch rate per pitch error.

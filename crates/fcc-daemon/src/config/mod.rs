@@ -6,12 +6,15 @@
 //! refused with line, key and range.
 
 mod autopilot;
+mod budget;
 mod built_in;
 mod course;
+mod cpu;
 mod error;
 mod places;
 mod ranges;
 mod recording;
+mod restart;
 mod runtime;
 mod telemetry;
 mod units;
@@ -23,16 +26,21 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_runtime::LoopConfig;
+use fcc_runtime::{Budget, LoopConfig};
 use fcc_timer::RealtimeWishes;
 use serde::{Deserialize, Serialize};
 
 pub use autopilot::AutopilotSection;
+pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use course::CourseSection;
+pub use cpu::CpuChoice;
 pub use error::{ConfigError, Problem};
 pub use recording::{CompressionChoice, RecordingSection};
-pub use runtime::{EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then};
+pub use restart::{RestartMode, RestartSection};
+pub use runtime::{
+    EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
+};
 pub use telemetry::TelemetrySection;
 pub(crate) use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
@@ -46,12 +54,18 @@ pub struct Config {
     pub tick: LoopSection,
     /// What is asked of the kernel.
     pub realtime: RealtimeSection,
+    /// How long ticks may take.
+    pub budget: BudgetSection,
+    /// When the loop hangs.
+    pub watchdog: WatchdogSection,
     /// The engage switch.
     pub engage: EngageSection,
     /// What happens when sensors fall silent.
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
+    /// What becomes of a flight that was cut off.
+    pub restart: RestartSection,
     /// Who may watch, live.
     pub telemetry: TelemetrySection,
     /// What is flown.
@@ -108,26 +122,25 @@ impl Config {
         Self::read(text, file)?.checked(text, file)
     }
 
-    /// The autopilot's part of a text, for who flies an aircraft of their own:
-    /// no `[x-plane]` and no `[built-in]` is needed.
+    /// Checks a text for who flies an aircraft of their own: no `[x-plane]`
+    /// and no `[built-in]` is needed.
     ///
     /// # Errors
     /// As [`Config::parse`].
-    pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
-        Ok(Self::parse_or_built_in(text, file)?.autopilot_config())
-    }
-
-    /// Checks a text in which the aircraft need not be said: it is the built-in
-    /// one then.
-    ///
-    /// # Errors
-    /// As [`Config::parse`].
-    pub fn parse_or_built_in(text: &str, file: &str) -> Result<Self, ConfigError> {
+    pub fn parse_without_aircraft(text: &str, file: &str) -> Result<Self, ConfigError> {
         let mut config = Self::read(text, file)?;
         if config.x_plane.is_none() {
             config.built_in.get_or_insert_default();
         }
         config.checked(text, file)
+    }
+
+    /// The autopilot's part of such a text.
+    ///
+    /// # Errors
+    /// As [`Config::parse`].
+    pub fn parse_autopilot(text: &str, file: &str) -> Result<AutopilotConfig, ConfigError> {
+        Ok(Self::parse_without_aircraft(text, file)?.autopilot_config())
     }
 
     fn read(text: &str, file: &str) -> Result<Self, ConfigError> {
@@ -147,10 +160,14 @@ impl Config {
 
     /// The core's configuration.
     pub fn autopilot_config(&self) -> AutopilotConfig {
-        self.autopilot.to_core(
-            &self.course,
-            Duration::from_millis(self.failsafe.sensor_max_age_ms),
-        )
+        AutopilotConfig {
+            settling: self.restart.mode.settling(),
+            ..self.autopilot.to_core(
+                &self.course,
+                Duration::from_millis(self.failsafe.sensor_max_age_ms),
+                Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
+            )
+        }
     }
 
     /// What the loop is told.
@@ -159,6 +176,7 @@ impl Config {
             switch_off: self.engage.switch_off.into(),
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
+            budget: Budget::from(&self.budget),
             realtime: RealtimeWishes::from(&self.realtime),
             ..LoopConfig::default()
         }

@@ -11,20 +11,41 @@ use super::{Config, Problem};
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
     ("loop.rate_hz", 1.0, 2_000.0),
+    ("loop.early_wake.min_us", 0.0, 10_000.0),
+    ("loop.early_wake.max_us", 1.0, 10_000.0),
+    ("loop.early_wake.guard_us", 0.0, 10_000.0),
+    ("loop.early_wake.quantile", 0.5, 0.9999),
+    ("loop.early_wake.cpu_cap_percent", 0.0, 50.0),
     ("realtime.priority", 0.0, 99.0),
     ("realtime.cpu", 0.0, 1_023.0),
+    ("realtime.cpu_dma_latency_us", 0.0, 1e6),
     ("realtime.stack_prefault_kib", 0.0, 4_096.0),
     ("realtime.timer_slack_ns", 0.0, 1e9),
+    ("budget.tick_us", 1.0, 1e6),
+    ("budget.sensors_us", 1.0, 1e6),
+    ("budget.navigation_us", 1.0, 1e6),
+    ("budget.guidance_us", 1.0, 1e6),
+    ("budget.control_us", 1.0, 1e6),
+    ("budget.actuators_us", 1.0, 1e6),
+    ("budget.failsafe_after", 0.0, 1e6),
+    ("watchdog.hang_after_ms", 50.0, 60_000.0),
     ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
+    ("failsafe.sensor_frozen_s", 0.0, 60.0),
     ("failsafe.hold_s", 0.0, 600.0),
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),
+    ("restart.max_age_s", 1.0, 600.0),
     ("course.hold_s", 0.0, 86_400.0),
     ("course.leg_s", 1.0, 86_400.0),
     ("course.turn_deg", -179.0, 179.0),
     ("course.climb_ft", -5_000.0, 5_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
+    ("autopilot.scale.elevator", 0.01, 100.0),
+    ("autopilot.scale.aileron", 0.01, 100.0),
+    ("autopilot.scale.rudder", 0.0, 100.0),
+    ("autopilot.scale.throttle", 0.01, 100.0),
+    ("autopilot.scale.pace", 0.05, 5.0),
     ("autopilot.envelope.max_bank_deg", 5.0, 60.0),
     ("autopilot.envelope.max_load_factor_g", 1.05, 6.0),
     ("autopilot.envelope.max_pitch_deg", 2.0, 45.0),
@@ -65,6 +86,7 @@ const RANGES: &[(&str, f64, f64)] = &[
         0.0,
         20.0,
     ),
+    ("autopilot.altitude.flight_path_lag_s", 0.0, 10.0),
     ("autopilot.altitude.angle_of_attack_per_g_deg", 0.0, 20.0),
     ("autopilot.altitude.pitch_gain_per_s", 0.1, 20.0),
     ("autopilot.altitude.max_pitch_rate_degps", 0.5, 90.0),
@@ -152,6 +174,16 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
 
 /// What one value means for another.
 fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
+    let early = &config.tick.early_wake;
+    if early.min_us > early.max_us {
+        complain(
+            "loop.early_wake.min_us",
+            format!(
+                "is {}: choose no more than max_us, {}",
+                early.min_us, early.max_us
+            ),
+        );
+    }
     let envelope = &config.autopilot.envelope;
     if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
         complain(
@@ -161,6 +193,24 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
                 envelope.min_airspeed_kt, envelope.max_airspeed_kt
             ),
         );
+    }
+    let budget = &config.budget;
+    let stages = [
+        ("budget.sensors_us", budget.sensors_us),
+        ("budget.navigation_us", budget.navigation_us),
+        ("budget.guidance_us", budget.guidance_us),
+        ("budget.control_us", budget.control_us),
+        ("budget.actuators_us", budget.actuators_us),
+    ];
+    for (key, stage_us) in stages {
+        if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
+            && stage_us > tick_us
+        {
+            complain(
+                key,
+                format!("is {stage_us}: choose no more than tick_us, {tick_us}"),
+            );
+        }
     }
     if config.x_plane.is_some() && config.built_in.is_some() {
         complain(
@@ -205,7 +255,7 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{BuiltInSection, XPlaneSection};
+    use crate::config::{BudgetSection, BuiltInSection, CpuChoice, XPlaneSection};
 
     /// A new key without a range would be a key whose nonsense is believed.
     #[test]
@@ -215,7 +265,18 @@ mod tests {
             built_in: Some(BuiltInSection::default()),
             ..Config::default()
         };
-        config.realtime.cpu = Some(1);
+        config.realtime.cpu = Some(CpuChoice::Number(1));
+        config.realtime.cpu_dma_latency_us = Some(0);
+        let us = Some(1);
+        config.budget = BudgetSection {
+            tick_us: us,
+            sensors_us: us,
+            navigation_us: us,
+            guidance_us: us,
+            control_us: us,
+            actuators_us: us,
+            failsafe_after: us,
+        };
         let values = toml::Value::try_from(&config).unwrap();
         let mut missing = Vec::new();
         walk("", &values, &mut missing);

@@ -5,8 +5,10 @@ use std::time::Duration;
 
 use fcc_core::framework::SwitchOff;
 use fcc_runtime::AfterFailsafe;
-use fcc_timer::{RealtimeWishes, Strictness, TimerKind};
+use fcc_timer::{CpuWish, EarlyWake, RealtimeWishes, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
+
+use super::CpuChoice;
 
 /// `[loop]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -17,6 +19,8 @@ pub struct LoopSection {
     /// Which timer wakes the loop.
     #[serde(with = "timer_name")]
     pub timer: TimerKind,
+    /// Waking before the deadline, to be there on time.
+    pub early_wake: EarlyWakeSection,
 }
 
 impl Default for LoopSection {
@@ -24,14 +28,73 @@ impl Default for LoopSection {
         Self {
             rate_hz: 40.0,
             timer: TimerKind::Timerfd,
+            early_wake: EarlyWakeSection::default(),
         }
     }
 }
 
 impl LoopSection {
+    /// The timer that wakes the loop, not yet started.
+    ///
+    /// # Errors
+    /// When the operating system refuses, or a value is out of range.
+    pub fn build_timer(&self) -> Result<Box<dyn Timer>, TimerError> {
+        if self.early_wake.enabled {
+            let early = EarlyWake::from(&self.early_wake);
+            self.timer.build_early(self.period(), &early)
+        } else {
+            self.timer.build(self.period())
+        }
+    }
+
     /// Time between ticks, to the nanosecond.
     pub fn period(&self) -> Duration {
         Duration::from_secs_f64(1.0 / self.rate_hz)
+    }
+}
+
+/// `[loop.early_wake]`.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct EarlyWakeSection {
+    /// Whether the timer wakes before the deadline and spins the rest.
+    pub enabled: bool,
+    /// The shortest margin.
+    pub min_us: f64,
+    /// The longest margin.
+    pub max_us: f64,
+    /// Added to what was measured.
+    pub guard_us: f64,
+    /// Which share of the wake-ups shall be before the deadline.
+    pub quantile: f64,
+    /// The largest share of a core that may be spent spinning.
+    pub cpu_cap_percent: f64,
+}
+
+impl Default for EarlyWakeSection {
+    fn default() -> Self {
+        let early = EarlyWake::default();
+        Self {
+            enabled: false,
+            min_us: early.min.as_secs_f64() * 1e6,
+            max_us: early.max.as_secs_f64() * 1e6,
+            guard_us: early.guard.as_secs_f64() * 1e6,
+            quantile: early.quantile,
+            cpu_cap_percent: 100.0 * early.cpu_cap,
+        }
+    }
+}
+
+impl From<&EarlyWakeSection> for EarlyWake {
+    fn from(section: &EarlyWakeSection) -> Self {
+        let time = |us: f64| Duration::from_secs_f64(us * 1e-6);
+        Self {
+            min: time(section.min_us),
+            max: time(section.max_us),
+            quantile: section.quantile,
+            guard: time(section.guard_us),
+            cpu_cap: section.cpu_cap_percent / 100.0,
+        }
     }
 }
 
@@ -44,7 +107,10 @@ pub struct RealtimeSection {
     pub priority: u8,
     /// The CPU that the loop's thread is bound to.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub cpu: Option<usize>,
+    pub cpu: Option<CpuChoice>,
+    /// How long CPUs may take to wake from their sleep.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cpu_dma_latency_us: Option<u32>,
     /// Whether to keep the process' memory from being paged out.
     pub lock_memory: bool,
     /// How much stack to touch before the first tick.
@@ -60,6 +126,7 @@ impl Default for RealtimeSection {
         Self {
             priority: 80,
             cpu: None,
+            cpu_dma_latency_us: None,
             lock_memory: true,
             stack_prefault_kib: 256,
             timer_slack_ns: 1,
@@ -72,7 +139,8 @@ impl From<&RealtimeSection> for RealtimeWishes {
     fn from(section: &RealtimeSection) -> Self {
         Self {
             priority: (section.priority > 0).then_some(section.priority),
-            cpu: section.cpu,
+            cpu: section.cpu.map(CpuWish::from),
+            cpu_dma_latency_us: section.cpu_dma_latency_us,
             lock_memory: section.lock_memory,
             stack_prefault_bytes: section.stack_prefault_kib as usize * 1_024,
             timer_slack_ns: (section.timer_slack_ns > 0).then_some(section.timer_slack_ns),
@@ -128,6 +196,9 @@ pub struct EngageSection {
 pub struct FailsafeSection {
     /// Readings older than this are a loss of their sensor.
     pub sensor_max_age_ms: u64,
+    /// Readings that stay the same to the last bit for so long while the
+    /// aircraft moves are a loss of their sensor; 0 for never.
+    pub sensor_frozen_s: f64,
     /// How long wings are held level before the controls are released.
     pub hold_s: f64,
     /// What comes after.
@@ -138,6 +209,7 @@ impl Default for FailsafeSection {
     fn default() -> Self {
         Self {
             sensor_max_age_ms: 250,
+            sensor_frozen_s: 2.0,
             hold_s: 5.0,
             then: Then::Standby,
         }

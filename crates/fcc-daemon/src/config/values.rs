@@ -55,7 +55,7 @@ impl Config {
             put(&mut values, key, value).ok_or_else(|| unknown(key))?;
         }
         let text = toml::to_string(&values).map_err(|error| invalid(None, error.to_string()))?;
-        Self::parse_or_built_in(&text, NO_FILE).map_err(without_lines)
+        Self::parse_without_aircraft(&text, NO_FILE).map_err(without_lines)
     }
 }
 
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     fn plain() -> Config {
-        Config::parse_or_built_in("", "test").unwrap()
+        Config::parse_without_aircraft("", "test").unwrap()
     }
 
     #[test]

@@ -6,8 +6,9 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
+use super::restart::RestartWish;
 use super::tap::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config, TelemetrySection, XPlaneSection};
+use crate::config::{Aircraft, Config, TelemetrySection, WatchdogSection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -19,8 +20,13 @@ pub struct Assembly {
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     /// What the loop is told.
     pub loop_config: LoopConfig,
+    /// When the loop hangs.
+    pub(super) watchdog: WatchdogSection,
     /// Who may watch, live.
     pub(super) telemetry: TelemetrySection,
+    /// How it is to be taken up if it is cut off; not with an aircraft that
+    /// ends when the program does.
+    pub(super) restart: Option<RestartWish>,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -56,7 +62,9 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(simulation.actuator)],
                 loop_config,
+                watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
+                restart: None,
                 truth: Some(truth),
                 x_plane: None,
             })
@@ -69,7 +77,9 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 autopilot,
                 actuators: vec![Box::new(actuator)],
                 loop_config,
+                watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
+                restart: Some(RestartWish::of(config)),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

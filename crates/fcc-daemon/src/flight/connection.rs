@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use fcc_xplane::{Control, Released, SimulatorState, Trouble, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::guard::Guard;
+use super::relief::relieve;
 use crate::config::XPlaneSection;
 
 /// Trouble that lasts this long is worth a word: at the start, X-Plane has
@@ -15,6 +16,10 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// controls back.
 const GIVE_BACK_WITHIN: Duration = Duration::from_secs(5);
 
+/// While control is held, it is looked this often for a guard of an earlier
+/// daemon that gives it away; looking is one refused connection.
+const RELIEVE_EVERY: Duration = Duration::from_secs(1);
+
 /// Watches the connection to X-Plane, and keeps the guard informed.
 pub(super) struct Connection {
     status: XPlaneStatus,
@@ -23,6 +28,8 @@ pub(super) struct Connection {
     trouble: Option<(Trouble, Instant)>,
     told: Told,
     pace: SimulatorState,
+    /// When a guard was last looked for.
+    relieved: Instant,
 }
 
 /// What was said last of the connection.
@@ -51,11 +58,15 @@ impl Connection {
             trouble: None,
             told: Told::Nothing,
             pace: SimulatorState::Running,
+            relieved: Instant::now(),
         }
     }
 
     /// What has changed, in words; none if there is nothing to say.
     pub(super) fn poll(&mut self) -> Option<String> {
+        if self.status.control() == Control::Held && self.relieved.elapsed() >= RELIEVE_EVERY {
+            self.relieve_guard();
+        }
         if let Some(guard) = &mut self.guard {
             let held = self.status.control() != Control::Free;
             guard.tell(self.status.simulator().filter(|_| held));
@@ -73,6 +84,15 @@ impl Connection {
                 })
             }
             None => self.good_news().or_else(|| self.change_of_pace()),
+        }
+    }
+
+    /// Sends away the guard of a daemon that was killed, if one still releases
+    /// the controls that are, or are to be, held here.
+    pub(super) fn relieve_guard(&mut self) {
+        self.relieved = Instant::now();
+        if let Some(simulator) = self.status.simulator() {
+            relieve(simulator);
         }
     }
 

@@ -2,19 +2,22 @@
 
 use std::io;
 use std::sync::atomic::Ordering;
-use std::thread;
-use std::time::Duration;
 
 use fcc_core::framework::State;
-use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
 use fcc_telemetry::recording::RecordingPace;
-use fcc_timer::{ManualTimer, Timer, TimerError, TimerKind};
+use fcc_timer::{ManualTimer, Timer, TimerError};
+use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
 use super::connection::Connection;
+use super::follow::Follower;
+use super::hang::HangWatch;
 use super::live::Live;
 use super::recording::{LoopFacts, Recording, RecordingWish};
 use super::signals::{self, Kept};
+use super::sole::Sole;
+use super::tally::Tally;
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -67,11 +70,16 @@ pub enum FlyError {
     /// not begin.
     #[error("signals cannot be caught: {0}")]
     Signals(#[source] io::Error),
+    /// Another daemon flies this simulator.
+    #[error(
+        "another fccd on this machine flies X-Plane at {0}: end that one first, or fly another \
+         X-Plane"
+    )]
+    Taken(String),
+    /// There is no watchdog, and a flight without one was not asked for.
+    #[error("the watchdog: {0}")]
+    Watchdog(#[source] io::Error),
 }
-
-/// How often what the loop tells is fetched: often enough to look alive, and
-/// seldom enough to cost nothing.
-const FETCH_EVERY: Duration = Duration::from_millis(20);
 
 /// Flies an assembly until it is told to stop, by the plan, by a signal
 /// (TERM, INT, HUP) or by the aircraft's switch.
@@ -85,8 +93,9 @@ pub fn fly(
     recording: Option<RecordingWish>,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
+    let _sole = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
-        Pace::RealTime => build(tick.timer, period)?,
+        Pace::RealTime => tick.build_timer()?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
     };
     let timer_name = timer.name();
@@ -111,12 +120,13 @@ pub fn fly(
         wish.prepare(facts, &mut watch);
     }
     // Before the loop's thread exists, so that nothing real-time is inherited.
+    let held_at = assembly.x_plane.clone();
     let mut connection = assembly
         .x_plane
         .map(|(status, section)| Connection::watch(status, &section));
     let parts = Parts {
         timer,
-        sensors: assembly.sensors,
+        sensors: super::sensors(assembly.sensors),
         controller: super::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
@@ -124,32 +134,51 @@ pub fn fly(
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
+            let watchdog = assembly.watchdog.enabled.then(|| {
+                let config = WatchdogConfig {
+                    hang_after: assembly.watchdog.hang_after(period),
+                    loop_priority: assembly.loop_config.realtime.priority,
+                };
+                HangWatch::start(link.pulse.clone(), link.stop.clone(), &config, held_at)
+            });
+            let watchdog = watchdog.transpose().map_err(FlyError::Watchdog)?;
+            let mut tally = Tally::new(period)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for refusal in &handle.grants().refused {
                 watch.remark(refusal.to_string());
+            }
+            for refusal in watchdog.iter().flat_map(|(_, grants)| &grants.refused) {
+                watch.remark(format!("watchdog: {refusal}"));
             }
             let grants = Some(handle.grants());
             let mut recording =
                 wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
             drop(kept);
             watch.live.describe(tick, handle.grants(), &aircraft);
-            while !link.messages.is_over() {
-                drain(&mut link, &mut watch, recording.as_mut(), plan);
-                watch.live.pass_orders(&mut link.orders);
-                if let Some(words) = connection.as_mut().and_then(Connection::poll) {
-                    if let Some(recording) = &recording {
-                        recording.remark(&words);
-                    }
-                    watch.remark(words);
-                }
-                if let Some(words) = watch.live.poll() {
-                    watch.remark(words);
-                }
-                thread::sleep(FETCH_EVERY);
+            let news = watch.begin_restart(assembly.restart);
+            let watched_by = watchdog.as_ref().map(|(watchdog, _)| watchdog);
+            let hung = Follower {
+                link: &mut link,
+                watch: &mut watch,
+                recording: recording.as_mut(),
+                tally: Some(&mut tally),
+                plan,
             }
-            drain(&mut link, &mut watch, recording.as_mut(), plan);
-            (handle.join(), recording, interrupted)
+            .follow(connection.as_mut(), watched_by, news);
+            watch.service.stopping();
+            let report = match hung {
+                None => handle.join(),
+                Some(hung) => {
+                    let grants = handle.grants().clone();
+                    handle.abandon();
+                    // Not dismissed, the guard gives the controls back once
+                    // more: a loop that wakes up now may yet take them.
+                    connection = None;
+                    tally.report(hung, timer_name, grants)
+                }
+            };
+            (report, recording, interrupted)
         }
         Pace::Lockstep => {
             let (machine, mut link) = Machine::new(parts, &assembly.loop_config)?;
@@ -163,6 +192,9 @@ pub fn fly(
         }
     };
     let confirmed = connection.is_none_or(Connection::end);
+    if let Some(restart) = watch.restart.take() {
+        restart.end();
+    }
     if !confirmed {
         watch.remark(
             "X-Plane did not show that it has its controls back; the guard process goes on \
@@ -187,43 +219,43 @@ pub fn fly(
     Ok(outcome)
 }
 
-fn build(kind: TimerKind, period: Duration) -> Result<Box<dyn Timer>, TimerError> {
-    kind.build(period)
-}
-
 fn run_in_lockstep(
     mut machine: Machine<Pilot>,
     link: &mut Link<Pilot>,
     watch: &mut Watch,
-    mut recording: Option<&mut Recording>,
+    recording: Option<&mut Recording>,
     plan: Plan,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
+    let mut follower = Follower {
+        link,
+        watch,
+        recording,
+        tally: None,
+        plan,
+    };
     while machine.step() != State::Stopped {
-        drain(link, watch, recording.as_deref_mut(), plan);
+        follower.drain();
     }
     let report = machine.finish();
-    drain(link, watch, recording, plan);
+    follower.drain();
     Ok(report)
 }
 
-/// Fetches all there is, and stops the loop when its time is up.
-fn drain(
-    link: &mut Link<Pilot>,
-    watch: &mut Watch,
-    mut recording: Option<&mut Recording>,
-    plan: Plan,
-) {
-    while let Some(message) = link.messages.receive() {
-        watch.take(&message);
-        if let Some(recording) = &mut recording {
-            recording.take(&message);
+/// Claims the simulator for this process, if it is one.
+fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
+    let Some((_, section)) = &assembly.x_plane else {
+        return Ok(None);
+    };
+    match Sole::claim(section.simulator) {
+        Ok(sole) => Ok(Some(sole)),
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            Err(FlyError::Taken(match section.simulator {
+                Simulator::At(address) => address.to_string(),
+                Simulator::Beacon => "the address of its beacon".to_owned(),
+            }))
         }
-        if watch.is_over(plan.length) {
-            link.stop.stop();
-        }
-    }
-    if let Some(recording) = recording {
-        recording.tell(watch);
+        // Where there are no such names, nobody is kept from flying.
+        Err(_) => Ok(None),
     }
 }

@@ -6,7 +6,8 @@
 //! again as `fccd guard`, which waits at the end of a pipe. The pipe tells it
 //! where control is held, and closes when this process ends, however it does;
 //! if control was held by then, the guard centres the surfaces and releases
-//! the overrides, until X-Plane shows that it did.
+//! the overrides, until X-Plane shows that it did, or until a daemon that takes
+//! control itself [relieves](super::relief) it.
 
 use std::io::{self, BufRead, Write};
 use std::net::SocketAddrV4;
@@ -16,6 +17,7 @@ use std::time::Duration;
 
 use fcc_xplane::{OpenError, Released, XPlane, XPlaneConfig};
 
+use super::relief::Post;
 use crate::config::XPlaneSection;
 
 /// Begins a line that says where control is held.
@@ -96,7 +98,9 @@ pub fn stand_guard(from: impl BufRead) -> Result<Option<(SocketAddrV4, Released)
     let Some(simulator) = held else {
         return Ok(None);
     };
-    let released = XPlane::release_and_wait(&XPlaneConfig::from(&section), simulator, PATIENCE)?;
+    let mut post = Post::at(simulator);
+    let config = XPlaneConfig::from(&section);
+    let released = XPlane::release_unless(&config, simulator, PATIENCE, || post.is_relieved())?;
     Ok(Some((simulator, released)))
 }
 

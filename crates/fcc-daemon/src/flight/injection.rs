@@ -3,12 +3,18 @@
 //!
 //! The environment says what goes wrong:
 //! - `FCCD_PANIC_AT_S`: so many seconds after engaging, control panics;
-//! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN.
+//! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN;
+//! - `FCCD_HANG_AT_S`: so many seconds after engaging, control never returns;
+//! - `FCCD_SLOW_AT_S`: so many seconds after engaging, control begins to take
+//!   `FCCD_SLOW_MS` longer, in `FCCD_SLOW_TICKS` ticks (all, if not given);
+//! - `FCCD_BLOCK_AT_S`: so many seconds after the first tick, a sensor blocks.
 
 use std::fmt;
+use std::thread;
+use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
-use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
+use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
 
 /// An autopilot that goes wrong when it is told to.
 #[derive(Debug)]
@@ -16,17 +22,83 @@ pub struct Faulty {
     autopilot: Autopilot,
     panic_at_s: Option<f64>,
     nan_at_s: Option<f64>,
+    hang_at_s: Option<f64>,
+    slow: Slow,
     engaged_at: Time,
+}
+
+/// Control that takes longer than it should.
+#[derive(Debug)]
+struct Slow {
+    at_s: Option<f64>,
+    by: Duration,
+    ticks_left: u64,
+}
+
+impl Slow {
+    fn from_environment() -> Self {
+        Self {
+            at_s: number("FCCD_SLOW_AT_S"),
+            by: Duration::from_secs_f64(number("FCCD_SLOW_MS").unwrap_or(0.0) * 1e-3),
+            ticks_left: number("FCCD_SLOW_TICKS").map_or(u64::MAX, |ticks| ticks as u64),
+        }
+    }
+
+    fn take_longer(&mut self) {
+        if self.ticks_left > 0 {
+            self.ticks_left -= 1;
+            thread::sleep(self.by);
+        }
+    }
+}
+
+/// A sensor that gives nothing, and blocks when it is told to.
+#[derive(Debug)]
+pub(super) struct Blocking {
+    at_s: Option<f64>,
+    began: Time,
+}
+
+impl Default for Blocking {
+    /// Reads from the environment when it is to block.
+    fn default() -> Self {
+        Self {
+            at_s: number("FCCD_BLOCK_AT_S"),
+            began: Time::NEVER,
+        }
+    }
+}
+
+impl Sensor<Measurements> for Blocking {
+    fn sample(&mut self, tick: &Tick, _: &mut Measurements) -> Result<(), SensorFault> {
+        if self.began.is_never() {
+            self.began = tick.woke;
+        }
+        let since_s = tick.woke.since(self.began).as_secs_f64();
+        if self.at_s.is_some_and(|at_s| since_s >= at_s) {
+            thread::sleep(Duration::from_secs(3_600));
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "injection"
+    }
+}
+
+fn number(name: &str) -> Option<f64> {
+    std::env::var(name).ok()?.parse().ok()
 }
 
 impl Faulty {
     /// Reads from the environment what is to go wrong.
     pub fn new(autopilot: Autopilot) -> Self {
-        let seconds = |name: &str| std::env::var(name).ok()?.parse().ok();
         Self {
             autopilot,
-            panic_at_s: seconds("FCCD_PANIC_AT_S"),
-            nan_at_s: seconds("FCCD_NAN_AT_S"),
+            panic_at_s: number("FCCD_PANIC_AT_S"),
+            nan_at_s: number("FCCD_NAN_AT_S"),
+            hang_at_s: number("FCCD_HANG_AT_S"),
+            slow: Slow::from_environment(),
             engaged_at: Time::NEVER,
         }
     }
@@ -73,6 +145,12 @@ impl Controller for Faulty {
 
     fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         assert!(!self.is_due(self.panic_at_s, tick), "injected panic");
+        while self.is_due(self.hang_at_s, tick) {
+            std::hint::spin_loop();
+        }
+        if self.is_due(self.slow.at_s, tick) {
+            self.slow.take_longer();
+        }
         let mut surfaces = self.autopilot.control(tick, measurements);
         if self.is_due(self.nan_at_s, tick) {
             surfaces.elevator = f64::NAN;

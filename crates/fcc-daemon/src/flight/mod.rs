@@ -7,7 +7,9 @@
 mod assemble;
 mod connection;
 mod fly;
+mod follow;
 mod guard;
+mod hang;
 #[cfg(feature = "fault-injection")]
 mod injection;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
@@ -16,8 +18,13 @@ mod live;
 mod orders;
 mod outcome;
 mod recording;
+mod relief;
+mod restart;
+mod service;
 mod signals;
+mod sole;
 mod status;
+mod tally;
 mod tap;
 mod watch;
 
@@ -25,8 +32,10 @@ pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, Length, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
-pub use recording::{RecordingOutcome, RecordingWish};
+pub use recording::{RecordingOutcome, RecordingWish, about};
 pub use watch::true_sample;
+
+type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
 
 /// What the loop runs.
 #[cfg(not(feature = "fault-injection"))]
@@ -34,6 +43,17 @@ pub type Pilot = fcc_core::flight::Autopilot;
 /// What the loop runs: an autopilot that goes wrong when it is told to.
 #[cfg(feature = "fault-injection")]
 pub type Pilot = injection::Faulty;
+
+#[cfg(not(feature = "fault-injection"))]
+fn sensors(sensors: Sensors) -> Sensors {
+    sensors
+}
+
+#[cfg(feature = "fault-injection")]
+fn sensors(mut sensors: Sensors) -> Sensors {
+    sensors.push(Box::new(injection::Blocking::default()));
+    sensors
+}
 
 #[cfg(not(feature = "fault-injection"))]
 fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {

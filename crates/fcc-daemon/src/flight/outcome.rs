@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table};
 use fcc_timer::RealtimeGrants;
+use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
 use super::recording::RecordingOutcome;
@@ -26,6 +27,8 @@ pub struct Outcome {
     pub ending: String,
     /// How often it fell into failsafe.
     pub failsafes: u64,
+    /// Ticks that overran their budget.
+    pub overruns: u64,
     /// Whether control was given back.
     pub released: bool,
     /// Records that nobody fetched in time.
@@ -62,21 +65,27 @@ impl Outcome {
         let exit = match report.ending {
             _ if !report.released => Exit::NotReleased,
             Ending::Panicked(_) => Exit::Panicked,
+            Ending::Hung => Exit::Hung,
             Ending::TimerFailed(_) => Exit::Failure,
             _ if report.failsafes > 0 => Exit::Failsafe,
             _ => Exit::Success,
         };
         Self {
-            timing: TimingReport::new(
-                timer,
-                &report.timing,
-                realtime(&report.grants.unwrap_or_default()),
-            )
-            .with_cpu_time(report.cpu_time.as_secs_f64()),
+            timing: TimingReport {
+                page_faults: report.page_faults,
+                ..TimingReport::new(
+                    timer,
+                    &report.timing,
+                    realtime(&report.grants.unwrap_or_default()),
+                )
+            }
+            .with_cpu_time(report.cpu_time.as_secs_f64())
+            .with_spin_time(report.timing.spun_s),
             flight,
             events,
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
+            overruns: report.overruns,
             released: report.released,
             records_dropped: report.records_dropped,
             recording,
@@ -134,7 +143,12 @@ fn realtime(grants: &RealtimeGrants) -> Realtime {
         }
         .to_owned(),
         priority: grants.priority,
+        cpu: grants.cpu,
+        cpu_because: grants.cpu_because.clone(),
         memory_locked: grants.memory_locked,
+        stack_prefaulted: grants.stack_prefaulted,
+        timer_slack_ns: grants.timer_slack_ns,
+        cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
         refused: grants
             .refused
             .iter()

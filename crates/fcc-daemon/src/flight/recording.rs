@@ -6,6 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
 use fcc_timer::RealtimeGrants;
+use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
 use serde::Serialize;
 
@@ -32,7 +33,7 @@ impl RecordingWish {
 }
 
 /// What is known of a flight by its configuration and its machine.
-fn about(config: &Config, as_given: Option<String>) -> About {
+pub fn about(config: &Config, as_given: Option<String>) -> About {
     let aircraft = match config.aircraft() {
         Aircraft::XPlane(_) => "x-plane",
         Aircraft::BuiltIn(_) => "built-in",
@@ -105,7 +106,8 @@ pub struct RecordingOutcome {
     pub bytes: u64,
     /// Records and events that were dropped: the disk was too slow or full.
     pub not_recorded: u64,
-    /// Why recording stopped before the flight ended; none if it did not.
+    /// Why the flight's end is not recorded, and what of it is lost; none if it
+    /// is.
     pub stopped: Option<String>,
 }
 
@@ -157,7 +159,12 @@ impl RecordingWish {
         let realtime = grants.map_or_else(Realtime::default, |grants| Realtime {
             policy: grants.policy.to_owned(),
             priority: grants.priority,
+            cpu: grants.cpu,
+            cpu_because: grants.cpu_because.clone(),
             memory_locked: grants.memory_locked,
+            stack_prefaulted: grants.stack_prefaulted,
+            timer_slack_ns: grants.timer_slack_ns,
+            cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
             refused: grants.refused.iter().map(ToString::to_string).collect(),
         });
         let about = About {

@@ -2,11 +2,9 @@
 
 use fcc_core::framework::{Controller, State};
 use fcc_telemetry::FlightRecord;
+use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::Pilot;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// Prints a line each second of the loop's time, on standard error.
 #[derive(Default)]

@@ -1,21 +1,22 @@
 //! Takes what the loop tells, and keeps what matters later.
 
-use fcc_core::flight::Course;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::{EventKind, Message, State};
+use fcc_core::flight::{Course, Order};
+use fcc_core::framework::{self, EventKind, Message, State};
+use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
+use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
 
 use super::assemble::Assembly;
+use super::connection::Connection;
 use super::fly::{Length, Plan};
 use super::live::Live;
 use super::outcome::EventEntry;
+use super::restart::{Restart, RestartWish};
+use super::service::Service;
 use super::status;
 use super::tap::TruthReceiver;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
-const G_MPS2: f64 = 9.806_65;
 
 /// The most events that are kept for the end.
 const MOST_EVENTS: usize = 10_000;
@@ -37,6 +38,10 @@ pub(super) struct Watch {
     status: Option<status::Printer>,
     /// Who watches from elsewhere.
     pub(super) live: Live,
+    /// Who started this.
+    pub(super) service: Service,
+    /// What would have to be known to start again in flight.
+    pub(super) restart: Option<Restart>,
 }
 
 impl Watch {
@@ -63,11 +68,17 @@ impl Watch {
             announce: plan.announce,
             status: (!plan.quiet).then(status::Printer::default),
             live,
+            service: Service::from_environment(),
+            restart: None,
         }
     }
 
     /// Takes one message.
     pub(super) fn take(&mut self, message: &FlightMessage) {
+        self.service.take(message);
+        if let Some(restart) = &mut self.restart {
+            restart.take(message);
+        }
         match message {
             Message::Tick(record) => self.record(record),
             Message::Event(event) => self.event(event),
@@ -120,7 +131,7 @@ impl Watch {
             let sample = match truth {
                 Some(truth) => Some(true_sample(self.now_s, &truth)),
                 None if self.truth.is_some() => None,
-                None => Some(measured_sample(self.now_s, record)),
+                None => Some(Sample::measured(record, self.now_s)),
             };
             if let Some((log, sample)) = self.log.as_mut().zip(sample) {
                 log.push(sample);
@@ -148,7 +159,35 @@ impl Watch {
             }
         );
         self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
+        if matches!(
+            event.kind,
+            EventKind::Ordered(framework::Order::Controller(_))
+        ) {
+            // What is flown is not the pattern from its beginning: no score.
+            self.log = None;
+        }
         self.keep(entry);
+    }
+
+    /// Looks at what a flight before this one left, and keeps this one for the
+    /// next; what there is to say.
+    pub(super) fn begin_restart(&mut self, wish: Option<RestartWish>) -> Option<String> {
+        let (restart, words) = Restart::begin(wish?);
+        self.restart = restart;
+        words
+    }
+
+    /// Goes on with what a restart in flight asks for; what is new, in words.
+    pub(super) fn poll_restart(
+        &mut self,
+        orders: &mut OrderSender<Order>,
+        connection: Option<&mut Connection>,
+    ) -> Option<String> {
+        self.restart.as_mut()?.poll(orders, || {
+            if let Some(connection) = connection {
+                connection.relieve_guard();
+            }
+        })
     }
 
     /// Something that the loop itself does not know.
@@ -227,16 +266,5 @@ pub fn true_sample(time_s: f64, truth: &Truth) -> Sample {
         altitude_ft: truth.altitude_m * M_FT,
         airspeed_kt: truth.indicated_airspeed_mps * MPS_KT,
         lateral_g: truth.specific_force.y_mps2 / G_MPS2,
-    }
-}
-
-fn measured_sample(time_s: f64, record: &FlightRecord) -> Sample {
-    let measured = &record.measurements;
-    Sample {
-        time_s,
-        heading_deg: measured.heading_rad.value.to_degrees(),
-        altitude_ft: measured.altitude_m.value * M_FT,
-        airspeed_kt: measured.airspeed_mps.value * MPS_KT,
-        lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use fcc_core::blocks::wrap_pi;
 use fcc_telemetry::FlightRecord;
+use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 
 use super::profile::Profile;
@@ -63,8 +64,6 @@ pub struct Quantity {
 }
 
 const DEG: f64 = 180.0 / PI;
-const KT: f64 = 3_600.0 / 1_852.0;
-const FT: f64 = 1.0 / 0.304_8;
 
 const fn quantity(
     name: &'static str,
@@ -88,14 +87,16 @@ impl Quantity {
         quantity("elevator", "%", 100.0, |r| r.outputs.elevator),
         quantity("aileron", "%", 100.0, |r| r.outputs.aileron),
         quantity("rudder", "%", 100.0, |r| r.outputs.rudder),
-        quantity("airspeed set point", "kt", KT, |r| r.setpoints.airspeed_mps),
+        quantity("airspeed set point", "kt", MPS_KT, |r| {
+            r.setpoints.airspeed_mps
+        }),
         Self {
             goes_round: true,
             ..quantity("heading set point", "°", DEG, |r| r.setpoints.heading_rad)
         },
-        quantity("altitude set point", "ft", FT, |r| r.setpoints.altitude_m),
+        quantity("altitude set point", "ft", M_FT, |r| r.setpoints.altitude_m),
         quantity("bank set point", "°", DEG, |r| r.setpoints.roll_rad),
-        quantity("climb set point", "ft/min", FT * 60.0, |r| {
+        quantity("climb set point", "ft/min", M_FT * 60.0, |r| {
             r.setpoints.climb_rate_mps
         }),
         quantity("pitch set point", "°", DEG, |r| r.setpoints.pitch_rad),

@@ -26,7 +26,7 @@ impl Timer for RecordedTimes {
         self.period
     }
 
-    /// Only stages are timed with it, and a replay does not compare those.
+    /// Only stages are timed with it, and those are taken from the record.
     fn now_ns(&self) -> i64 {
         0
     }

@@ -69,12 +69,15 @@ impl Replay {
         }
         // The ring is empty: the sensor takes what is in it in every tick.
         let _ = self.measured.push(recorded.measurements);
-        self.machine.tick(Expiry {
+        let expiry = Expiry {
             number: tick.number,
             scheduled_ns: tick.scheduled.as_nanos(),
             woke_ns: tick.woke.as_nanos(),
             missed: tick.missed,
-        });
+            early_wake_ns: recorded.early_wake_ns,
+            ..Expiry::default()
+        };
+        self.machine.tick_again(expiry, recorded.stages);
         while self.link.messages.receive().is_some() {}
         Ok(Some(self.machine.record()))
     }

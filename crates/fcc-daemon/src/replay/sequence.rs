@@ -69,6 +69,10 @@ pub enum Cut {
     },
 }
 
+/// Far more orders than a loop reads in a tick: only a file that nobody flew
+/// has as many before a record, and they are not gathered without end.
+const MOST_ORDERS: usize = 1_024;
+
 /// Puts together what came into the loop from outside in each tick.
 #[derive(Debug, Default)]
 pub(super) struct Sequence {
@@ -128,11 +132,14 @@ impl Sequence {
     }
 
     fn await_record(&mut self, tick: u64) -> Result<(), Cut> {
-        if self.last.is_some_and(|last| tick <= last.number) {
+        let is_late = self.last.is_some_and(|last| tick <= last.number);
+        if is_late || self.orders.len() >= MOST_ORDERS {
             return Err(Cut::OrderOutOfPlace { tick });
         }
-        self.awaited = Some(tick);
-        Ok(())
+        match self.awaited.replace(tick) {
+            Some(awaited) if awaited != tick => Err(Cut::OrderOutOfPlace { tick: awaited }),
+            _ => Ok(()),
+        }
     }
 
     fn tick(&mut self, tick: &Tick) -> Result<Inputs, Cut> {
@@ -273,6 +280,16 @@ mod tests {
         let out_of_place = Some(Cut::OrderOutOfPlace { tick: 2 });
         let early = event(2, EventKind::Ordered(HEADING));
         assert_eq!(cut(&[early, record(1, 0)]), out_of_place);
+        let next = event(3, EventKind::Ordered(HEADING));
+        assert_eq!(cut(&[record(1, 0), early, next]), out_of_place);
+    }
+
+    #[test]
+    fn orders_without_a_record_are_not_gathered_without_end() {
+        let mut orders = vec![event(1, EventKind::Ordered(HEADING)); MOST_ORDERS];
+        assert_eq!(cut(&orders), None);
+        orders.push(event(1, EventKind::Ordered(HEADING)));
+        assert_eq!(cut(&orders), Some(Cut::OrderOutOfPlace { tick: 1 }));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use fcc_telemetry::recording::Recording;
 use fcc_telemetry::{FlightMessage, FlightRecord};
 
-use super::flown::Plan;
+use super::flown::{Plan, REMARK};
 use super::sound;
 
 fn fccd(arguments: &[&str]) -> Output {
@@ -42,12 +42,14 @@ fn a_file_becomes_tables_a_page_and_json() {
         "40 Hz thesis",
         "32.593 ms",
         "Every tick that was served from 1 to 1800 is in the file.",
+        REMARK,
     ] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
     let page = fs::read_to_string(page).unwrap();
     sound(&page);
     assert!(page.contains("fccd &lt;test&gt; &amp;"));
+    assert!(page.contains("the wind is &lt;light&gt;"));
 
     let json: serde_json::Value = serde_json::from_str(&printed(&fccd(&[file, "--json"]))).unwrap();
     assert_eq!(json["continuity"]["ticks"], 1_800);
@@ -151,4 +153,5 @@ fn the_csv_is_the_recording() {
         words.contains(&"standby -> engaged".to_owned()),
         "{words:?}"
     );
+    assert_eq!(words.last().unwrap(), REMARK);
 }

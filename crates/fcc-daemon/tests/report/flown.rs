@@ -12,6 +12,9 @@ use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Realtime, Recorder, RecorderSettings, RecordingPace};
 use fcc_timer::ManualTimer;
 
+/// What is said at the end of a recorded flight.
+pub(super) const REMARK: &str = "the wind is <light>";
+
 /// How a flight is to go.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
@@ -74,6 +77,7 @@ impl Plan {
         };
         let mut recorder = Recorder::start(about(self.rate_hz), settings).unwrap();
         self.fly(|message| recorder.take(message));
+        recorder.remark(REMARK.to_owned());
         let (status, _) = recorder.finish("told to stop");
         status.files[0].clone()
     }

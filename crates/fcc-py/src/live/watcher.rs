@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 use super::instance;
 use crate::arguments::within;
 use crate::errors;
-use crate::events::PyEvent;
+use crate::events::{PyEvent, seconds};
 use crate::structured::{self, RecordRow};
 
 /// How often it looks while it waits.
@@ -205,6 +205,7 @@ fn event_of(event: &Event) -> PyEvent {
     let time = Time::from_nanos(event.time_ns);
     PyEvent {
         tick: event.tick,
+        time_s: seconds(time),
         time_ns: (!time.is_never()).then_some(event.time_ns),
         kind: kind_of(event.code),
         text: event.text.as_str().to_owned(),
@@ -213,7 +214,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_telemetry::live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 14] = [
+    const KINDS: [&str; 17] = [
         "remark",
         "state-changed",
         "ordered",
@@ -228,6 +229,9 @@ fn kind_of(code: u32) -> &'static str {
         "released",
         "panicked",
         "timer-failed",
+        "overrun",
+        "overruns-over",
+        "hung",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

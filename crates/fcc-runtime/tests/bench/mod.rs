@@ -304,7 +304,7 @@ pub(crate) fn expiry(number: u64) -> Expiry {
         number,
         scheduled_ns,
         woke_ns: scheduled_ns + 40_000,
-        missed: 0,
+        ..Expiry::default()
     }
 }
 

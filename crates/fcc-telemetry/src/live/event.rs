@@ -59,6 +59,15 @@ pub enum EventCode {
     Panicked = 12,
     /// The timer failed.
     TimerFailed = 13,
+    /// Ticks begin to overrun (how long it took, its budget, the stage that
+    /// took longest); the index is the stage whose budget it was. Stages: 0 the
+    /// timer, 1 sensors, 2 navigation, 3 guidance, 4 control, 5 actuators, 6
+    /// the whole tick.
+    Overrun = 14,
+    /// No tick has overrun for a second (count, first and last tick).
+    OverrunsOver = 15,
+    /// The loop hung (how long without progress).
+    Hung = 16,
 }
 
 impl Event {
@@ -128,6 +137,19 @@ fn numbers(event: &FlightEvent) -> (EventCode, u32, [u64; 3]) {
         EventKind::Released { ok } => (EventCode::Released, 0, [ok.into(), 0, 0]),
         EventKind::Panicked => (EventCode::Panicked, 0, NONE),
         EventKind::TimerFailed => (EventCode::TimerFailed, 0, NONE),
+        EventKind::Overrun {
+            of,
+            took_ns,
+            budget_ns,
+            longest,
+        } => {
+            let values = [took_ns, budget_ns, longest as u64];
+            (EventCode::Overrun, of as u32, values)
+        }
+        EventKind::OverrunsOver { count, first, last } => {
+            (EventCode::OverrunsOver, 0, [count, first, last])
+        }
+        EventKind::Hung { silent_ns } => (EventCode::Hung, 0, [silent_ns, 0, 0]),
         // One that this version has no number for still has its words.
         _ => (EventCode::Remark, 0, NONE),
     }

@@ -1,5 +1,7 @@
 //! The daemon's end: takes what is to be published, and never waits.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -43,7 +45,8 @@ pub(super) enum Item {
 #[derive(Debug)]
 pub struct Publisher {
     ring: Producer<Item>,
-    left_out: u64,
+    /// Records for which there was no room, for the next status.
+    left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
     words: Receiver<String>,
     orders: Option<Ends>,
@@ -76,14 +79,16 @@ impl Publisher {
         let (say, words) = mpsc::sync_channel(16);
         let (orders, rings) = takes_orders.then(Desk::rings).unzip();
         let owned = instance.clone();
+        let left_out = Arc::new(AtomicU64::new(0));
+        let seen = Arc::clone(&left_out);
         let thread = std::thread::Builder::new()
             .name(thread::NAME.to_owned())
-            .spawn(move || thread::publish(&owned, rings, items, &started, &say))
+            .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &say))
             .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
         match start.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(Self {
                 ring,
-                left_out: 0,
+                left_out,
                 thread,
                 words,
                 orders,
@@ -156,7 +161,7 @@ impl Publisher {
     fn put(&mut self, item: Item) {
         let is_record = matches!(item, Item::Record(_));
         if self.ring.push(item).is_err() && is_record {
-            self.left_out += 1;
+            self.left_out.fetch_add(1, Ordering::Relaxed);
         }
     }
 }

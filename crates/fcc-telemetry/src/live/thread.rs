@@ -1,5 +1,6 @@
 //! The thread that publishes.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -35,6 +36,7 @@ pub(super) fn publish(
     instance: &Instance,
     orders: Option<Rings>,
     mut items: Consumer<Item>,
+    left_out: &AtomicU64,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
@@ -61,8 +63,9 @@ pub(super) fn publish(
             thread.take(item);
         }
         if next_status <= Instant::now() || over {
-            next_status += STATUS_EVERY;
-            thread.tell_status();
+            // From now on: after a stall there is nothing to make up for.
+            next_status = Instant::now() + STATUS_EVERY;
+            thread.tell_status(left_out.load(Ordering::Relaxed));
         }
         if over {
             thread.close();
@@ -187,7 +190,7 @@ impl Publishing {
         }
     }
 
-    fn tell_status(&mut self) {
+    fn tell_status(&mut self, left_out: u64) {
         if self.paused {
             return;
         }
@@ -202,7 +205,7 @@ impl Publishing {
             lateness_p99_9_ns: self.lateness.quantile_ns(0.999),
             lateness_max_ns: self.lateness.max_ns,
             lateness_counts: self.lateness.counts,
-            not_published: self.not_published,
+            not_published: self.not_published + left_out,
             cpu_ns: thread_cpu_ns(),
             watchers: self.service.dynamic_config().number_of_subscribers() as u32,
             recorder_state: self.recorder.state as u32,

@@ -11,8 +11,9 @@ use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
 use crate::{FlightRecord, Instance};
 
-/// How long a daemon may take to say who it is.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// How long a daemon may take to say who it is: long after one on a busy
+/// machine has. One that is gone is noticed at once.
+const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
 type In<T> = Subscriber<Ipc, T, ()>;

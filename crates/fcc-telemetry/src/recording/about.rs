@@ -52,8 +52,18 @@ pub struct Realtime {
     pub policy: String,
     /// Priority under `SCHED_FIFO`.
     pub priority: i32,
+    /// The CPU that the thread was bound to, if it was.
+    pub cpu: Option<usize>,
+    /// Why this CPU, or why none, if one was asked for.
+    pub cpu_because: String,
     /// Whether the process' memory was locked.
     pub memory_locked: bool,
+    /// Whether the stack was in memory before the first tick.
+    pub stack_prefaulted: bool,
+    /// How late the kernel could make a sleep of the thread, if known.
+    pub timer_slack_ns: Option<u64>,
+    /// How long CPUs could take to wake, if that was granted, µs.
+    pub cpu_dma_latency_us: Option<u32>,
     /// The wishes that were refused, in words.
     pub refused: Vec<String>,
 }
@@ -109,7 +119,18 @@ impl About {
         let realtime = [
             ("policy", self.realtime.policy.clone()),
             ("priority", self.realtime.priority.to_string()),
+            ("cpu", known(self.realtime.cpu)),
+            ("cpu_because", self.realtime.cpu_because.clone()),
             ("memory_locked", self.realtime.memory_locked.to_string()),
+            (
+                "stack_prefaulted",
+                self.realtime.stack_prefaulted.to_string(),
+            ),
+            ("timer_slack_ns", known(self.realtime.timer_slack_ns)),
+            (
+                "cpu_dma_latency_us",
+                known(self.realtime.cpu_dma_latency_us),
+            ),
             ("refused", self.realtime.refused.join(SEPARATOR)),
         ];
         [
@@ -145,7 +166,12 @@ impl About {
                 self.realtime = Realtime {
                     policy: text("policy"),
                     priority: number(&fields, "priority"),
+                    cpu: text("cpu").parse().ok(),
+                    cpu_because: text("cpu_because"),
                     memory_locked: text("memory_locked") == "true",
+                    stack_prefaulted: text("stack_prefaulted") == "true",
+                    timer_slack_ns: text("timer_slack_ns").parse().ok(),
+                    cpu_dma_latency_us: text("cpu_dma_latency_us").parse().ok(),
                     refused: list("refused"),
                 }
             }
@@ -171,6 +197,11 @@ pub(super) fn fields<const N: usize>(pairs: [(&str, String); N]) -> Fields {
         .into_iter()
         .map(|(key, value)| (key.to_owned(), value))
         .collect()
+}
+
+/// A number, or nothing where it is not known.
+fn known(number: Option<impl ToString>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
 }
 
 /// A field as a number; 0 where it is missing or none.

@@ -54,8 +54,14 @@ impl Disk for FileSystem {
             .open(path)?;
         let _ = file.try_lock();
         // Until its folder is synced, a loss of power takes the file's name.
-        File::open(folder.unwrap_or(Path::new(".")))?.sync_all()?;
-        Ok(Box::new(file))
+        match sync_folder_of(path) {
+            Ok(()) => Ok(Box::new(file)),
+            Err(error) => {
+                // It would be in the way of the next attempt.
+                let _ = fs::remove_file(path);
+                Err(error)
+            }
+        }
     }
 }
 
@@ -67,6 +73,26 @@ impl DiskFile for File {
     fn cut_to(&mut self, bytes: u64) -> io::Result<()> {
         self.set_len(bytes)
     }
+}
+
+/// Waits until the name of a file is safe from a loss of power. A file system
+/// that knows no such thing does without.
+pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    match File::open(folder.unwrap_or(Path::new(".")))?.sync_all() {
+        Err(error) if error.kind() == io::ErrorKind::InvalidInput => Ok(()),
+        done => done,
+    }
+}
+
+/// Keeps others from writing a file until what comes back is dropped; none if
+/// somebody does. A file system without locks does without.
+pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
+    let file = File::open(path)?;
+    let is_taken = matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock));
+    Ok((!is_taken).then_some(file))
 }
 
 /// Whether somebody is writing a file right now.

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use fcc_core::framework::State;
+use fcc_core::framework::{EventKind, Message, State};
 
 use super::about::{fields, number};
-use crate::FlightRecord;
+use crate::{FlightMessage, FlightRecord};
 
 /// The account of a flight at the end of its recording, or of what a file
 /// holds of it.
@@ -65,7 +65,7 @@ impl End {
     }
 }
 
-/// Keeps the account while records go by.
+/// Keeps the account while messages go by.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     end: End,
@@ -74,7 +74,18 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    pub(super) fn count(&mut self, record: &FlightRecord) {
+    pub(super) fn take(&mut self, message: &FlightMessage) {
+        match message {
+            Message::Tick(record) => self.count(record),
+            Message::Event(event) => {
+                if let EventKind::NotRecorded { count, .. } = event.kind {
+                    self.end.not_recorded = self.end.not_recorded.saturating_add(count);
+                }
+            }
+        }
+    }
+
+    fn count(&mut self, record: &FlightRecord) {
         let tick = &record.tick;
         let woke_ns = tick.woke.as_nanos();
         let end = &mut self.end;
@@ -91,11 +102,6 @@ impl Tally {
         let lateness_ns = u64::try_from(tick.woke - tick.scheduled).unwrap_or_default();
         end.worst_lateness_ns = end.worst_lateness_ns.max(lateness_ns);
         self.last_state = Some(record.state.state());
-    }
-
-    /// Counts messages that did not get into the file.
-    pub(super) fn lose(&mut self, count: u64) {
-        self.end.not_recorded = self.end.not_recorded.saturating_add(count);
     }
 
     pub(super) fn ticks(&self) -> u64 {

@@ -5,7 +5,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use fcc_core::framework::EventKind;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
@@ -131,6 +130,7 @@ impl RecordingFile {
 
     /// Takes a record or an event.
     pub(super) fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
+        self.tally.take(message);
         match message {
             FlightMessage::Tick(record) => self.record(record),
             FlightMessage::Event(event) => self.event(event),
@@ -147,31 +147,23 @@ impl RecordingFile {
         if let Some(location) = foxglove::location(record, &mut self.position, log_ns) {
             self.write(Topic::Position, log_ns, &location)?;
         }
-        self.tally.count(record);
         Ok(())
     }
 
     fn event(&mut self, event: &FlightEvent) -> Result<(), McapError> {
-        if let EventKind::NotRecorded { count, .. } = event.kind {
-            self.tally.lose(count);
-        }
         let log_ns = self.log_time(event.time.as_nanos());
         let text = self.words(event);
         let wire = encode_event(event, text.clone());
         self.write(Topic::Event, log_ns, &wire)?;
-        let line = foxglove::line(text, foxglove::level(event), log_ns);
+        let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
         self.write(Topic::Log, log_ns, &line)
     }
 
     /// Takes words that are not an event of the loop.
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
         let log_ns = self.last_log_ns;
-        self.write(
-            Topic::Log,
-            log_ns,
-            &foxglove::line(text, Level::Info, log_ns),
-        )
-        .map_err(to_io)
+        let line = foxglove::line(foxglove::REMARK, text, Level::Info, log_ns);
+        self.write(Topic::Log, log_ns, &line).map_err(to_io)
     }
 
     fn write(

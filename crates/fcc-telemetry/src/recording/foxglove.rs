@@ -108,13 +108,18 @@ fn orientation(attitude: Attitude, heading_rad: f64) -> Quaternion {
     }
 }
 
+/// Who speaks in a line of the log that tells of an event of the loop.
+pub(super) const EVENT: &str = "fccd";
+/// Who speaks in one that tells of anything else.
+pub(super) const REMARK: &str = "fccd.remark";
+
 /// A line of the log.
-pub(super) fn line(text: String, level: log::Level, unix_ns: u64) -> Log {
+pub(super) fn line(name: &str, text: String, level: log::Level, unix_ns: u64) -> Log {
     Log {
         timestamp: Some(timestamp(unix_ns)),
         level: level.into(),
         message: text,
-        name: "fccd".to_owned(),
+        name: name.to_owned(),
     }
 }
 
@@ -127,13 +132,14 @@ pub(super) fn level(event: &FlightEvent) -> log::Level {
         }
         | EventKind::Released { ok: false }
         | EventKind::TimerFailed => log::Level::Error,
-        EventKind::Panicked => log::Level::Fatal,
+        EventKind::Panicked | EventKind::Hung { .. } => log::Level::Fatal,
         EventKind::EngageRefused { .. }
         | EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
         | EventKind::RecordsDropped { .. }
         | EventKind::EventsDropped { .. }
-        | EventKind::NotRecorded { .. } => log::Level::Warning,
+        | EventKind::NotRecorded { .. }
+        | EventKind::Overrun { .. } => log::Level::Warning,
         _ => log::Level::Info,
     }
 }

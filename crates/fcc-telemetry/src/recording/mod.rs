@@ -21,7 +21,8 @@
 //!   [`recover`] makes it a finished file.
 //! - What the disk is too slow for is dropped, counted, and told in the file
 //!   as [`NotRecorded`](fcc_core::framework::EventKind::NotRecorded) with its
-//!   span. A disk that is full ends the recording and not the flight.
+//!   span. A disk that is full stops the recording and not the flight; it is
+//!   tried again every ten seconds, and the gap stands in the file that follows.
 //! - Messages are in order of their log time, which is the wall clock at the
 //!   start plus the loop's monotonic time since: it never jumps. What to add
 //!   to a time of the loop to get there is the clock offset in [`About`].
@@ -36,10 +37,13 @@ mod end;
 mod file;
 mod folder;
 mod foxglove;
+mod items;
 mod list;
+mod lost;
 mod name;
 mod outlet;
 mod parse;
+mod part;
 mod raw;
 mod reader;
 mod recorder;
@@ -47,6 +51,7 @@ mod recover;
 mod schema;
 mod settings;
 mod status;
+mod summary;
 mod utc;
 mod wire;
 mod writing;
@@ -55,8 +60,9 @@ pub use about::{About, Realtime};
 pub use crash::repair_last;
 pub use disk::{Disk, DiskFile, FileSystem};
 pub use end::End;
+pub use items::{Item, Items, Messages, Remark};
 pub use list::{Entry, Wholeness, entry, files};
-pub use reader::{Messages, OpenError, Recording};
+pub use reader::{OpenError, Recording};
 pub use recorder::Recorder;
 pub use recover::{RecoverError, Recovered, recover};
 pub use settings::{Compression, RecorderSettings, RecordingPace};

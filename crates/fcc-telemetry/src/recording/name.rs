@@ -38,8 +38,17 @@ pub(super) fn is_recording(path: &Path) -> bool {
 
 /// Where a file is put together that will replace `path`.
 pub(super) fn unfinished(path: &Path) -> PathBuf {
+    with_ending(path, ".unfinished")
+}
+
+/// Where a file is kept that was damaged, once it is replaced.
+pub(super) fn damaged(path: &Path) -> PathBuf {
+    with_ending(path, ".damaged")
+}
+
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
-    name.push(".unfinished");
+    name.push(ending);
     PathBuf::from(name)
 }
 

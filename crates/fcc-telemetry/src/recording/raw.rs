@@ -22,7 +22,28 @@ const HEAD_BYTES: usize = 1 + 8;
 
 /// Where and why there is no more to read in a file that did not say it was
 /// over.
-pub(super) type Cut = String;
+#[derive(thiserror::Error, Debug)]
+pub(super) enum Cut {
+    /// The file ends here: whoever wrote it got no further.
+    #[error("cut off after {0} bytes")]
+    Off(u64),
+    /// What is here is not what was written.
+    #[error("damaged before byte {before}: {why}")]
+    Damaged {
+        /// Where the damage ends.
+        before: u64,
+        /// What is wrong.
+        why: String,
+    },
+    /// The system could not read what is here.
+    #[error("unreadable after {after} bytes: {source}")]
+    Unreadable {
+        /// What was read.
+        after: u64,
+        /// What the system said.
+        source: io::Error,
+    },
+}
 
 /// Reads the records of a file one after the other, with those of its chunks,
 /// from the header to the footer. Indexes are passed over.
@@ -129,7 +150,10 @@ impl RawReader {
         self.body.resize(length as usize, 0);
         self.file
             .read_exact(&mut self.body)
-            .map_err(|error| format!("reading failed after {} bytes: {error}", self.position))?;
+            .map_err(|source| Cut::Unreadable {
+                after: self.position,
+                source,
+            })?;
         self.position = end;
         Ok(())
     }
@@ -149,11 +173,14 @@ impl RawReader {
     }
 
     fn cut_off(&self) -> Cut {
-        format!("cut off after {} bytes", self.length)
+        Cut::Off(self.length)
     }
 
     fn damaged(&self, why: &str) -> Cut {
-        format!("damaged before byte {}: {why}", self.position)
+        Cut::Damaged {
+            before: self.position,
+            why: why.to_owned(),
+        }
     }
 }
 

@@ -1,14 +1,14 @@
 //! The recorder as who flies sees it: give it messages, never wait.
 
 use std::io;
-use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
+use std::panic::{self, AssertUnwindSafe};
+use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{Event, EventKind, Time};
-
 use super::about::About;
 use super::disk::{Disk, FileSystem};
+use super::lost::Lost;
 use super::settings::{RecorderSettings, RecordingPace};
 use super::status::{Board, News, RecorderStatus};
 use super::writing::{Feed, Writing};
@@ -62,9 +62,17 @@ impl Recorder {
         let board = Board::default();
         let pace = settings.pace;
         let on_the_thread = board.clone();
+        let write = move || {
+            let (seen, say) = (on_the_thread.clone(), tell.clone());
+            let writing = Writing::new(disk, about, settings, on_the_thread, tell);
+            // The file stays as it was when last committed.
+            if panic::catch_unwind(AssertUnwindSafe(|| writing.run(&fed))).is_err() {
+                give_up(&seen, &say);
+            }
+        };
         let thread = thread::Builder::new()
             .name(THREAD_NAME.to_owned())
-            .spawn(move || Writing::new(disk, about, settings, on_the_thread, tell).run(&fed))?;
+            .spawn(write)?;
         Ok(Self {
             feed,
             pace,
@@ -105,22 +113,16 @@ impl Recorder {
     /// the news nobody asked for.
     pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<News>) {
         let began = Instant::now();
-        let last = (self.lost.count > 0).then(|| Feed::Message(self.lost.event(None)));
+        let last = (!self.lost.is_none()).then(|| Feed::Message(self.lost.event(None)));
         for feed in last.into_iter().chain([Feed::End(ending.to_owned())]) {
             self.send_patiently(feed, began);
         }
         while !self.thread.is_finished() && began.elapsed() < PATIENCE {
             thread::sleep(POLL);
         }
-        let trouble = if !self.thread.is_finished() {
-            Some("the recording's end is not on the disk after 10 s: it does not answer")
-        } else if self.thread.join().is_err() {
-            Some("recording stopped: the recorder panicked; `fccd recover` saves what is there")
-        } else {
-            None
-        };
-        let trouble = trouble.map(|text| News {
-            text: text.to_owned(),
+        let trouble = (!self.thread.is_finished()).then(|| News {
+            text: "the recording's end is not on the disk after 10 s: it does not answer"
+                .to_owned(),
             is_trouble: true,
         });
         let news = self.news.try_iter().chain(trouble).collect();
@@ -147,7 +149,7 @@ impl Recorder {
     /// Tells of a gap before the message that ends it; whether there is none
     /// left to tell.
     fn tell_gap(&mut self, next: &FlightMessage) -> bool {
-        if self.lost.count == 0 {
+        if self.lost.is_none() {
             return true;
         }
         let told = self.send(Feed::Message(self.lost.event(Some(next))));
@@ -163,42 +165,16 @@ impl Recorder {
     }
 }
 
-/// Messages that are missing between two that are not.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Lost {
-    pub(super) count: u64,
-    pub(super) first: u64,
-    pub(super) last: u64,
-}
-
-impl Lost {
-    pub(super) fn widen(&mut self, message: &FlightMessage) {
-        let (tick, _) = place(message);
-        if self.count == 0 {
-            self.first = tick;
-        }
-        self.count += 1;
-        self.last = tick;
-    }
-
-    /// The gap as an event, at the message that ends it.
-    pub(super) fn event(&self, next: Option<&FlightMessage>) -> FlightMessage {
-        let (tick, time) = next.map_or((self.last, Time::NEVER), place);
-        FlightMessage::Event(Event {
-            tick,
-            time,
-            kind: EventKind::NotRecorded {
-                count: self.count,
-                first: self.first,
-                last: self.last,
-            },
-        })
-    }
-}
-
-fn place(message: &FlightMessage) -> (u64, Time) {
-    match message {
-        FlightMessage::Tick(record) => (record.tick.number, record.tick.woke),
-        FlightMessage::Event(event) => (event.tick, event.time),
-    }
+/// Says that the recorder itself is at fault, and that there is none any more.
+fn give_up(board: &Board, say: &Sender<News>) {
+    let words = "the recorder panicked; `fccd recover` saves what is there";
+    board.update(|status| {
+        status.file = None;
+        status.stopped = Some(words.to_owned());
+    });
+    // Whoever flies may be gone already.
+    let _ = say.send(News {
+        text: format!("recording stopped: {words}"),
+        is_trouble: true,
+    });
 }

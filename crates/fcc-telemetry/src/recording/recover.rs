@@ -6,7 +6,6 @@ use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{EventKind, Message};
 use mcap::records::{Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
@@ -15,9 +14,10 @@ use serde::Serialize;
 use super::disk;
 use super::end::{END, Tally};
 use super::file::options;
-use super::name::unfinished;
-use super::raw::RawReader;
-use super::reader::{Channels, OpenError, Recording};
+use super::items::{Channels, Item};
+use super::name::{damaged, unfinished};
+use super::raw::{Cut, RawReader};
+use super::reader::{OpenError, Recording};
 use super::settings::Compression;
 
 /// What came of recovering a file.
@@ -31,6 +31,9 @@ pub struct Recovered {
     pub ticks: u64,
     /// Where and why it was cut; none if it was whole.
     pub cut: Option<String>,
+    /// Where the file as it was is kept, if it was damaged; none if all that
+    /// was in it is in the recovered one.
+    pub kept: Option<PathBuf>,
 }
 
 /// Why a file could not be recovered; it is as it was.
@@ -40,8 +43,8 @@ pub enum RecoverError {
     /// It cannot be read, or is no recording.
     #[error(transparent)]
     Open(#[from] OpenError),
-    /// Somebody is writing it.
-    #[error("{0}: is being written right now: end that flight first")]
+    /// Somebody is writing or recovering it.
+    #[error("{0}: is being written right now: end that flight first, or wait for who recovers it")]
     BeingWritten(PathBuf),
     /// The finished file could not be written.
     #[error("{path}: cannot be written: {source}. The recording is as it was")]
@@ -62,7 +65,9 @@ pub enum RecoverError {
 ///
 /// The finished file is put together beside the cut one and takes its place in
 /// one step once it is safe on the disk: at no moment is there less than
-/// before. A whole file is left alone.
+/// before. A file that is damaged before its end is kept beside it, as
+/// [`kept`](Recovered::kept) says: behind the damage there may be more. A whole
+/// file is left alone, and so is one that cannot be read to its end.
 ///
 /// # Errors
 /// When it cannot be read or written; it is as it was then.
@@ -83,17 +88,19 @@ fn attempt(
     deadline: Option<Instant>,
     mut progress: impl FnMut(u64),
 ) -> Result<Recovered, RecoverError> {
-    let recording = Recording::open(path)?;
-    if recording.is_whole() {
-        return Ok(Recovered {
-            path: path.to_owned(),
-            was_whole: true,
-            ticks: recording.account()?.ticks,
-            cut: None,
-        });
-    }
-    if disk::is_being_written(path) {
-        return Err(RecoverError::BeingWritten(path.to_owned()));
+    let unread = |source| OpenError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    // Nobody else may recover it meanwhile: two would write one file beside it.
+    let _lock = match disk::lock(path).map_err(unread)? {
+        Some(lock) => lock,
+        None if Recording::open(path)?.is_whole() => return was_whole(path),
+        None => return Err(RecoverError::BeingWritten(path.to_owned())),
+    };
+    // By its name, as another may just have recovered it.
+    if Recording::open(path)?.is_whole() {
+        return was_whole(path);
     }
     let beside = unfinished(path);
     let failed = |source| RecoverError::Write {
@@ -105,15 +112,21 @@ fn attempt(
         deadline.is_none_or(|deadline| Instant::now() < deadline)
     });
     let result = match rewritten {
-        Ok(Some(Rewritten { ticks, cut })) => fs::rename(&beside, path)
-            .and_then(|()| sync_folder(path))
-            .map_err(failed)
-            .map(|()| Recovered {
-                path: path.to_owned(),
-                was_whole: false,
-                ticks,
-                cut: Some(cut),
-            }),
+        Ok(Some(Rewritten {
+            cut: Cut::Unreadable { source, .. },
+            ..
+        })) => Err(unread(source).into()),
+        Ok(Some(Rewritten { ticks, cut })) => {
+            replace(path, &beside, &cut)
+                .map_err(failed)
+                .map(|kept| Recovered {
+                    path: path.to_owned(),
+                    was_whole: false,
+                    ticks,
+                    cut: Some(cut.to_string()),
+                    kept,
+                })
+        }
         Ok(None) => Err(RecoverError::TooLong(path.to_owned())),
         Err(error) => Err(failed(error)),
     };
@@ -123,9 +136,32 @@ fn attempt(
     result
 }
 
+fn was_whole(path: &Path) -> Result<Recovered, RecoverError> {
+    Ok(Recovered {
+        path: path.to_owned(),
+        was_whole: true,
+        ticks: Recording::open(path)?.account()?.ticks,
+        cut: None,
+        kept: None,
+    })
+}
+
+/// Puts a finished file in the place of another; gives where that one is kept,
+/// if there may be more in it.
+fn replace(path: &Path, finished: &Path, cut: &Cut) -> io::Result<Option<PathBuf>> {
+    let kept = matches!(cut, Cut::Damaged { .. }).then(|| damaged(path));
+    if let Some(kept) = &kept {
+        // Without links it is away for a moment, and never gone.
+        fs::hard_link(path, kept).or_else(|_| fs::rename(path, kept))?;
+    }
+    fs::rename(finished, path)?;
+    disk::sync_folder_of(path)?;
+    Ok(kept)
+}
+
 struct Rewritten {
     ticks: u64,
-    cut: String,
+    cut: Cut,
 }
 
 /// Copies record after record until `go_on` says no, which gives none.
@@ -139,7 +175,13 @@ fn rewrite(
     let cut = loop {
         match raw.next(|record| copy.take(&record)) {
             Ok(Some(copied)) => copied.map_err(to_io)?,
-            Ok(None) => break "its end was damaged".to_owned(),
+            // It says that it is over, and goes on.
+            Ok(None) => {
+                break Cut::Damaged {
+                    before: raw.bytes_read(),
+                    why: "more follows its end".to_owned(),
+                };
+            }
             Err(cut) => break cut,
         }
         if copy.records % CHECK_EVERY == 0 && !go_on(raw.bytes_read()) {
@@ -147,7 +189,9 @@ fn rewrite(
         }
     };
     let ticks = copy.tally.ticks();
-    copy.finish(&format!("not known: the recording was {cut}"))?;
+    if !matches!(cut, Cut::Unreadable { .. }) {
+        copy.finish(&format!("not known: the recording was {cut}"))?;
+    }
     Ok(Some(Rewritten { ticks, cut }))
 }
 
@@ -177,14 +221,8 @@ impl Copy {
 
     fn take(&mut self, record: &Record<'_>) -> Result<(), McapError> {
         self.records += 1;
-        match self.channels.message(record) {
-            Some(Ok(Message::Tick(record))) => self.tally.count(&record),
-            Some(Ok(Message::Event(event))) => {
-                if let EventKind::NotRecorded { count, .. } = event.kind {
-                    self.tally.lose(count);
-                }
-            }
-            Some(Err(_)) | None => {}
+        if let Some(Ok(Item::Message(message))) = self.channels.item(record, 0) {
+            self.tally.take(&message);
         }
         match record {
             Record::Metadata(metadata) if metadata.name != END => {
@@ -228,13 +266,6 @@ impl Copy {
         buffered.flush()?;
         buffered.get_ref().sync_all()
     }
-}
-
-fn sync_folder(path: &Path) -> io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    File::open(folder.unwrap_or(Path::new(".")))?.sync_all()
 }
 
 fn to_io(error: McapError) -> io::Error {

@@ -24,6 +24,9 @@ pub struct RecorderSettings {
     pub pace: RecordingPace,
     /// How many messages may wait for the disk.
     pub capacity: usize,
+    /// How long after a disk has failed a new file is tried, again and again
+    /// until the flight ends.
+    pub retry_every: Duration,
 }
 
 impl RecorderSettings {
@@ -37,12 +40,17 @@ impl RecorderSettings {
             compression: Compression::default(),
             pace: RecordingPace::RealTime,
             capacity: DEFAULT_CAPACITY,
+            retry_every: DEFAULT_RETRY_EVERY,
         }
     }
 }
 
 /// 8 s at 1 kHz, 200 s at 40 Hz, and 4 MiB.
 const DEFAULT_CAPACITY: usize = 8_192;
+
+/// Soon enough for a disk that somebody makes room on, seldom enough for one
+/// that stays full.
+const DEFAULT_RETRY_EVERY: Duration = Duration::from_secs(10);
 
 /// What happens to what the disk is too slow for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// How a recorder does.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct RecorderStatus {
-    /// The file being written; none if recording has stopped.
+    /// The file being written; none while nothing is.
     pub file: Option<PathBuf>,
     /// Every file of this recording, in order.
     pub files: Vec<PathBuf>,
@@ -16,7 +16,8 @@ pub struct RecorderStatus {
     pub bytes: u64,
     /// Records and events that were dropped: the disk was too slow or full.
     pub not_recorded: u64,
-    /// Why recording stopped before the flight ended; none if it did not.
+    /// Why nothing is recorded, and what is lost by it; none while the disk
+    /// takes what it is given.
     pub stopped: Option<String>,
 }
 

@@ -11,6 +11,7 @@ use std::path::Path;
 use fcc_core::framework::{Message, Reading, Time};
 
 use super::origin::Origin;
+use crate::recording::Remark;
 use crate::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// Writes the messages of a flight into two CSV files.
@@ -58,6 +59,18 @@ impl CsvFolder {
             Message::Tick(record) => self.take_record(record),
             Message::Event(event) => self.take_event(event),
         }
+    }
+
+    /// Writes words that are no event of the loop, as an event of no tick.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn take_remark(&mut self, remark: &Remark) -> io::Result<()> {
+        self.cell.clear();
+        Cell::at(remark.time).write(&mut self.cell);
+        self.events
+            .write_record(["", self.cell.as_str(), remark.text.as_str()])?;
+        Ok(())
     }
 
     /// Ends both files.
@@ -132,7 +145,7 @@ impl Cell {
 type Column = fn(&FlightRecord) -> Cell;
 
 /// In the order of the record.
-const COLUMNS: [(&str, Column); 68] = [
+const COLUMNS: [(&str, Column); 71] = [
     ("tick", |r| Cell::Count(r.tick.number)),
     ("scheduled_ns", |r| Cell::at(r.tick.scheduled)),
     ("woke_ns", |r| Cell::at(r.tick.woke)),
@@ -287,6 +300,9 @@ const COLUMNS: [(&str, Column); 68] = [
     ("sensor_faults", |r| Cell::Count(r.sensor_faults)),
     ("actuator_faults", |r| Cell::Count(r.actuator_faults)),
     ("records_dropped", |r| Cell::Count(r.records_dropped)),
+    ("overruns", |r| Cell::Count(r.overruns)),
+    ("page_faults", |r| Cell::Count(r.page_faults)),
+    ("early_wake_ns", |r| Cell::Count(r.early_wake_ns)),
 ];
 
 fn state(record: &FlightRecord) -> &'static str {

@@ -47,15 +47,25 @@ pub(super) struct Events {
 
 impl Events {
     pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
+        self.push(time_s, event.tick, weight(event.kind), || {
+            event_words(event, &origin.sensors, &origin.actuators).replace("->", "\u{2192}")
+        });
+    }
+
+    /// Takes words that are no event of the loop, said after a tick.
+    pub(super) fn remark(&mut self, time_s: f64, tick: u64, text: &str) {
+        self.push(time_s, tick, Weight::Minor, || text.to_owned());
+    }
+
+    fn push(&mut self, time_s: f64, tick: u64, weight: Weight, text: impl FnOnce() -> String) {
         self.count += 1;
         if self.lines.len() < MOST_EVENTS {
             self.lines.push(EventLine {
                 number: self.count,
                 time_s,
-                tick: event.tick,
-                text: event_words(event, &origin.sensors, &origin.actuators)
-                    .replace("->", "\u{2192}"),
-                weight: weight(event.kind),
+                tick,
+                text: text(),
+                weight,
             });
         }
     }
@@ -68,14 +78,16 @@ impl Events {
 
 fn weight(kind: EventKind<Order>) -> Weight {
     match kind {
-        EventKind::StateChanged { .. } | EventKind::Panicked | EventKind::TimerFailed => {
-            Weight::State
-        }
+        EventKind::StateChanged { .. }
+        | EventKind::Panicked
+        | EventKind::TimerFailed
+        | EventKind::Hung { .. } => Weight::State,
         EventKind::SensorFault { .. }
         | EventKind::ActuatorFault { .. }
         | EventKind::RecordsDropped { .. }
         | EventKind::EventsDropped { .. }
         | EventKind::NotRecorded { .. }
+        | EventKind::Overrun { .. }
         | EventKind::Released { ok: false } => Weight::Wrong,
         EventKind::Ordered(_) | EventKind::EngageRefused { .. } => Weight::Asked,
         _ => Weight::Minor,

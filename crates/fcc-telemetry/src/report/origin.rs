@@ -56,7 +56,12 @@ impl Origin {
             realtime: Realtime {
                 policy: realtime.policy.clone(),
                 priority: realtime.priority,
+                cpu: realtime.cpu,
+                cpu_because: realtime.cpu_because.clone(),
                 memory_locked: realtime.memory_locked,
+                stack_prefaulted: realtime.stack_prefaulted,
+                timer_slack_ns: realtime.timer_slack_ns,
+                cpu_dma_latency_us: realtime.cpu_dma_latency_us,
                 refused: realtime
                     .refused
                     .iter()

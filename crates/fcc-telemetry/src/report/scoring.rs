@@ -3,7 +3,7 @@
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::State;
 
-use crate::units::{G_MPS2, M_FT, MPS_KT};
+use crate::units::{M_FT, MPS_KT};
 use crate::{FlightLog, FlightRecord, FlightScore, Sample};
 
 /// Scores every engagement of a flight through the timed pattern.
@@ -37,7 +37,7 @@ impl Scoring {
             self.free = false;
             self.log.push(captured(record, time_s));
         } else if engaged && !self.free {
-            self.log.push(measured(record, time_s));
+            self.log.push(Sample::measured(record, time_s));
         } else if !engaged && self.engaged {
             self.close();
         }
@@ -77,17 +77,6 @@ fn captured(record: &FlightRecord, time_s: f64) -> Sample {
         heading_deg: record.setpoints.heading_rad.to_degrees(),
         altitude_ft: record.setpoints.altitude_m * M_FT,
         airspeed_kt: record.setpoints.airspeed_mps * MPS_KT,
-        ..measured(record, time_s)
-    }
-}
-
-fn measured(record: &FlightRecord, time_s: f64) -> Sample {
-    let measured = &record.measurements;
-    Sample {
-        time_s,
-        heading_deg: measured.heading_rad.value.to_degrees(),
-        altitude_ft: measured.altitude_m.value * M_FT,
-        airspeed_kt: measured.airspeed_mps.value * MPS_KT,
-        lateral_g: measured.specific_force.value.y_mps2 / G_MPS2,
+        ..Sample::measured(record, time_s)
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::{Message, Tick};
+use fcc_core::framework::{Message, Tick, Time};
 use fcc_timer::{Expiry, TimerError, TimingStats};
 
 use super::box_plot::BoxPlot;
@@ -19,6 +19,7 @@ use super::states::States;
 use super::thesis::ThesisFigures;
 use super::track::Track;
 use super::{Report, Timing};
+use crate::recording::Remark;
 use crate::{FlightEvent, FlightMessage, FlightRecord, TimingReport};
 
 /// Takes the messages of a flight in the order they were recorded, and keeps
@@ -30,6 +31,7 @@ pub struct Survey {
     /// When the first tick was due: the report counts from there.
     began_ns: Option<i64>,
     timing: Option<TimingStats>,
+    page_faults: u64,
     continuity: Continuity,
     durations: Durations,
     states: States,
@@ -49,6 +51,7 @@ impl Survey {
             scoring: pattern.map(Scoring::new),
             began_ns: None,
             timing: None,
+            page_faults: 0,
             continuity: Continuity::default(),
             durations: Durations::default(),
             states: States::default(),
@@ -102,7 +105,10 @@ impl Survey {
             scheduled_ns: tick.scheduled.as_nanos(),
             woke_ns: tick.woke.as_nanos(),
             missed: tick.missed,
+            early_wake_ns: record.early_wake_ns,
+            ..Expiry::default()
         });
+        self.page_faults = self.page_faults.max(record.page_faults);
         self.durations.record(record);
         self.states.take(time_s, record.state.state());
         self.lines.take(record, time_s);
@@ -116,15 +122,24 @@ impl Survey {
         Ok(())
     }
 
+    /// Takes words that are no event of the loop.
+    pub fn take_remark(&mut self, remark: &Remark) {
+        let time_s = self.seconds(remark.time);
+        let tick = self.continuity.last_tick;
+        self.events.remark(time_s, tick, &remark.text);
+    }
+
+    /// When something happened; before the first tick, or in it, is at 0.
+    fn seconds(&self, time: Time) -> f64 {
+        match self.began_ns {
+            Some(began_ns) if !time.is_never() => since(began_ns, time.as_nanos()).max(0.0),
+            _ => 0.0,
+        }
+    }
+
     /// Takes an event.
     pub fn take_event(&mut self, event: &FlightEvent) {
-        // What happens before the first tick, or in it, happens at 0.
-        let time_s = match self.began_ns {
-            Some(began_ns) if !event.time.is_never() => {
-                (since(began_ns, event.time.as_nanos())).max(0.0)
-            }
-            _ => 0.0,
-        };
+        let time_s = self.seconds(event.time);
         if events::is_order_to_autopilot(event.kind)
             && let Some(scoring) = &mut self.scoring
         {
@@ -144,7 +159,9 @@ impl Survey {
             }
             None => (None, None),
         };
-        let timing = self.timing.map(|stats| timing(&stats, &self.origin));
+        let timing = self
+            .timing
+            .map(|stats| timing(&stats, self.page_faults, &self.origin));
         let mut report = Report {
             origin: self.origin,
             end,
@@ -179,11 +196,14 @@ fn period(tick: &Tick) -> Duration {
     Duration::try_from_secs_f64(period_s).unwrap_or_default()
 }
 
-fn timing(stats: &TimingStats, origin: &Origin) -> Timing {
+fn timing(stats: &TimingStats, page_faults: u64, origin: &Origin) -> Timing {
     let summary = stats.summary();
     let periods: Vec<_> = stats.period_counts().collect();
     Timing {
-        table: TimingReport::new(&origin.timer, &summary, origin.realtime.clone()),
+        table: TimingReport {
+            page_faults: Some(page_faults),
+            ..TimingReport::new(&origin.timer, &summary, origin.realtime.clone())
+        },
         period_box_ms: BoxPlot::of(&periods),
         lateness_histogram: log_histogram(stats.lateness_counts()),
         thesis: ThesisFigures::at(summary.rate_hz),
@@ -192,7 +212,7 @@ fn timing(stats: &TimingStats, origin: &Origin) -> Timing {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::framework::{Flags, StateCode, Time};
+    use fcc_core::framework::{Flags, StateCode};
     use proptest::prelude::*;
 
     use super::*;
@@ -201,7 +221,8 @@ mod tests {
     fn record() -> impl Strategy<Value = FlightRecord> {
         let numbers = || prop::array::uniform8(any::<f64>());
         let times = (any::<i64>(), any::<i64>(), any::<i64>());
-        let counts = (0_u64..50, 0_u64..5, any::<u64>(), 0_u8..4);
+        let missed = prop_oneof![0_u64..5, any::<u64>()];
+        let counts = (0_u64..50, missed, any::<u64>(), 0_u8..4);
         (times, counts, numbers(), numbers()).prop_map(
             |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
                 let tick = Tick {
@@ -280,7 +301,11 @@ mod tests {
             let mut survey = Survey::new(Origin::default(), Some(pattern));
             let mut number = 0;
             let mut due_ns = 0_i64;
-            for mut record in records {
+            for (n, mut record) in records.into_iter().enumerate() {
+                if n == 0 {
+                    // The first says how long a period is; a loop cannot have any.
+                    record.tick.missed %= 5;
+                }
                 if in_order {
                     number += record.tick.number;
                     due_ns = due_ns.saturating_add(record.tick.scheduled.as_nanos().abs() >> 20);

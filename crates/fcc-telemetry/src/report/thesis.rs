@@ -94,6 +94,8 @@ impl ThesisFigures {
             },
             realtime: Realtime::default(),
             cpu_percent: None,
+            page_faults: None,
+            early_wake: None,
         }
     }
 

@@ -3,21 +3,10 @@
 use std::fs;
 use std::time::Duration;
 
-use fcc_core::framework::Message;
 use fcc_telemetry::recording::{Compression, Recorder, RecorderSettings, Recording};
 
+use crate::disks::ticks;
 use crate::flight::{about, flight, record_all, settings};
-
-fn ticks(recording: &Recording) -> Vec<u64> {
-    recording
-        .messages()
-        .unwrap()
-        .filter_map(|message| match message {
-            Message::Tick(record) => Some(record.tick.number),
-            Message::Event(_) => None,
-        })
-        .collect()
-}
 
 fn parts(settings: RecorderSettings, ticks: u64) -> Vec<Recording> {
     let folder = settings.folder.clone();
@@ -41,7 +30,7 @@ fn a_recording_is_split_by_age_without_a_gap() {
     );
     // 25 s of flight.
     assert_eq!(parts.len(), 3);
-    let all: Vec<u64> = parts.iter().flat_map(ticks).collect();
+    let all: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
     assert_eq!(all, (1..=1_000).collect::<Vec<_>>());
     for (n, part) in (1..).zip(&parts) {
         assert!(part.is_whole());
@@ -84,7 +73,7 @@ fn a_recording_is_split_by_size_and_the_folder_kept_small() {
         "{sizes:?}"
     );
     // The newest are kept, without a gap among them.
-    let kept: Vec<u64> = parts.iter().flat_map(ticks).collect();
+    let kept: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
     assert_eq!(*kept.last().unwrap(), 20_000);
     assert!(kept.windows(2).all(|pair| pair[1] == pair[0] + 1));
 }

@@ -1,8 +1,11 @@
 //! Recordings from outside: what goes in comes back, whatever the disk does.
 #![cfg(test)]
 
+mod any;
 mod cut;
-mod disk;
+mod disks;
 mod flight;
 mod folder;
+mod full_disk;
 mod round_trip;
+mod slow_disk;

@@ -12,7 +12,8 @@ use std::thread::{self, ThreadId};
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
-use crate::{Expiry, Timer, TimerError};
+use crate::early::{Alarm, Early};
+use crate::{EarlyWake, Expiry, Timer, TimerError};
 use interval::IntervalTimer;
 use signal::TimerSignal;
 
@@ -26,16 +27,14 @@ use signal::TimerSignal;
 pub struct PosixTimer {
     period: Period,
     running: Option<Running>,
+    early: Option<Early>,
 }
 
 #[derive(Debug)]
 struct Running {
     deadlines: Deadlines,
     thread: ThreadId,
-    // Before the signal, because fields are dropped in this order: a signal is
-    // let through again only when no timer can send it any more.
-    timer: IntervalTimer,
-    signal: TimerSignal,
+    signals: Signals,
 }
 
 impl PosixTimer {
@@ -49,7 +48,17 @@ impl PosixTimer {
         Ok(Self {
             period: Period::new(period)?,
             running: None,
+            early: None,
         })
+    }
+
+    /// Has it wake early and spin to its deadlines.
+    ///
+    /// # Errors
+    /// When a value is out of its range.
+    pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
+        self.early = Some(Early::new(early, self.period)?);
+        Ok(self)
     }
 }
 
@@ -57,15 +66,14 @@ impl Timer for PosixTimer {
     fn start(&mut self) -> Result<(), TimerError> {
         // The timer of a start before goes first, and its signal with it.
         self.running = None;
-        let signal = TimerSignal::block()?;
-        let mut timer = IntervalTimer::new(&signal)?;
-        let deadlines = Deadlines::new(monotonic_ns(), self.period);
-        timer.set(deadlines.alarm_ns(), self.period.ns())?;
+        let mut signals = Signals::new(self.period)?;
+        let mut deadlines = Deadlines::new(monotonic_ns(), self.period);
+        deadlines.wake_early(self.early.as_ref().map_or(0, Early::margin_ns));
+        signals.move_to(deadlines.alarm_ns())?;
         self.running = Some(Running {
             deadlines,
             thread: thread::current().id(),
-            timer,
-            signal,
+            signals,
         });
         Ok(())
     }
@@ -75,9 +83,12 @@ impl Timer for PosixTimer {
         if running.thread != thread::current().id() {
             return Err(TimerError::WrongThread);
         }
-        running.signal.wait()?;
+        if let Some(early) = &mut self.early {
+            return early.wait(&mut running.deadlines, &mut running.signals);
+        }
+        running.signals.signal.wait()?;
         let woke_ns = monotonic_ns();
-        let passed = running.timer.overruns()?.saturating_add(1);
+        let passed = running.signals.timer.overruns()?.saturating_add(1);
         Ok(running.deadlines.woken(passed, woke_ns))
     }
 
@@ -91,5 +102,37 @@ impl Timer for PosixTimer {
 
     fn name(&self) -> &'static str {
         Self::NAME
+    }
+}
+
+/// The timer as the kernel has it, and the signal that it sends.
+#[derive(Debug)]
+struct Signals {
+    period: Period,
+    // Before the signal, because fields are dropped in this order: a signal is
+    // let through again only when no timer can send it any more.
+    timer: IntervalTimer,
+    signal: TimerSignal,
+}
+
+impl Signals {
+    fn new(period: Period) -> Result<Self, TimerError> {
+        let signal = TimerSignal::block()?;
+        let timer = IntervalTimer::new(&signal)?;
+        Ok(Self {
+            period,
+            timer,
+            signal,
+        })
+    }
+}
+
+impl Alarm for Signals {
+    fn move_to(&mut self, alarm_ns: i64) -> Result<(), TimerError> {
+        self.timer.set(alarm_ns, self.period.ns())
+    }
+
+    fn sleep_until(&mut self, _: i64) -> Result<(), TimerError> {
+        self.signal.wait()
     }
 }

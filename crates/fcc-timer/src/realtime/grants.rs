@@ -3,6 +3,8 @@
 use nix::errno::Errno;
 use std::fmt;
 
+use super::LatencyLimit;
+
 /// What a thread has, as read back from the kernel.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct RealtimeGrants {
@@ -12,6 +14,10 @@ pub struct RealtimeGrants {
     pub priority: i32,
     /// The CPU, if the thread may run on one only.
     pub cpu: Option<usize>,
+    /// Why this CPU, or why none; empty if none was asked for.
+    pub cpu_because: String,
+    /// How long CPUs may take to wake, if that was asked for and granted.
+    pub cpu_latency: Option<LatencyLimit>,
     /// Whether all memory of the process that is in use is locked.
     pub memory_locked: bool,
     /// Whether the stack asked for is in memory: touching it again faults no

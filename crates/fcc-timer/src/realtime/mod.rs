@@ -10,13 +10,20 @@
 //! Locked memory is the process' affair and there is no other way: see
 //! [`RealtimeWishes::lock_memory`].
 
+pub mod cpus;
 mod grants;
+mod latency;
 mod memory;
 mod scheduling;
 mod slack;
 mod stack;
 
+use std::path::Path;
+
+use cpus::Cpus;
 pub use grants::{RealtimeGrants, RealtimeRefused, Refusal};
+pub use latency::LatencyLimit;
+pub use scheduling::{take_priority_from, this_thread};
 
 /// What a thread would like to have.
 ///
@@ -40,8 +47,8 @@ pub struct RealtimeWishes {
     /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
     /// threads are at 50.
     pub priority: Option<u8>,
-    /// To run on this CPU only, counted from 0.
-    pub cpu: Option<usize>,
+    /// To run on one CPU only.
+    pub cpu: Option<CpuWish>,
     /// To have no page of the process swapped out or dropped. What is mapped
     /// now is fetched and stays; what is mapped later stays from when it is
     /// first touched, so that a thread's stack or a large file mapped by
@@ -59,8 +66,22 @@ pub struct RealtimeWishes {
     /// several at once, ns, 1 or more. The kernel's default is 50 µs; threads
     /// under `SCHED_FIFO` have none.
     pub timer_slack_ns: Option<u64>,
+    /// How long a CPU may take to wake from its sleep, µs, 2 147 483 647 at
+    /// most; 0 keeps all CPUs from sleeping. In force as long as the grants.
+    pub cpu_dma_latency_us: Option<u32>,
     /// What a refusal means.
     pub strictness: Strictness,
+}
+
+/// Which CPU.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum CpuWish {
+    /// The best there is: an isolated one, or else one that stays off the
+    /// interrupts. Where none is better than the others, the thread is not
+    /// bound; that is no refusal.
+    Auto,
+    /// This one, counted from 0.
+    Number(usize),
 }
 
 /// What a refused wish means.
@@ -89,8 +110,21 @@ impl RealtimeWishes {
         if let Some(slack_ns) = self.timer_slack_ns {
             refused.extend(slack::set(slack_ns).err());
         }
-        if let Some(cpu) = self.cpu {
-            refused.extend(scheduling::pin_to(cpu).err());
+        let mut cpu_because = String::new();
+        match self.cpu {
+            Some(CpuWish::Number(cpu)) => match scheduling::pin_to(cpu) {
+                Ok(()) => "it was asked for".clone_into(&mut cpu_because),
+                Err(refusal) => refused.push(refusal),
+            },
+            Some(CpuWish::Auto) => cpu_because = bind_to_best(),
+            None => {}
+        }
+        let mut cpu_latency = None;
+        if let Some(wished_us) = self.cpu_dma_latency_us {
+            match latency::limit(wished_us) {
+                Ok(limit) => cpu_latency = Some(limit),
+                Err(refusal) => refused.push(refusal),
+            }
         }
         if self.lock_memory {
             refused.extend(memory::lock().err());
@@ -110,6 +144,8 @@ impl RealtimeWishes {
             policy: scheduling::policy(),
             priority: scheduling::static_priority(),
             cpu: scheduling::only_cpu(),
+            cpu_because,
+            cpu_latency,
             memory_locked: memory::is_locked(),
             stack_prefaulted,
             timer_slack_ns: slack::get(),
@@ -119,5 +155,19 @@ impl RealtimeWishes {
             return Err(RealtimeRefused { grants });
         }
         Ok(grants)
+    }
+}
+
+/// Binds the calling thread to the best CPU, if there is one; says why.
+fn bind_to_best() -> String {
+    let allowed = scheduling::allowed_cpus();
+    // To ask whether a CPU may be used is to be moved there.
+    let choice = Cpus::read(Path::new("/")).best(&allowed, |cpu| scheduling::pin_to(cpu).is_ok());
+    match choice {
+        Ok(choice) => match scheduling::pin_to(choice.cpu) {
+            Ok(()) => choice.because,
+            Err(refusal) => format!("not bound: {refusal}"),
+        },
+        Err(why) => format!("not bound: {why}"),
     }
 }

@@ -54,6 +54,36 @@ pub(super) fn become_fifo(priority: u8) -> Result<(), Refusal> {
     }
 }
 
+/// The calling thread, as the kernel numbers it.
+pub fn this_thread() -> i32 {
+    nix::unistd::gettid().as_raw()
+}
+
+/// Puts a thread of this process back under `SCHED_OTHER`: one that hangs keeps
+/// a processor from everything of a lower priority. Needs no privilege.
+///
+/// # Errors
+/// When there is no such thread (any more).
+pub fn take_priority_from(thread: i32) -> std::io::Result<()> {
+    // The kernel takes 0 for the caller.
+    if thread <= 0 {
+        return Err(Errno::ESRCH.into());
+    }
+    // All that the kernel reads of a `sched_param`; 0 is the only priority
+    // under SCHED_OTHER.
+    let param: libc::c_int = 0;
+    // SAFETY: the kernel reads one int through the pointer, during the call.
+    let answer = unsafe {
+        libc::syscall(
+            libc::SYS_sched_setscheduler,
+            thread,
+            libc::SCHED_OTHER | libc::SCHED_RESET_ON_FORK,
+            &raw const param,
+        )
+    };
+    Errno::result(answer).map(|_| ()).map_err(Into::into)
+}
+
 /// The policy that the calling thread is under.
 pub(super) fn policy() -> &'static str {
     // SAFETY: the call takes no pointer.
@@ -106,7 +136,7 @@ pub(super) fn only_cpu() -> Option<usize> {
     }
 }
 
-fn allowed_cpus() -> Vec<usize> {
+pub(super) fn allowed_cpus() -> Vec<usize> {
     sched_getaffinity(Pid::from_raw(THIS_THREAD)).map_or_else(
         |_| Vec::new(),
         |set| {

@@ -52,6 +52,9 @@ pub struct TimingStats {
     deviations: Deviations,
     lateness_max_ns: i64,
     lateness: Histogram<u32>,
+    early_wake_ns: u64,
+    early_wake_max_ns: u64,
+    spun_ns: u64,
 }
 
 impl TimingStats {
@@ -78,6 +81,9 @@ impl TimingStats {
             deviations: Deviations::new(period_ns, longest_ns).map_err(bad_bounds)?,
             lateness_max_ns: 0,
             lateness: Histogram::new_with_bounds(1, longest_ns, FIGURES).map_err(bad_bounds)?,
+            early_wake_ns: 0,
+            early_wake_max_ns: 0,
+            spun_ns: 0,
         };
         // Memory that is asked for zeroed is not there until it is written to.
         stats.reset();
@@ -96,6 +102,9 @@ impl TimingStats {
         self.lateness_max_ns = 0;
         self.deviations.reset();
         self.lateness.reset();
+        self.early_wake_ns = 0;
+        self.early_wake_max_ns = 0;
+        self.spun_ns = 0;
     }
 
     /// Counts a tick. Allocates nothing.
@@ -119,6 +128,9 @@ impl TimingStats {
         let lateness_ns = expiry.lateness_ns().max(0);
         self.lateness_max_ns = self.lateness_max_ns.max(lateness_ns);
         self.lateness.saturating_record(lateness_ns.unsigned_abs());
+        self.early_wake_ns = expiry.early_wake_ns;
+        self.early_wake_max_ns = self.early_wake_max_ns.max(expiry.early_wake_ns);
+        self.spun_ns = self.spun_ns.saturating_add(expiry.spun_ns);
     }
 
     /// Says that ticks are missing before the next one to be recorded: the

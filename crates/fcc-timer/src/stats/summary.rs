@@ -41,6 +41,13 @@ pub struct TimingSummary {
     pub lateness_p99_9_us: f64,
     /// Lateness of the latest wake-up, µs.
     pub lateness_max_us: f64,
+    /// How long before its deadline the last wake-up was asked for, µs; 0 for a
+    /// timer that does not wake early.
+    pub early_wake_us: f64,
+    /// The longest such margin, µs.
+    pub early_wake_max_us: f64,
+    /// Time spent spinning towards deadlines, s.
+    pub spun_s: f64,
 }
 
 impl TimingSummary {
@@ -85,6 +92,9 @@ impl TimingSummary {
             lateness_p99_us: lateness_us(0.99),
             lateness_p99_9_us: lateness_us(0.999),
             lateness_max_us: of_ticks(stats.lateness_max_ns as f64) / NS_PER_US,
+            early_wake_us: stats.early_wake_ns as f64 / NS_PER_US,
+            early_wake_max_us: stats.early_wake_max_ns as f64 / NS_PER_US,
+            spun_s: stats.spun_ns as f64 / NS_PER_S,
         }
     }
 }

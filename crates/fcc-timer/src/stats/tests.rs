@@ -15,7 +15,7 @@ fn recorded(lateness_ns: impl IntoIterator<Item = i64>) -> TimingSummary {
             number: number as u64,
             scheduled_ns: number * NOMINAL_NS,
             woke_ns: number * NOMINAL_NS + late,
-            missed: 0,
+            ..Expiry::default()
         });
     }
     stats.summary()
@@ -28,7 +28,7 @@ fn with_periods(nominal: Duration, periods_ns: &[i64]) -> TimingSummary {
         number: 1,
         scheduled_ns: nominal.as_nanos() as i64,
         woke_ns: nominal.as_nanos() as i64,
-        missed: 0,
+        ..Expiry::default()
     };
     stats.record(&expiry);
     for period_ns in periods_ns {
@@ -149,6 +149,7 @@ fn misses_add_up() {
             scheduled_ns: number as i64 * NOMINAL_NS,
             woke_ns: number as i64 * NOMINAL_NS,
             missed,
+            ..Expiry::default()
         });
     }
     let summary = stats.summary();
@@ -211,7 +212,7 @@ fn periods_and_latenesses_are_told_one_by_one() {
             number,
             scheduled_ns: number as i64 * NOMINAL_NS,
             woke_ns,
-            missed: 0,
+            ..Expiry::default()
         });
     }
     let periods: Vec<_> = stats.period_counts().collect();
@@ -262,7 +263,7 @@ fn what_is_missing_makes_no_period() {
             number,
             scheduled_ns: number as i64 * NOMINAL_NS,
             woke_ns,
-            missed: 0,
+            ..Expiry::default()
         });
     }
     let summary = stats.summary();

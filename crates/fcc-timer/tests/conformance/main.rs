@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 
 use fcc_timer::{
-    Expiry, ManualTimer, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, TimingStats,
+    EarlyWake, Expiry, ManualTimer, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, TimingStats,
 };
 
 const PERIOD: Duration = Duration::from_millis(4);
@@ -53,6 +53,52 @@ impl Subject for ManualTimer {
 
     fn work(&mut self, time: Duration) {
         self.advance(time);
+    }
+}
+
+/// A timer that wakes early. The margin is long, so that a tick's work often
+/// ends within it.
+struct Early<T>(T);
+
+const EARLY: EarlyWake = EarlyWake {
+    min: Duration::from_micros(100),
+    max: Duration::from_millis(1),
+    quantile: 0.99,
+    guard: Duration::from_micros(50),
+    cpu_cap: 0.5,
+};
+
+macro_rules! early {
+    ($($timer:ty)*) => {$(
+        impl Subject for Early<$timer> {
+            fn make(period: Duration) -> Result<Self, TimerError> {
+                <$timer>::new(period)?.waking_early(&EARLY).map(Self)
+            }
+        }
+    )*};
+}
+
+early!(TimerFd PosixTimer Nanosleep);
+
+impl<T: Timer> Timer for Early<T> {
+    fn start(&mut self) -> Result<(), TimerError> {
+        self.0.start()
+    }
+
+    fn wait(&mut self) -> Result<Expiry, TimerError> {
+        self.0.wait()
+    }
+
+    fn period(&self) -> Duration {
+        self.0.period()
+    }
+
+    fn now_ns(&self) -> i64 {
+        self.0.now_ns()
+    }
+
+    fn name(&self) -> &'static str {
+        self.0.name()
     }
 }
 
@@ -214,6 +260,43 @@ fn signals_do_not_end_a_wait<T: Subject>() {
     assert!(interruptions > 0);
 }
 
+/// What an early timer says of a wait adds up.
+fn the_margin_and_the_spin_are_told<T: Subject>() {
+    let mut timer = started::<T>();
+    for _ in 0..100 {
+        let expiry = timer.wait().unwrap();
+        assert!(
+            (100_000..=1_000_000).contains(&expiry.early_wake_ns),
+            "{expiry:?}"
+        );
+        assert!(expiry.kernel_lateness_ns >= 0, "{expiry:?}");
+        assert!(expiry.spun_ns <= expiry.early_wake_ns, "{expiry:?}");
+    }
+}
+
+/// A tick that ends between an alarm and its deadline: the alarm has gone by,
+/// the deadline has not.
+fn a_tick_that_ends_within_the_margin_loses_no_deadline<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut before = timer.wait().unwrap();
+    let mut on_time = 0;
+    for _ in 0..25 {
+        let until_ns = before.scheduled_ns + PERIOD_NS - before.early_wake_ns as i64 / 2;
+        while timer.now_ns() < until_ns {
+            timer.work(Duration::from_micros(1));
+        }
+        before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+        on_time += u64::from(before.missed == 0);
+        // Served is the latest deadline: the next one had not come.
+        assert!(before.lateness_ns() < PERIOD_NS, "{before:?}");
+        before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+        assert!(before.lateness_ns() < PERIOD_NS, "{before:?}");
+    }
+    // Were the alarm that went by waited for, each round would miss one; a busy
+    // machine makes some rounds miss one, and no machine all.
+    assert!(on_time > 0);
+}
+
 macro_rules! promise {
     ($module:ident, $timer:ty: $($promise:ident)*) => {
         mod $module {
@@ -249,3 +332,24 @@ conformance!(timerfd, super::TimerFd, signals_do_not_end_a_wait);
 conformance!(posix, super::PosixTimer, signals_do_not_end_a_wait);
 conformance!(nanosleep, super::Nanosleep, signals_do_not_end_a_wait);
 conformance!(manual, super::ManualTimer);
+conformance!(
+    early_timerfd,
+    super::Early<super::TimerFd>,
+    signals_do_not_end_a_wait,
+    the_margin_and_the_spin_are_told,
+    a_tick_that_ends_within_the_margin_loses_no_deadline
+);
+conformance!(
+    early_posix,
+    super::Early<super::PosixTimer>,
+    signals_do_not_end_a_wait,
+    the_margin_and_the_spin_are_told,
+    a_tick_that_ends_within_the_margin_loses_no_deadline
+);
+conformance!(
+    early_nanosleep,
+    super::Early<super::Nanosleep>,
+    signals_do_not_end_a_wait,
+    the_margin_and_the_spin_are_told,
+    a_tick_that_ends_within_the_margin_loses_no_deadline
+);

@@ -118,6 +118,31 @@ fn what_is_not_a_number_leaves_the_reading_to_grow_old() {
     }
 }
 
+/// What hangs is the same to the last bit while the aircraft rolls; what moves
+/// is not.
+#[test]
+fn accelerations_that_hang_give_a_force_that_hangs() {
+    let frame = |east: f32, roll_deg: f32| {
+        values(&[
+            (Quantity::AccelerationEast, east),
+            (Quantity::AccelerationUp, 0.5),
+            (Quantity::AccelerationSouth, 0.0),
+            (Quantity::TrueHeading, 0.0),
+            (Quantity::Pitch, 2.0),
+            (Quantity::Roll, roll_deg),
+        ])
+    };
+    let mut bench = Bench::new(None);
+    bench.tick(&[frame(1.0, 0.0)]);
+    let first = bench.measurements.specific_force;
+    bench.tick(&[frame(1.0, 30.0)]);
+    let hanging = bench.measurements.specific_force;
+    assert_eq!(hanging.value, first.value);
+    assert!(hanging.taken > first.taken);
+    bench.tick(&[frame(1.1, 30.0)]);
+    assert_ne!(bench.measurements.specific_force.value, first.value);
+}
+
 #[test]
 fn rows_of_eleven_and_twelve_give_the_same_rates() {
     // 0.1 rad/s are 5.729 578 deg/s.

@@ -147,7 +147,7 @@ impl FakeXPlane {
         }
     }
 
-    fn take(&mut self, datagram: &[u8], from: SocketAddr) {
+    pub fn take(&mut self, datagram: &[u8], from: SocketAddr) {
         let i32_at = |at: usize| i32::from_le_bytes(datagram[at..at + 4].try_into().unwrap());
         match &datagram[..5] {
             b"RREF\0" => {
@@ -235,6 +235,11 @@ impl FakeXPlane {
     /// One tick of its life: listens, lets time pass, sends a frame.
     pub fn live(&mut self, seconds: f32) {
         self.listen();
+        self.send_next_frame(seconds);
+    }
+
+    /// Lets time pass, sends a frame.
+    pub fn send_next_frame(&mut self, seconds: f32) {
         let time = self.value(FLIGHT_TIME) + seconds;
         self.set(FLIGHT_TIME, time);
         self.send_frame();

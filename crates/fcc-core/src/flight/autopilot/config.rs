@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use super::Resume;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::TimedPatternConfig;
 use crate::flight::navigation::NavigationConfig;
@@ -13,6 +14,12 @@ pub struct AutopilotConfig {
     pub reference_airspeed_mps: f64,
     /// Older readings than this are a loss of their sensor.
     pub max_age: Duration,
+    /// Readings that stay the same to the last bit for so long, while others
+    /// say that the aircraft moved, are frozen; zero never calls one so.
+    pub frozen_after: Duration,
+    /// Navigation has to have watched for so long before the autopilot takes
+    /// over.
+    pub settling: Duration,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// What is flown once engaged.
@@ -33,6 +40,8 @@ impl Default for AutopilotConfig {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
             max_age: Duration::from_millis(250),
+            frozen_after: Duration::from_secs(2),
+            settling: Duration::from_secs(1),
             navigation: NavigationConfig::default(),
             course: Course::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),
@@ -52,8 +61,9 @@ pub enum Course {
     TimedPattern(TimedPatternConfig),
 }
 
-/// What may be asked of the autopilot while it is engaged. Each changes one
-/// set point, ends a pattern and keeps the other set points as they are.
+/// What may be asked of the autopilot while it is engaged. Each but the last
+/// changes one set point, ends a pattern and keeps the other set points as they
+/// are.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum Order {
@@ -64,4 +74,6 @@ pub enum Order {
     Heading(f64),
     /// Barometric altitude, m.
     Altitude(f64),
+    /// Take up what was flown before a restart.
+    Resume(Resume),
 }

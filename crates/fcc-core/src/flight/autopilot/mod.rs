@@ -1,20 +1,26 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod capture;
 mod config;
 pub mod flags;
 mod plant_clock;
+mod resume;
+mod scale;
 
 use core::fmt;
 use core::time::Duration;
 
 use libm::cos;
 
+use capture::Capture;
 pub use config::{AutopilotConfig, Course, Order};
 use plant_clock::PlantClock;
+pub use resume::Resume;
+pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{Targets, TimedPattern};
-use super::navigation::{Estimate, Navigation, accept};
+use super::navigation::{Estimate, FrozenWatch, Navigation, accept};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
 use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
@@ -26,9 +32,6 @@ const UPSET_RAD: f64 = 1.047;
 /// switch off any more.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
-/// Navigation has to have watched for so long before the autopilot takes over.
-const SETTLING: Duration = Duration::from_secs(1);
-
 /// Navigation, guidance and control as one [`Controller`].
 #[derive(Clone, Debug)]
 pub struct Autopilot {
@@ -36,8 +39,10 @@ pub struct Autopilot {
     /// The last measurements that can be true.
     accepted: Measurements,
     navigation: Navigation,
+    frozen: FrozenWatch,
     course: Option<TimedPattern>,
     targets: Targets,
+    capture: Option<Capture>,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -52,8 +57,10 @@ impl Autopilot {
         Self {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation),
+            frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
             course: None,
             targets: Targets::default(),
+            capture: None,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -91,8 +98,31 @@ impl Autopilot {
         }
     }
 
+    /// Takes over with throttle and surfaces where they stand.
+    fn take_over(&mut self, standing: &Surfaces) {
+        let estimate = *self.navigation.estimate();
+        let schedule = self.schedule();
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
+        self.altitude.engage(standing.elevator, &estimate, schedule);
+        let demand = self.throttle_demand(estimate.climb_rate_mps);
+        self.airspeed.engage(standing.throttle, &demand, &estimate);
+    }
+
     fn stale(&self, now: Time) -> Flags {
-        let measurements = &self.accepted;
+        self.too_old(&self.accepted, now)
+    }
+
+    /// What stands still while the aircraft moves; on the ground nothing does.
+    fn frozen(&self) -> Flags {
+        if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
+            Flags::NONE
+        } else {
+            flags::frozen(self.frozen.frozen())
+        }
+    }
+
+    fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
         let max_age = self.config.max_age;
         Flags::NONE
             .with(
@@ -122,9 +152,13 @@ impl Autopilot {
     }
 
     /// What neither engaging nor staying engaged can do with.
-    fn unsafe_to_fly(&self, now: Time) -> Flags {
+    fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
         let switch = self.accepted.engage_switch;
-        self.stale(now)
+        let stale = self.stale(now);
+        // As they came some are not too old: those were not accepted.
+        let rejected = stale != self.too_old(measurements, now);
+        (stale | self.frozen())
+            .with(flags::REJECTED, rejected)
             .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
             .with(flags::PLANT_STALLED, self.clock.is_stalled())
             .with(
@@ -145,27 +179,38 @@ impl Controller for Autopilot {
     type Order = Order;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        accept(&mut self.accepted, measurements);
+        accept(&mut self.accepted, measurements, self.config.max_age);
         if self.plant_is(PlantState::Jumped) {
+            // It is not where it was, so nothing is too far from the last.
+            self.accepted = Measurements::default();
+            accept(&mut self.accepted, measurements, self.config.max_age);
             self.navigation.reset(&self.config.navigation);
+            self.frozen = FrozenWatch::new(self.config.frozen_after.as_secs_f64());
             self.clock = PlantClock::default();
             self.watching_since = Time::NEVER;
         }
         self.clock.step(tick, &self.accepted, self.config.max_age);
         self.navigation
             .step(tick.woke, &self.accepted, self.clock.step_s());
+        self.frozen.step(
+            tick.woke,
+            &self.accepted,
+            self.navigation.estimate(),
+            self.clock.step_s(),
+        );
         if self.watching_since.is_never() && self.stale(tick.woke).is_empty() {
             self.watching_since = tick.woke;
         }
     }
 
-    fn blockers(&self, tick: &Tick, _measurements: &Measurements) -> Flags {
+    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        self.unsafe_to_fly(tick.woke)
+        self.unsafe_to_fly(tick.woke, measurements)
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(
                 flags::SETTLING,
-                self.watching_since.is_never() || tick.woke.since(self.watching_since) < SETTLING,
+                self.watching_since.is_never()
+                    || tick.woke.since(self.watching_since) < self.config.settling,
             )
             .with(
                 flags::TOO_SLOW,
@@ -177,8 +222,8 @@ impl Controller for Autopilot {
             )
     }
 
-    fn faults(&self, tick: &Tick, _measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke)
+    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.unsafe_to_fly(tick.woke, measurements)
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -193,17 +238,22 @@ impl Controller for Autopilot {
             Order::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
             Order::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
             Order::Altitude(m) => write!(f, "altitude {m:.1} m"),
+            Order::Resume(Resume { pattern_s, .. }) => match pattern_s {
+                Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
+                None => f.write_str("go on with what was flown"),
+            },
         }
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         let estimate = *self.navigation.estimate();
-        let schedule = self.schedule();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
         self.course = match self.config.course {
             Course::Hold => None,
             Course::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
@@ -216,16 +266,20 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
-        self.heading
-            .engage(standing.aileron, standing.rudder, &estimate, schedule);
-        self.altitude.engage(standing.elevator, &estimate, schedule);
-        let demand = self.throttle_demand(estimate.climb_rate_mps);
-        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.take_over(&standing);
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        let marked = self.navigation.marked_altitude_m();
+        let shift_m = match (&mut self.capture, marked) {
+            (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
+            _ => 0.0,
+        };
         if let Some(pattern) = &mut self.course {
+            pattern.shift_altitude(shift_m);
             self.targets = pattern.step(self.clock.step_s());
+        } else {
+            self.targets.altitude_m += shift_m;
         }
     }
 
@@ -269,7 +323,7 @@ impl Controller for Autopilot {
     /// climb rate is; the trims that the loops had found where they are not;
     /// trim throttle.
     fn failsafe(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        let gone = self.stale(tick.woke);
+        let gone = flags::gone(self.stale(tick.woke), self.frozen());
         let throttle = self.config.airspeed.trim_throttle;
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
@@ -308,6 +362,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.course = None;
+        self.capture = None;
         self.setpoints = Setpoints::default();
     }
 
@@ -320,10 +375,16 @@ impl Controller for Autopilot {
                 let now_rad = self.navigation.estimate().heading_rad;
                 self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
-            Order::Altitude(m) if m.is_finite() => self.targets.altitude_m = m,
-            _ => return,
+            Order::Altitude(m) if m.is_finite() => {
+                self.targets.altitude_m = m;
+                self.capture = None;
+            }
+            Order::Resume(ref resume) => self.resume(resume),
+            _ => {}
         }
-        self.course = None;
+        if order.ends_pattern() {
+            self.course = None;
+        }
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -3,7 +3,7 @@
 use libm::{asin, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
-use crate::blocks::{Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
+use crate::blocks::{LowPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
 use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
 
@@ -20,6 +20,9 @@ pub struct AltitudeConfig {
     pub climb_rate_gain: f64,
     /// The same, integrated, 1/s.
     pub climb_rate_integral_gain_per_s: f64,
+    /// How far the flight path lags behind the one asked for, s: what is only
+    /// this lag is not integrated.
+    pub flight_path_lag_s: f64,
     /// Angle of attack that carries 1 g at the reference airspeed, rad.
     pub angle_of_attack_per_g_rad: f64,
     /// Pitch rate per pitch error, 1/s.
@@ -37,11 +40,12 @@ pub struct AltitudeConfig {
 impl Default for AltitudeConfig {
     fn default() -> Self {
         Self {
-            altitude_gain_per_s: 1.07,
+            altitude_gain_per_s: 1.4,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
-            climb_rate_gain: 1.67,
+            climb_rate_gain: 1.8,
             climb_rate_integral_gain_per_s: 0.39,
+            flight_path_lag_s: 0.25,
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
             pitch_gain_per_s: 6.2,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
@@ -78,6 +82,8 @@ pub struct PitchCommand {
 pub struct AltitudeLoop {
     config: AltitudeConfig,
     climb_rate: RateLimit,
+    /// The flight path to expect by now of what was asked for, rad.
+    expected_path: LowPass,
     pitch: Pid,
     pitch_rate: Pid,
 }
@@ -88,6 +94,7 @@ impl AltitudeLoop {
         Self {
             config,
             climb_rate: RateLimit::new(config.climb_acceleration_mps2),
+            expected_path: LowPass::new(config.flight_path_lag_s),
             pitch: Pid::new(PidConfig {
                 kp: config.climb_rate_gain,
                 ki: config.climb_rate_integral_gain_per_s,
@@ -107,6 +114,7 @@ impl AltitudeLoop {
     pub fn engage(&mut self, elevator: f64, estimate: &Estimate, schedule: Schedule) {
         let path = flight_path(estimate.climb_rate_mps, estimate);
         self.climb_rate.reset(estimate.climb_rate_mps);
+        self.expected_path.reset(path);
         self.pitch.engage(
             estimate.pitch_rad,
             path,
@@ -150,10 +158,14 @@ impl AltitudeLoop {
         let wanted = limit(climb_rate_mps, limits.min_mps, limits.max_mps);
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
+        let expected = self.expected_path.step(path, dt_s);
+        // The gain acts on the whole error, the integral on what the lag does
+        // not explain.
+        let ahead = self.config.climb_rate_gain * (path - expected);
         let pitch_rad = self.pitch.step_scheduled(
-            path,
+            expected,
             flight_path(estimate.climb_rate_mps, estimate),
-            path + self.angle_of_attack(estimate, schedule),
+            path + ahead + self.angle_of_attack(estimate, schedule),
             1.0,
             dt_s,
         );

@@ -51,6 +51,21 @@ impl TimedPattern {
         }
     }
 
+    /// Goes on with one that has been flown for `elapsed_s` seconds.
+    pub const fn resume(config: TimedPatternConfig, captured: Targets, elapsed_s: f64) -> Self {
+        Self {
+            config,
+            captured,
+            elapsed_s,
+        }
+    }
+
+    /// The same pattern from another start.
+    #[must_use]
+    pub const fn captured_at(self, captured: Targets) -> Self {
+        Self { captured, ..self }
+    }
+
     /// Which leg is flown: 0 while holding, then 1, 2, ...
     pub fn leg(&self) -> u32 {
         let into_legs = self.elapsed_s + ROUNDING_S - self.config.hold_s;
@@ -62,10 +77,21 @@ impl TimedPattern {
         }
     }
 
+    /// The captured altitude turned out to be this much higher, m.
+    pub fn shift_altitude(&mut self, by_m: f64) {
+        self.captured.altitude_m += by_m;
+    }
+
     /// The targets now; then `dt_s` seconds pass.
     pub fn step(&mut self, dt_s: f64) -> Targets {
-        let leg = self.leg();
+        let targets = self.targets();
         self.elapsed_s += dt_s;
+        targets
+    }
+
+    /// The targets now.
+    pub fn targets(&self) -> Targets {
+        let leg = self.leg();
         Targets {
             airspeed_mps: self.captured.airspeed_mps,
             heading_rad: self.captured.heading_rad + f64::from(leg) * self.config.turn_rad,

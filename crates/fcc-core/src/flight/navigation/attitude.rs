@@ -31,7 +31,7 @@ pub struct AttitudeChannel {
 
 /// Near the vertical the heading is undefined; the rates are not divided by
 /// less than this cosine (about 80°).
-const MIN_COS_PITCH: f64 = 0.17;
+pub(super) const MIN_COS_PITCH: f64 = 0.17;
 
 impl AttitudeChannel {
     /// Time constants in s: of pitch and roll, of the heading.

@@ -8,7 +8,9 @@
 mod acceptance;
 mod air_data;
 mod attitude;
+mod frozen;
 mod vertical;
+mod vertical_covariance;
 
 use core::time::Duration;
 
@@ -19,6 +21,7 @@ use crate::framework::{Reading, Time};
 pub(crate) use acceptance::accept;
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
+pub(crate) use frozen::{Frozen, FrozenWatch};
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
@@ -44,7 +47,7 @@ impl Default for NavigationConfig {
         Self {
             attitude_tau_s: 1.36,
             heading_tau_s: 1.44,
-            vertical_bandwidth_radps: 0.446,
+            vertical_bandwidth_radps: 0.6,
             airspeed_tau_s: 0.89,
             side_force_tau_s: 0.19,
         }
@@ -143,6 +146,17 @@ impl Navigation {
     /// The latest estimate.
     pub const fn estimate(&self) -> &Estimate {
         &self.estimate
+    }
+
+    /// Marks the present altitude.
+    pub const fn mark_altitude(&mut self) {
+        self.vertical.mark();
+    }
+
+    /// The altitude where it was marked, m, as known by now; none if nothing
+    /// was marked.
+    pub fn marked_altitude_m(&self) -> Option<f64> {
+        self.vertical.marked_altitude_m()
     }
 
     /// Forgets everything: the plant is not where it was.

@@ -3,6 +3,7 @@
 use libm::{cos, sin};
 
 use super::attitude::Orientation;
+use super::vertical_covariance::{Link, VerticalCovariance};
 use super::{Arrival, News, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
@@ -18,26 +19,30 @@ pub struct VerticalState {
     pub climb_rate_mps: f64,
 }
 
-/// Third-order complementary filter: vertical acceleration integrated twice,
-/// corrected by barometric altitude, the accelerometer's bias estimated along
-/// (the barometric-inertial loop of Blanchard 1971; all three poles at the
-/// bandwidth).
+/// Kalman filter: vertical acceleration integrated twice, corrected by
+/// barometric altitude, the accelerometer's bias estimated along (the
+/// barometric-inertial loop of Blanchard 1971, its gains from the covariance
+/// as in Gelb 1974, table 4.2-1). It begins fast, knowing nothing, and slows
+/// down to its bandwidth as it learns.
+///
+/// An altitude can be marked: what comes later still says something about
+/// where the aircraft was then, and the marked altitude follows it (a
+/// fixed-point smoother, Gelb 1974, section 5.3).
 #[derive(Clone, Debug)]
 pub struct VerticalChannel {
-    bandwidth_radps: f64,
     state: VerticalState,
     bias_mps2: f64,
-    /// Seconds since the first altitude.
-    age_s: f64,
+    covariance: VerticalCovariance,
+    mark: Option<Mark>,
     news: Arrival,
 }
 
-/// While the filter is young it begins fast, not knowing the climb rate, and
-/// slows down as it learns: with bandwidth `YOUTH / age`, half as fast again as
-/// a straight line fitted to what was seen so far.
-const YOUTH: f64 = 3.0;
-/// The fastest it is, rad/s.
-const MAX_BANDWIDTH_RADPS: f64 = 4.0;
+/// The altitude at an instant gone by, and how it goes with the present state.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    altitude_m: f64,
+    link: Link,
+}
 
 /// An accelerometer whose bias is larger than this is broken, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
@@ -46,13 +51,13 @@ impl VerticalChannel {
     /// A filter that knows nothing yet; `bandwidth_radps` in rad/s.
     pub const fn new(bandwidth_radps: f64) -> Self {
         Self {
-            bandwidth_radps,
             state: VerticalState {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
             },
             bias_mps2: 0.0,
-            age_s: 0.0,
+            covariance: VerticalCovariance::new(bandwidth_radps),
+            mark: None,
             news: Arrival::new(),
         }
     }
@@ -65,48 +70,71 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        let measured = if is_current(&measurements.specific_force, now) {
+        let felt = is_current(&measurements.specific_force, now);
+        let acceleration = if felt {
             let force = measurements.specific_force.value;
             let (sin_roll, cos_roll) = (sin(orientation.roll_rad), cos(orientation.roll_rad));
             let (sin_pitch, cos_pitch) = (sin(orientation.pitch_rad), cos(orientation.pitch_rad));
-            force.x_mps2 * sin_pitch
-                - cos_pitch * (force.y_mps2 * sin_roll + force.z_mps2 * cos_roll)
-                - GRAVITY_MPS2
+            let up = force.x_mps2 * sin_pitch
+                - cos_pitch * (force.y_mps2 * sin_roll + force.z_mps2 * cos_roll);
+            up - GRAVITY_MPS2 - self.bias_mps2
         } else {
-            self.bias_mps2
+            0.0
         };
-        let acceleration = measured - self.bias_mps2;
-        self.age_s += dt_s;
-        self.state.altitude_m +=
-            self.state.climb_rate_mps * dt_s + 0.5 * acceleration * dt_s * dt_s;
-        self.state.climb_rate_mps += acceleration * dt_s;
-
+        self.predict(acceleration, felt, dt_s);
         match self.news.of(&measurements.altitude_m, dt_s) {
             News::None => {}
-            News::First => {
-                self.state = VerticalState {
-                    altitude_m: measurements.altitude_m.value,
-                    climb_rate_mps: 0.0,
-                };
-                self.bias_mps2 = 0.0;
-                self.age_s = 0.0;
-            }
-            News::Next(since_s) => {
-                let error = measurements.altitude_m.value - self.state.altitude_m;
-                let (w, young) = (self.bandwidth_radps, YOUTH / self.age_s.max(0.1));
-                if young > w {
-                    // Two poles and no bias: it cannot be told from a climb yet.
-                    let w = young.min(MAX_BANDWIDTH_RADPS);
-                    self.state.altitude_m += 2.0 * w * since_s * error;
-                    self.state.climb_rate_mps += w * w * since_s * error;
-                } else {
-                    self.state.altitude_m += 3.0 * w * since_s * error;
-                    self.state.climb_rate_mps += 3.0 * w * w * since_s * error;
-                    self.bias_mps2 =
-                        limit_abs(self.bias_mps2 - w * w * w * since_s * error, MAX_BIAS_MPS2);
-                }
-            }
+            News::First => self.begin(measurements.altitude_m.value),
+            News::Next(since_s) => self.correct(measurements.altitude_m.value, since_s),
         }
         self.state
+    }
+
+    /// Marks the present altitude.
+    pub const fn mark(&mut self) {
+        self.mark = Some(Mark {
+            altitude_m: self.state.altitude_m,
+            link: self.covariance.of_altitude(),
+        });
+    }
+
+    /// What is known by now of the marked altitude, m.
+    pub fn marked_altitude_m(&self) -> Option<f64> {
+        self.mark.map(|mark| mark.altitude_m)
+    }
+
+    fn predict(&mut self, acceleration_mps2: f64, felt: bool, dt_s: f64) {
+        let state = &mut self.state;
+        state.altitude_m += state.climb_rate_mps * dt_s + 0.5 * acceleration_mps2 * dt_s * dt_s;
+        state.climb_rate_mps += acceleration_mps2 * dt_s;
+        self.covariance.predict(felt, dt_s);
+        if let Some(mark) = &mut self.mark {
+            mark.link.predict(felt, dt_s);
+        }
+    }
+
+    /// Believes an altitude outright. A mark stays as it was: what comes now
+    /// says nothing about it any more.
+    fn begin(&mut self, altitude_m: f64) {
+        self.state = VerticalState {
+            altitude_m,
+            climb_rate_mps: 0.0,
+        };
+        self.bias_mps2 = 0.0;
+        self.covariance.restart();
+        if let Some(mark) = &mut self.mark {
+            mark.link = Link::default();
+        }
+    }
+
+    fn correct(&mut self, altitude_m: f64, since_s: f64) {
+        let error = altitude_m - self.state.altitude_m;
+        let gains = self.covariance.correct(since_s);
+        self.state.altitude_m += gains.altitude * error;
+        self.state.climb_rate_mps += gains.climb_rate_per_s * error;
+        self.bias_mps2 = limit_abs(self.bias_mps2 + gains.bias_per_s2 * error, MAX_BIAS_MPS2);
+        if let Some(mark) = &mut self.mark {
+            mark.altitude_m += mark.link.correct(&gains) * error;
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use fcc_core::framework::State;
 use fcc_telemetry::FlightRecord;
+use fcc_telemetry::units::{M_FT, MPS_KT};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Stylize;
@@ -10,8 +11,6 @@ use ratatui::widgets::Paragraph;
 
 use super::picture::Picture;
 
-pub(super) const M_FT: f64 = 1.0 / 0.304_8;
-pub(super) const MPS_KT: f64 = 3_600.0 / 1_852.0;
 const MPS_FPM: f64 = 60.0 * M_FT;
 
 /// Characters of a control's name and of its number.

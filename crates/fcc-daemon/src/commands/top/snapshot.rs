@@ -4,9 +4,9 @@ use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, Flags, State};
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::live::{RecorderState, Status};
+use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 
-use super::flight::{M_FT, MPS_KT};
 use super::picture::Picture;
 
 /// One moment of a flight. What has not been measured or told is null.
@@ -34,6 +34,8 @@ struct Tick {
     blockers: Vec<&'static str>,
     faults: Vec<&'static str>,
     records_dropped: u64,
+    page_faults: u64,
+    early_wake_us: f64,
     actual: Values,
     setpoints: Option<Values>,
     outputs: Option<Outputs>,
@@ -120,6 +122,8 @@ fn tick(record: &FlightRecord, time_s: f64) -> Tick {
         blockers: names(record.blockers),
         faults: names(record.faults),
         records_dropped: record.records_dropped,
+        page_faults: record.page_faults,
+        early_wake_us: record.early_wake_ns as f64 * 1e-3,
         actual: actual(record),
         setpoints: (record.state == State::Engaged).then(|| setpoints(record)),
         outputs: record.sent.then_some(Outputs {

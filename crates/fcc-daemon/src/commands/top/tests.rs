@@ -65,6 +65,7 @@ fn picture() -> Picture {
     record.setpoints.heading_rad = 90_f64.to_radians();
     record.setpoints.altitude_m = 960.12;
     record.setpoints.airspeed_mps = 185.2 / 3.6;
+    record.early_wake_ns = 142_000;
     record.stages.control_ns = 1_500;
     record.stages.total_ns = 12_345;
     picture.record(&record);

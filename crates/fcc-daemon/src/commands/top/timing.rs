@@ -19,7 +19,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
         return;
     };
     let [figures, histogram] =
-        Layout::vertical([Constraint::Length(3), Constraint::Fill(1)]).areas(area);
+        Layout::vertical([Constraint::Length(4), Constraint::Fill(1)]).areas(area);
     frame.render_widget(Paragraph::new(lines(status, picture)), figures);
     draw_histogram(frame, histogram, &status.lateness_counts);
 }
@@ -31,10 +31,13 @@ fn lines(status: &Status, picture: &Picture) -> Vec<Line<'static>> {
             format!("{:<8}", duration(ns)).bold(),
         ]
     };
-    let lost = picture
-        .record
-        .as_ref()
-        .map_or(0, |record| record.records_dropped);
+    let record = picture.record.as_ref();
+    let lost = record.map_or(0, |record| record.records_dropped);
+    let faults = count("faults", record.map_or(0, |record| record.page_faults));
+    let early = match record.map_or(0, |record| record.early_wake_ns) {
+        0 => ["early ".dim(), "off".into()],
+        early_ns => figure("early", early_ns),
+    };
     let missed = count("missed", status.missed);
     let dropped = count("lost", lost);
     vec![
@@ -53,6 +56,7 @@ fn lines(status: &Status, picture: &Picture) -> Vec<Line<'static>> {
             .concat(),
         ),
         Line::from_iter([missed, dropped].concat()),
+        Line::from_iter([faults, early].concat()),
     ]
 }
 

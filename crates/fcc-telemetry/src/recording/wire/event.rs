@@ -1,7 +1,10 @@
 //! An event as a message.
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::{ActuatorFault, Event, EventKind, Flags, Order, SensorFault, Time};
+use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::{Order as Command, Resume, Surfaces};
+use fcc_core::framework::{
+    ActuatorFault, Event, EventKind, Flags, Order, SensorFault, Stage, Time,
+};
 
 use super::fcc::event::Kind;
 use super::fcc::fault::Kind as FaultKind;
@@ -78,6 +81,21 @@ fn kind_out(kind: &EventKind<Command>) -> Option<Kind> {
         EventKind::Released { ok } => Kind::Released(fcc::Released { ok }),
         EventKind::Panicked => Kind::Panicked(fcc::Panicked {}),
         EventKind::TimerFailed => Kind::TimerFailed(fcc::TimerFailed {}),
+        EventKind::Overrun {
+            of,
+            took_ns,
+            budget_ns,
+            longest,
+        } => Kind::Overrun(fcc::Overrun {
+            of: i32::from(of as u8),
+            took_ns,
+            budget_ns,
+            longest: i32::from(longest as u8),
+        }),
+        EventKind::OverrunsOver { count, first, last } => {
+            Kind::OverrunsOver(gap(count, first, last))
+        }
+        EventKind::Hung { silent_ns } => Kind::Hung(fcc::Hung { silent_ns }),
         _ => return None,
     })
 }
@@ -129,6 +147,16 @@ fn kind_in(kind: Kind) -> Result<EventKind<Command>, Unknown> {
         Kind::Released(released) => EventKind::Released { ok: released.ok },
         Kind::Panicked(_) => EventKind::Panicked,
         Kind::TimerFailed(_) => EventKind::TimerFailed,
+        Kind::Overrun(overrun) => EventKind::Overrun {
+            of: stage_in(overrun.of)?,
+            took_ns: overrun.took_ns,
+            budget_ns: overrun.budget_ns,
+            longest: stage_in(overrun.longest)?,
+        },
+        Kind::OverrunsOver(fcc::Gap { count, first, last }) => {
+            EventKind::OverrunsOver { count, first, last }
+        }
+        Kind::Hung(fcc::Hung { silent_ns }) => EventKind::Hung { silent_ns },
     })
 }
 
@@ -144,6 +172,13 @@ fn index_in(index: u32) -> Result<u16, Unknown> {
     u16::try_from(index).map_err(|_| Unknown("a sensor's or an actuator's place"))
 }
 
+fn stage_in(number: i32) -> Result<Stage, Unknown> {
+    u8::try_from(number)
+        .ok()
+        .and_then(Stage::from_number)
+        .ok_or(Unknown("a stage of a tick"))
+}
+
 fn order_out(order: Order<Command>) -> Option<WireOrder> {
     Some(match order {
         Order::Engage => WireOrder::Engage(fcc::Engage {}),
@@ -152,6 +187,7 @@ fn order_out(order: Order<Command>) -> Option<WireOrder> {
         Order::Controller(Command::Airspeed(mps)) => WireOrder::AirspeedMps(mps),
         Order::Controller(Command::Heading(rad)) => WireOrder::HeadingRad(rad),
         Order::Controller(Command::Altitude(m)) => WireOrder::AltitudeM(m),
+        Order::Controller(Command::Resume(resume)) => WireOrder::Resume(resume_out(&resume)),
         Order::Controller(_) => return None,
     })
 }
@@ -164,5 +200,36 @@ fn order_in(order: fcc::Order) -> Result<Order<Command>, Unknown> {
         WireOrder::AirspeedMps(mps) => Order::Controller(Command::Airspeed(mps)),
         WireOrder::HeadingRad(rad) => Order::Controller(Command::Heading(rad)),
         WireOrder::AltitudeM(m) => Order::Controller(Command::Altitude(m)),
+        WireOrder::Resume(resume) => Order::Controller(Command::Resume(resume_in(&resume))),
     })
+}
+
+fn resume_out(resume: &Resume) -> fcc::Resume {
+    fcc::Resume {
+        airspeed_mps: resume.targets.airspeed_mps,
+        heading_rad: resume.targets.heading_rad,
+        altitude_m: resume.targets.altitude_m,
+        pattern_s: resume.pattern_s,
+        throttle: resume.surfaces.throttle,
+        elevator: resume.surfaces.elevator,
+        aileron: resume.surfaces.aileron,
+        rudder: resume.surfaces.rudder,
+    }
+}
+
+fn resume_in(resume: &fcc::Resume) -> Resume {
+    Resume {
+        targets: Targets {
+            airspeed_mps: resume.airspeed_mps,
+            heading_rad: resume.heading_rad,
+            altitude_m: resume.altitude_m,
+        },
+        pattern_s: resume.pattern_s,
+        surfaces: Surfaces {
+            throttle: resume.throttle,
+            elevator: resume.elevator,
+            aileron: resume.aileron,
+            rudder: resume.rudder,
+        },
+    }
 }

@@ -33,6 +33,9 @@ pub(crate) fn encode(record: &FlightRecord) -> fcc::Record {
         sensor_faults: record.sensor_faults,
         actuator_faults: record.actuator_faults,
         records_dropped: record.records_dropped,
+        overruns: record.overruns,
+        page_faults: record.page_faults,
+        early_wake_ns: record.early_wake_ns,
     }
 }
 
@@ -53,6 +56,9 @@ pub(crate) fn decode(record: &fcc::Record) -> Result<FlightRecord, Unknown> {
         sensor_faults: record.sensor_faults,
         actuator_faults: record.actuator_faults,
         records_dropped: record.records_dropped,
+        overruns: record.overruns,
+        page_faults: record.page_faults,
+        early_wake_ns: record.early_wake_ns,
         state: state_in(record.state.unwrap_or_default())?,
         blockers: Flags::from_bits(record.blockers),
         faults: Flags::from_bits(record.faults),

@@ -1,0 +1,97 @@
+//! The daemon in a process of its own, and what it recorded.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use fcc_core::framework::Message;
+use fcc_telemetry::FlightRecord;
+use fcc_telemetry::recording::Recording;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use tempfile::TempDir;
+
+use crate::wire::Wire;
+
+/// How long it may take to end.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The daemon at work.
+pub(crate) struct Daemon {
+    process: Child,
+    folder: TempDir,
+}
+
+impl Daemon {
+    pub(crate) fn start(
+        fccd: &Path,
+        port: u16,
+        rate_hz: u32,
+        with: &str,
+    ) -> Result<Self, Box<dyn Error>> {
+        let folder = tempfile::tempdir()?;
+        let config = folder.path().join("fccd.toml");
+        let recordings = folder.path().join("recordings");
+        let text = format!(
+            "[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
+             [recording]\nfolder = {recordings:?}\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
+             [course]\nkind = \"hold\"\n"
+        );
+        fs::write(&config, text)?;
+        let process = Command::new(fccd)
+            .arg("run")
+            .arg("--config")
+            .arg(&config)
+            .stdout(Stdio::null())
+            .spawn()
+            .map_err(|error| format!("{} does not start: {error}", fccd.display()))?;
+        Ok(Self { process, folder })
+    }
+
+    /// Ends it and reads what it recorded; the simulator lives on meanwhile.
+    pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<FlightRecord>, Box<dyn Error>> {
+        kill(
+            Pid::from_raw(self.process.id().cast_signed()),
+            Signal::SIGTERM,
+        )?;
+        let asked = Instant::now();
+        let status = loop {
+            if let Some(status) = self.process.try_wait()? {
+                break status;
+            }
+            if asked.elapsed() > PATIENCE {
+                return Err("the daemon does not end".into());
+            }
+            wire.live_until(Instant::now() + Duration::from_millis(50))?;
+        };
+        if !status.success() {
+            return Err(format!("the daemon: {status}").into());
+        }
+        let mut records = Vec::new();
+        for file in fs::read_dir(self.folder.path().join("recordings"))? {
+            let path = file?.path();
+            if path
+                .extension()
+                .is_some_and(|extension| extension == "mcap")
+            {
+                records.extend(Recording::open(&path)?.messages()?.filter_map(|message| {
+                    match message {
+                        Message::Tick(record) => Some(record),
+                        Message::Event(_) => None,
+                    }
+                }));
+            }
+        }
+        Ok(records)
+    }
+}
+
+impl Drop for Daemon {
+    fn drop(&mut self) {
+        // Ended long ago, unless something went wrong.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

@@ -1,0 +1,109 @@
+//! A whole loop that flies a simulated X-Plane over loopback.
+
+use std::time::Duration;
+
+use fcc_core::flight::{Autopilot, AutopilotConfig};
+use fcc_core::framework::State;
+use fcc_runtime::{Link, LoopConfig, Machine, Order, Parts};
+use fcc_timer::{Expiry, ManualTimer, Timer, TimerError};
+use fcc_xplane::XPlane;
+use nix::time::{ClockId, clock_gettime};
+
+use crate::PERIOD;
+use crate::support::FakeXPlane;
+
+/// The autopilot engages after navigation has watched for a second.
+const TICKS_TO_SETTLE: u32 = 80;
+
+/// The whole loop, engaged, and the simulator at the other end of its socket.
+/// Nothing waits: the simulator sends a frame when told to, and then a tick is
+/// due.
+pub struct Flight {
+    pub(crate) simulator: FakeXPlane,
+    pub(crate) machine: Machine<Autopilot>,
+    link: Link<Autopilot>,
+}
+
+impl Flight {
+    /// Engaged, with warm caches.
+    ///
+    /// # Panics
+    /// When it cannot be put together or does not engage.
+    pub fn engaged() -> Self {
+        let simulator = FakeXPlane::new();
+        let (sensor, actuator) = XPlane::open(&simulator.config()).expect("no sockets");
+        let parts = Parts {
+            timer: Box::new(Unwaiting(ManualTimer::new(PERIOD).expect("a fair period"))),
+            sensors: vec![Box::new(sensor)],
+            controller: Autopilot::new(AutopilotConfig::default()),
+            actuators: vec![Box::new(actuator)],
+        };
+        let (mut machine, link) =
+            Machine::new(parts, &LoopConfig::default()).expect("a fair period");
+        machine.start().expect("nothing to refuse");
+        let mut flight = Self {
+            simulator,
+            machine,
+            link,
+        };
+        for _ in 0..TICKS_TO_SETTLE {
+            flight.frame();
+            flight.tick();
+        }
+        let sent = flight.link.orders.send(Order::Engage);
+        assert!(sent.is_ok(), "the order finds no room");
+        for _ in 0..TICKS_TO_SETTLE {
+            flight.frame();
+            flight.tick();
+        }
+        assert_eq!(flight.machine.state(), State::Engaged, "does not engage");
+        flight
+    }
+
+    /// What happens between two ticks: the simulator takes what came and sends
+    /// a frame, and somebody fetches the loop's messages.
+    pub fn frame(&mut self) {
+        self.simulator.writes.clear();
+        self.simulator.live(PERIOD.as_secs_f32());
+        while self.link.messages.receive().is_some() {}
+    }
+
+    /// A tick, from its wake-up to its record in the ring.
+    #[inline(never)]
+    pub fn tick(&mut self) -> State {
+        self.machine.step()
+    }
+
+    /// The loop.
+    pub const fn machine(&self) -> &Machine<Autopilot> {
+        &self.machine
+    }
+}
+
+/// Ticks at once, and still asks the kernel's clock for the time of each
+/// stage, as a timer that waits does; the ticks' time is its own.
+struct Unwaiting(ManualTimer);
+
+impl Timer for Unwaiting {
+    fn start(&mut self) -> Result<(), TimerError> {
+        self.0.start()
+    }
+
+    fn wait(&mut self) -> Result<Expiry, TimerError> {
+        self.0.wait()
+    }
+
+    fn period(&self) -> Duration {
+        self.0.period()
+    }
+
+    fn now_ns(&self) -> i64 {
+        // Read and not used: it is its cost that counts.
+        let _ = std::hint::black_box(clock_gettime(ClockId::CLOCK_MONOTONIC));
+        self.0.now_ns()
+    }
+
+    fn name(&self) -> &'static str {
+        "unwaiting"
+    }
+}

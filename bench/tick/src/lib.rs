@@ -1,0 +1,26 @@
+//! What a tick costs. This library puts together what is measured: a whole
+//! loop that flies a simulated X-Plane over loopback ([`Flight`]), and its
+//! stages by themselves ([`Stages`]). The benches take the time and count the
+//! instructions, the programs count system calls and bytes of memory, and
+//! follow a datagram there and back. `make bench` runs them all;
+//! `docs/benchmarks.md` says what they gave.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a benchmark that cannot be set up has nothing to tell"
+)]
+
+mod flight;
+pub mod marks;
+mod stages;
+#[allow(missing_docs, reason = "it is a test's own")]
+#[path = "../../../crates/fcc-xplane/tests/support/mod.rs"]
+mod support;
+
+pub use flight::Flight;
+pub use stages::Stages;
+pub use support::FakeXPlane;
+
+/// The period of the loop that is measured.
+pub const PERIOD: std::time::Duration = std::time::Duration::from_millis(25);

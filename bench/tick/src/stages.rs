@@ -1,0 +1,171 @@
+//! The stages of a tick by themselves, without a socket.
+
+use std::collections::VecDeque;
+use std::hint::black_box;
+use std::sync::{Arc, Mutex};
+
+use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
+use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
+use rtrb::{Consumer, Producer, RingBuffer};
+use std::net::SocketAddrV4;
+
+use crate::support::{FLIGHT_TIME, FakeXPlane, Scripted, position_reply};
+use crate::{Flight, PERIOD};
+
+/// Enough for sensor and actuator to have settled.
+const WARM_UP_TICKS: u32 = 100;
+
+/// Each stage of a tick, to be called by itself, in any order. Between two
+/// calls, [`next`](Self::next) moves on to the next tick.
+pub struct Stages {
+    simulator: FakeXPlane,
+    wire: Arc<Scripted>,
+    sensor: XPlaneSensor<Wire>,
+    actuator: XPlaneActuator<Wire>,
+    autopilot: Autopilot,
+    tick: Tick,
+    measurements: Measurements,
+    sampled: Measurements,
+    outputs: Surfaces,
+    record: RecordOf<Autopilot>,
+    ring: (
+        Producer<MessageOf<Autopilot>>,
+        Consumer<MessageOf<Autopilot>>,
+    ),
+}
+
+impl Stages {
+    /// Of a loop that is engaged.
+    ///
+    /// # Panics
+    /// When it cannot be put together.
+    pub fn engaged() -> Self {
+        let flight = Flight::engaged();
+        let simulator = flight.simulator;
+        let config = simulator.config();
+        let wire = Arc::new(Scripted {
+            from: simulator.address(),
+            datagrams: Mutex::new(VecDeque::new()),
+        });
+        let (sensor, actuator) =
+            XPlane::over(&config, Wire(Arc::clone(&wire)), None).expect("a fair configuration");
+        let record = *flight.machine.record();
+        let mut stages = Self {
+            simulator,
+            wire,
+            sensor,
+            actuator,
+            autopilot: flight.machine.controller().clone(),
+            tick: record.tick,
+            measurements: record.measurements,
+            sampled: record.measurements,
+            outputs: record.outputs,
+            record,
+            ring: RingBuffer::new(16),
+        };
+        for _ in 0..WARM_UP_TICKS {
+            stages.next();
+            stages.sensors();
+            stages.navigation();
+            stages.guidance();
+            stages.control();
+            stages.actuators();
+            stages.record();
+        }
+        stages
+    }
+
+    /// Moves on to the next tick: time passes, a frame comes, the ring is
+    /// emptied.
+    ///
+    /// # Panics
+    /// Not unless another thread has.
+    pub fn next(&mut self) {
+        self.tick.number += 1;
+        self.tick.scheduled = self.tick.scheduled + PERIOD;
+        self.tick.woke = self.tick.woke + PERIOD;
+        let now = self.tick.woke;
+        let measured = &mut self.measurements;
+        measured.attitude.taken = now;
+        measured.heading_rad.taken = now;
+        measured.body_rates.taken = now;
+        measured.specific_force.taken = now;
+        measured.airspeed_mps.taken = now;
+        measured.altitude_m.taken = now;
+        measured.angle_of_attack_rad.taken = now;
+        measured.position.taken = now;
+        measured.velocity.taken = now;
+        measured.surfaces.taken = now;
+        measured.engage_switch.taken = now;
+        measured.plant.taken = now;
+        measured.plant.value.time_s += PERIOD.as_secs_f64();
+
+        let time = self.simulator.value(FLIGHT_TIME) + PERIOD.as_secs_f32();
+        self.simulator.set(FLIGHT_TIME, time);
+        let mut datagrams = self.wire.datagrams.lock().expect("one thread");
+        datagrams.clear();
+        datagrams.push_back(self.simulator.frame());
+        datagrams.push_back(position_reply(self.simulator.position));
+        drop(datagrams);
+        while self.ring.1.pop().is_ok() {}
+    }
+
+    /// A frame's datagrams become measurements.
+    #[inline(never)]
+    pub fn sensors(&mut self) {
+        // What it says is of no interest here, as long as it is said.
+        let _ = black_box(self.sensor.sample(&self.tick, &mut self.sampled));
+    }
+
+    /// Measurements become where we are and how we move.
+    #[inline(never)]
+    pub fn navigation(&mut self) {
+        self.autopilot
+            .estimate(&self.tick, black_box(&self.measurements));
+    }
+
+    /// Where to go next.
+    #[inline(never)]
+    pub fn guidance(&mut self) {
+        self.autopilot
+            .guide(&self.tick, black_box(&self.measurements));
+    }
+
+    /// Which surfaces and what throttle, and whether they are valid.
+    #[inline(never)]
+    pub fn control(&mut self) {
+        self.outputs = self
+            .autopilot
+            .control(&self.tick, black_box(&self.measurements));
+        black_box(self.autopilot.outputs_are_valid(&self.outputs));
+    }
+
+    /// They become datagrams.
+    #[inline(never)]
+    pub fn actuators(&mut self) {
+        let _ = black_box(self.actuator.apply(&self.tick, &self.outputs));
+    }
+
+    /// The record goes into the ring.
+    #[inline(never)]
+    pub fn record(&mut self) {
+        self.record.measurements = self.measurements;
+        self.record.tick = self.tick;
+        let pushed = self.ring.0.push(Message::Tick(black_box(self.record)));
+        black_box(pushed.is_ok());
+    }
+}
+
+/// The wire that sensor and actuator share.
+struct Wire(Arc<Scripted>);
+
+impl Port for Wire {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+        self.0.receive(into)
+    }
+
+    fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno> {
+        self.0.send(black_box(datagram), to)
+    }
+}

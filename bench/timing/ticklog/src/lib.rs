@@ -1,0 +1,136 @@
+//! What every peer logs, alike: when each tick came, and nothing else.
+//!
+//! A peer makes a [`TickLog`], calls [`TickLog::tick`] first of all in each
+//! tick, and prints the log when that says it is over. All the reckoning is
+//! done afterwards, by the harness, from what is printed: one [`Ticks`] as JSON.
+//! The peer in Python prints the same fields.
+
+use std::io::Write as _;
+use std::time::Duration;
+
+use fcc_timer::{RealtimeWishes, usage};
+use nix::sys::time::TimeValLike as _;
+use nix::time::{ClockId, clock_gettime};
+use serde::{Deserialize, Serialize};
+
+/// What the harness tells every peer.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct Run {
+    /// Ticks per second, 1..=1000000.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub rate: u32,
+    /// How long to run, s.
+    #[arg(long)]
+    pub seconds: f64,
+}
+
+impl Run {
+    /// The time between ticks.
+    #[must_use]
+    pub fn period(&self) -> Duration {
+        Duration::from_secs(1) / self.rate
+    }
+}
+
+/// What a peer prints: times in ns on `CLOCK_MONOTONIC`.
+#[derive(Serialize, Deserialize, Clone, Debug, Default)]
+pub struct Ticks {
+    /// The scheduling policy that the kernel reads back.
+    pub policy: String,
+    /// Its priority.
+    pub priority: i32,
+    /// From what the deadlines count: tick k is due at `origin_ns + k * period`.
+    /// `None` where the peer does not tell.
+    pub origin_ns: Option<i64>,
+    /// CPU time of the process from the first tick to the last.
+    pub cpu_ns: i64,
+    /// When each tick came.
+    pub ticks_ns: Vec<i64>,
+}
+
+/// Now on `CLOCK_MONOTONIC`, ns; no system call.
+#[must_use]
+pub fn monotonic_ns() -> i64 {
+    // Linux always has this clock.
+    clock_gettime(ClockId::CLOCK_MONOTONIC).map_or(0, |now| now.num_nanoseconds())
+}
+
+/// The times of the ticks, in memory that is there before the first.
+#[derive(Debug)]
+pub struct TickLog {
+    log: Ticks,
+    length: usize,
+    run_ns: i64,
+    ends_ns: i64,
+}
+
+impl TickLog {
+    /// Allocates for the run, locks memory, and reads back what the thread's
+    /// scheduling is. The harness sets that from outside, alike for all.
+    ///
+    /// # Errors
+    /// When the kernel refuses and that matters.
+    pub fn new(run: Run) -> anyhow::Result<Self> {
+        let run_ns = (run.seconds * 1e9) as i64;
+        // A peer that ticks too often shall fill the log and end, not grow it.
+        let room = (f64::from(run.rate) * run.seconds * 2.0) as usize + 1_000;
+        let ticks_ns = vec![0; room];
+        let grants = RealtimeWishes {
+            lock_memory: true,
+            timer_slack_ns: Some(1),
+            ..RealtimeWishes::default()
+        }
+        .apply()?;
+        for refusal in &grants.refused {
+            eprintln!("{refusal}");
+        }
+        Ok(Self {
+            log: Ticks {
+                policy: grants.policy.to_owned(),
+                priority: grants.priority,
+                ticks_ns,
+                ..Ticks::default()
+            },
+            length: 0,
+            run_ns,
+            ends_ns: 0,
+        })
+    }
+
+    /// From what the deadlines count, if the peer knows.
+    pub fn set_origin(&mut self, origin_ns: i64) {
+        self.log.origin_ns = Some(origin_ns);
+    }
+
+    /// Logs a tick, now; says whether to go on.
+    #[inline]
+    pub fn tick(&mut self) -> bool {
+        let now_ns = monotonic_ns();
+        let Some(slot) = self.log.ticks_ns.get_mut(self.length) else {
+            return self.end();
+        };
+        *slot = now_ns;
+        self.length += 1;
+        if self.length == 1 {
+            self.ends_ns = now_ns + self.run_ns;
+            self.log.cpu_ns = usage::process_cpu_ns();
+        }
+        now_ns < self.ends_ns || self.end()
+    }
+
+    fn end(&mut self) -> bool {
+        self.log.cpu_ns = usage::process_cpu_ns() - self.log.cpu_ns;
+        false
+    }
+
+    /// Prints the log for the harness.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn print(mut self) -> anyhow::Result<()> {
+        self.log.ticks_ns.truncate(self.length);
+        let mut out = std::io::stdout().lock();
+        serde_json::to_writer(&mut out, &self.log)?;
+        Ok(writeln!(out)?)
+    }
+}

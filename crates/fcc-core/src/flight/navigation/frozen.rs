@@ -1,0 +1,524 @@
+//! Which sensors stand still while the aircraft moves.
+//!
+//! A sensor that hangs often goes on sending its last value, with new times. A
+//! value that is the same to the last bit is no proof: in calm air a good
+//! sensor of coarse steps shows the same for long. So a quantity is frozen when
+//! its bits have stayed the same for a while *and* others say that the aircraft
+//! moved so that it must have changed: the gyroscopes for the attitude and the
+//! heading, attitude and heading for the gyroscopes, the climb for the
+//! altitude, a change of bank or pitch for airspeed and accelerometers. While
+//! nothing moves a frozen sensor goes unseen, and does no harm.
+//!
+//! What others say is summed up with a leak, so that their own small errors
+//! never add up to a movement; and a sensor with the least noise never repeats
+//! its bits, so that nothing here can be wrong about it.
+
+use core::time::Duration;
+
+use libm::{cos, sin};
+
+use super::Estimate;
+use super::attitude::MIN_COS_PITCH;
+use crate::blocks::wrap_pi;
+use crate::flight::Measurements;
+use crate::framework::Time;
+
+/// A sensor of few readings a second repeats one now and then.
+const FEWEST_REPEATS: u32 = 10;
+/// What others say is forgotten with this time constant, s: gyroscopes off by
+/// 0.5 °/s, or a climb by 1.5 m/s, never reach the limits below.
+const LEAK_S: f64 = 10.0;
+/// Turned so far, an attitude, a heading or gyroscopes must have shown it, rad
+/// (5°): ten times what a coarse attitude sensor resolves.
+const TURNED_RAD: f64 = 0.087;
+/// Climbed so far, a barometer must have shown it, m.
+const CLIMBED_M: f64 = 15.0;
+/// Who changes bank or pitch by so much changes load and drag, rad (10°, 4°):
+/// well beyond what calm air does to an aircraft that is trimmed.
+const BANKED_RAD: f64 = 0.175;
+const PITCHED_RAD: f64 = 0.07;
+/// What is the same is the same to the last bit, ...
+const EXACTLY: f64 = 0.0;
+/// ... but for a specific force that comes by way of an acceleration over the
+/// ground, which is rounded in between, m/s²: a tenth of what the best small
+/// accelerometers are noisy.
+const SAME_FORCE_MPS2: f64 = 1e-3;
+/// The climb from the ground velocity is believed so long, else it is worked
+/// out from the pitch.
+const CURRENT: Duration = Duration::from_millis(500);
+
+/// One quantity and for how long it has been the same.
+#[derive(Clone, Copy, Debug)]
+struct Stuck<const N: usize> {
+    values: [f64; N],
+    taken: Time,
+    repeats: u32,
+    for_s: f64,
+    is_frozen: bool,
+}
+
+impl<const N: usize> Stuck<N> {
+    const fn new(values: [f64; N], taken: Time) -> Self {
+        Self {
+            values,
+            taken,
+            repeats: 0,
+            for_s: 0.0,
+            is_frozen: false,
+        }
+    }
+
+    /// Whether the value is another than before, by more than `tolerance`;
+    /// `dt_s` of the plant's time have passed.
+    fn has_changed(&mut self, values: [f64; N], tolerance: f64, taken: Time, dt_s: f64) -> bool {
+        let differs = |(is, was): (&f64, &f64)| (is - was).abs() > tolerance;
+        if taken.is_never() || values.iter().zip(&self.values).any(differs) {
+            *self = Self::new(values, taken);
+            return true;
+        }
+        if taken > self.taken {
+            self.taken = taken;
+            self.repeats = self.repeats.saturating_add(1);
+        }
+        self.for_s += dt_s;
+        false
+    }
+
+    /// Others say that it must have changed. Once frozen it stays so until it
+    /// does.
+    fn judge(&mut self, must_have_changed: bool, after_s: f64) {
+        let lasts = self.for_s >= after_s && self.repeats >= FEWEST_REPEATS;
+        self.is_frozen |= lasts && must_have_changed;
+    }
+}
+
+/// Sums up and forgets.
+#[derive(Clone, Copy, Debug, Default)]
+struct Leaky(f64);
+
+impl Leaky {
+    fn add(&mut self, amount: f64, dt_s: f64) {
+        self.0 += amount - self.0 * (dt_s / LEAK_S).min(1.0);
+    }
+
+    fn exceeds(self, limit: f64) -> bool {
+        self.0.abs() > limit
+    }
+}
+
+/// Which of the quantities that control needs stand still while the aircraft
+/// moves.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "six quantities, each frozen or not"
+)]
+pub(crate) struct Frozen {
+    pub(crate) attitude: bool,
+    pub(crate) heading: bool,
+    pub(crate) body_rates: bool,
+    pub(crate) specific_force: bool,
+    pub(crate) airspeed: bool,
+    pub(crate) altitude: bool,
+}
+
+/// Roll, pitch and heading, rad, or their rates.
+type Angles = [f64; 3];
+
+/// Watches the six quantities that control needs.
+#[derive(Clone, Debug)]
+pub(crate) struct FrozenWatch {
+    /// 0 never calls one frozen.
+    after_s: f64,
+    roll: Stuck<1>,
+    pitch: Stuck<1>,
+    heading: Stuck<1>,
+    rates: Stuck<3>,
+    force: Stuck<3>,
+    airspeed: Stuck<1>,
+    altitude: Stuck<1>,
+    /// Turned, as the gyroscopes say, since roll, pitch and heading changed.
+    turned: [Leaky; 3],
+    /// Turned otherwise than the gyroscopes say, since they changed.
+    unsaid: [Leaky; 3],
+    /// Climbed since the altitude changed.
+    climbed: Leaky,
+    /// Climb rate less what the pitch made of it, when the altitude changed.
+    climb_at_level_mps: f64,
+    /// The attitude when specific force and airspeed changed.
+    force_at: Angles,
+    airspeed_at: Angles,
+    /// The measured attitude and heading of the tick before.
+    before: Option<Angles>,
+}
+
+impl FrozenWatch {
+    /// A value must have been the same for `after_s` of the plant's time; 0
+    /// never calls one frozen.
+    pub(crate) const fn new(after_s: f64) -> Self {
+        Self {
+            after_s,
+            roll: Stuck::new([0.0], Time::NEVER),
+            pitch: Stuck::new([0.0], Time::NEVER),
+            heading: Stuck::new([0.0], Time::NEVER),
+            rates: Stuck::new([0.0; 3], Time::NEVER),
+            force: Stuck::new([0.0; 3], Time::NEVER),
+            airspeed: Stuck::new([0.0], Time::NEVER),
+            altitude: Stuck::new([0.0], Time::NEVER),
+            turned: [Leaky(0.0); 3],
+            unsaid: [Leaky(0.0); 3],
+            climbed: Leaky(0.0),
+            climb_at_level_mps: 0.0,
+            force_at: [0.0; 3],
+            airspeed_at: [0.0; 3],
+            before: None,
+        }
+    }
+
+    /// Takes the measurements at `now`, `dt_s` seconds of the plant's time
+    /// after the last, and what navigation made of them.
+    pub(crate) fn step(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) {
+        if self.after_s <= 0.0 || dt_s <= 0.0 {
+            return;
+        }
+        let attitude = measurements.attitude;
+        let heading = measurements.heading_rad;
+        let angles = [
+            attitude.value.roll_rad,
+            attitude.value.pitch_rad,
+            heading.value,
+        ];
+        let before = self.before.replace(angles).unwrap_or(angles);
+        let said = angle_rates(measurements, angles);
+
+        self.step_angles(&attitude.taken, &heading.taken, angles, said, dt_s);
+        self.step_rates(measurements, angles, before, said, dt_s);
+        self.step_altitude(now, measurements, estimate, dt_s);
+
+        let force = measurements.specific_force;
+        let forces = [force.value.x_mps2, force.value.y_mps2, force.value.z_mps2];
+        if self
+            .force
+            .has_changed(forces, SAME_FORCE_MPS2, force.taken, dt_s)
+        {
+            self.force_at = angles;
+        }
+        self.force
+            .judge(manoeuvred(self.force_at, angles), self.after_s);
+        let airspeed = measurements.airspeed_mps;
+        if self
+            .airspeed
+            .has_changed([airspeed.value], EXACTLY, airspeed.taken, dt_s)
+        {
+            self.airspeed_at = angles;
+        }
+        self.airspeed
+            .judge(manoeuvred(self.airspeed_at, angles), self.after_s);
+    }
+
+    fn step_angles(
+        &mut self,
+        attitude_taken: &Time,
+        heading_taken: &Time,
+        [roll, pitch, heading]: Angles,
+        said: Angles,
+        dt_s: f64,
+    ) {
+        let stuck = [&mut self.roll, &mut self.pitch, &mut self.heading];
+        let values = [roll, pitch, heading];
+        let taken = [attitude_taken, attitude_taken, heading_taken];
+        for ((((stuck, turned), value), taken), rate) in stuck
+            .into_iter()
+            .zip(&mut self.turned)
+            .zip(values)
+            .zip(taken)
+            .zip(said)
+        {
+            if stuck.has_changed([value], EXACTLY, *taken, dt_s) {
+                *turned = Leaky::default();
+            } else {
+                turned.add(rate * dt_s, dt_s);
+            }
+            stuck.judge(turned.exceeds(TURNED_RAD), self.after_s);
+        }
+    }
+
+    fn step_rates(
+        &mut self,
+        measurements: &Measurements,
+        angles: Angles,
+        before: Angles,
+        said: Angles,
+        dt_s: f64,
+    ) {
+        let rates = measurements.body_rates;
+        let values = [
+            rates.value.roll_radps,
+            rates.value.pitch_radps,
+            rates.value.yaw_radps,
+        ];
+        if self.rates.has_changed(values, EXACTLY, rates.taken, dt_s) {
+            self.unsaid = [Leaky::default(); 3];
+            return;
+        }
+        let mut exceeds = false;
+        for (((unsaid, is), was), said) in self.unsaid.iter_mut().zip(angles).zip(before).zip(said)
+        {
+            unsaid.add(wrap_pi(is - was) - said * dt_s, dt_s);
+            exceeds |= unsaid.exceeds(TURNED_RAD);
+        }
+        self.rates.judge(exceeds, self.after_s);
+    }
+
+    fn step_altitude(
+        &mut self,
+        now: Time,
+        measurements: &Measurements,
+        estimate: &Estimate,
+        dt_s: f64,
+    ) {
+        let altitude = measurements.altitude_m;
+        let by_pitch_mps = estimate.true_airspeed_mps * sin(estimate.pitch_rad);
+        if self
+            .altitude
+            .has_changed([altitude.value], EXACTLY, altitude.taken, dt_s)
+        {
+            self.climbed = Leaky::default();
+            self.climb_at_level_mps = estimate.climb_rate_mps - by_pitch_mps;
+            return;
+        }
+        let climb_mps = match measurements.velocity.fresh(now, CURRENT) {
+            Some(velocity) => -velocity.down_mps,
+            None => self.climb_at_level_mps + by_pitch_mps,
+        };
+        self.climbed.add(climb_mps * dt_s, dt_s);
+        self.altitude
+            .judge(self.climbed.exceeds(CLIMBED_M), self.after_s);
+    }
+
+    /// Which quantities are frozen.
+    pub(crate) const fn frozen(&self) -> Frozen {
+        Frozen {
+            attitude: self.roll.is_frozen || self.pitch.is_frozen,
+            heading: self.heading.is_frozen,
+            body_rates: self.rates.is_frozen,
+            specific_force: self.force.is_frozen,
+            airspeed: self.airspeed.is_frozen,
+            altitude: self.altitude.is_frozen,
+        }
+    }
+}
+
+/// Rates of roll, pitch and heading as the gyroscopes say (Stevens, Lewis
+/// and Johnson 2016, equation 1.4-4).
+fn angle_rates(measurements: &Measurements, [roll, pitch, _]: Angles) -> Angles {
+    let r = measurements.body_rates.value;
+    let (sin_roll, cos_roll) = (sin(roll), cos(roll));
+    let horizontal =
+        (r.pitch_radps * sin_roll + r.yaw_radps * cos_roll) / cos(pitch).max(MIN_COS_PITCH);
+    [
+        r.roll_radps + sin(pitch) * horizontal,
+        r.pitch_radps * cos_roll - r.yaw_radps * sin_roll,
+        horizontal,
+    ]
+}
+
+/// Whether bank or pitch changed so much that load and drag did.
+fn manoeuvred([roll_was, pitch_was, _]: Angles, [roll, pitch, _]: Angles) -> bool {
+    wrap_pi(roll - roll_was).abs() > BANKED_RAD || (pitch - pitch_was).abs() > PITCHED_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::flight::{Attitude, BodyRates, SpecificForce, Velocity};
+    use crate::framework::Reading;
+
+    const DT_S: f64 = 0.025;
+    const AFTER_S: f64 = 2.0;
+
+    /// An aircraft that rolls by 10 °/s for 3 s, then turns by 5 °/s and
+    /// climbs by 5 m/s; every value a little different from tick to tick.
+    fn flying(tick: i64) -> Measurements {
+        let at = Time::from_nanos(tick * 25_000_000);
+        let t_s = tick as f64 * DT_S;
+        let tiny = (tick % 7) as f64 * 1e-9;
+        let rolling = t_s < 3.0;
+        let roll_deg = 10.0 * t_s.min(3.0);
+        let since_s = (t_s - 3.0).max(0.0);
+        let heading_rad = (5.0 * since_s).to_radians();
+        let yaw = if rolling { 0.0 } else { 5.0_f64.to_radians() };
+        let roll_rad = roll_deg.to_radians();
+        let rates = BodyRates {
+            roll_radps: if rolling { 10.0_f64.to_radians() } else { 0.0 } + tiny,
+            pitch_radps: yaw * sin(roll_rad),
+            yaw_radps: yaw * cos(roll_rad),
+        };
+        let climb_mps = if rolling { 0.0 } else { 5.0 };
+        let force = SpecificForce {
+            z_mps2: -9.81 / cos(roll_rad) + tiny,
+            ..SpecificForce::default()
+        };
+        let attitude = Attitude {
+            roll_rad: roll_rad + tiny,
+            pitch_rad: 0.05 + tiny,
+        };
+        Measurements {
+            attitude: Reading::new(attitude, at),
+            heading_rad: Reading::new(heading_rad + tiny, at),
+            body_rates: Reading::new(rates, at),
+            specific_force: Reading::new(force, at),
+            airspeed_mps: Reading::new(51.0 + tiny, at),
+            altitude_m: Reading::new(914.0 + 5.0 * since_s + tiny, at),
+            velocity: Reading::new(
+                Velocity {
+                    down_mps: -climb_mps,
+                    ..Velocity::default()
+                },
+                at,
+            ),
+            ..Measurements::default()
+        }
+    }
+
+    /// When, in s, each quantity is called frozen over 20 s.
+    fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
+        let mut watch = FrozenWatch::new(AFTER_S);
+        let estimate = Estimate::default();
+        let mut seen = Vec::new();
+        for tick in 0..800 {
+            let measurements = measured(tick);
+            let now = measurements.attitude.taken;
+            watch.step(now, &measurements, &estimate, DT_S);
+            let frozen = watch.frozen();
+            if seen.last().is_none_or(|(_, last)| *last != frozen) {
+                seen.push((tick as f64 * DT_S, frozen));
+            }
+        }
+        seen
+    }
+
+    /// The flight with one quantity as it was at the start, but for its time.
+    fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen)> {
+        let start = flying(0);
+        watch(|tick| {
+            let mut measurements = flying(tick);
+            freeze(&mut measurements, &start);
+            measurements
+        })
+    }
+
+    #[test]
+    fn what_moves_is_not_frozen() {
+        assert_eq!(watch(flying), [(0.0, Frozen::default())]);
+    }
+
+    #[test]
+    fn each_is_seen_when_the_aircraft_moves_and_alone() {
+        type Case = (fn(&mut Measurements, &Measurements), Frozen, f64);
+        let none = Frozen::default();
+        let cases: [Case; 6] = [
+            // 5° are rolled after half a second; the least time is 2 s.
+            (
+                |m, start| m.attitude.value = start.attitude.value,
+                Frozen {
+                    attitude: true,
+                    ..none
+                },
+                2.0,
+            ),
+            // 5 °/s from 3 s on: 5° at 4 s, and a little leaks.
+            (
+                |m, start| m.heading_rad.value = start.heading_rad.value,
+                Frozen {
+                    heading: true,
+                    ..none
+                },
+                4.05,
+            ),
+            // They go on saying 10 °/s from 3 s on, where it does not roll.
+            (
+                |m, start| m.body_rates.value = start.body_rates.value,
+                Frozen {
+                    body_rates: true,
+                    ..none
+                },
+                3.5,
+            ),
+            // 10° of bank are there after a second.
+            (
+                |m, start| m.specific_force.value = start.specific_force.value,
+                Frozen {
+                    specific_force: true,
+                    ..none
+                },
+                2.0,
+            ),
+            (
+                |m, start| m.airspeed_mps.value = start.airspeed_mps.value,
+                Frozen {
+                    airspeed: true,
+                    ..none
+                },
+                2.0,
+            ),
+            // 5 m/s from 3 s on: 15 m at 6 s, and what leaks (10 s).
+            (
+                |m, start| m.altitude_m.value = start.altitude_m.value,
+                Frozen {
+                    altitude: true,
+                    ..none
+                },
+                6.55,
+            ),
+        ];
+        for (freeze, expected, at_s) in cases {
+            let seen = with_frozen(freeze);
+            let [_, (seen_s, frozen)] = seen[..] else {
+                panic!("{seen:?} is not {expected:?}");
+            };
+            assert_eq!(frozen, expected);
+            assert!((seen_s - at_s).abs() < 0.1, "{frozen:?} at {seen_s} s");
+        }
+    }
+
+    #[test]
+    fn in_calm_air_the_same_for_minutes_is_not_frozen() {
+        let calm = flying(0);
+        let seen = watch(|tick| {
+            let at = Time::from_nanos(tick * 25_000_000);
+            let mut measurements = calm;
+            measurements.body_rates.value.roll_radps = 0.4_f64.to_radians();
+            measurements.attitude.taken = at;
+            measurements.heading_rad.taken = at;
+            measurements.body_rates.taken = at;
+            measurements.airspeed_mps.taken = at;
+            measurements.altitude_m.taken = at;
+            measurements.specific_force.taken = at;
+            measurements
+        });
+        assert_eq!(seen, [(0.0, Frozen::default())]);
+    }
+
+    #[test]
+    fn one_that_moves_again_is_not_frozen_any_more() {
+        let start = flying(0);
+        let seen = watch(|tick| {
+            let mut measurements = flying(tick);
+            if tick < 400 {
+                measurements.airspeed_mps.value = start.airspeed_mps.value;
+            }
+            measurements
+        });
+        assert_eq!(seen.len(), 3, "{seen:?}");
+        assert_eq!(seen[2], (10.0, Frozen::default()));
+    }
+}

@@ -1,0 +1,219 @@
+//! How sure the vertical channel is of its altitude, climb rate and bias.
+//!
+//! Only ratios matter to the gains, so the barometer's noise is fixed and the
+//! rest is stated beside it.
+
+/// The barometer's noise, as a spectral density, m² s: 0.76 m of one sigma, 40
+/// times a second.
+const ALTITUDE_NOISE: f64 = 0.0145;
+
+/// The accelerometer's bias wanders such that it is followed within about the
+/// inverse of this, rad/s.
+const BIAS_BANDWIDTH_RADPS: f64 = 0.1;
+
+/// What there is in place of a silent accelerometer: the aircraft may pull a
+/// tenth of a g for a second, m²/s³.
+const UNFELT_NOISE: f64 = 1.0;
+
+/// One sigma of the climb rate before anything is known, m/s.
+const FIRST_CLIMB_RATE_MPS: f64 = 5.0;
+
+/// One sigma of the accelerometer's bias before anything is known, m/s²: 10 mg,
+/// and what gravity differs between the equator and the poles.
+const FIRST_BIAS_MPS2: f64 = 0.1;
+
+/// The first altitude is taken for a sample of this length, s.
+const FIRST_SAMPLE_S: f64 = 0.025;
+
+/// Covariance of altitude (h), climb rate (v) and the accelerometer's bias (b).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VerticalCovariance {
+    /// Spectral densities: of the accelerometer, m²/s³, and of its bias, m²/s⁵.
+    acceleration_noise: f64,
+    bias_noise: f64,
+    hh: f64,
+    hv: f64,
+    hb: f64,
+    vv: f64,
+    vb: f64,
+    bb: f64,
+}
+
+/// What one metre of altitude error is worth.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gains {
+    /// To the altitude, 0..=1.
+    pub(super) altitude: f64,
+    /// To the climb rate, 1/s.
+    pub(super) climb_rate_per_s: f64,
+    /// To the bias, 1/s²; negative.
+    pub(super) bias_per_s2: f64,
+    /// Inverse of the variance of the altitude error, 1/m².
+    per_variance: f64,
+}
+
+impl VerticalCovariance {
+    /// Nothing is known. In the long run the barometer is believed below
+    /// `bandwidth_radps`, the accelerometer above: for white noise on both
+    /// that is the fourth root of the ratio of their densities.
+    pub(super) const fn new(bandwidth_radps: f64) -> Self {
+        let squared = bandwidth_radps * bandwidth_radps;
+        let bias_squared = BIAS_BANDWIDTH_RADPS * BIAS_BANDWIDTH_RADPS;
+        let mut covariance = Self {
+            acceleration_noise: ALTITUDE_NOISE * squared * squared,
+            bias_noise: ALTITUDE_NOISE * bias_squared * bias_squared * bias_squared,
+            hh: 0.0,
+            hv: 0.0,
+            hb: 0.0,
+            vv: 0.0,
+            vb: 0.0,
+            bb: 0.0,
+        };
+        covariance.restart();
+        covariance
+    }
+
+    /// An altitude was measured, and nothing else is known.
+    pub(super) const fn restart(&mut self) {
+        self.hh = ALTITUDE_NOISE / FIRST_SAMPLE_S;
+        self.vv = FIRST_CLIMB_RATE_MPS * FIRST_CLIMB_RATE_MPS;
+        self.bb = FIRST_BIAS_MPS2 * FIRST_BIAS_MPS2;
+        self.hv = 0.0;
+        self.hb = 0.0;
+        self.vb = 0.0;
+    }
+
+    /// `dt_s` seconds pass, with or without an accelerometer.
+    pub(super) fn predict(&mut self, felt: bool, dt_s: f64) {
+        if felt {
+            // v -= b dt
+            self.hv -= self.hb * dt_s;
+            self.vv += (self.bb * dt_s - 2.0 * self.vb) * dt_s;
+            self.vb -= self.bb * dt_s;
+        }
+        // h += v dt
+        self.hh += (2.0 * self.hv + self.vv * dt_s) * dt_s;
+        self.hv += self.vv * dt_s;
+        self.hb += self.vb * dt_s;
+        self.vv += dt_s
+            * if felt {
+                self.acceleration_noise
+            } else {
+                UNFELT_NOISE
+            };
+        self.bb += self.bias_noise * dt_s;
+    }
+
+    /// An altitude is taken, `since_s` seconds after the one before.
+    pub(super) fn correct(&mut self, since_s: f64) -> Gains {
+        let per_variance = 1.0 / (self.hh + ALTITUDE_NOISE / since_s);
+        let gains = Gains {
+            altitude: self.hh * per_variance,
+            climb_rate_per_s: self.hv * per_variance,
+            bias_per_s2: self.hb * per_variance,
+            per_variance,
+        };
+        self.vv -= gains.climb_rate_per_s * self.hv;
+        self.vb -= gains.climb_rate_per_s * self.hb;
+        self.bb -= gains.bias_per_s2 * self.hb;
+        let left = 1.0 - gains.altitude;
+        self.hh *= left;
+        self.hv *= left;
+        self.hb *= left;
+        gains
+    }
+
+    /// How the present altitude goes with the state: wholly.
+    pub(super) const fn of_altitude(&self) -> Link {
+        Link {
+            h: self.hh,
+            v: self.hv,
+            b: self.hb,
+        }
+    }
+}
+
+/// Covariance of something gone by with the present altitude, climb rate and
+/// bias.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Link {
+    h: f64,
+    v: f64,
+    b: f64,
+}
+
+impl Link {
+    /// As [`VerticalCovariance::predict`].
+    pub(super) fn predict(&mut self, felt: bool, dt_s: f64) {
+        if felt {
+            self.v -= self.b * dt_s;
+        }
+        self.h += self.v * dt_s;
+    }
+
+    /// As [`VerticalCovariance::correct`]; what a metre of altitude error is
+    /// worth to the thing gone by.
+    pub(super) fn correct(&mut self, gains: &Gains) -> f64 {
+        let gain = self.h * gains.per_variance;
+        self.v -= self.h * gains.climb_rate_per_s;
+        self.b -= self.h * gains.bias_per_s2;
+        self.h -= self.h * gains.altitude;
+        gain
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT_S: f64 = 0.025;
+
+    /// The steady filter of a double integrator with both noises white, r and
+    /// q = ω⁴ r. By hand from its Riccati equation: 2 hv = hh²/r, vv = hh hv/r,
+    /// q = hv²/r, so the gains are √2 ω and ω². The bias adds a little.
+    #[test]
+    fn in_the_long_run_the_gains_are_the_textbooks() {
+        let bandwidth = 0.6;
+        let mut covariance = VerticalCovariance::new(bandwidth);
+        let mut gains = covariance.correct(DT_S);
+        for _ in 0..40_000 {
+            covariance.predict(true, DT_S);
+            gains = covariance.correct(DT_S);
+        }
+        let altitude = gains.altitude / DT_S / (core::f64::consts::SQRT_2 * bandwidth);
+        let climb_rate = gains.climb_rate_per_s / DT_S / (bandwidth * bandwidth);
+        assert!((0.97..1.05).contains(&altitude), "{altitude}");
+        assert!((0.97..1.05).contains(&climb_rate), "{climb_rate}");
+    }
+
+    /// A straight line fitted to N samples: the variance of its end is 4/N of
+    /// a sample's, of its slope 12/(N³ dt²) (Bar-Shalom, Li and Kirubarajan
+    /// 2001, section 3.5). The bias is small enough not to matter at once.
+    #[test]
+    fn at_first_it_fits_a_straight_line() {
+        let mut covariance = VerticalCovariance::new(0.01);
+        let samples = 40;
+        for _ in 1..samples {
+            covariance.predict(true, DT_S);
+            covariance.correct(DT_S);
+        }
+        let n = f64::from(samples);
+        let end = covariance.hh / (ALTITUDE_NOISE / DT_S) / (4.0 / n);
+        let slope = covariance.vv / (ALTITUDE_NOISE / DT_S) / (12.0 / (n * n * n * DT_S * DT_S));
+        assert!((0.9..1.1).contains(&end), "{end}");
+        assert!((0.9..1.1).contains(&slope), "{slope}");
+    }
+
+    #[test]
+    fn it_stays_a_covariance() {
+        let mut covariance = VerticalCovariance::new(2.0);
+        for n in 0..200_000 {
+            covariance.predict(n % 7 != 0, if n % 11 == 0 { 0.2 } else { 0.001 });
+            if n % 3 == 0 {
+                covariance.correct(0.02);
+            }
+            assert!(covariance.hh > 0.0 && covariance.vv > 0.0 && covariance.bb > 0.0);
+            assert!(covariance.hv * covariance.hv <= covariance.hh * covariance.vv);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `[budget]` and `[watchdog]`: how long a tick may take, and when it hangs.
+
+use std::time::Duration;
+
+use fcc_runtime::Budget;
+use serde::{Deserialize, Serialize};
+
+/// `[budget]`. A budget that is left out is none, but for the tick's: that is
+/// the period.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BudgetSection {
+    /// The whole tick, from the wake-up to the last actuator write.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tick_us: Option<u32>,
+    /// Sampling the sensors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensors_us: Option<u32>,
+    /// Navigation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub navigation_us: Option<u32>,
+    /// Guidance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub guidance_us: Option<u32>,
+    /// Control.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub control_us: Option<u32>,
+    /// Driving the actuators.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub actuators_us: Option<u32>,
+    /// So many ticks in a row that overrun or are missed are failsafe; 0 for
+    /// never. Left out, as many as fill half a second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failsafe_after: Option<u32>,
+}
+
+impl From<&BudgetSection> for Budget {
+    fn from(section: &BudgetSection) -> Self {
+        let time = |us: Option<u32>| us.map(|us| Duration::from_micros(us.into()));
+        Self {
+            tick: time(section.tick_us),
+            sensors: time(section.sensors_us),
+            navigation: time(section.navigation_us),
+            guidance: time(section.guidance_us),
+            control: time(section.control_us),
+            actuators: time(section.actuators_us),
+            failsafe_after: section.failsafe_after,
+        }
+    }
+}
+
+/// `[watchdog]`.
+#[derive(Clone, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WatchdogSection {
+    /// Whether a loop that hangs is ended.
+    pub enabled: bool,
+    /// A loop without progress for so long hangs; four periods, if those are
+    /// longer.
+    pub hang_after_ms: u64,
+}
+
+/// A tick may be late, and the next, before it is said to hang.
+const FEWEST_PERIODS: u32 = 4;
+
+impl Default for WatchdogSection {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            hang_after_ms: 1_000,
+        }
+    }
+}
+
+impl WatchdogSection {
+    /// How long a loop of this period may show no progress.
+    pub fn hang_after(&self, period: Duration) -> Duration {
+        Duration::from_millis(self.hang_after_ms).max(FEWEST_PERIODS * period)
+    }
+}

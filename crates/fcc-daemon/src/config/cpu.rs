@@ -1,0 +1,103 @@
+//! `realtime.cpu`: `"auto"`, or the number of a CPU.
+
+use std::fmt;
+use std::str::FromStr;
+
+use fcc_timer::CpuWish;
+use serde::de::{Error, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// The most that the kernel's own sets of CPUs can name here.
+const LAST_CPU: usize = 1_023;
+const AUTO: &str = "auto";
+const EXPECTED: &str = "\"auto\" or the number of a CPU, 0 to 1023";
+
+/// The CPU that the loop's thread is bound to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum CpuChoice {
+    /// The best there is, if one is better than the others.
+    Auto,
+    /// This one, counted from 0.
+    Number(usize),
+}
+
+impl From<CpuChoice> for CpuWish {
+    fn from(choice: CpuChoice) -> Self {
+        match choice {
+            CpuChoice::Auto => Self::Auto,
+            CpuChoice::Number(cpu) => Self::Number(cpu),
+        }
+    }
+}
+
+impl FromStr for CpuChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            (AUTO, _) => Ok(Self::Auto),
+            (_, Ok(cpu)) if cpu <= LAST_CPU => Ok(Self::Number(cpu)),
+            _ => Err(format!("give {EXPECTED}")),
+        }
+    }
+}
+
+impl Serialize for CpuChoice {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Auto => out.serialize_str(AUTO),
+            Self::Number(cpu) => out.serialize_u64(*cpu as u64),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for CpuChoice {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(Choice)
+    }
+}
+
+struct Choice;
+
+impl Visitor<'_> for Choice {
+    type Value = CpuChoice;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(EXPECTED)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<CpuChoice, E> {
+        match usize::try_from(number) {
+            Ok(cpu) if cpu <= LAST_CPU => Ok(CpuChoice::Number(cpu)),
+            _ => Err(E::invalid_value(Unexpected::Signed(number), &self)),
+        }
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<CpuChoice, E> {
+        match text {
+            AUTO => Ok(CpuChoice::Auto),
+            other => Err(E::invalid_value(Unexpected::Str(other), &self)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Config;
+
+    fn complaint(value: &str) -> String {
+        let text = format!("[built-in]\n[realtime]\ncpu = {value}\n");
+        let error = Config::parse(&text, "flight.toml").unwrap_err();
+        error.to_string()
+    }
+
+    #[test]
+    fn what_is_no_cpu_is_answered_with_what_would_be() {
+        for value in ["-1", "1024", "\"isolated\"", "true", "1.5"] {
+            let words = complaint(value);
+            assert!(words.contains("flight.toml:3"), "{words}");
+            assert!(words.contains("realtime.cpu"), "{words}");
+            assert!(words.contains("choose \"auto\" or the number"), "{words}");
+        }
+    }
+}

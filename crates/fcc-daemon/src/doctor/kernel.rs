@@ -1,0 +1,170 @@
+//! The kernel: how soon it lets a thread run, and what it times it with.
+
+use super::board::{Board, not_told};
+use super::machine::Machine;
+use super::{Finding, Grade};
+
+/// Whether the kernel interrupts itself for a thread that is due.
+pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "preemption";
+    const NAME: &str = "Preemption";
+    const WORST: &str = "published worst cases at 25 ms: 60 µs with PREEMPT_RT, 320 µs without";
+    let version = machine.text("proc/sys/kernel/version").unwrap_or_default();
+    let has = |word: &str| version.split_whitespace().any(|found| found == word);
+    if machine.text("sys/kernel/realtime").as_deref() == Some("1") || has("PREEMPT_RT") {
+        return Finding::new(ID, NAME, Grade::Ok, "PREEMPT_RT");
+    }
+    if has("PREEMPT_DYNAMIC") {
+        // `none voluntary (full) lazy`: the mode in force is in brackets.
+        let modes = machine.text("sys/kernel/debug/sched/preempt");
+        let modes = modes.unwrap_or_default();
+        let mode = modes
+            .split_once('(')
+            .and_then(|(_, rest)| rest.split_once(')'))
+            .map_or("not told", |(mode, _)| mode);
+        let finding = Finding::new(
+            ID,
+            NAME,
+            Grade::CouldBeBetter,
+            format!("PREEMPT_DYNAMIC, mode: {mode}"),
+        );
+        return match mode {
+            "full" => with_rt_kernel(finding.because(WORST), board),
+            "not told" => board.kernel_option(
+                finding.because("the mode is told to root only, in /sys/kernel/debug"),
+                "preempt=full",
+            ),
+            _ => board.kernel_option(
+                finding.because("a long system call of another program is not interrupted"),
+                "preempt=full",
+            ),
+        };
+    }
+    if has("PREEMPT") {
+        let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, "PREEMPT");
+        return with_rt_kernel(finding.because(WORST), board);
+    }
+    if version.is_empty() {
+        return not_told(ID, NAME, "the kernel does not say");
+    }
+    with_rt_kernel(
+        Finding::new(ID, NAME, Grade::CouldBeBetter, "none")
+            .because("a system call of another program is not interrupted, however long it takes"),
+        board,
+    )
+}
+
+fn with_rt_kernel(finding: Finding, board: &Board) -> Finding {
+    if board.is_raspberry_pi() {
+        finding.remedy("shell", "apt install linux-image-rpi-v8-rt")
+    } else if board.name.contains("BeagleBo") || board.name.contains("AM335x") {
+        finding.remedy(
+            "shell, then apt install what it finds",
+            "apt-cache search 'bbb.io-kernel.*rt'",
+        )
+    } else {
+        finding.remedy(
+            "shell",
+            "apt install linux-image-rt-$(dpkg --print-architecture)",
+        )
+    }
+}
+
+/// How much of each second real-time threads may run.
+pub(super) fn realtime_throttling(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "realtime_throttling";
+    const NAME: &str = "Real-time share";
+    const FILE: &str = "/etc/sysctl.d/fccd.conf";
+    let setting = |name| machine.number::<i64>(&format!("proc/sys/kernel/{name}"));
+    let Some(runtime_us) = setting("sched_rt_runtime_us") else {
+        return not_told(ID, NAME, "the kernel does not say");
+    };
+    let period_us = setting("sched_rt_period_us").unwrap_or(1_000_000).max(1);
+    let share = 100.0 * runtime_us as f64 / period_us as f64;
+    let found = format!("{share:.0} % of each {:.1} s", period_us as f64 * 1e-6);
+    match runtime_us {
+        ..0 => Finding::new(ID, NAME, Grade::Ok, "unlimited")
+            .because("a loop that hangs takes its CPU for good"),
+        0 => Finding::new(ID, NAME, Grade::Lacks, "none")
+            .because("no real-time thread may run at all")
+            .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
+        _ if share < 50.0 => Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+            .because("real-time threads wait for the rest of it once they have used their share")
+            .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
+        _ => Finding::new(ID, NAME, Grade::Ok, found),
+    }
+}
+
+/// Whether timers expire when they are due, or at the kernel's next tick.
+pub(super) fn high_resolution_timers(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "high_resolution_timers";
+    const NAME: &str = "Timers";
+    let in_force = machine
+        .text("proc/timer_list")
+        .and_then(|list| Some(super::machine::field_of(&list, ".hres_active")? == "1"));
+    let built_in = || {
+        let release = machine.text("proc/sys/kernel/osrelease")?;
+        let config = machine.text(&format!("boot/config-{release}"))?;
+        Some(
+            config
+                .lines()
+                .any(|line| line == "CONFIG_HIGH_RES_TIMERS=y"),
+        )
+    };
+    match in_force.or_else(built_in) {
+        Some(true) => Finding::new(ID, NAME, Grade::Ok, "high resolution"),
+        Some(false) => board.kernel_option(
+            Finding::new(ID, NAME, Grade::Lacks, "as coarse as the kernel's tick")
+                .because("every wake-up waits for the next tick, 1 to 10 ms"),
+            "highres=on",
+        ),
+        None => not_told(ID, NAME, "told to root only, in /proc/timer_list"),
+    }
+}
+
+/// What the time is read from.
+pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "clock_source";
+    const NAME: &str = "Clock";
+    const FOLDER: &str = "sys/devices/system/clocksource/clocksource0";
+    let Some(source) = machine.text(&format!("{FOLDER}/current_clocksource")) else {
+        return not_told(ID, NAME, "the kernel does not say");
+    };
+    match source.as_str() {
+        "tsc"
+        | "arch_sys_counter"
+        | "kvm-clock"
+        | "hyperv_clocksource_tsc_page"
+        | "riscv_clocksource" => Finding::new(ID, NAME, Grade::Ok, source),
+        "jiffies" | "refined-jiffies" => {
+            Finding::new(ID, NAME, Grade::Lacks, source).because("it counts the kernel's ticks")
+        }
+        _ => {
+            let others = machine
+                .text(&format!("{FOLDER}/available_clocksource"))
+                .unwrap_or_default();
+            let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, source)
+                .because("each reading of it is a system call, some ten of them in a tick");
+            if others.split_whitespace().any(|other| other == "tsc") {
+                board.kernel_option(finding, "clocksource=tsc tsc=reliable")
+            } else {
+                finding
+            }
+        }
+    }
+}
+
+/// How late the kernel makes the sleeps of ordinary threads.
+pub(super) fn timer_slack(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "timer_slack";
+    const NAME: &str = "Timer slack";
+    match machine.number::<u64>("proc/self/timerslack_ns") {
+        Some(slack_ns) => Finding::new(
+            ID,
+            NAME,
+            Grade::Ok,
+            format!("{:.0} µs; fccd sets its own", slack_ns as f64 * 1e-3),
+        ),
+        None => not_told(ID, NAME, "the kernel does not say; fccd sets its own"),
+    }
+}

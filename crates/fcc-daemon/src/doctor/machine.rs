@@ -1,0 +1,92 @@
+//! The files of a machine.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// No file that is looked at is longer: `/proc/cpuinfo` of 256 CPUs fits.
+const MOST_BYTES: u64 = 1 << 20;
+/// Nor has a folder more entries.
+const MOST_ENTRIES: usize = 4_096;
+
+/// A machine, by its files.
+#[derive(Debug)]
+pub(super) struct Machine {
+    root: PathBuf,
+}
+
+impl Machine {
+    pub(super) fn under(root: &Path) -> Self {
+        Self {
+            root: root.to_owned(),
+        }
+    }
+
+    pub(super) fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// What a file says, without white space around it; none if it is not
+    /// there, not to be read, or empty.
+    pub(super) fn text(&self, path: &str) -> Option<String> {
+        let mut bytes = Vec::new();
+        File::open(self.root.join(path))
+            .ok()?
+            .take(MOST_BYTES)
+            .read_to_end(&mut bytes)
+            .ok()?;
+        // The device tree ends its texts with a zero.
+        let text = String::from_utf8_lossy(&bytes);
+        let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
+        (!text.is_empty()).then(|| text.to_owned())
+    }
+
+    /// The first word of a file as a number.
+    pub(super) fn number<T: std::str::FromStr>(&self, path: &str) -> Option<T> {
+        self.text(path)?.split_whitespace().next()?.parse().ok()
+    }
+
+    pub(super) fn exists(&self, path: &str) -> bool {
+        self.root.join(path).exists()
+    }
+
+    /// The paths of a folder's entries that begin with `prefix`, in order.
+    pub(super) fn entries(&self, folder: &str, prefix: &str) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(self.root.join(folder))
+            .into_iter()
+            .flatten()
+            .take(MOST_ENTRIES)
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .filter(|name| name.starts_with(prefix))
+            .collect();
+        // cpu10 after cpu9.
+        names.sort_by_key(|name| (name.len(), name.clone()));
+        names
+            .into_iter()
+            .map(|name| format!("{folder}/{name}"))
+            .collect()
+    }
+
+    /// The value of `field` in a file of `field: value` lines.
+    pub(super) fn field(&self, path: &str, field: &str) -> Option<String> {
+        field_of(&self.text(path)?, field).map(str::to_owned)
+    }
+
+    /// As `uname -r -v` says.
+    pub(super) fn kernel(&self) -> String {
+        let part = |name| self.text(&format!("proc/sys/kernel/{name}"));
+        [part("osrelease"), part("version")]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+/// The value of `field` in lines of `field: value`.
+pub(super) fn field_of<'a>(text: &'a str, field: &str) -> Option<&'a str> {
+    text.lines().find_map(|line| {
+        let (name, value) = line.split_once(':')?;
+        (name.trim() == field).then(|| value.trim())
+    })
+}

@@ -1,0 +1,157 @@
+//! What a machine offers a real-time loop, and what it lacks.
+//!
+//! Each check reads a few files of `/proc`, `/sys` and `/etc` and gives one
+//! [`Finding`]: how good it is, what was found, and, where it could be better,
+//! the line to put and where. All files are read under a root folder, so that
+//! a test can be a Raspberry Pi, and a technician can look at the disk of one.
+//!
+//! | module | what it looks at |
+//! |---|---|
+//! | `machine` | the files themselves |
+//! | `board` | which board this is, and where its kernel's command line is kept |
+//! | `kernel` | preemption, timers, clock, real-time throttling |
+//! | `rights` | what the program may ask of the kernel |
+//! | `cpus` | clock speed, sleep, isolation, interrupts |
+//! | `surroundings` | power and heat, memory, virtual machine, container |
+//! | `show` | the findings for people |
+
+mod board;
+mod cpus;
+mod kernel;
+mod machine;
+mod rights;
+mod show;
+mod surroundings;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use board::Board;
+use machine::Machine;
+
+/// How good something is for a real-time loop.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grade {
+    /// As it should be.
+    Ok,
+    /// A loop runs, and would run better.
+    CouldBeBetter,
+    /// A loop is refused what it asks for, or cannot keep time.
+    Lacks,
+    /// The machine does not tell.
+    NotKnown,
+}
+
+/// What was found of one thing.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Finding {
+    /// What was looked at, for programs: `preemption`.
+    pub id: &'static str,
+    /// The same for people.
+    pub name: &'static str,
+    /// How good it is.
+    pub grade: Grade,
+    /// What was found.
+    pub found: String,
+    /// Why it is not good; empty if it is.
+    pub why: String,
+    /// What to put where; empty if there is nothing to do.
+    pub remedies: Vec<Remedy>,
+}
+
+/// A line that makes it better, and where it goes.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Remedy {
+    /// A file, or `shell` for a command.
+    pub place: String,
+    /// What to put there.
+    pub line: String,
+}
+
+impl Finding {
+    fn new(id: &'static str, name: &'static str, grade: Grade, found: impl Into<String>) -> Self {
+        Self {
+            id,
+            name,
+            grade,
+            found: found.into(),
+            why: String::new(),
+            remedies: Vec::new(),
+        }
+    }
+
+    fn because(mut self, why: impl Into<String>) -> Self {
+        self.why = why.into();
+        self
+    }
+
+    fn remedy(mut self, place: impl Into<String>, line: impl Into<String>) -> Self {
+        self.remedies.push(Remedy {
+            place: place.into(),
+            line: line.into(),
+        });
+        self
+    }
+}
+
+/// All that was found.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Diagnosis {
+    /// The board or machine, if it says.
+    pub machine: String,
+    /// Its kernel.
+    pub kernel: String,
+    /// Each check, in the order of their weight.
+    pub findings: Vec<Finding>,
+}
+
+impl Diagnosis {
+    /// Looks at the machine whose files are under `root`.
+    pub fn of(root: &Path) -> Self {
+        let machine = Machine::under(root);
+        let board = Board::of(&machine);
+        let checks: [fn(&Machine, &Board) -> Finding; 19] = [
+            kernel::preemption,
+            rights::realtime_priority,
+            rights::locked_memory,
+            kernel::realtime_throttling,
+            kernel::high_resolution_timers,
+            kernel::clock_source,
+            cpus::governor,
+            cpus::isolation,
+            cpus::interrupts,
+            cpus::idle_states,
+            cpus::hyper_threads,
+            kernel::timer_slack,
+            surroundings::power,
+            surroundings::heat,
+            surroundings::swap,
+            surroundings::compaction,
+            surroundings::virtual_machine,
+            surroundings::container,
+            surroundings::cpu_quota,
+        ];
+        Self {
+            machine: board.name.clone(),
+            kernel: machine.kernel(),
+            findings: checks.iter().map(|check| check(&machine, &board)).collect(),
+        }
+    }
+
+    /// Whether anything is lacking.
+    pub fn lacks_something(&self) -> bool {
+        self.count(Grade::Lacks) > 0
+    }
+
+    fn count(&self, grade: Grade) -> usize {
+        let findings = self.findings.iter();
+        findings.filter(|finding| finding.grade == grade).count()
+    }
+
+    /// A table for people, and below it what to do.
+    pub fn to_text(&self) -> String {
+        show::text(self)
+    }
+}

@@ -1,0 +1,72 @@
+//! The findings for people.
+
+use std::fmt::Write as _;
+
+use super::{Diagnosis, Finding, Grade};
+
+/// The table, and below it what to do, the worst first.
+pub(super) fn text(diagnosis: &Diagnosis) -> String {
+    let mut text = String::new();
+    for line in [&diagnosis.machine, &diagnosis.kernel] {
+        if !line.is_empty() {
+            let _ = writeln!(text, "{line}");
+        }
+    }
+    text.push('\n');
+    let findings = &diagnosis.findings;
+    let width = findings
+        .iter()
+        .map(|finding| finding.name.chars().count())
+        .max()
+        .unwrap_or(0);
+    for finding in findings {
+        let Finding { name, found, .. } = finding;
+        let mark = mark(finding.grade);
+        let _ = writeln!(text, " {mark} {name:width$}  {found}");
+    }
+    for (grade, title) in [
+        (Grade::Lacks, "Lacking"),
+        (Grade::CouldBeBetter, "Could be better"),
+        (Grade::Ok, "To make use of it"),
+    ] {
+        let mut todo = findings
+            .iter()
+            .filter(|finding| finding.grade == grade && !is_silent(finding))
+            .peekable();
+        if todo.peek().is_some() {
+            let _ = writeln!(text, "\n{title}:");
+        }
+        for finding in todo {
+            let _ = write!(text, " {} {}", mark(grade), finding.name);
+            if !finding.why.is_empty() {
+                let _ = write!(text, ": {}", finding.why);
+            }
+            text.push('\n');
+            for remedy in &finding.remedies {
+                let _ = writeln!(text, "     {}\n       {}", remedy.place, remedy.line);
+            }
+        }
+    }
+    let _ = write!(
+        text,
+        "\n{} ok, {} could be better, {} lacking, {} not known",
+        diagnosis.count(Grade::Ok),
+        diagnosis.count(Grade::CouldBeBetter),
+        diagnosis.count(Grade::Lacks),
+        diagnosis.count(Grade::NotKnown),
+    );
+    text
+}
+
+fn is_silent(finding: &Finding) -> bool {
+    finding.why.is_empty() && finding.remedies.is_empty()
+}
+
+const fn mark(grade: Grade) -> char {
+    match grade {
+        Grade::Ok => '✓',
+        Grade::CouldBeBetter => '~',
+        Grade::Lacks => '✗',
+        Grade::NotKnown => '?',
+    }
+}

@@ -1,0 +1,259 @@
+//! What the machine lives in: power and heat, memory, and what is around it.
+
+use super::board::{Board, not_told};
+use super::machine::Machine;
+use super::rights::may_lock;
+use super::{Finding, Grade};
+
+/// Bits of the Raspberry Pi's `get_throttled` (its documentation of
+/// `vcgencmd`): what is, and 16 bits higher what has been since the start.
+const PI_STATES: [(u32, &str); 4] = [
+    (0, "undervoltage"),
+    (1, "speed capped"),
+    (2, "throttled"),
+    (3, "soft temperature limit"),
+];
+/// Sensors in the way of hot chips are limited from about here, °C.
+const HOT_C: f64 = 80.0;
+
+/// Whether there is enough power.
+pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "power";
+    const NAME: &str = "Power";
+    const SUPPLY: &str = "use the board's own power supply, and a short, thick cable";
+    let throttled = machine
+        .text("sys/devices/platform/soc/soc:firmware/get_throttled")
+        .and_then(|digits| u32::from_str_radix(digits.trim_start_matches("0x"), 16).ok());
+    if let Some(bits) = throttled {
+        let named = |shift: u32| {
+            let names = PI_STATES
+                .iter()
+                .filter(|(bit, _)| bits >> (bit + shift) & 1 == 1);
+            names.map(|(_, name)| *name).collect::<Vec<_>>().join(", ")
+        };
+        let (now, before) = (named(0), named(16));
+        return match (now.as_str(), before.as_str()) {
+            ("", "") => Finding::new(ID, NAME, Grade::Ok, "enough, never throttled"),
+            ("", before) => Finding::new(
+                ID,
+                NAME,
+                Grade::CouldBeBetter,
+                format!("since the start: {before}"),
+            )
+            .because("the CPUs ran slower than they can")
+            .remedy("the board", SUPPLY),
+            (now, _) => Finding::new(ID, NAME, Grade::Lacks, format!("now: {now}"))
+                .because("the CPUs run slower than they can")
+                .remedy("the board", SUPPLY),
+        };
+    }
+    // The same of newer kernels, as a sensor: 1 once the voltage was too low.
+    let alarm = machine
+        .entries("sys/class/hwmon", "hwmon")
+        .into_iter()
+        .find(|sensor| machine.text(&format!("{sensor}/name")).as_deref() == Some("rpi_volt"))
+        .and_then(|sensor| machine.number::<u32>(&format!("{sensor}/in0_lcrit_alarm")));
+    match alarm {
+        Some(0) => Finding::new(ID, NAME, Grade::Ok, "enough"),
+        Some(_) => Finding::new(ID, NAME, Grade::Lacks, "undervoltage")
+            .because("the CPUs run slower than they can")
+            .remedy("the board", SUPPLY),
+        None if board.is_raspberry_pi() => not_told(ID, NAME, "the firmware does not say"),
+        None => not_told(ID, NAME, "no sensor tells"),
+    }
+}
+
+/// Whether it is too hot.
+pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "heat";
+    const NAME: &str = "Heat";
+    const COOL: &str = "give it a heat sink or a fan";
+    let hottest_c = machine
+        .entries("sys/class/thermal", "thermal_zone")
+        .iter()
+        .filter_map(|zone| machine.number::<f64>(&format!("{zone}/temp")))
+        .map(|millidegrees| millidegrees * 1e-3)
+        .filter(|degrees| degrees.is_finite())
+        .max_by(f64::total_cmp);
+    let slowed: u64 = machine
+        .entries("sys/devices/system/cpu", "cpu")
+        .iter()
+        .filter_map(|cpu| {
+            machine.number::<u64>(&format!("{cpu}/thermal_throttle/core_throttle_count"))
+        })
+        .fold(0, u64::saturating_add);
+    let found = match (hottest_c, slowed) {
+        (None, 0) => return not_told(ID, NAME, "no sensor tells"),
+        (None, times) => format!("slowed down {times} times since the start"),
+        (Some(degrees), 0) => format!("{degrees:.0} °C"),
+        (Some(degrees), times) => {
+            format!("{degrees:.0} °C, slowed down {times} times since the start")
+        }
+    };
+    if slowed > 0 || hottest_c.is_some_and(|degrees| degrees >= HOT_C) {
+        Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+            .because("a hot CPU is slowed down")
+            .remedy("the board", COOL)
+    } else {
+        Finding::new(ID, NAME, Grade::Ok, found)
+    }
+}
+
+/// Whether memory can be moved to a disk.
+pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "swap";
+    const NAME: &str = "Swap";
+    let Some(swaps) = machine.text("proc/swaps") else {
+        return not_told(ID, NAME, "the kernel does not say");
+    };
+    let files: Vec<&str> = swaps
+        .lines()
+        .skip(1)
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    if files.is_empty() {
+        return Finding::new(ID, NAME, Grade::Ok, "none");
+    }
+    let found = files.join(", ");
+    if may_lock(machine) {
+        return Finding::new(ID, NAME, Grade::Ok, format!("{found}; locked memory stays"));
+    }
+    let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+        .because("memory that is not locked may be fetched from a disk, in milliseconds");
+    if board.is_raspberry_pi() {
+        finding.remedy("shell", "systemctl disable --now dphys-swapfile")
+    } else {
+        finding.remedy("shell, and take it out of /etc/fstab", "swapoff -a")
+    }
+}
+
+/// Whether locked memory stays in its place.
+pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "compaction";
+    const NAME: &str = "Memory moves";
+    const FILE: &str = "/etc/sysctl.d/fccd.conf";
+    let locked = machine.number::<u32>("proc/sys/vm/compact_unevictable_allowed");
+    let balancing = machine.number::<u32>("proc/sys/kernel/numa_balancing");
+    let mut lines = Vec::new();
+    if locked == Some(1) {
+        lines.push("vm.compact_unevictable_allowed = 0");
+    }
+    if balancing.is_some_and(|mode| mode > 0) {
+        lines.push("kernel.numa_balancing = 0");
+    }
+    if lines.is_empty() {
+        return match (locked, balancing) {
+            (None, None) => not_told(ID, NAME, "the kernel does not say"),
+            _ => Finding::new(ID, NAME, Grade::Ok, "locked memory stays in its place"),
+        };
+    }
+    let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, "allowed")
+        .because("the kernel may move locked memory too: a page fault each");
+    lines
+        .into_iter()
+        .fold(finding, |finding, line| finding.remedy(FILE, line))
+}
+
+/// Whether the machine is one.
+pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
+    const ID: &str = "virtual_machine";
+    const NAME: &str = "Virtual machine";
+    // As firmware of virtual machines names itself (systemd-detect-virt(1)
+    // lists more; the flag of the CPU is told by nearly all of them).
+    const MAKERS: [&str; 9] = [
+        "QEMU",
+        "KVM",
+        "VMware",
+        "VirtualBox",
+        "innotek",
+        "Xen",
+        "Amazon EC2",
+        "Google Compute Engine",
+        "Virtual Machine",
+    ];
+    let maker = MAKERS.into_iter().find(|maker| board.name.contains(maker));
+    let hypervisor = machine
+        .text("sys/hypervisor/type")
+        .or_else(|| machine.text("proc/device-tree/hypervisor/compatible"));
+    let flag = machine.text("proc/cpuinfo").is_some_and(|cpus| {
+        let flags = super::machine::field_of(&cpus, "flags").unwrap_or_default();
+        flags.split_whitespace().any(|flag| flag == "hypervisor")
+    });
+    let found = match (hypervisor, maker) {
+        (Some(kind), _) => kind,
+        (None, Some(maker)) => maker.to_owned(),
+        (None, None) if flag => "yes".to_owned(),
+        (None, None) => return Finding::new(ID, NAME, Grade::Ok, "no"),
+    };
+    Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(
+        "the host takes its CPUs away for milliseconds, and nothing in here can prevent it: \
+         good for trying, not for flying",
+    )
+}
+
+/// Whether this is a container.
+pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "container";
+    const NAME: &str = "Container";
+    let groups = machine.text("proc/self/cgroup").unwrap_or_default();
+    let of_group = || {
+        let names = [
+            ("docker", "docker"),
+            ("kubepods", "kubernetes"),
+            ("/lxc", "lxc"),
+        ];
+        names
+            .into_iter()
+            .find_map(|(mark, name)| groups.contains(mark).then(|| name.to_owned()))
+    };
+    let found = if machine.exists("run/.containerenv") {
+        Some("podman".to_owned())
+    } else if machine.exists(".dockerenv") {
+        Some("docker".to_owned())
+    } else {
+        machine.text("run/systemd/container").or_else(of_group)
+    };
+    match found {
+        None => Finding::new(ID, NAME, Grade::Ok, "no"),
+        Some(name) => Finding::new(ID, NAME, Grade::CouldBeBetter, name)
+            .because("what the kernel grants is for the host to say")
+            .remedy(
+                "docker run",
+                "--cap-add sys_nice --cap-add ipc_lock --ulimit rtprio=90 --ulimit memlock=-1",
+            ),
+    }
+}
+
+/// Whether the program may use all of its CPUs.
+pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "cpu_quota";
+    const NAME: &str = "CPU quota";
+    let groups = machine.text("proc/self/cgroup").unwrap_or_default();
+    let own = groups
+        .lines()
+        .find_map(|line| line.strip_prefix("0::"))
+        .unwrap_or("/");
+    // A group is bound by those that it is in. No path leads out of the folder.
+    let mut quota: Option<f64> = None;
+    let is_plain = own.split('/').all(|part| part != "..");
+    for group in std::path::Path::new(own).ancestors().filter(|_| is_plain) {
+        let group = group.to_string_lossy();
+        let file = format!("sys/fs/cgroup/{}/cpu.max", group.trim_matches('/'));
+        let Some(text) = machine.text(&file) else {
+            continue;
+        };
+        let mut numbers = text.split_whitespace().map(str::parse::<f64>);
+        if let (Some(Ok(most)), Some(Ok(period))) = (numbers.next(), numbers.next())
+            && period > 0.0
+        {
+            let cpus = most / period;
+            quota = Some(quota.map_or(cpus, |least| least.min(cpus)));
+        }
+    }
+    match quota {
+        None => Finding::new(ID, NAME, Grade::Ok, "none"),
+        Some(cpus) => Finding::new(ID, NAME, Grade::CouldBeBetter, format!("{cpus:.2} CPUs"))
+            .because("telemetry and recorder stand still when it is used up, until the next period")
+            .remedy("fccd.service, [Service]", "CPUQuota="),
+    }
+}

@@ -1,0 +1,93 @@
+//! How a daemon that takes control relieves the guard of one that was killed.
+//!
+//! A guard goes on releasing the overrides until X-Plane shows them released,
+//! for two minutes if need be. A daemon that was started again and flies would
+//! have its controls pulled away by it. So the guard listens, while it
+//! releases, at a socket that is named after the simulator; whoever is about to
+//! take control there connects, and the guard goes.
+//!
+//! The name is an abstract one: no file stays behind, and it reaches as far as
+//! the simulator's address does, which is one network namespace.
+
+use std::io::{ErrorKind, Read};
+use std::net::SocketAddrV4;
+use std::os::linux::net::SocketAddrExt;
+use std::os::unix::net::{SocketAddr, UnixListener, UnixStream};
+use std::time::Duration;
+
+/// How long a guard may take to go: it looks every 20 ms.
+const GOES_WITHIN: Duration = Duration::from_secs(1);
+
+fn name(simulator: SocketAddrV4) -> std::io::Result<SocketAddr> {
+    SocketAddr::from_abstract_name(format!("fccd-guard-{simulator}"))
+}
+
+/// Where a guard is found while it releases.
+pub(super) struct Post {
+    listener: Option<UnixListener>,
+    /// Closed with the guard, which tells the other end that it is gone.
+    relief: Option<UnixStream>,
+}
+
+impl Post {
+    /// Opens the post. Where that fails, nobody can relieve this guard, and it
+    /// releases to the end.
+    pub(super) fn at(simulator: SocketAddrV4) -> Self {
+        let listener = name(simulator)
+            .and_then(|name| UnixListener::bind_addr(&name))
+            .and_then(|listener| listener.set_nonblocking(true).map(|()| listener));
+        Self {
+            listener: listener.ok(),
+            relief: None,
+        }
+    }
+
+    /// Whether somebody has come; never waits.
+    pub(super) fn is_relieved(&mut self) -> bool {
+        if let Some(Ok((stream, _))) = self.listener.as_ref().map(UnixListener::accept) {
+            self.relief = Some(stream);
+        }
+        self.relief.is_some()
+    }
+}
+
+/// Relieves the guard that releases `simulator`, if there is one, and waits for
+/// a moment until it is gone. Whether there was one.
+pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
+    let Ok(mut stream) = name(simulator).and_then(|name| UnixStream::connect_addr(&name)) else {
+        return false;
+    };
+    let gone = stream
+        .set_read_timeout(Some(GOES_WITHIN))
+        .and_then(|()| stream.read(&mut [0; 1]));
+    if let Err(error) = gone
+        && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
+    {
+        eprintln!(
+            "the guard of the daemon before this one does not go: it may hold X-Plane's controls back"
+        );
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Nobody listens here, and no other test has this address.
+    const SIMULATOR: SocketAddrV4 = SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 9);
+
+    #[test]
+    fn a_guard_is_relieved_once_somebody_comes_and_not_before() {
+        assert!(!relieve(SIMULATOR), "there is none");
+        let mut post = Post::at(SIMULATOR);
+        assert!(!post.is_relieved());
+        let comes = std::thread::spawn(|| relieve(SIMULATOR));
+        while !post.is_relieved() {
+            std::thread::yield_now();
+        }
+        drop(post);
+        assert!(comes.join().unwrap());
+        assert!(!relieve(SIMULATOR), "it is gone");
+    }
+}

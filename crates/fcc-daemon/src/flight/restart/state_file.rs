@@ -1,0 +1,263 @@
+//! The state file: what was flown, for whoever starts next.
+//!
+//! One line that says what it is, with the version and a CRC-32 of the rest,
+//! and the rest, which is JSON. It is written beside its place, synced and
+//! moved there, so that a cut leaves the old one or the new one and never a
+//! part of one; the CRC is for disks that do not keep their word.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::Path;
+
+use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::{Resume, Surfaces};
+use serde::{Deserialize, Serialize};
+
+use super::boot_clock::BootInstant;
+
+/// Begins every state file.
+const NAME: &str = "fccd-flight";
+/// The present layout.
+const VERSION: u32 = 1;
+
+/// What is kept of a flight.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) struct Saved {
+    /// When this was flown.
+    pub(super) at: BootInstant,
+    /// A fingerprint of the configuration that it was flown by.
+    pub(super) config: u32,
+    /// Whether the engage switch was on.
+    pub(super) switch_on: bool,
+    /// How often in a row the flight was taken up after a restart.
+    pub(super) take_ups: u32,
+    /// What was flown.
+    pub(super) resume: Resume,
+}
+
+/// The same in the file's words.
+#[derive(Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Page {
+    boot: String,
+    boottime_ns: u64,
+    config: u32,
+    switch_on: bool,
+    take_ups: u32,
+    airspeed_mps: f64,
+    heading_rad: f64,
+    altitude_m: f64,
+    pattern_s: Option<f64>,
+    throttle: f64,
+    elevator: f64,
+    aileron: f64,
+    rudder: f64,
+}
+
+/// Why there is nothing to be had from a file.
+#[derive(thiserror::Error, Debug)]
+pub(super) enum StateFileError {
+    #[error("cannot be read: {0}")]
+    Unreadable(#[from] io::Error),
+    /// Never to be written over.
+    #[error("is no state file of fccd: choose another restart.state_file")]
+    Foreign,
+    #[error("is of another version of fccd ({0}, and this one writes {VERSION})")]
+    Version(u32),
+    #[error("is damaged")]
+    Damaged,
+}
+
+/// Reads a file; none where there is none.
+pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
+    match fs::read(path) {
+        Ok(bytes) => decode(&bytes).map(Some),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Writes a file; once this returns, it is on the disk.
+pub(super) fn write(path: &Path, saved: &Saved) -> io::Result<()> {
+    let new = path.with_extension("flight.new");
+    let mut file = File::create(&new)?;
+    file.write_all(&encode(saved)?)?;
+    file.sync_data()?;
+    fs::rename(&new, path)?;
+    sync_folder(path)
+}
+
+/// Removes a file; once this returns, it is gone for good.
+pub(super) fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+        Ok(()) => sync_folder(path),
+    }
+}
+
+fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    File::open(folder)?.sync_all()
+}
+
+fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
+    let Resume {
+        targets,
+        pattern_s,
+        surfaces,
+    } = saved.resume;
+    let body = serde_json::to_vec(&Page {
+        boot: saved.at.boot.clone(),
+        boottime_ns: saved.at.ns,
+        config: saved.config,
+        switch_on: saved.switch_on,
+        take_ups: saved.take_ups,
+        airspeed_mps: targets.airspeed_mps,
+        heading_rad: targets.heading_rad,
+        altitude_m: targets.altitude_m,
+        pattern_s,
+        throttle: surfaces.throttle,
+        elevator: surfaces.elevator,
+        aileron: surfaces.aileron,
+        rudder: surfaces.rudder,
+    })?;
+    let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(&body)).into_bytes();
+    bytes.extend(body);
+    Ok(bytes)
+}
+
+fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
+    let (head, body) = match bytes.iter().position(|byte| *byte == b'\n') {
+        Some(end) => bytes.split_at(end),
+        None => (bytes, [].as_slice()),
+    };
+    let head = std::str::from_utf8(head).map_err(|_| StateFileError::Foreign)?;
+    let mut words = head.split(' ');
+    if words.next() != Some(NAME) {
+        return Err(if bytes.is_empty() {
+            StateFileError::Damaged
+        } else {
+            StateFileError::Foreign
+        });
+    }
+    let version = words.next().and_then(|word| word.parse().ok());
+    match version.ok_or(StateFileError::Damaged)? {
+        VERSION => {}
+        version => return Err(StateFileError::Version(version)),
+    }
+    let crc = words
+        .next()
+        .and_then(|word| u32::from_str_radix(word, 16).ok());
+    let body = body.get(1..).unwrap_or_default();
+    if crc != Some(crc32fast::hash(body)) || words.next().is_some() {
+        return Err(StateFileError::Damaged);
+    }
+    let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
+    Ok(Saved {
+        at: BootInstant {
+            boot: page.boot,
+            ns: page.boottime_ns,
+        },
+        config: page.config,
+        switch_on: page.switch_on,
+        take_ups: page.take_ups,
+        resume: Resume {
+            targets: Targets {
+                airspeed_mps: page.airspeed_mps,
+                heading_rad: page.heading_rad,
+                altitude_m: page.altitude_m,
+            },
+            pattern_s: page.pattern_s,
+            surfaces: Surfaces {
+                throttle: page.throttle,
+                elevator: page.elevator,
+                aileron: page.aileron,
+                rudder: page.rudder,
+            },
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn saved(pattern_s: Option<f64>) -> Saved {
+        Saved {
+            at: BootInstant {
+                boot: "e8a5f3f2-6a62-4b1c-9a57-0f2d5b1c0c11".to_owned(),
+                ns: 12_345_678_901,
+            },
+            config: 0xfedc_ba98,
+            switch_on: true,
+            take_ups: 2,
+            resume: Resume {
+                targets: Targets {
+                    airspeed_mps: 51.4,
+                    heading_rad: 6.1,
+                    altitude_m: 914.4,
+                },
+                pattern_s,
+                surfaces: Surfaces {
+                    throttle: 0.7,
+                    elevator: -0.1,
+                    aileron: 0.02,
+                    rudder: 0.0,
+                },
+            },
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("fccd.flight");
+        assert!(read(&path).unwrap().is_none());
+        for pattern_s in [None, Some(65.25)] {
+            write(&path, &saved(pattern_s)).unwrap();
+            assert_eq!(read(&path).unwrap(), Some(saved(pattern_s)));
+        }
+        remove(&path).unwrap();
+        assert!(read(&path).unwrap().is_none());
+        remove(&path).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn what_is_not_ours_is_told_from_what_is_broken() {
+        let good = encode(&saved(None)).unwrap();
+        let said = |bytes: &[u8]| decode(bytes).unwrap_err().to_string();
+        assert!(said(b"root:x:0:0:root:/root:/bin/bash\n").contains("no state file of fccd"));
+        assert!(said(&[0xff; 40]).contains("no state file of fccd"));
+        assert!(said(b"fccd-flight 2 00000000\n{}").contains("another version"));
+        assert!(said(b"").contains("damaged"), "a disk that lost it");
+        assert!(said(&good[..good.len() - 1]).contains("damaged"));
+        assert!(said(b"fccd-flight 1 00000000\n").contains("damaged"));
+    }
+
+    proptest! {
+        /// CRC-32 finds every burst of up to 32 bits (Peterson and Brown 1961);
+        /// the line before it has no room for another meaning.
+        #[test]
+        fn one_changed_byte_is_noticed(place in any::<prop::sample::Index>(), by in 1_u8..) {
+            let mut bytes = encode(&saved(Some(3.0))).unwrap();
+            let place = place.index(bytes.len());
+            bytes[place] ^= by;
+            match decode(&bytes) {
+                Err(_) => {}
+                // Upper and lower case are the same number.
+                Ok(read) => prop_assert_eq!(read, saved(Some(3.0))),
+            }
+        }
+
+        #[test]
+        fn nothing_crashes_it(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+            let _ = decode(&bytes);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Taking up a flight that was cut off: when, and when not.
+//!
+//! The sensors have to say that the aircraft flies, which is what
+//! [`blockers`](fcc_core::framework::Controller::blockers) look at before any
+//! engaging: everything fresh, faster than the envelope's floor, not upset. And
+//! a hand that has switched off in the meantime has the last word.
+
+use std::time::Duration;
+
+use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::{Order as Command, Resume};
+use fcc_core::framework::{Controller, EventKind, Flags, Message, Order, State, Switch};
+use fcc_runtime::OrderSender;
+use fcc_telemetry::FlightMessage;
+
+use super::boot_clock::BootInstant;
+use super::state_file::Saved;
+use crate::flight::Pilot;
+
+const M_FT: f64 = 1.0 / 0.304_8;
+const MPS_KT: f64 = 3_600.0 / 1_852.0;
+
+/// A flight that is to be taken up.
+#[derive(Debug)]
+pub(super) struct TakingUp {
+    saved: Saved,
+    ordered: Option<Resume>,
+    /// Of the newest tick.
+    seen: Option<Seen>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    state: State,
+    blockers: Flags,
+    switched_off: bool,
+}
+
+/// What comes next.
+#[derive(Debug)]
+pub(super) enum Next {
+    /// Nothing yet.
+    Wait,
+    /// Now is the time to order this.
+    Order(Resume),
+    /// It is flown again.
+    Taken(String),
+    /// It is not.
+    LeftAlone(String),
+}
+
+impl TakingUp {
+    pub(super) const fn new(saved: Saved) -> Self {
+        Self {
+            saved,
+            ordered: None,
+            seen: None,
+        }
+    }
+
+    /// How often in a row the flight had been taken up before.
+    pub(super) const fn take_ups(&self) -> u32 {
+        self.saved.take_ups
+    }
+
+    /// Takes what the loop tells.
+    pub(super) fn take(&mut self, message: &FlightMessage) {
+        match message {
+            Message::Tick(record) => {
+                let switch = record.measurements.engage_switch;
+                self.seen = Some(Seen {
+                    state: record.state.state(),
+                    blockers: record.blockers,
+                    switched_off: !switch.is_never() && switch.value == Switch::Off,
+                });
+            }
+            Message::Event(event) => {
+                if matches!(event.kind, EventKind::EngageRefused { .. }) {
+                    self.ordered = None;
+                }
+            }
+        }
+    }
+
+    /// What comes next.
+    pub(super) fn go_on(&self, now: Option<BootInstant>, max_age: Duration) -> Next {
+        let Some(seen) = self.seen else {
+            return Next::Wait;
+        };
+        let age = now.and_then(|now| now.since(&self.saved.at));
+        let age = age.unwrap_or(Duration::MAX);
+        match (seen.state, &self.ordered) {
+            (State::Engaged, Some(resume)) => return Next::Taken(taken_up(resume, age)),
+            (State::Standby, None) => {}
+            (State::Standby, Some(_)) => return Next::Wait,
+            _ => return Next::LeftAlone("the flight that was cut off is not taken up".to_owned()),
+        }
+        if self.saved.switch_on && seen.switched_off {
+            return Next::LeftAlone(
+                "the flight that was cut off is not taken up: it was switched off since".to_owned(),
+            );
+        }
+        if age > max_age {
+            let mut words = format!(
+                "the flight that was cut off was not taken up within restart.max_age_s, {} s",
+                max_age.as_secs_f64()
+            );
+            for (n, bit) in seen.blockers.iter().enumerate() {
+                words.push_str(if n == 0 { ": " } else { ", " });
+                words.push_str(Pilot::flag_name(bit));
+            }
+            return Next::LeftAlone(words);
+        }
+        if !seen.blockers.is_empty() {
+            return Next::Wait;
+        }
+        // The pattern's time went on while nobody flew it.
+        let pattern_s = self.saved.resume.pattern_s;
+        Next::Order(Resume {
+            pattern_s: pattern_s.map(|elapsed_s| elapsed_s + age.as_secs_f64()),
+            ..self.saved.resume
+        })
+    }
+
+    /// Orders it: engage first, for engaging forgets what was ordered before.
+    pub(super) fn order(&mut self, orders: &mut OrderSender<Command>, resume: Resume) {
+        if orders.send(Order::Engage).is_ok() {
+            // A ring with room for one has room for two: nobody else has sent.
+            let _ = orders.send(Order::Controller(Command::Resume(resume)));
+            self.ordered = Some(resume);
+        }
+    }
+}
+
+fn taken_up(resume: &Resume, age: Duration) -> String {
+    let Targets {
+        airspeed_mps,
+        heading_rad,
+        altitude_m,
+    } = resume.targets;
+    let place = resume
+        .pattern_s
+        .map(|elapsed_s| format!(", {elapsed_s:.1} s into a pattern that began at"))
+        .unwrap_or_default();
+    format!(
+        "the flight was taken up {:.2} s after it was last kept{place}: heading {:.0}°, altitude \
+         {:.0} ft, airspeed {:.1} kt",
+        age.as_secs_f64(),
+        heading_rad.to_degrees(),
+        altitude_m * M_FT,
+        airspeed_mps * MPS_KT
+    )
+}

@@ -1,0 +1,154 @@
+//! What is made of a state file that is found at the start.
+
+use fcc_core::flight::Surfaces;
+use tempfile::TempDir;
+
+use super::*;
+
+const FLOWN: Resume = Resume {
+    targets: Targets {
+        airspeed_mps: 50.0,
+        heading_rad: 1.0,
+        altitude_m: 900.0,
+    },
+    pattern_s: None,
+    surfaces: Surfaces {
+        throttle: 0.6,
+        elevator: 0.0,
+        aileron: 0.0,
+        rudder: 0.0,
+    },
+};
+
+struct Desk {
+    folder: TempDir,
+    wish: RestartWish,
+}
+
+impl Desk {
+    fn new(mode: RestartMode) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let wish = RestartWish {
+            mode,
+            max_age: Duration::from_secs(10),
+            path: folder.path().join("fccd.flight"),
+            fingerprint: 7,
+            pattern: None,
+        };
+        Self { folder, wish }
+    }
+
+    /// Leaves a flight that was cut off so many seconds ago.
+    fn leave(&self, seconds_ago: u64, change: impl FnOnce(&mut Saved)) {
+        let mut at = BootInstant::now().unwrap();
+        at.ns = at.ns.saturating_sub(seconds_ago * 1_000_000_000);
+        let mut saved = Saved {
+            at,
+            config: 7,
+            switch_on: true,
+            take_ups: 0,
+            resume: FLOWN,
+        };
+        change(&mut saved);
+        state_file::write(&self.wish.path, &saved).unwrap();
+    }
+
+    /// Whether it is to be taken up, and what is said.
+    fn found(&self) -> (bool, String) {
+        let (restart, words) = Restart::begin(self.wish.clone());
+        let restart = restart.expect("there is a place to keep it");
+        let taking_up = restart.taking_up.is_some();
+        restart.end();
+        (taking_up, words.unwrap_or_default())
+    }
+
+    fn is_kept(&self) -> bool {
+        self.wish.path.exists()
+    }
+}
+
+#[test]
+fn nothing_left_is_nothing_said() {
+    for mode in [RestartMode::Cold, RestartMode::Warm] {
+        assert_eq!(Desk::new(mode).found(), (false, String::new()));
+    }
+}
+
+#[test]
+fn a_young_flight_is_taken_up_where_that_is_wanted() {
+    let desk = Desk::new(RestartMode::Warm);
+    desk.leave(2, |_| {});
+    let (taken, said) = desk.found();
+    assert!(taken && said.contains("cut off 2."), "{said}");
+    assert!(desk.is_kept(), "until it is decided");
+}
+
+#[test]
+fn a_cold_restart_says_so_once() {
+    let desk = Desk::new(RestartMode::Cold);
+    desk.leave(2, |_| {});
+    let (taken, said) = desk.found();
+    assert!(
+        !taken && said.contains("restart.mode is \"cold\""),
+        "{said}"
+    );
+    assert_eq!(desk.found(), (false, String::new()));
+}
+
+#[test]
+fn what_cannot_be_trusted_is_not_taken_up() {
+    type Change = fn(&mut Saved);
+    let reasons: [(&str, u64, Change); 4] = [
+        ("longer than restart.max_age_s, 10 s", 11, |_| {}),
+        ("before this machine was last started", 2, |saved| {
+            saved.at.boot = "another".to_owned();
+        }),
+        ("another configuration", 2, |saved| saved.config = 8),
+        ("taken up 3 times in a row", 2, |saved| saved.take_ups = 3),
+    ];
+    for (because, seconds_ago, change) in reasons {
+        let desk = Desk::new(RestartMode::Warm);
+        desk.leave(seconds_ago, change);
+        let (taken, said) = desk.found();
+        assert!(!taken && said.contains(because), "{said}");
+        assert!(said.contains("standing by"), "{said}");
+        assert!(!desk.is_kept());
+    }
+}
+
+#[test]
+fn a_damaged_file_is_said_and_a_foreign_one_is_left_alone() {
+    let desk = Desk::new(RestartMode::Warm);
+    fs::write(&desk.wish.path, "fccd-flight 1 0\n{").unwrap();
+    let (taken, said) = desk.found();
+    assert!(!taken && said.contains("damaged"), "{said}");
+
+    fs::write(&desk.wish.path, "my diary\n").unwrap();
+    let (restart, said) = Restart::begin(desk.wish.clone());
+    assert!(restart.is_none());
+    assert!(said.unwrap().contains("no state file of fccd"));
+    assert_eq!(fs::read_to_string(&desk.wish.path).unwrap(), "my diary\n");
+}
+
+#[test]
+fn two_daemons_do_not_share_a_file() {
+    let desk = Desk::new(RestartMode::Warm);
+    desk.leave(2, |_| {});
+    let (first, _) = Restart::begin(desk.wish.clone());
+    let (second, said) = Restart::begin(desk.wish.clone());
+    assert!(first.is_some() && second.is_none());
+    assert!(said.unwrap().contains("another fccd"));
+}
+
+#[test]
+fn a_place_that_cannot_be_is_said() {
+    let mut desk = Desk::new(RestartMode::Warm);
+    fs::write(desk.folder.path().join("file"), "").unwrap();
+    desk.wish.path = desk.folder.path().join("file/fccd.flight");
+    let (restart, said) = Restart::begin(desk.wish.clone());
+    assert!(restart.is_none());
+    assert!(
+        said.unwrap()
+            .contains("a restart would not know of this flight")
+    );
+}

@@ -1,0 +1,95 @@
+//! The account of a loop that cannot give its own.
+
+use std::time::Duration;
+
+use fcc_core::framework::{Cause, EventKind, Message, State};
+use fcc_runtime::{Ending, LoopReport};
+use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_timer::{Expiry, RealtimeGrants, TimerError, TimingStats};
+
+use super::hang::Hung;
+
+/// Keeps count, from what the loop tells, of what the loop itself would say at
+/// its end: for one that hangs.
+pub(super) struct Tally {
+    timing: TimingStats,
+    ticks: u64,
+    failsafes: u64,
+    last_failsafe: Option<Cause>,
+    last: FlightRecord,
+}
+
+impl Tally {
+    /// Nothing yet.
+    ///
+    /// # Errors
+    /// When the period cannot be kept statistics of.
+    pub(super) fn new(period: Duration) -> Result<Self, TimerError> {
+        Ok(Self {
+            timing: TimingStats::new(period)?,
+            ticks: 0,
+            failsafes: 0,
+            last_failsafe: None,
+            last: FlightRecord::default(),
+        })
+    }
+
+    /// Takes a message of the loop.
+    pub(super) fn take(&mut self, message: &FlightMessage) {
+        match message {
+            Message::Tick(record) => {
+                let tick = &record.tick;
+                self.timing.record(&Expiry {
+                    number: tick.number,
+                    scheduled_ns: tick.scheduled.as_nanos(),
+                    woke_ns: tick.woke.as_nanos(),
+                    missed: tick.missed,
+                    early_wake_ns: record.early_wake_ns,
+                    ..Expiry::default()
+                });
+                self.ticks += 1;
+                self.last = *record;
+            }
+            Message::Event(event) => {
+                if let EventKind::StateChanged {
+                    to: State::Failsafe(cause),
+                    ..
+                } = event.kind
+                {
+                    self.failsafes += 1;
+                    self.last_failsafe = Some(cause);
+                }
+            }
+        }
+    }
+
+    /// The last record there is.
+    pub(super) const fn last(&self) -> &FlightRecord {
+        &self.last
+    }
+
+    /// The account of a loop that hung.
+    pub(super) fn report(
+        &self,
+        hung: Hung,
+        timer: &'static str,
+        grants: RealtimeGrants,
+    ) -> LoopReport {
+        LoopReport {
+            ending: Ending::Hung,
+            ticks: self.ticks,
+            timer,
+            timing: self.timing.summary(),
+            failsafes: self.failsafes,
+            last_failsafe: self.last_failsafe,
+            released: hung.released,
+            sensor_faults: self.last.sensor_faults,
+            actuator_faults: self.last.actuator_faults,
+            overruns: self.last.overruns,
+            records_dropped: self.last.records_dropped,
+            events_dropped: 0,
+            cpu_time: Duration::ZERO,
+            grants: Some(grants),
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! `fccd doctor`, asked about machines that are folders.
+#![cfg(test)]
+
+mod machines;
+
+use fcc_daemon::doctor::{Diagnosis, Finding, Grade};
+use machines::{BEAGLEBONE, PI_4, VIRTUAL, machine, put};
+use proptest::prelude::*;
+
+fn examined(files: &[(&str, &str)]) -> Diagnosis {
+    Diagnosis::of(machine(files).path())
+}
+
+fn finding<'d>(diagnosis: &'d Diagnosis, id: &str) -> &'d Finding {
+    diagnosis.findings.iter().find(|f| f.id == id).unwrap()
+}
+
+fn lines(finding: &Finding) -> Vec<(&str, &str)> {
+    finding
+        .remedies
+        .iter()
+        .map(|remedy| (remedy.place.as_str(), remedy.line.as_str()))
+        .collect()
+}
+
+fn ids(diagnosis: &Diagnosis, grade: Grade) -> Vec<&str> {
+    let findings = diagnosis.findings.iter();
+    findings
+        .filter(|finding| finding.grade == grade)
+        .map(|finding| finding.id)
+        .collect()
+}
+
+#[test]
+fn a_pi_set_up_for_flying_lacks_nothing() {
+    let pi = examined(PI_4);
+    assert_eq!(pi.machine, "Raspberry Pi 4 Model B Rev 1.4");
+    assert!(
+        pi.kernel
+            .starts_with("6.12.25+rpt-rpi-v8-rt #1 SMP PREEMPT_RT")
+    );
+    assert_eq!(ids(&pi, Grade::CouldBeBetter), [""; 0]);
+    assert_eq!(ids(&pi, Grade::Lacks), [""; 0]);
+    assert_eq!(ids(&pi, Grade::NotKnown), [""; 0]);
+    assert!(!pi.lacks_something());
+    assert_eq!(finding(&pi, "isolated_cpus").found, "CPU 3");
+    assert_eq!(
+        finding(&pi, "realtime_priority").found,
+        "priorities up to 90"
+    );
+    assert_eq!(finding(&pi, "heat").found, "48 °C");
+}
+
+#[test]
+fn a_beaglebone_as_it_comes_lacks_rights_and_is_told_which() {
+    let bone = examined(BEAGLEBONE);
+    assert_eq!(
+        ids(&bone, Grade::Lacks),
+        ["realtime_priority", "locked_memory"]
+    );
+    assert_eq!(
+        ids(&bone, Grade::CouldBeBetter),
+        [
+            "preemption",
+            "clock_source",
+            "governor",
+            "idle_states",
+            "swap"
+        ]
+    );
+    assert_eq!(
+        lines(finding(&bone, "realtime_priority")),
+        [
+            ("/etc/security/limits.d/fccd.conf", "fccd - rtprio 90"),
+            ("fccd.service, [Service]", "LimitRTPRIO=90"),
+        ]
+    );
+    assert_eq!(
+        lines(finding(&bone, "locked_memory"))[0],
+        (
+            "/etc/security/limits.d/fccd.conf",
+            "fccd - memlock unlimited"
+        )
+    );
+    assert_eq!(finding(&bone, "locked_memory").found, "8192 KiB");
+    assert_eq!(
+        finding(&bone, "idle_states").found,
+        "mpu_gate, 130 µs to wake"
+    );
+    assert_eq!(finding(&bone, "governor").found, "ondemand on 1");
+    assert_eq!(finding(&bone, "swap").found, "/dev/zram0");
+    // There is no second CPU to isolate.
+    assert_eq!(finding(&bone, "isolated_cpus").grade, Grade::Ok);
+}
+
+#[test]
+fn a_virtual_machine_is_called_one() {
+    let virt = examined(VIRTUAL);
+    assert!(!virt.lacks_something(), "{:?}", ids(&virt, Grade::Lacks));
+    assert_eq!(
+        ids(&virt, Grade::CouldBeBetter),
+        [
+            "preemption",
+            "clock_source",
+            "isolated_cpus",
+            "interrupts",
+            "hyper_threads",
+            "compaction",
+            "virtual_machine",
+            "container",
+            "cpu_quota",
+        ]
+    );
+    assert_eq!(finding(&virt, "virtual_machine").found, "QEMU");
+    assert_eq!(finding(&virt, "container").found, "docker");
+    // The group above allows less than the own one.
+    assert_eq!(finding(&virt, "cpu_quota").found, "1.50 CPUs");
+    assert_eq!(
+        finding(&virt, "preemption").found,
+        "PREEMPT_DYNAMIC, mode: full"
+    );
+    assert_eq!(finding(&virt, "realtime_priority").found, "CAP_SYS_NICE");
+    assert_eq!(
+        lines(finding(&virt, "clock_source")),
+        [(
+            "/etc/default/grub, then update-grub",
+            "at the end of GRUB_CMDLINE_LINUX=: clocksource=tsc tsc=reliable"
+        )]
+    );
+}
+
+#[test]
+fn the_kernels_command_line_is_where_the_board_keeps_it() {
+    for (files, place) in [
+        (PI_4, "/boot/firmware/cmdline.txt"),
+        (BEAGLEBONE, "/boot/uEnv.txt"),
+    ] {
+        let root = machine(files);
+        put(root.path(), "sys/devices/system/cpu/online", "0-3\n");
+        put(root.path(), "sys/devices/system/cpu/isolated", "\n");
+        let found = Diagnosis::of(root.path());
+        let [(file, line)] = lines(finding(&found, "isolated_cpus"))[..] else {
+            panic!("one line");
+        };
+        assert_eq!(file, place);
+        assert!(
+            line.ends_with("isolcpus=3 nohz_full=3 rcu_nocbs=3"),
+            "{line}"
+        );
+    }
+}
+
+/// The bits are those of the Raspberry Pi's documentation of `vcgencmd`.
+#[test]
+fn a_weak_power_supply_is_found_out() {
+    for (bits, grade, words) in [
+        ("0", Grade::Ok, "enough"),
+        (
+            "50000",
+            Grade::CouldBeBetter,
+            "since the start: undervoltage, throttled",
+        ),
+        ("50005", Grade::Lacks, "now: undervoltage, throttled"),
+        ("0x20002", Grade::Lacks, "now: speed capped"),
+        (
+            "80000",
+            Grade::CouldBeBetter,
+            "since the start: soft temperature limit",
+        ),
+    ] {
+        let root = machine(PI_4);
+        let file = "sys/devices/platform/soc/soc:firmware/get_throttled";
+        put(root.path(), file, bits);
+        let found = Diagnosis::of(root.path());
+        let power = finding(&found, "power");
+        assert_eq!(power.grade, grade, "{bits}");
+        assert!(power.found.contains(words), "{bits}: {}", power.found);
+    }
+}
+
+#[test]
+fn what_stops_a_loop_is_lacking() {
+    for (file, text, id) in [
+        (
+            "proc/sys/kernel/sched_rt_runtime_us",
+            "0",
+            "realtime_throttling",
+        ),
+        (
+            "proc/timer_list",
+            "  .hres_active    : 0\n",
+            "high_resolution_timers",
+        ),
+        (
+            "sys/devices/system/clocksource/clocksource0/current_clocksource",
+            "jiffies",
+            "clock_source",
+        ),
+    ] {
+        let root = machine(PI_4);
+        put(root.path(), file, text);
+        let found = Diagnosis::of(root.path());
+        assert_eq!(ids(&found, Grade::Lacks), [id]);
+        assert!(found.lacks_something());
+    }
+}
+
+#[test]
+fn an_empty_machine_is_not_known_and_lacks_nothing() {
+    let nothing = examined(&[]);
+    assert_eq!(ids(&nothing, Grade::Lacks), [""; 0]);
+    assert!(ids(&nothing, Grade::NotKnown).contains(&"preemption"));
+}
+
+#[test]
+fn the_table_says_what_is_wrong_and_what_to_do() {
+    let text = examined(BEAGLEBONE).to_text();
+    for words in [
+        "TI AM335x BeagleBone Black",
+        " ✗ Real-time right  none",
+        " ~ CPU sleep",
+        "\nLacking:\n",
+        "     /etc/security/limits.d/fccd.conf\n       fccd - rtprio 90\n",
+        "2 lacking",
+    ] {
+        assert!(text.contains(words), "{words} is not in\n{text}");
+    }
+}
+
+/// Whatever this machine is, it can be looked at.
+#[test]
+fn this_machine_is_told_about() {
+    let here = Diagnosis::of(std::path::Path::new("/"));
+    assert!(!here.kernel.is_empty());
+    let json = serde_json::to_value(&here).unwrap();
+    assert_eq!(
+        json["findings"].as_array().unwrap().len(),
+        here.findings.len()
+    );
+}
+
+/// A kernel, or a card that is going bad, may put anything into a file.
+#[test]
+fn any_file_may_hold_anything() {
+    let all: Vec<_> = [PI_4, BEAGLEBONE, VIRTUAL].concat();
+    let root = machine(&all);
+    let any_words = prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..200),
+        "[ 0-9a-fx:,.()/\\n-]{0,80}".prop_map(String::into_bytes),
+    ];
+    let one_of_them = prop::sample::select(all);
+    proptest!(ProptestConfig::with_cases(100), |(words in any_words, file in one_of_them)| {
+        let (path, usual) = file;
+        std::fs::write(root.path().join(path), words).unwrap();
+        let found = Diagnosis::of(root.path());
+        prop_assert!(!found.to_text().is_empty());
+        prop_assert!(serde_json::to_string(&found).is_ok());
+        put(root.path(), path, usual);
+    });
+}

@@ -1,0 +1,167 @@
+//! What is not the same is found, to the last bit; and what another
+//! configuration would have done is measured.
+
+use fcc_core::framework::Message;
+use fcc_core::framework::State::Engaged;
+use fcc_daemon::config::{Config, CourseSection};
+
+use super::flights::{Happenings, again, fly, records, rough};
+use super::{deviation, flipped};
+
+/// One of the gains of a configuration.
+type Gain = fn(&mut Config) -> &mut f64;
+
+#[test]
+fn one_flipped_bit_in_a_gain_is_found() {
+    let happenings = Happenings {
+        steps: 4_000,
+        ..Happenings::default()
+    };
+    let messages = fly(&rough(), &happenings);
+    let engaged = records(&messages)
+        .iter()
+        .find(|record| record.state == Engaged)
+        .map(|record| record.tick.number)
+        .unwrap();
+
+    let flips: [(&str, Gain); 4] = [
+        ("outputs.aileron", |c| {
+            &mut c.autopilot.heading.roll_rate_gain
+        }),
+        ("outputs.elevator", |c| {
+            &mut c.autopilot.altitude.pitch_rate_gain
+        }),
+        ("outputs.throttle", |c| {
+            &mut c.autopilot.airspeed.throttle_per_g
+        }),
+        ("outputs.rudder", |c| &mut c.autopilot.heading.yaw_damping),
+    ];
+    for (output, gain) in flips {
+        let mut config = rough();
+        let gain = gain(&mut config);
+        *gain = flipped(*gain);
+        let (run, identity) = again(&config, &messages);
+        assert_eq!(run.unflown, None);
+        let first = identity.first.clone().unwrap();
+        assert_eq!(first.field, output);
+        // Nothing is commanded before; and a last bit shows within a second.
+        assert!(
+            (engaged..engaged + 40).contains(&first.tick),
+            "{output}: {} after {engaged}",
+            first.tick
+        );
+        assert_ne!(first.recorded_bits, first.again_bits);
+        let field = identity.fields.iter().find(|f| f.field == output).unwrap();
+        assert_eq!(field.first_tick, first.tick);
+        // The first difference is a last bit's worth. Where a limiter is met
+        // it may grow from there: the integral stands still on one side of it.
+        let number = |bits: &str| {
+            let bits = bits.trim_start_matches("0x");
+            f64::from_bits(u64::from_str_radix(bits, 16).unwrap())
+        };
+        let difference = (number(&first.recorded_bits) - number(&first.again_bits)).abs();
+        assert!(difference > 0.0 && difference < 1e-9, "{difference}");
+        assert!(field.largest.unwrap() >= difference);
+    }
+}
+
+#[test]
+fn one_flipped_bit_in_a_recorded_output_is_the_only_difference() {
+    let happenings = Happenings {
+        steps: 500,
+        ..Happenings::default()
+    };
+    let mut messages = fly(&rough(), &happenings);
+    let nan = f64::from_bits(0x7ff8_0000_0000_0001);
+    for message in &mut messages {
+        if let Message::Tick(record) = message {
+            match record.tick.number {
+                400 => record.outputs.rudder = flipped(record.outputs.rudder),
+                // Equal by ==, and not by its bits; in standby it is 0.
+                10 => record.setpoints.roll_rad = -0.0,
+                20 => record.outputs.throttle = nan,
+                _ => {}
+            }
+        }
+    }
+    let (_, identity) = again(&rough(), &messages);
+    assert_eq!(identity.differing, 3);
+    let first = identity.first.unwrap();
+    assert_eq!((first.tick, first.time_ms), (10, 225));
+    assert_eq!(first.field, "setpoints.roll_rad");
+    assert_eq!(first.recorded_bits, "0x8000000000000000");
+    assert_eq!(first.again_bits, "0x0000000000000000");
+    assert_eq!(
+        (first.recorded.as_str(), first.again.as_str()),
+        ("-0.0", "0.0")
+    );
+    let throttle = identity
+        .fields
+        .iter()
+        .find(|field| field.field == "outputs.throttle")
+        .unwrap();
+    assert_eq!((throttle.differing, throttle.largest), (1, None));
+}
+
+#[test]
+fn another_rate_is_found_in_the_first_tick() {
+    let happenings = Happenings {
+        steps: 100,
+        ..Happenings::default()
+    };
+    let messages = fly(&rough(), &happenings);
+    let mut config = rough();
+    config.tick.rate_hz = 41.0;
+    let first = again(&config, &messages).1.first.unwrap();
+    assert_eq!((first.tick, first.field), (1, "tick.dt_s"));
+}
+
+#[test]
+fn the_recorded_configuration_does_not_deviate() {
+    let messages = fly(
+        &rough(),
+        &Happenings {
+            steps: 2_000,
+            ..Happenings::default()
+        },
+    );
+    let deviation = deviation(&rough(), &messages);
+    let sent = records(&messages).iter().filter(|r| r.sent).count();
+    assert_eq!(deviation.compared, sent as u64);
+    assert!(sent > 1_900);
+    for quantity in deviation.quantities {
+        assert_eq!((quantity.differing, quantity.largest), (0, 0.0));
+    }
+}
+
+/// A course that turns the other way: after the hold of 20 s its set point is
+/// 180° from the recorded one (90° right, 90° left), and a second leg later
+/// 360°, which is the same heading.
+#[test]
+fn another_course_deviates_by_what_the_course_says() {
+    let mut config = rough();
+    let happenings = Happenings {
+        steps: 80 + 40 * 39,
+        ..Happenings::default()
+    };
+    let messages = fly(&config, &happenings);
+    let CourseSection::TimedPattern { turn_deg, .. } = &mut config.course else {
+        panic!("the default is a pattern");
+    };
+    assert_eq!(*turn_deg, 90.0);
+    *turn_deg = -90.0;
+    let other = deviation(&config, &messages);
+    let of = |name: &str| other.quantities.iter().find(|q| q.name == name).unwrap();
+    let heading = of("heading set point");
+    assert!((heading.largest.abs() - 180.0).abs() < 1e-9);
+    let at_s = heading.largest_at_s.unwrap();
+    assert!((at_s - 21.975).abs() < 0.03, "{at_s}");
+    // 19 of 39 s at 180°: rms 180 sqrt(19/39).
+    let expected = 180.0 * (19.0_f64 / 39.0).sqrt();
+    assert!((heading.rms - expected).abs() < 1.0, "{}", heading.rms);
+    assert_eq!(of("altitude set point").differing, 0);
+    assert!(of("bank set point").largest.abs() > 30.0);
+    assert!(of("aileron").differing > 600);
+    let text = other.to_text();
+    assert!(text.contains("did not react"), "{text}");
+}

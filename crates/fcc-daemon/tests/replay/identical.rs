@@ -1,0 +1,171 @@
+//! What was flown is the same in every bit when it is flown again.
+
+use std::f64::consts::FRAC_PI_2;
+use std::time::Duration;
+
+use fcc_core::flight::Order as Command;
+use fcc_core::framework::Order;
+use fcc_core::framework::State::{Engaged, Standby, Stopped};
+use fcc_daemon::config::{Config, Then};
+
+use super::assert_identical;
+use super::flights::{Happenings, again, fly, records, rough};
+
+#[test]
+fn ten_minutes_in_gusts_noise_and_delay() {
+    let messages = fly(
+        &rough(),
+        &Happenings {
+            steps: 24_000,
+            ..Happenings::default()
+        },
+    );
+    let states = assert_identical(&rough(), &messages);
+    assert_eq!(states, [Standby, Engaged]);
+}
+
+#[test]
+fn every_way_of_being_ordered_about() {
+    let commands = [
+        Command::Heading(FRAC_PI_2),
+        Command::Altitude(1_000.0),
+        Command::Airspeed(55.0),
+        Command::Heading(f64::NAN),
+    ];
+    let mut orders = vec![
+        // Several in a tick, one to the loop among them.
+        (400, Order::Controller(commands[0])),
+        (400, Order::Controller(commands[1])),
+        (800, Order::Disengage),
+        (800, Order::Controller(commands[2])),
+        (900, Order::Engage),
+        (900, Order::Controller(commands[0])),
+        (1_000, Order::Controller(commands[3])),
+        // Refused: control is let go in the same tick.
+        (1_100, Order::Disengage),
+        (1_100, Order::Engage),
+        (1_600, Order::Stop),
+    ];
+    // More than a tick reads.
+    orders.extend((0..40).map(|_| (1_200, Order::Controller(commands[2]))));
+    let messages = fly(
+        &rough(),
+        &Happenings {
+            orders,
+            steps: 2_000,
+            ..Happenings::default()
+        },
+    );
+    let states = assert_identical(&rough(), &messages);
+    assert_eq!(
+        states,
+        [
+            Standby, Engaged, Standby, Engaged, Standby, Engaged, Stopped
+        ]
+    );
+}
+
+#[test]
+fn failsafe_and_back() {
+    let mut config = rough();
+    config.failsafe.hold_s = 2.0;
+    let messages = fly(
+        &config,
+        &Happenings {
+            // One too short to matter, one that ends in time, one that does not.
+            silent: vec![300..=305, 400..=440, 600..=800],
+            orders: vec![(450, Order::Engage), (900, Order::Engage)],
+            steps: 1_200,
+            ..Happenings::default()
+        },
+    );
+    let states = assert_identical(&config, &messages);
+    let phases: Vec<_> = states.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        phases,
+        [
+            "standby", "engaged", "failsafe", "engaged", "failsafe", "standby", "engaged"
+        ]
+    );
+}
+
+#[test]
+fn failsafe_that_ends_the_loop() {
+    let mut config = rough();
+    config.failsafe.hold_s = 1.0;
+    config.failsafe.then = Then::Stop;
+    let happenings = Happenings {
+        silent: vec![400..=800],
+        steps: 1_200,
+        ..Happenings::default()
+    };
+    let messages = fly(&config, &happenings);
+    let states = assert_identical(&config, &messages);
+    assert_eq!(states.last(), Some(&Stopped));
+
+    // The stop came from the configuration and not from the recording.
+    config.failsafe.hold_s = 2.0;
+    let (run, identity) = again(&config, &messages);
+    assert_eq!(run.unflown, None);
+    assert_eq!(identity.first.unwrap().field, "state");
+}
+
+#[test]
+fn the_stop_flag_in_flight() {
+    let happenings = Happenings {
+        stop_before: Some(500),
+        steps: 600,
+        ..Happenings::default()
+    };
+    let messages = fly(&rough(), &happenings);
+    let states = assert_identical(&rough(), &messages);
+    assert_eq!(records(&messages).len(), 500);
+    assert_eq!(states, [Standby, Engaged, Stopped]);
+}
+
+#[test]
+fn late_and_missed_ticks() {
+    let ms = Duration::from_millis;
+    let happenings = Happenings {
+        // The very first among them.
+        late: vec![
+            (1, ms(60)),
+            (200, ms(10)),
+            (300, ms(40)),
+            (500, ms(180)),
+            (700, ms(400)),
+        ],
+        orders: vec![(760, Order::Engage)],
+        steps: 1_500,
+        ..Happenings::default()
+    };
+    for rate_hz in [40.0, 60.0, 137.0] {
+        let mut config = rough();
+        config.tick.rate_hz = rate_hz;
+        let messages = fly(&config, &happenings);
+        assert_identical(&config, &messages);
+        let missed: u64 = records(&messages).iter().map(|r| r.tick.missed).sum();
+        assert!(missed > 20, "{missed}");
+    }
+}
+
+#[test]
+fn a_configuration_written_out_and_read_again_is_the_same_to_the_last_bit() {
+    let mut config = rough();
+    config.autopilot.heading.roll_gain_per_s /= 3.0;
+    config.autopilot.altitude.capture_g *= 1.0 + f64::EPSILON;
+    config.autopilot.airspeed.throttle_per_g = 0.1 + 0.2;
+    config.autopilot.envelope.max_bank_deg = 1e2_f64.sqrt() * 3.3;
+    config.tick.rate_hz = 1e3 / 7.0;
+    let text = toml::to_string(&config).unwrap();
+    let read = Config::parse(&text, "attached").unwrap();
+    assert_eq!(read.autopilot_config(), config.autopilot_config());
+    assert_eq!(read.tick.period(), config.tick.period());
+
+    let happenings = Happenings {
+        steps: 2_000,
+        ..Happenings::default()
+    };
+    let messages = fly(&config, &happenings);
+    assert_identical(&read, &messages);
+}

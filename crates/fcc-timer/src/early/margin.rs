@@ -1,0 +1,253 @@
+//! How long the margin has to be: what the last wake-ups say.
+//!
+//! A sliding window of measured lateness, each kept as the number of a bucket,
+//! and how many there are of each: whole numbers in fixed memory, two of them
+//! changed per tick.
+
+use super::EarlyWake;
+
+/// Wake-ups that are remembered: 51 s at 40 Hz, 2 s at 1 kHz.
+const WINDOW: usize = 2048;
+/// Buckets from no lateness to the longest margin: 1 µs each for 250 µs.
+const BUCKETS: usize = 256;
+/// Ticks between two reviews: under a second at 40 Hz.
+const REVIEW_TICKS: u32 = 32;
+/// A margin is shortened only if this part of it can be saved, so that it is
+/// not moved to and fro.
+const WORTH_SAVING: i64 = 8;
+
+/// The present margin, and what it was chosen by.
+#[derive(Debug)]
+pub(super) struct Margin {
+    shortest_ns: i64,
+    longest_ns: i64,
+    guard_ns: i64,
+    /// The share of wake-ups that the margin may be too short for.
+    spared: f64,
+    bucket_ns: i64,
+    /// Buckets of the last wake-ups; the oldest is overwritten.
+    window: Box<[u16]>,
+    next: usize,
+    seen: usize,
+    /// How many wake-ups of the window are in each bucket; the last one holds
+    /// those that no margin reaches.
+    counts: Box<[u16]>,
+    review_in: u32,
+    now_ns: i64,
+}
+
+impl Margin {
+    pub(super) fn new(wish: &EarlyWake, period_ns: i64) -> Self {
+        let ns = |time: std::time::Duration| time.as_nanos() as i64;
+        let affordable_ns = (wish.cpu_cap * period_ns as f64) as i64;
+        let longest_ns = ns(wish.max).min(affordable_ns);
+        Self {
+            shortest_ns: ns(wish.min).min(longest_ns),
+            longest_ns,
+            guard_ns: ns(wish.guard),
+            spared: 1.0 - wish.quantile,
+            bucket_ns: longest_ns.unsigned_abs().div_ceil(BUCKETS as u64).max(1) as i64,
+            window: vec![0; WINDOW].into(),
+            next: 0,
+            seen: 0,
+            counts: vec![0; BUCKETS + 1].into(),
+            review_in: REVIEW_TICKS,
+            // Nothing is known yet: what may be spent is spent.
+            now_ns: longest_ns,
+        }
+    }
+
+    pub(super) const fn ns(&self) -> i64 {
+        self.now_ns
+    }
+
+    /// Counts a wake-up that came so long after its alarm.
+    pub(super) fn observe(&mut self, lateness_ns: i64) {
+        let bucket = (lateness_ns / self.bucket_ns).clamp(0, BUCKETS as i64) as u16;
+        if let Some(slot) = self.window.get_mut(self.next) {
+            let forgotten = std::mem::replace(slot, bucket);
+            if self.seen < WINDOW {
+                self.seen += 1;
+            } else if let Some(count) = self.counts.get_mut(usize::from(forgotten)) {
+                *count = count.saturating_sub(1);
+            }
+        }
+        if let Some(count) = self.counts.get_mut(usize::from(bucket)) {
+            *count = count.saturating_add(1);
+        }
+        self.next = (self.next + 1) % WINDOW;
+    }
+
+    /// To be called once a tick; whether the margin is another now.
+    pub(super) fn review(&mut self) -> bool {
+        self.review_in = self.review_in.saturating_sub(1);
+        if self.review_in > 0 {
+            return false;
+        }
+        self.review_in = REVIEW_TICKS;
+        if self.seen == 0 {
+            return false;
+        }
+        let wanted_ns = self.wanted_ns();
+        let saved_ns = self.now_ns.saturating_sub(wanted_ns);
+        if saved_ns < 0 || saved_ns > self.now_ns / WORTH_SAVING {
+            self.now_ns = wanted_ns;
+            return true;
+        }
+        false
+    }
+
+    /// The margin that the wake-ups of the window ask for.
+    fn wanted_ns(&self) -> i64 {
+        let beyond = self.counts.last().copied().map_or(0, usize::from);
+        if 2 * beyond >= self.seen {
+            return self.longest_ns;
+        }
+        let mut spared = (self.spared * (self.seen - beyond) as f64) as usize;
+        let mut covered_ns = 0;
+        for (bucket, count) in self.counts.iter().enumerate().take(BUCKETS).rev() {
+            let count = usize::from(*count);
+            if count > spared {
+                covered_ns = (bucket as i64 + 1).saturating_mul(self.bucket_ns);
+                break;
+            }
+            spared -= count;
+        }
+        covered_ns
+            .saturating_add(self.guard_ns)
+            .clamp(self.shortest_ns, self.longest_ns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    const US: i64 = 1_000;
+    const PERIOD_NS: i64 = 25_000 * US;
+
+    fn at_40_hz() -> Margin {
+        Margin::new(&EarlyWake::default(), PERIOD_NS)
+    }
+
+    /// Lets the timer tick with these latenesses, and counts how often the
+    /// margin moved.
+    fn ticks(margin: &mut Margin, latenesses_us: impl IntoIterator<Item = i64>) -> u32 {
+        latenesses_us
+            .into_iter()
+            .map(|us| {
+                margin.observe(us * US);
+                u32::from(margin.review())
+            })
+            .sum()
+    }
+
+    fn steady(us: i64, count: usize) -> impl Iterator<Item = i64> {
+        std::iter::repeat_n(us, count)
+    }
+
+    #[test]
+    fn begins_with_the_most_it_may_spend() {
+        assert_eq!(at_40_hz().ns(), 250 * US);
+        let capped = EarlyWake {
+            cpu_cap: 0.004,
+            ..EarlyWake::default()
+        };
+        assert_eq!(Margin::new(&capped, PERIOD_NS).ns(), 100 * US);
+        assert_eq!(Margin::new(&EarlyWake::default(), 100 * US).ns(), 25 * US);
+    }
+
+    #[test]
+    fn follows_a_steady_lateness_with_the_guard() {
+        let mut margin = at_40_hz();
+        ticks(&mut margin, steady(60, 64));
+        // 60 µs and 20 µs of guard, rounded up to a bucket of a microsecond.
+        assert!(
+            (80 * US..=81 * US).contains(&margin.ns()),
+            "{}",
+            margin.ns()
+        );
+    }
+
+    #[test]
+    fn keeps_between_its_bounds() {
+        let mut margin = at_40_hz();
+        ticks(&mut margin, steady(0, 64));
+        assert!(
+            (20 * US..=21 * US).contains(&margin.ns()),
+            "{}",
+            margin.ns()
+        );
+        ticks(&mut margin, steady(245, 2048));
+        assert_eq!(margin.ns(), 250 * US);
+        let floor = EarlyWake {
+            min: Duration::from_micros(100),
+            ..EarlyWake::default()
+        };
+        let mut margin = Margin::new(&floor, PERIOD_NS);
+        ticks(&mut margin, steady(3, 64));
+        assert_eq!(margin.ns(), 100 * US);
+    }
+
+    #[test]
+    fn covers_the_share_of_wake_ups_that_it_was_asked_for() {
+        let wish = EarlyWake {
+            quantile: 0.9,
+            guard: Duration::ZERO,
+            min: Duration::ZERO,
+            ..EarlyWake::default()
+        };
+        let mut margin = Margin::new(&wish, PERIOD_NS);
+        // 0 to 199 µs, each as often as the others: nine tenths are below 180.
+        ticks(&mut margin, (0..2000).map(|n| (n * 7) % 200));
+        assert!(
+            (176 * US..=182 * US).contains(&margin.ns()),
+            "{}",
+            margin.ns()
+        );
+    }
+
+    #[test]
+    fn an_outlier_does_not_move_it() {
+        let mut margin = at_40_hz();
+        ticks(&mut margin, steady(60, 2048));
+        let before_ns = margin.ns();
+        let moved = ticks(
+            &mut margin,
+            steady(200, 4).chain(steady(60, 500)).chain([9_000]),
+        );
+        assert_eq!((moved, margin.ns()), (0, before_ns));
+    }
+
+    #[test]
+    fn a_busier_machine_is_seen_within_a_second_and_forgotten_after_a_window() {
+        let mut margin = at_40_hz();
+        ticks(&mut margin, steady(60, 2048));
+        ticks(&mut margin, steady(150, 40));
+        assert!(margin.ns() >= 170 * US, "{}", margin.ns());
+        ticks(&mut margin, steady(60, 2000));
+        assert!(margin.ns() >= 170 * US, "{}", margin.ns());
+        ticks(&mut margin, steady(60, 48 + 32));
+        assert!(margin.ns() <= 81 * US, "{}", margin.ns());
+    }
+
+    #[test]
+    fn wake_ups_that_no_margin_reaches_count_only_when_they_are_half_of_all() {
+        let mut margin = at_40_hz();
+        // Three in ten are milliseconds late: no reason to spend 250 µs.
+        let moody = |n: i64| if n % 10 < 3 { 5_000 } else { 60 };
+        ticks(&mut margin, (0..2048).map(moody));
+        assert!(margin.ns() <= 81 * US, "{}", margin.ns());
+        ticks(&mut margin, steady(400, 1200));
+        assert_eq!(margin.ns(), 250 * US);
+    }
+
+    #[test]
+    fn small_savings_are_not_worth_a_move() {
+        let mut margin = at_40_hz();
+        ticks(&mut margin, steady(100, 2048));
+        assert_eq!(ticks(&mut margin, steady(90, 5000)), 0);
+        assert_eq!(ticks(&mut margin, steady(70, 5000)), 1);
+    }
+}

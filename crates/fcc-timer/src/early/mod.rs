@@ -1,0 +1,282 @@
+//! Waking early, and spinning to the deadline.
+//!
+//! A kernel wakes a thread some tens of microseconds after it was asked to:
+//! the interrupt, the scheduler and the way out of an idle state take their
+//! time, and each time another. A timer that asks to be woken a margin before
+//! the deadline, and then reads the clock until the deadline is there, is late
+//! by one reading of the clock, as long as the margin was long enough.
+//!
+//! How long is enough is measured ([`margin`]); what it may cost is bounded
+//! ([`EarlyWake`]). The three timers of the kernel share all of this: each is
+//! an [`Alarm`], and [`Early::wait`] is their common way to a deadline.
+
+mod margin;
+
+use std::hint::spin_loop;
+use std::time::Duration;
+
+use crate::deadlines::{Deadlines, Period, monotonic_ns};
+use crate::{Expiry, TimerError};
+use margin::Margin;
+
+/// No margin is longer, so that windows of lateness have a useful resolution.
+const LONGEST_MARGIN: Duration = Duration::from_millis(10);
+/// Half of each period at most: an alarm has to come after the deadline before.
+const LARGEST_CPU_CAP: f64 = 0.5;
+const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
+
+/// How much before its deadlines a timer may ask to be woken.
+///
+/// The margin follows the lateness with which the kernel really wakes the
+/// thread: it is the quantile of the last 2048 wake-ups plus the guard, within
+/// `min` and `max`, and never more than `cpu_cap` periods. It starts at the
+/// most it may be.
+///
+/// A quantile, because a margin that follows the latest of all wake-ups would
+/// be blown up by each outlier: with 0.998, four of 2048 change nothing, and a
+/// fifth does at the next review (every 32 ticks). So the margin rises within a
+/// second when the machine becomes busy, is blind to what happens once in a
+/// while, and falls when 2048 ticks have passed since. Wake-ups later than any
+/// margin allowed are not counted, for no margin would have helped; unless
+/// they are half of all, when the longest margin helps most.
+///
+/// ```
+/// use fcc_timer::{EarlyWake, TimerKind};
+/// use std::time::Duration;
+///
+/// let period = Duration::from_millis(5);
+/// let mut timer = TimerKind::Timerfd.build_early(period, &EarlyWake::default())?;
+/// timer.start()?;
+/// let expiry = timer.wait()?;
+/// assert_eq!(expiry.early_wake_ns, 250_000);
+/// assert!(expiry.lateness_ns() >= 0);
+/// # Ok::<(), fcc_timer::TimerError>(())
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct EarlyWake {
+    /// The shortest margin. 20 µs by default.
+    pub min: Duration,
+    /// The longest margin, 10 ms at most. 250 µs by default: 1 % of a period
+    /// at 40 Hz.
+    pub max: Duration,
+    /// Which share of the wake-ups shall be before the deadline, 0.5..=0.9999.
+    /// 0.998 by default.
+    pub quantile: f64,
+    /// Added to what was measured. 20 µs by default.
+    pub guard: Duration,
+    /// The share of a core that may be spent on spinning, 0..=0.5: no margin
+    /// is longer than this many periods, whatever `min` says. 0.25 by default,
+    /// which shortens margins of 250 µs above 1 kHz only.
+    pub cpu_cap: f64,
+}
+
+impl Default for EarlyWake {
+    fn default() -> Self {
+        Self {
+            min: Duration::from_micros(20),
+            max: Duration::from_micros(250),
+            quantile: 0.998,
+            guard: Duration::from_micros(20),
+            cpu_cap: 0.25,
+        }
+    }
+}
+
+impl EarlyWake {
+    fn check(&self) -> Result<(), TimerError> {
+        let problem = if self.max > LONGEST_MARGIN {
+            "max: choose 10 ms or less"
+        } else if self.min > self.max {
+            "min: choose no more than max"
+        } else if !QUANTILES.contains(&self.quantile) {
+            "quantile: choose 0.5 to 0.9999"
+        } else if self.guard > LONGEST_MARGIN {
+            "guard: choose 10 ms or less"
+        } else if !(0.0..=LARGEST_CPU_CAP).contains(&self.cpu_cap) {
+            "cpu_cap: choose 0 to 0.5"
+        } else {
+            return Ok(());
+        };
+        Err(TimerError::EarlyWake(problem))
+    }
+}
+
+/// A timer's own way to be woken by the kernel.
+pub(crate) trait Alarm {
+    /// Has the next alarm come at `alarm_ns`, and the others a period apart
+    /// from there, from now on.
+    fn move_to(&mut self, alarm_ns: i64) -> Result<(), TimerError>;
+
+    /// Sleeps until the next alarm. May return before `alarm_ns`: for an alarm
+    /// that came when nobody waited.
+    fn sleep_until(&mut self, alarm_ns: i64) -> Result<(), TimerError>;
+}
+
+/// What a timer that wakes early knows.
+#[derive(Debug)]
+pub(crate) struct Early {
+    margin: Margin,
+}
+
+impl Early {
+    /// # Errors
+    /// When a value is out of its range.
+    pub(crate) fn new(wish: &EarlyWake, period: Period) -> Result<Self, TimerError> {
+        wish.check()?;
+        Ok(Self {
+            margin: Margin::new(wish, period.ns()),
+        })
+    }
+
+    /// The present margin.
+    pub(crate) const fn margin_ns(&self) -> i64 {
+        self.margin.ns()
+    }
+
+    /// Waits for the next deadline. What has passed is told by the clock: an
+    /// alarm is no deadline, so the kernel's count of alarms says nothing here.
+    pub(crate) fn wait(
+        &mut self,
+        deadlines: &mut Deadlines,
+        kernel: &mut impl Alarm,
+    ) -> Result<Expiry, TimerError> {
+        if self.margin.review() {
+            deadlines.wake_early(self.margin.ns());
+            // A system call, but one in 32 ticks at most, and before the wait:
+            // to ask for each alarm by itself would be one in each tick.
+            kernel.move_to(deadlines.alarm_ns())?;
+        }
+        let alarm_ns = deadlines.alarm_ns();
+        let due_ns = deadlines.due_ns(deadlines.next());
+        let mut now_ns = monotonic_ns();
+        let mut kernel_lateness_ns = None;
+        if now_ns < alarm_ns {
+            while now_ns < alarm_ns {
+                kernel.sleep_until(alarm_ns)?;
+                now_ns = monotonic_ns();
+            }
+            // Only of a thread that slept it can be said how long waking took.
+            let late_ns = now_ns.saturating_sub(alarm_ns);
+            self.margin.observe(late_ns);
+            kernel_lateness_ns = Some(late_ns);
+        }
+        // Beyond the deadline it is not the spin that takes the time.
+        let spun_ns = due_ns.saturating_sub(now_ns).max(0).unsigned_abs();
+        while now_ns < due_ns {
+            spin_loop();
+            now_ns = monotonic_ns();
+        }
+        let expiry = deadlines.woken_uncounted(now_ns);
+        Ok(Expiry {
+            early_wake_ns: self.margin.ns().unsigned_abs(),
+            spun_ns,
+            kernel_lateness_ns: kernel_lateness_ns.unwrap_or(expiry.kernel_lateness_ns),
+            ..expiry
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_makes_no_sense_is_refused_with_the_range() {
+        let wish = EarlyWake::default();
+        let period = Period::new(Duration::from_millis(25)).unwrap();
+        for (bad, name) in [
+            (
+                EarlyWake {
+                    max: Duration::from_millis(11),
+                    ..wish
+                },
+                "max",
+            ),
+            (
+                EarlyWake {
+                    min: Duration::from_micros(251),
+                    ..wish
+                },
+                "min",
+            ),
+            (
+                EarlyWake {
+                    quantile: 1.0,
+                    ..wish
+                },
+                "quantile",
+            ),
+            (
+                EarlyWake {
+                    quantile: f64::NAN,
+                    ..wish
+                },
+                "quantile",
+            ),
+            (
+                EarlyWake {
+                    guard: Duration::MAX,
+                    ..wish
+                },
+                "guard",
+            ),
+            (
+                EarlyWake {
+                    cpu_cap: 0.51,
+                    ..wish
+                },
+                "cpu_cap",
+            ),
+            (
+                EarlyWake {
+                    cpu_cap: f64::NAN,
+                    ..wish
+                },
+                "cpu_cap",
+            ),
+        ] {
+            let message = Early::new(&bad, period).unwrap_err().to_string();
+            assert!(message.contains(&format!("{name}: choose ")), "{message}");
+        }
+        assert!(Early::new(&wish, period).is_ok());
+    }
+
+    /// A kernel that says that the alarm has come when it has not: as a timer
+    /// does whose alarms nobody waited for during a long tick.
+    struct Impatient {
+        stale: u32,
+    }
+
+    impl Alarm for Impatient {
+        fn move_to(&mut self, _: i64) -> Result<(), TimerError> {
+            Ok(())
+        }
+
+        fn sleep_until(&mut self, alarm_ns: i64) -> Result<(), TimerError> {
+            if self.stale > 0 {
+                self.stale -= 1;
+            } else {
+                let left_ns = alarm_ns.saturating_sub(monotonic_ns()).max(0);
+                std::thread::sleep(Duration::from_nanos(left_ns.unsigned_abs()));
+            }
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn an_alarm_left_over_does_not_serve_a_deadline() {
+        // Long, so that the wait begins before the alarm on any machine.
+        let period = Period::new(Duration::from_millis(300)).unwrap();
+        let mut early = Early::new(&EarlyWake::default(), period).unwrap();
+        let mut deadlines = Deadlines::new(monotonic_ns(), period);
+        deadlines.wake_early(early.margin_ns());
+        let mut kernel = Impatient { stale: 3 };
+        let expiry = early.wait(&mut deadlines, &mut kernel).unwrap();
+        assert_eq!(kernel.stale, 0);
+        assert!(expiry.woke_ns >= expiry.scheduled_ns);
+        assert_eq!(expiry.early_wake_ns, 250_000);
+        // From the alarm on, first the kernel takes its time, then the spin.
+        let late_ns = expiry.kernel_lateness_ns.unsigned_abs();
+        assert_eq!(expiry.spun_ns, 250_000_u64.saturating_sub(late_ns));
+    }
+}

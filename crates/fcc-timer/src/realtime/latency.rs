@@ -1,0 +1,70 @@
+//! How deep the CPUs may sleep: `/dev/cpu_dma_latency`.
+//!
+//! A CPU without work goes to sleep, and waking from a deep sleep takes longer
+//! than from a light one, up to hundreds of microseconds. Whoever holds this
+//! device open with a number in it, µs, keeps the kernel from states that take
+//! longer to leave (Linux, "PM Quality Of Service Interface").
+
+use nix::errno::Errno;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Write};
+use std::sync::Arc;
+
+use super::Refusal;
+
+const DEVICE: &str = "/dev/cpu_dma_latency";
+
+/// A limit on how long CPUs may take to wake, in force until the last copy of
+/// this value is dropped.
+#[derive(Clone, Debug)]
+pub struct LatencyLimit {
+    us: u32,
+    _device: Arc<File>,
+}
+
+impl LatencyLimit {
+    /// The limit, µs, as read back: that of the strictest holder.
+    pub const fn us(&self) -> u32 {
+        self.us
+    }
+}
+
+impl PartialEq for LatencyLimit {
+    fn eq(&self, other: &Self) -> bool {
+        self.us == other.us
+    }
+}
+
+impl Eq for LatencyLimit {}
+
+/// Asks that no CPU takes longer than `wished_us` to wake.
+pub(super) fn limit(wished_us: u32) -> Result<LatencyLimit, Refusal> {
+    ask(wished_us).map_err(|error| Refusal {
+        wish: format!("CPUs awake within {wished_us} µs"),
+        reason: match error.raw_os_error() {
+            Some(number) => format!("{DEVICE}: {:?}", Errno::from_raw(number)),
+            None => format!("{DEVICE}: {error}"),
+        },
+        remedy: format!(
+            "let the program write to {DEVICE}: a udev rule \
+             KERNEL==\"cpu_dma_latency\", GROUP=\"fccd\", MODE=\"0660\"; where the machine has \
+             no such device, take the wish out"
+        ),
+    })
+}
+
+fn ask(wished_us: u32) -> io::Result<LatencyLimit> {
+    let mut device = OpenOptions::new().read(true).write(true).open(DEVICE)?;
+    let wished = i32::try_from(wished_us).map_err(io::Error::other)?;
+    device.write_all(&wished.to_ne_bytes())?;
+    let mut granted = [0; size_of::<i32>()];
+    device.read_exact(&mut granted)?;
+    let granted = i32::from_ne_bytes(granted);
+    if granted > wished {
+        return Err(io::Error::other(format!("reads back as {granted} µs")));
+    }
+    Ok(LatencyLimit {
+        us: granted.unsigned_abs(),
+        _device: Arc::new(device),
+    })
+}

@@ -1,0 +1,133 @@
+"""The Debian package from outside: what it brings, and what its scripts leave alone.
+
+`make test-deb` builds it and gives its path in DEB.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = ("preinst", "postinst", "prerm", "postrm")
+
+
+@pytest.fixture(scope="session")
+def package() -> Path:
+    path = os.environ.get("DEB", "")
+    if not Path(path).is_file():
+        pytest.fail("DEB names no package: make test-deb", pytrace=False)
+    return Path(path)
+
+
+@pytest.fixture(scope="session")
+def control(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of the package's own files."""
+    folder = tmp_path_factory.mktemp("control")
+    subprocess.run(["dpkg-deb", "--control", package, folder], check=True)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def files(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder in which the package is unpacked."""
+    folder = tmp_path_factory.mktemp("files")
+    subprocess.run(["dpkg-deb", "--extract", package, folder], check=True)
+    return folder
+
+
+def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
+    control: Path, tmp_path: Path
+) -> None:
+    """The scripts run as dpkg runs them, where all that they may call is noted and does nothing."""
+    called = tmp_path / "called"
+    tools = tmp_path / "bin"
+    tools.mkdir()
+    for tool in (
+        "systemctl",
+        "deb-systemd-invoke",
+        "deb-systemd-helper",
+        "invoke-rc.d",
+        "systemd-sysusers",
+        "udevadm",
+        "service",
+    ):
+        (tools / tool).write_text(
+            f'#!/bin/sh\necho "{tool} $*" >> {called}\n'
+            # Nobody has enabled it.
+            'case "$*" in *was-enabled*) exit 1 ;; esac\n'
+        )
+        (tools / tool).chmod(0o755)
+    called.touch()
+    steps = [
+        ("preinst", "install"),
+        ("postinst", "configure", ""),
+        ("prerm", "upgrade", "2.0"),
+        ("preinst", "upgrade", "1.0"),
+        ("postrm", "upgrade", "2.0"),
+        ("postinst", "configure", "1.0"),
+    ]
+    ran = 0
+    for name, *words in steps:
+        script = control / name
+        if not script.exists():
+            continue
+        # The check for a running systemd is the only thing that is changed.
+        text = script.read_text().replace("-d /run/systemd/system", "-d /")
+        copy = tmp_path / name
+        copy.write_text(text)
+        environment = {
+            "PATH": f"{tools}:/usr/bin:/bin",
+            "DPKG_MAINTSCRIPT_NAME": name,
+            "DPKG_MAINTSCRIPT_PACKAGE": "fccd",
+        }
+        subprocess.run(["sh", copy, *words], check=True, env=environment)
+        ran += 1
+    assert ran >= 2, "there are no scripts"
+    meddled = re.findall(
+        r".*\b(?:start|stop|restart|try-restart|reload|enable) .*", called.read_text()
+    )
+    assert meddled == []
+
+
+def test_the_configuration_belongs_to_whoever_changed_it(control: Path, files: Path) -> None:
+    assert "/etc/fccd/fccd.toml" in (control / "conffiles").read_text().split()
+    program = files / "usr/bin/fccd"
+    checked = subprocess.run([program, "check", files / "etc/fccd/fccd.toml"], check=False)
+    assert checked.returncode == 0
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "usr/lib/systemd/system/fccd.service|lib/systemd/system/fccd.service",
+        "usr/share/man/man1/fccd.1.gz",
+        "usr/share/man/man1/fccd-run.1.gz",
+        "usr/share/bash-completion/completions/fccd",
+        "usr/share/doc/fccd/copyright",
+        "usr/share/doc/fccd/deploy.md",
+        "usr/lib/sysusers.d/fccd.conf",
+    ],
+)
+def test_what_belongs_to_it_is_there(files: Path, path: str) -> None:
+    assert any((files / place).is_file() for place in path.split("|"))
+
+
+def test_its_manual_can_be_read(files: Path) -> None:
+    page = files / "usr/share/man/man1/fccd-run.1.gz"
+    text = subprocess.run(["gzip", "-dc", page], check=True, capture_output=True, text=True).stdout
+    assert "--config" in text.replace("\\", "")
+
+
+def test_it_asks_for_a_c_library_that_is_new_enough(control: Path, files: Path) -> None:
+    asked = re.search(r"libc6 \(>= ([\d.]+)\)", (control / "control").read_text())
+    assert asked is not None
+    program = (files / "usr/bin/fccd").read_bytes()
+    needed = {
+        tuple(map(int, found.split(b".")))
+        for found in re.findall(rb"GLIBC_(\d+\.\d+(?:\.\d+)?)", program)
+    }
+    assert max(needed)[:2] <= tuple(map(int, asked[1].split(".")))

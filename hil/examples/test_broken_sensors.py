@@ -1,0 +1,59 @@
+"""Sensors that go, err and stutter, in rough air: what must follow, and what must not."""
+
+import pytest
+
+from fcc_hil import airspeed, altitude, bank, heading, pitch
+from fcc_hil.flight import Flight
+from fcc_hil.sensor_faults import Faults
+
+pytestmark = [
+    pytest.mark.aircraft("c172p", wind=(270, 10), turbulence=3, seed=7, noise=True),
+    pytest.mark.autopilot(course="hold"),
+]
+
+
+@pytest.mark.parametrize(
+    "sensor", ["attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"]
+)
+def test_whichever_sensor_goes_the_wings_are_levelled_and_the_controls_released(
+    flight: Flight, faults: Faults, sensor: str
+) -> None:
+    """Not-a-number is as good as nothing: the last good value grows old."""
+    flight.engages(by=3)
+    flight.flies(5)
+    gone = faults.nan(sensor)
+    flight.falls_into_failsafe(by=0.5, after=gone)
+    flight.releases(by=6, after=gone)
+    flight.never(abs(bank) > 20)
+
+
+def test_an_altimeter_that_errs_is_followed(flight: Flight, faults: Faults) -> None:
+    """It shows 10 m too much, so the aircraft, by the truth, goes 10 m down."""
+    flight.engages(by=3)
+    faults.bias(altitude("m"), by=10)
+    wrong_m = flight.captured.altitude_ft * 0.3048 - 10
+    flight.settles(altitude("m"), at=wrong_m, within=3, by=15)
+    flight.never(pitch < -15)
+    flight.never("failsafe")
+
+
+@pytest.mark.parametrize("fault", ["loss", "duplicate", "reorder"])
+def test_a_sensor_that_stutters_does_not_matter(flight: Flight, faults: Faults, fault: str) -> None:
+    """A fifth of what heading and airspeed say is lost, doubled or out of order."""
+    flight.engages(by=3)
+    getattr(faults, fault)(heading, share=0.2)
+    getattr(faults, fault)(airspeed, share=0.2)
+    flight.stays(heading, within=5, to=30)
+    flight.never("failsafe")
+
+
+def test_a_simulator_that_is_silent_for_a_moment_is_waited_for(
+    flight: Flight, faults: Faults
+) -> None:
+    """200 ms of nothing are within what is allowed; half a second is not."""
+    flight.engages(by=3)
+    faults.loss("everything", after=1, lasts=0.2)
+    flight.flies(3)
+    flight.never("failsafe")
+    longer = faults.loss("everything", lasts=0.5)
+    flight.falls_into_failsafe(by=0.4, after=longer)

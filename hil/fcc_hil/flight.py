@@ -1,0 +1,384 @@
+"""A flight under test: flies, and holds what was flown against requirements.
+
+    flight.engages(by=3)
+    flight.flies(to=20)
+    flight.settles(heading, within=2, by=17)
+    flight.overshoots_less_than(heading, 1.5)
+
+An assertion looks at what was flown so far, and flies on where it speaks of later. It
+is judged by the aircraft's truth, never by what the sensors or the autopilot say. Times
+are simulated seconds: `to`, `from_` and `since` count from engagement, `by` from the
+event that it belongs to.
+
+In real time the simulator flies on while a test thinks. The flight is where the test has
+flown it to, so the same test asks the same questions either way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .pattern import SetPoints, TimedPattern
+from .quantities import Condition, Quantity, Samples, finite, quantity_of
+from .requirements import Stretch, Verdict, never, overshoots_less_than, settles, stays
+from .rig import ENGAGED, FAILSAFE, RELEASED, FlightError, Happening, Rig
+from .sensor_faults import Faults, SensorFault
+from .truth import TRUTH_HZ, Truth
+
+STATES = ("standby", "engaged", "failsafe", "stopped")
+
+_ROW_S = 1.0 / TRUTH_HZ
+_TOLERANCE_S = 1e-6
+_LONGEST_S = 24 * 3_600.0
+_LAST_HAPPENINGS = 6
+_SET_POINTS = ("heading", "altitude", "airspeed")
+
+
+class RequirementError(AssertionError):
+    """A requirement is not met: what was required, and what was flown."""
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A stretch of constant set points; times since engagement."""
+
+    number: int
+    """0 before the first change."""
+    start_s: float
+    end_s: float
+    before: SetPoints
+    points: SetPoints
+
+
+def _seconds(name: str, value: object, least: float = 0.0) -> float:
+    seconds = finite(name, value)
+    if not least <= seconds <= _LONGEST_S:
+        raise ValueError(f"{name} is {seconds:g} s: give {least:g} to {_LONGEST_S:g}")
+    return seconds
+
+
+def _positive(name: str, value: object) -> float:
+    number = finite(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} is {number:g}: give more than 0")
+    return number
+
+
+class Flight:
+    """One flight of an aircraft by the autopilot."""
+
+    def __init__(self, rig: Rig, course: TimedPattern | None, seed: int = 1) -> None:
+        """Fly on a rig; `course` is what the autopilot was told to fly, None to hold."""
+        self.rig = rig
+        self.course = course
+        self.faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
+        self._is_prepared = False
+        self._engaged_at_s: float | None = None
+        self._captured: SetPoints | None = None
+        # How far the test has flown, since the aircraft was set up.
+        self._flown_to_s = 0.0
+
+    def __repr__(self) -> str:
+        return f"<Flight of {self.rig.name}: {self.state} at {self._flown_to_s:.2f} s>"
+
+    # Flying.
+
+    @property
+    def state(self) -> str:
+        """Return what the autopilot is doing: one of STATES."""
+        changes = [h.text for h in self.rig.happenings if " -> " in h.text]
+        return changes[-1].partition(" -> ")[2].partition(":")[0] if changes else STATES[0]
+
+    @property
+    def engaged_at_s(self) -> float:
+        """Return when it engaged, in s since the aircraft was set up."""
+        if self._engaged_at_s is None:
+            raise FlightError("the autopilot is not engaged yet: flight.engages(by=3) comes first")
+        return self._engaged_at_s
+
+    @property
+    def time_s(self) -> float:
+        """Return how far the test has flown since engagement."""
+        return self._flown_to_s - self.engaged_at_s
+
+    @property
+    def captured(self) -> SetPoints:
+        """Return what was flown at engagement, and became the set points."""
+        if self._captured is None:
+            self._captured = self.rig.truth().captured_at(self.engaged_at_s)
+        return self._captured
+
+    def truth(self) -> Truth:
+        """Return what was truly flown so far, in s since the aircraft was set up."""
+        return self.rig.truth()
+
+    def flies(self, seconds: float | None = None, *, to: float | None = None) -> None:
+        """Fly on for so many seconds, or to so many since engagement."""
+        if (seconds is None) == (to is None):
+            raise TypeError("give how long to fly, flies(20), or to when, flies(to=20)")
+        if to is not None:
+            self._fly_to(self.engaged_at_s + _seconds("to", to))
+        else:
+            self._prepare()
+            self._fly_to(self._flown_to_s + _seconds("seconds", seconds))
+
+    def switches_off(self) -> None:
+        """Throw the engage switch off, as a pilot does who takes over."""
+        self.rig.throw_switch(on=False)
+
+    # What the autopilot does.
+
+    def engages(self, *, by: float) -> None:
+        """Require that the autopilot takes over within `by` s of the switch being thrown."""
+        __tracebackhide__ = True
+        by = _seconds("by", by)
+        self._prepare()
+        thrown_s = self.rig.time_s
+        self.rig.throw_switch(on=True)
+        found = self._await(ENGAGED, thrown_s, thrown_s + by)
+        flown = f"it is still {self.state} {by:g} s after the switch was thrown"
+        if found is not None:
+            self._engaged_at_s, self._captured = found.time_s, None
+            flown = f"it engages after {found.time_s - thrown_s:.2f} s"
+        is_met = found is not None and found.time_s <= thrown_s + by + _TOLERANCE_S
+        self._hold(f"the autopilot engages by {by:g} s", Verdict(is_met, flown), happenings=True)
+
+    def falls_into_failsafe(self, *, by: float, after: SensorFault | float | None = None) -> None:
+        """Require a failsafe within `by` s of a fault, of a time, or of now."""
+        __tracebackhide__ = True
+        by = _seconds("by", by)
+        since_s, words = self._since(after)
+        found = self._await(FAILSAFE, since_s, since_s + by, self.rig.failsafe_shows_after_s)
+        required = f"the autopilot falls into failsafe by {by:g} s after {words}"
+        self._hold(required, self._judge(found, since_s, by), happenings=True)
+
+    def releases(self, *, by: float, after: SensorFault | float | None = None) -> None:
+        """Require that the controls are centred and given back within `by` s."""
+        __tracebackhide__ = True
+        by = _seconds("by", by)
+        since_s, words = self._since(after)
+        found = self._await(RELEASED, since_s, since_s + by)
+        verdict = self._judge(found, since_s, by)
+        if verdict.is_met and self.rig.left_deflected:
+            verdict = Verdict(is_met=False, flown=self.rig.left_deflected)
+        required = f"the controls are centred and released by {by:g} s after {words}"
+        self._hold(required, verdict, happenings=True)
+
+    # What the aircraft does.
+
+    def settles(
+        self,
+        quantity: Quantity | str,
+        *,
+        within: float,
+        by: float,
+        at: float | None = None,
+        since: float | None = None,
+        for_: float = 3.0,
+    ) -> None:
+        """Require that it comes `within` so much of its set point, and stays there.
+
+        From `by` s after the set point last changed (or after `since`) on, for `for_` s
+        and for as long after as was flown. `at` takes the place of the set point.
+        """
+        __tracebackhide__ = True
+        quantity, within = quantity_of(quantity), _positive("within", within)
+        by, for_ = _seconds("by", by), _seconds("for_", for_)
+        leg = self._leg(self.time_s)
+        since_s = leg.start_s if since is None else _seconds("since", since)
+        ends_s = np.inf if at is not None else leg.end_s - _ROW_S
+        if since_s + by > ends_s:
+            raise ValueError(
+                f"by is {by:g} s: the set points change again {ends_s - since_s + _ROW_S:g} s "
+                "after they last did"
+            )
+        self._fly_to(self.engaged_at_s + min(since_s + by + for_, ends_s))
+        stretch = self._stretch(quantity, at, since_s, min(self.time_s, ends_s))
+        self._hold(
+            f"{quantity} settles within {quantity.words(within)} of {_target(stretch, at)} "
+            f"by {by:g} s after {since_s:g} s",
+            settles(stretch, within, since_s + by),
+        )
+
+    def stays(
+        self,
+        quantity: Quantity | str,
+        *,
+        within: float,
+        at: float | None = None,
+        from_: float = 0.0,
+        to: float | None = None,
+    ) -> None:
+        """Require that it is `within` so much of its set point from one time to another.
+
+        From engagement to where the flight is, unless said otherwise; `at` takes the
+        place of the set point.
+        """
+        __tracebackhide__ = True
+        quantity, within = quantity_of(quantity), _positive("within", within)
+        from_, to = self._span(from_, to)
+        stretch = self._stretch(quantity, at, from_, to)
+        self._hold(
+            f"{quantity} stays within {quantity.words(within)} of {_target(stretch, at)} "
+            f"from {from_:g} s to {to:g} s",
+            stays(stretch, within),
+        )
+
+    def overshoots_less_than(
+        self, quantity: Quantity | str, limit: float, *, since: float | None = None
+    ) -> None:
+        """Require that it goes less than `limit` past its set point since that changed."""
+        __tracebackhide__ = True
+        quantity, limit = quantity_of(quantity), _positive("limit", limit)
+        leg = self._leg(self.time_s if since is None else _seconds("since", since))
+        stretch = self._stretch(quantity, None, leg.start_s, min(self.time_s, leg.end_s - _ROW_S))
+        before = _set_point(quantity, leg.before)
+        change = float(quantity.difference(np.array(_set_point(quantity, leg.points)), before))
+        self._hold(
+            f"{quantity} overshoots {_target(stretch, None)} by less than {quantity.words(limit)}",
+            overshoots_less_than(stretch, limit, change),
+        )
+
+    def never(self, what: Condition | str, *, from_: float = 0.0, to: float | None = None) -> None:
+        """Require that a condition, `abs(bank) > 35`, or a state, "failsafe", never comes."""
+        __tracebackhide__ = True
+        if isinstance(what, str):
+            if what not in STATES:
+                raise ValueError(f"there is no state {what!r}; choose one of {', '.join(STATES)}")
+            from_, to = self._span(from_, to)
+            came = [h for h in self._happenings(from_, to) if f" -> {what}" in h.text]
+            flown = f"{came[0].text} at {self._since_engaged(came[0]):.2f} s" if came else ""
+            required = f"the autopilot is never in {what} from {from_:g} s to {to:g} s"
+            self._hold(required, Verdict(not came, flown))
+            return
+        if not isinstance(what, Condition):
+            raise TypeError(f"never {what!r}: give a condition, abs(bank) > 35, or a state's name")
+        from_, to = self._span(from_, to)
+        stretch = self._stretch(what.quantity, 0.0, from_, to)
+        required = f"{what} never from {from_:g} s to {to:g} s"
+        self._hold(required, never(what, stretch.time_s, stretch.values))
+
+    # How it is done.
+
+    def _prepare(self) -> None:
+        if not self._is_prepared:
+            self.rig.prepare()
+            self._is_prepared = True
+            self._flown_to_s = max(self._flown_to_s, self.rig.time_s)
+
+    def _fly_to(self, time_s: float) -> None:
+        if time_s > self._flown_to_s:
+            self.rig.fly_to(time_s)
+            self._flown_to_s = time_s
+
+    def _find(self, text: str, since_s: float) -> Happening | None:
+        for happening in self.rig.happenings:
+            if happening.time_s >= since_s - _TOLERANCE_S and happening.text.startswith(text):
+                return happening
+        return None
+
+    def _await(
+        self, text: str, since_s: float, until_s: float, later_s: float = 0.0
+    ) -> Happening | None:
+        """Fly on until something happens that begins with `text`, or it is too late."""
+        found = self._find(text, since_s)
+        if found is None:
+            # What comes too late is still worth a word, and so is what is just seen.
+            self.rig.fly_to(until_s + later_s + 1.0, lambda: self._find(text, since_s) is not None)
+            found = self._find(text, since_s)
+        seen_s = until_s if found is None else found.time_s
+        self._flown_to_s = max(self._flown_to_s, seen_s)
+        return found
+
+    def _since(self, after: SensorFault | float | None) -> tuple[float, str]:
+        if after is None:
+            return self._flown_to_s, f"{self.time_s:.2f} s"
+        if isinstance(after, SensorFault):
+            return after.begins_s, f"{after.words} at {after.begins_s - self.engaged_at_s:.2f} s"
+        after = _seconds("after", after)
+        return self.engaged_at_s + after, f"{after:g} s"
+
+    def _judge(self, found: Happening | None, since_s: float, by: float) -> Verdict:
+        if found is None:
+            return Verdict(is_met=False, flown=f"it is {self.state} {by:g} s later")
+        after_s = found.time_s - since_s
+        is_met = after_s <= by + _TOLERANCE_S
+        return Verdict(is_met, f"{found.text}, {after_s:.2f} s later")
+
+    def _span(self, from_: object, to: object | None) -> tuple[float, float]:
+        """Return a span since engagement, flown to its end."""
+        start_s = _seconds("from_", from_)
+        end_s = self.time_s if to is None else _seconds("to", to)
+        if end_s < start_s:
+            raise ValueError(f"from {start_s:g} s to {end_s:g} s: the end comes before the start")
+        self._fly_to(self.engaged_at_s + end_s)
+        return start_s, end_s
+
+    def _leg(self, since_engaged_s: float) -> Leg:
+        course, captured = self.course, self.captured
+        if course is None:
+            return Leg(0, 0.0, np.inf, captured, captured)
+        begun = course.legs_begun(since_engaged_s + _TOLERANCE_S)
+        start_s = 0.0 if begun == 0 else course.hold_s + (begun - 1) * course.leg_s
+        points = course.set_points(start_s + _TOLERANCE_S, captured)
+        before = course.set_points(max(0.0, start_s - _ROW_S), captured)
+        return Leg(begun, start_s, course.hold_s + begun * course.leg_s, before, points)
+
+    def _stretch(self, quantity: Quantity, at: float | None, from_s: float, to_s: float) -> Stretch:
+        truth = self.rig.truth()
+        time_s = truth["time_s"] - self.engaged_at_s
+        shown = (time_s >= from_s - _TOLERANCE_S) & (time_s <= to_s + _TOLERANCE_S)
+        if not np.any(shown):
+            raise FlightError(f"nothing was flown from {from_s:g} s to {to_s:g} s")
+        values = quantity.of(truth.__getitem__)[shown]
+        if at is not None:
+            targets: Samples = np.full(len(values), finite("at", at))
+        else:
+            course, captured = self.course, self.captured
+            points = [
+                captured
+                if course is None
+                else course.set_points(max(0.0, float(t)) + _TOLERANCE_S, captured)
+                for t in time_s[shown]
+            ]
+            targets = np.array([_set_point(quantity, point) for point in points])
+        return Stretch(quantity, time_s[shown], values, targets)
+
+    def _since_engaged(self, happening: Happening) -> float:
+        return happening.time_s - self.engaged_at_s
+
+    def _happenings(self, from_s: float, to_s: float) -> list[Happening]:
+        return [h for h in self.rig.happenings if from_s < self._since_engaged(h) <= to_s]
+
+    def _hold(self, required: str, verdict: Verdict, *, happenings: bool = False) -> None:
+        __tracebackhide__ = True
+        if verdict.is_met:
+            return
+        lines = [f"required: {required}", f"flown:    {verdict.flown}"]
+        if happenings:
+            said = [f"{h.time_s:.2f} s {h.text}" for h in self.rig.happenings]
+            lines.append("said:     " + ("; ".join(said[-_LAST_HAPPENINGS:]) or "nothing"))
+        raise RequirementError("\n".join(lines))
+
+
+def _set_point(quantity: Quantity, points: SetPoints) -> float:
+    if quantity.name not in _SET_POINTS:
+        raise ValueError(
+            f"the course sets no {quantity.name}: give at=..., or ask for one of "
+            f"{', '.join(_SET_POINTS)}"
+        )
+    value = {
+        "heading": points.heading_deg,
+        "altitude": points.altitude_ft,
+        "airspeed": points.airspeed_kt,
+    }[quantity.name]
+    return value * quantity.units[quantity.unit]
+
+
+def _target(stretch: Stretch, at: float | None) -> str:
+    first, last = float(stretch.targets[0]), float(stretch.targets[-1])
+    if at is None and first != last:
+        return "its set point"
+    return stretch.quantity.words(last)

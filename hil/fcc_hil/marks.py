@@ -1,0 +1,127 @@
+"""What the marks `aircraft` and `autopilot` of a test ask for, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from .aircraft import by_name
+from .pattern import TimedPattern
+from .plant import Weather
+from .quantities import finite
+from .standin import Settings
+
+COURSES = ("timed-pattern", "hold")
+
+_STRONGEST_WIND_KT = 100.0
+_MOST_SEVERE = 7
+_LARGEST_SEED = 2**31 - 1
+_LONGEST_S = 86_400.0
+
+
+def _within(name: str, value: object, least: float, most: float, unit: str) -> float:
+    number = finite(name, value)
+    if not least <= number <= most:
+        raise ValueError(f"{name} is {number:g}: give {least:g} to {most:g} {unit}".rstrip())
+    return number
+
+
+def _whole(name: str, value: object, most: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise TypeError(f"{name} is {value!r}: give a whole number")
+    if not 0 <= value <= most:
+        raise ValueError(f"{name} is {value}: give 0 to {most}")
+    return value
+
+
+def aircraft_mark(
+    name: str = "c172p",
+    *,
+    wind: Sequence[float] = (0.0, 0.0),
+    turbulence: int = 0,
+    seed: int = 1,
+    noise: bool = False,
+    heading: float = 0.0,
+) -> Settings:
+    """Return the aircraft that is asked for; ValueError or TypeError says what is wrong.
+
+    `name` is one of JSBSim's in the table; `wind` is from where (deg, true) and how
+    strong (kt); `turbulence` 0 calm, 3 light, 4 moderate, to 7; `seed` that of all
+    random sequences; `noise` that of a phone's sensors; `heading` to begin with (deg).
+    """
+    if not isinstance(name, str):
+        raise TypeError(f"aircraft is {name!r}: give the name of one")
+    by_name(name)
+    if isinstance(wind, str) or not isinstance(wind, Sequence) or len(wind) != 2:
+        raise TypeError(f"wind is {wind!r}: give from where (deg) and how strong (kt), (270, 10)")
+    if not isinstance(noise, bool):
+        raise TypeError(f"noise is {noise!r}: give True or False")
+    return Settings(
+        aircraft=name,
+        seed=_whole("seed", seed, _LARGEST_SEED),
+        heading_deg=_within("heading", heading, 0.0, 360.0, "deg"),
+        weather=Weather(
+            wind_from_deg=_within("wind from", wind[0], 0.0, 360.0, "deg"),
+            wind_kt=_within("wind", wind[1], 0.0, _STRONGEST_WIND_KT, "kt"),
+            turbulence_severity=_whole("turbulence", turbulence, _MOST_SEVERE),
+        ),
+        noise=noise,
+    )
+
+
+@dataclass(frozen=True)
+class AutopilotMark:
+    """What an autopilot is told; on another host, what the daemon there is told already."""
+
+    course: TimedPattern | None
+    """None to hold what was captured."""
+    failsafe_hold_s: float
+    """How long failsafe holds the wings level before the controls are released."""
+    config: str
+    """More sections of a configuration."""
+
+    def toml(self) -> str:
+        """Return it as sections of a configuration file."""
+        course = self.course
+        if course is None:
+            flown = 'kind = "hold"'
+        else:
+            flown = (
+                f'kind = "timed-pattern"\nhold_s = {course.hold_s!r}\nleg_s = {course.leg_s!r}\n'
+                f"turn_deg = {course.turn_deg!r}\nclimb_ft = {course.climb_ft!r}"
+            )
+        failsafe = f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}"
+        return f"[course]\n{flown}\n{failsafe}\n{self.config}\n"
+
+
+def autopilot_mark(
+    course: str = "timed-pattern",
+    *,
+    hold_s: float = 20.0,
+    leg_s: float = 20.0,
+    turn_deg: float = 90.0,
+    climb_ft: float = 150.0,
+    failsafe_hold_s: float = 5.0,
+    config: str = "",
+) -> AutopilotMark:
+    """Return the autopilot that is asked for; ValueError or TypeError says what is wrong.
+
+    The timed pattern holds for `hold_s`, then turns `turn_deg` (right if positive) every
+    `leg_s` and climbs `climb_ft` on every odd leg, coming back on every even one.
+    `config` is the text of more sections: gains, limits, the loop's rate.
+    """
+    if course not in COURSES:
+        raise ValueError(f"course is {course!r}: choose {' or '.join(COURSES)}")
+    if not isinstance(config, str):
+        raise TypeError(f"config is {config!r}: give the text of a configuration's sections")
+    pattern = TimedPattern(
+        hold_s=_within("hold_s", hold_s, 0.0, _LONGEST_S, "s"),
+        leg_s=_within("leg_s", leg_s, 1.0, _LONGEST_S, "s"),
+        turn_deg=_within("turn_deg", turn_deg, -179.0, 179.0, "deg"),
+        climb_ft=_within("climb_ft", climb_ft, -5_000.0, 5_000.0, "ft"),
+    )
+    return AutopilotMark(
+        course=pattern if course == COURSES[0] else None,
+        failsafe_hold_s=_within("failsafe_hold_s", failsafe_hold_s, 0.0, 600.0, "s"),
+        config=config,
+    )

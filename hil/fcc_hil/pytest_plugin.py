@@ -1,0 +1,239 @@
+"""The pytest plugin: fixtures that fly, and what a failed test leaves behind.
+
+    def test_it_turns(flight):
+        flight.engages(by=3)
+        flight.flies(to=20)
+        flight.settles(heading, within=2, by=17)
+
+A flight is in lockstep unless pytest is told `--realtime` (the daemon of this machine) or
+`--fccd HOST` (that of another), or the test is marked `realtime`. What flies is told by
+the marks `aircraft` and `autopilot`.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Generator, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import pytest
+
+from .flight import Flight
+from .marks import AutopilotMark, aircraft_mark, autopilot_mark
+from .plant import Plant, TrimError
+from .remote_rig import RemoteRig, address_of, address_towards
+from .rig import FlightError, Rig
+from .sensor_faults import Faults
+from .standin import Settings
+
+if TYPE_CHECKING:
+    import fcc
+
+    from .daemon_rig import DaemonRig
+
+ARTIFACTS = ".flight-artifacts"
+_XPLANE_PORT = 49_000
+_FLIGHTS = pytest.StashKey[list[Flight]]()
+_LISTEN = pytest.StashKey[tuple[str, int]]()
+
+Wished = TypeVar("Wished")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Say how flights are flown, and where failed ones leave what there is."""
+    group = parser.getgroup("flight", "flights by the flight control computer")
+    group.addoption(
+        "--realtime",
+        action="store_true",
+        help="fly in real time with the daemon of this machine, instead of in lockstep",
+    )
+    group.addoption(
+        "--fccd",
+        metavar="HOST",
+        help="fly in real time with the daemon that runs on HOST, "
+        "its [x-plane] simulator set to this machine",
+    )
+    group.addoption(
+        "--fccd-listen",
+        metavar="ADDRESS[:PORT]",
+        help="where the stand-in listens for that daemon (this machine's address towards "
+        f"HOST, port {_XPLANE_PORT})",
+    )
+    group.addoption(
+        "--fccd-program",
+        metavar="PATH",
+        help="the daemon's program on this machine ($FCCD, or fccd on the path)",
+    )
+    group.addoption(
+        "--flight-artifacts",
+        metavar="DIR",
+        default=ARTIFACTS,
+        help="where failed tests leave plots and recordings (%(default)s)",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declare the marks, and check the options before anything flies."""
+    for line in (
+        "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): what flies",
+        "autopilot(course, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, config): "
+        "what the autopilot is told",
+        "realtime: always in real time",
+    ):
+        config.addinivalue_line("markers", line)
+    host = config.getoption("--fccd")
+    listen = config.getoption("--fccd-listen")
+    if listen is not None and host is None:
+        raise pytest.UsageError("--fccd-listen is for a daemon on another host: give --fccd HOST")
+    if host is not None:
+        try:
+            address_of(host)
+            config.stash[_LISTEN] = _listen_at(listen, host)
+        except ValueError as error:
+            raise pytest.UsageError(f"--fccd {host}: {error}") from error
+
+
+def _listen_at(listen: str | None, host: str) -> tuple[str, int]:
+    if listen is None:
+        return address_towards(host), _XPLANE_PORT
+    address, _, port = listen.partition(":")
+    if port and not (port.isdecimal() and 0 < int(port) < 65_536):
+        raise ValueError(f"--fccd-listen {listen}: a port is 1 to 65535")
+    return address_of(address), int(port or _XPLANE_PORT)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Leave what there is of a failed test's flights, and say where."""
+    report = yield
+    flights = item.stash.get(_FLIGHTS, [])
+    if report.failed and report.when == "call" and flights:
+        from .artifacts import folder_of, leave  # noqa: PLC0415 - plots are slow to load
+
+        root = Path(item.config.getoption("--flight-artifacts"))
+        folder = folder_of(item.config.invocation_params.dir / root, item.nodeid)
+        lines = []
+        for flight in flights:
+            try:
+                lines += [str(path) for path in leave(flight, folder)]
+            except (OSError, RuntimeError) as error:
+                lines.append(f"not all is left behind: {error}")
+        report.sections.append(("Flight", "\n".join(lines)))
+    return report
+
+
+@pytest.fixture
+def aircraft(request: pytest.FixtureRequest) -> Plant:
+    """Return an aircraft of JSBSim's in trimmed flight, as the mark `aircraft` says."""
+    settings = _settings(request)
+    try:
+        return Plant(
+            settings.aircraft,
+            seed=settings.seed,
+            heading_deg=settings.heading_deg,
+            weather=settings.weather,
+        )
+    except (TrimError, ValueError) as error:
+        pytest.fail(str(error), pytrace=False)
+
+
+@pytest.fixture
+def autopilot(request: pytest.FixtureRequest) -> fcc.Machine:
+    """Return the daemon's loop, to be stepped by hand, as the mark `autopilot` says."""
+    try:
+        import fcc  # noqa: PLC0415 - only flights in lockstep need it
+    except ImportError:
+        pytest.fail(
+            "there is no module fcc: `pip install ./crates/fcc-py`, or fly with --realtime",
+            pytrace=False,
+        )
+    mark = _autopilot(request)
+    try:
+        return fcc.Machine(mark.toml())
+    except ValueError as error:
+        pytest.fail(f"the mark autopilot: {error}", pytrace=False)
+
+
+@pytest.fixture
+def daemon(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[DaemonRig | RemoteRig]:
+    """Fly with the daemon in real time: one of this machine, or with --fccd that of HOST."""
+    from .daemon_rig import DaemonRig  # noqa: PLC0415 - as the flight in lockstep has its own
+
+    settings, mark, config = _settings(request), _autopilot(request), request.config
+    host = config.getoption("--fccd")
+    rig: DaemonRig | RemoteRig
+    try:
+        if host is None:
+            rig = DaemonRig(_program(config), settings, mark, tmp_path)
+        else:
+            rig = RemoteRig(host, config.stash[_LISTEN], settings, mark)
+    except FlightError as error:
+        pytest.fail(str(error), pytrace=False)
+    yield rig
+    rig.close()
+
+
+@pytest.fixture
+def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
+    """Return a flight: in lockstep, or in real time with --realtime, --fccd or so marked."""
+    config, settings, mark = request.config, _settings(request), _autopilot(request)
+    is_real_time = (
+        config.getoption("--realtime")
+        or config.getoption("--fccd") is not None
+        or request.node.get_closest_marker("realtime") is not None
+    )
+    rig: Rig
+    if is_real_time:
+        rig = request.getfixturevalue("daemon")
+    else:
+        machine = request.getfixturevalue("autopilot")
+        plant = request.getfixturevalue("aircraft")
+        from .lockstep_rig import LockstepRig  # noqa: PLC0415 - it needs the module fcc
+
+        try:
+            rig = LockstepRig(settings, plant, machine)
+        except FlightError as error:
+            pytest.fail(str(error), pytrace=False)
+    flown = Flight(rig, mark.course, settings.seed)
+    request.node.stash.setdefault(_FLIGHTS, []).append(flown)
+    yield flown
+    rig.close()
+
+
+@pytest.fixture
+def faults(flight: Flight) -> Faults:
+    """Return what breaks the flight's sensors."""
+    return flight.faults
+
+
+def _settings(request: pytest.FixtureRequest) -> Settings:
+    return _marked(request, "aircraft", aircraft_mark)
+
+
+def _autopilot(request: pytest.FixtureRequest) -> AutopilotMark:
+    return _marked(request, "autopilot", autopilot_mark)
+
+
+def _marked(request: pytest.FixtureRequest, name: str, make: Callable[..., Wished]) -> Wished:
+    mark = request.node.get_closest_marker(name)
+    try:
+        return make() if mark is None else make(*mark.args, **mark.kwargs)
+    except (TypeError, ValueError) as error:
+        words = str(error).replace(f"{make.__name__}()", "it")
+        pytest.fail(f"the mark {name}: {words}", pytrace=False)
+
+
+def _program(config: pytest.Config) -> Path:
+    given = config.getoption("--fccd-program") or os.environ.get("FCCD") or "fccd"
+    found = shutil.which(given)
+    if found is None:
+        pytest.fail(
+            f"there is no program {given}: `cargo build --release -p fcc-daemon`, and give its "
+            "path with --fccd-program or in $FCCD",
+            pytrace=False,
+        )
+    return Path(found)

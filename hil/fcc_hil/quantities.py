@@ -1,0 +1,182 @@
+"""What a flight is measured by: each quantity with its units and where it is found.
+
+    altitude                      in feet
+    altitude("m")                 in metres
+    abs(bank) > 35                a condition, for `flight.never(...)`
+
+A quantity has a column of the truth, by which requirements are judged, or channels of
+the sensors, in which faults are put, or both.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from .units import FT_TO_M, KT_TO_MPS, STANDARD_GRAVITY_MPS2
+
+Samples = npt.NDArray[np.float64]
+
+_ANGLE = {"deg": 1.0, "rad": math.radians(1.0)}
+_TURN_RATE = {"deg/s": 1.0, "rad/s": math.radians(1.0)}
+_HEIGHT = {"ft": 1.0, "m": FT_TO_M}
+_SPEED = {"kt": 1.0, "m/s": KT_TO_MPS, "km/h": 1.852}
+_CLIMB = {"ft/min": 1.0, "m/s": FT_TO_M / 60.0}
+_FORCE = {"g": 1.0, "m/s2": STANDARD_GRAVITY_MPS2}
+_FRACTION = {"": 1.0}
+
+
+def finite(name: str, value: object) -> float:
+    """Return a number of an argument's, or raise TypeError or ValueError that names it."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise TypeError(f"{name} is {value!r}: give a number")
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name} is {number}: give a finite number")
+    return number
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """A quantity in one of its units."""
+
+    name: str
+    unit: str
+    units: Mapping[str, float]
+    """How much of each unit one of the first is."""
+    column: str | None = None
+    """Of the truth, in the first unit; None if it is no single number."""
+    channels: tuple[str, ...] = ()
+    """The fields of `state.State` in which sensors tell it; none if none does."""
+    circle: float | None = None
+    """What a full turn is, in the first unit."""
+    is_absolute: bool = False
+    """Whether its magnitude is meant."""
+
+    def __call__(self, unit: str) -> Quantity:
+        """Return it in another unit."""
+        if unit not in self.units:
+            known = " or ".join(repr(known) for known in self.units)
+            raise ValueError(f"{self.name} is measured in {known}, not in {unit!r}")
+        return replace(self, unit=unit)
+
+    def __abs__(self) -> Quantity:
+        """Return its magnitude."""
+        return replace(self, is_absolute=True)
+
+    def __gt__(self, limit: float) -> Condition:
+        return Condition(self, "above", finite("limit", limit))
+
+    def __lt__(self, limit: float) -> Condition:
+        return Condition(self, "below", finite("limit", limit))
+
+    def __str__(self) -> str:
+        return f"|{self.name}|" if self.is_absolute else self.name
+
+    @property
+    def si_per_unit(self) -> float:
+        """Return how many of SI's units (rad, m, m/s, m/s²) its unit is."""
+        si = list(self.units.values())[1] if len(self.units) > 1 else 1.0
+        return si / self.units[self.unit]
+
+    def of(self, columns: Callable[[str], Samples]) -> Samples:
+        """Return its values, by the columns of a truth."""
+        if self.column is None:
+            raise ValueError(f"{self.name} is no single number: ask for one of its parts")
+        values = columns(self.column) * self.units[self.unit]
+        return np.abs(values) if self.is_absolute else values
+
+    def difference(self, of: Samples, to: Samples | float) -> Samples:
+        """Return `of` less `to` in its unit, the short way round where it is a direction."""
+        off = np.asarray(of - to, dtype=np.float64)
+        if self.circle is None:
+            return off
+        circle = self.circle * self.units[self.unit]
+        return (off + circle / 2.0) % circle - circle / 2.0
+
+    def words(self, value: float, digits: int = 1) -> str:
+        """Return a value of it as people write it."""
+        if not self.unit:
+            digits += 1
+        return f"{value:.{digits}f} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A quantity above or below a limit."""
+
+    quantity: Quantity
+    side: str
+    """above or below."""
+    limit: float
+
+    def __bool__(self) -> bool:
+        raise TypeError(
+            f"'{self}' is a condition for flight.never(...), neither true nor false by itself; "
+            "give two limits as two requirements"
+        )
+
+    def __str__(self) -> str:
+        return f"{self.quantity} {self.side} {self.quantity.words(self.limit)}"
+
+    def holds(self, values: Samples) -> npt.NDArray[np.bool_]:
+        """Return at which values it holds."""
+        return values > self.limit if self.side == "above" else values < self.limit
+
+
+def _angle(name: str, column: str, channel: str, circle: float | None = None) -> Quantity:
+    return Quantity(name, "deg", _ANGLE, column, (channel,), circle)
+
+
+def _rate(name: str, *channels: str) -> Quantity:
+    return Quantity(name, "deg/s", _TURN_RATE, None, channels)
+
+
+_RATES = ("roll_rate_radps", "pitch_rate_radps", "yaw_rate_radps")
+_FORCES = ("specific_force_x_mps2", "specific_force_y_mps2", "specific_force_z_mps2")
+
+heading = _angle("heading", "heading_deg", "heading_rad", circle=360.0)
+altitude = Quantity("altitude", "ft", _HEIGHT, "altitude_ft", ("altitude_m",))
+airspeed = Quantity("airspeed", "kt", _SPEED, "airspeed_kt", ("airspeed_mps",))
+bank = _angle("bank", "roll_deg", "roll_rad")
+pitch = _angle("pitch", "pitch_deg", "pitch_rad")
+climb = Quantity("climb", "ft/min", _CLIMB, "climb_fpm")
+lateral = Quantity("lateral", "g", _FORCE, "lateral_g", (_FORCES[1],))
+elevator = Quantity("elevator", "", _FRACTION, "elevator")
+aileron = Quantity("aileron", "", _FRACTION, "aileron")
+rudder = Quantity("rudder", "", _FRACTION, "rudder")
+throttle = Quantity("throttle", "", _FRACTION, "throttle")
+attitude = Quantity("attitude", "deg", _ANGLE, None, ("pitch_rad", "roll_rad"))
+body_rates = _rate("body_rates", *_RATES)
+roll_rate = _rate("roll_rate", _RATES[0])
+pitch_rate = _rate("pitch_rate", _RATES[1])
+yaw_rate = _rate("yaw_rate", _RATES[2])
+specific_force = Quantity("specific_force", "g", _FORCE, None, _FORCES)
+
+QUANTITIES: dict[str, Quantity] = {
+    quantity.name: quantity
+    for quantity in (
+        *(heading, altitude, airspeed, bank, pitch, climb, lateral),
+        *(elevator, aileron, rudder, throttle),
+        *(attitude, body_rates, roll_rate, pitch_rate, yaw_rate, specific_force),
+    )
+}
+
+SENSORS: dict[str, tuple[str, ...]] = {
+    quantity.name: quantity.channels
+    for quantity in (attitude, heading, body_rates, specific_force, airspeed, altitude)
+}
+"""The sensors that the autopilot has, with their channels."""
+
+
+def quantity_of(given: Quantity | str) -> Quantity:
+    """Return a quantity by itself or by its name; ValueError says which there are."""
+    if isinstance(given, Quantity):
+        return given
+    if isinstance(given, str) and given in QUANTITIES:
+        return QUANTITIES[given]
+    raise ValueError(f"there is no quantity {given!r}; choose one of {', '.join(QUANTITIES)}")

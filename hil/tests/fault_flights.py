@@ -1,0 +1,108 @@
+"""Flights that something befalls, several at once, and what their recordings say of it.
+
+How soon a fault was seen is asked of the recording, in the loop's own ticks: a busy
+machine makes a test slow and not wrong.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import subprocess
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from daemon_under_test import Ending
+from recordings import EVENT, RECORD, in_sequence, only_recording
+
+Key = TypeVar("Key")
+Result = TypeVar("Result")
+
+AT_ONCE = 8
+"""Flights in real time mostly wait."""
+
+FAILSAFE = 2
+"""The phase, as the recording calls it."""
+ENGAGED = 1
+
+OVERRUN = 3
+"""Why the loop fell into failsafe, as the recording calls it."""
+
+NS = 1e-9
+
+
+def at_once(flights: dict[Key, Callable[[], Result]]) -> dict[Key, Result]:
+    """Run flights beside each other; the first that goes wrong is raised."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        begun = {key: pool.submit(flight) for key, flight in flights.items()}
+        return {key: future.result() for key, future in begun.items()}
+
+
+@dataclass(frozen=True)
+class Flown:
+    """A flight that is over."""
+
+    ending: Ending
+    records: list[Any]
+    """Of each tick, decoded."""
+    events: list[Any]
+    """Decoded."""
+    recording: Path
+
+    @classmethod
+    def of(cls, ending: Ending, folder: Path) -> Flown:
+        """Read what a flight left in a folder of recordings."""
+        path = only_recording(folder)
+        seen = in_sequence(path)
+        return cls(
+            ending,
+            [message.content for message in seen if message.topic == RECORD],
+            [message.content for message in seen if message.topic == EVENT],
+            path,
+        )
+
+    @property
+    def failsafes(self) -> list[int]:
+        """Return where in the records the loop fell into failsafe."""
+        phases = [record.state.phase for record in self.records]
+        return [
+            place
+            for place, (last, phase) in enumerate(itertools.pairwise(phases), 1)
+            if phase == FAILSAFE and last != FAILSAFE
+        ]
+
+    def texts(self) -> list[str]:
+        """Return what happened, in words."""
+        return [event.text for event in self.events]
+
+    def replayed(self, fccd: Path) -> dict[str, Any]:
+        """Fly the recording again; return what `fccd replay` found."""
+        done = subprocess.run(
+            [fccd, "replay", self.recording, "--json"], capture_output=True, text=True, check=False
+        )
+        found: dict[str, Any] = json.loads(done.stdout)
+        return {**found, "exit_code": done.returncode}
+
+
+def assert_flown_again(fccd: Path, flown: Flown) -> None:
+    """Every output comes out the same, to the last bit, from the recording."""
+    found = flown.replayed(fccd)
+    assert found["exit_code"] == 0, found
+    assert found["identity"]["differing"] == 0
+    assert found["ticks"] == len(flown.records)
+
+
+def seconds(later: Any, earlier: Any) -> float:
+    """Return the time between two records, by the loop's clock."""
+    return float((later.woke_ns - earlier.woke_ns) * NS)
+
+
+def assert_regular(records: Iterable[Any], period_ns: int) -> None:
+    """No tick is left out but those said to be missed, and the phase never moved."""
+    records = list(records)
+    for last, record in itertools.pairwise(records):
+        assert record.tick == last.tick + 1 + record.missed
+        assert record.scheduled_ns - last.scheduled_ns == (record.tick - last.tick) * period_ns

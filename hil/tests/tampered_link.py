@@ -1,0 +1,146 @@
+"""A way to the stand-in that can be cut in either direction, and says other values.
+
+It is a process of its own, as the stand-in is and for the same reason: a busy test
+must not hold a datagram up.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import selectors
+import signal
+import socket
+import struct
+from collections.abc import Mapping
+from multiprocessing.connection import Connection
+
+from fcc_hil.process import wish_for_real_time
+
+_LARGEST_DATAGRAM = 65_536
+_TAG_BYTES = 5
+_REQUEST = struct.Struct("<ii")
+_PAIR = struct.Struct("<if")
+_START_S = 30.0
+_STOP_S = 5.0
+
+
+class _Link:
+    """Forwards in its own process, until the other end of the pipe is gone."""
+
+    def __init__(self, simulator_port: int, pipe: Connection) -> None:
+        self._pipe = pipe
+        self._cut = {"to": False, "from": False}
+        self._says: dict[str, float] = {}
+        self._paths: dict[int, str] = {}
+        self._daemon: tuple[str, int] | None = None
+        self._outside = self._open()
+        self._inside = self._open()
+        self._inside.connect(("127.0.0.1", simulator_port))
+        self._over = False
+
+    @property
+    def port(self) -> int:
+        port: int = self._outside.getsockname()[1]
+        return port
+
+    @staticmethod
+    def _open() -> socket.socket:
+        opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        opened.bind(("127.0.0.1", 0))
+        return opened
+
+    def run(self) -> None:
+        with selectors.DefaultSelector() as selector:
+            selector.register(self._outside, selectors.EVENT_READ, self._inwards)
+            selector.register(self._inside, selectors.EVENT_READ, self._outwards)
+            selector.register(self._pipe, selectors.EVENT_READ, self._obey)
+            while not self._over:
+                for key, _ in selector.select():
+                    # Whoever is gone, at either end, is no fault of the link.
+                    try:
+                        key.data()
+                    except ConnectionError:
+                        continue
+
+    def _obey(self) -> None:
+        try:
+            self._cut, self._says = self._pipe.recv()
+            self._pipe.send(None)
+        except (EOFError, OSError):
+            self._over = True
+
+    def _inwards(self) -> None:
+        datagram, self._daemon = self._outside.recvfrom(_LARGEST_DATAGRAM)
+        if datagram.startswith(b"RREF"):
+            _, index = _REQUEST.unpack_from(datagram, _TAG_BYTES)
+            path = datagram[_TAG_BYTES + _REQUEST.size :].partition(b"\0")[0]
+            self._paths[index] = path.decode()
+        if not self._cut["to"]:
+            self._inside.send(datagram)
+
+    def _outwards(self) -> None:
+        datagram = self._inside.recv(_LARGEST_DATAGRAM)
+        if self._daemon is not None and not self._cut["from"]:
+            self._outside.sendto(self._tampered(datagram), self._daemon)
+
+    def _tampered(self, datagram: bytes) -> bytes:
+        if not self._says or not datagram.startswith(b"RREF"):
+            return datagram
+        pairs = _PAIR.iter_unpack(datagram[_TAG_BYTES:])
+        return datagram[:_TAG_BYTES] + b"".join(
+            _PAIR.pack(index, self._says.get(self._paths.get(index, ""), value))
+            for index, value in pairs
+        )
+
+
+def _serve(simulator_port: int, pipe: Connection) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    link = _Link(simulator_port, pipe)
+    wish_for_real_time()
+    pipe.send(link.port)
+    link.run()
+
+
+class TamperedLink:
+    """Stands between one daemon and a stand-in; a context manager."""
+
+    def __init__(self, simulator_port: int) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(
+            target=_serve, args=(simulator_port, theirs), name="tampered-link", daemon=True
+        )
+        self._process.start()
+        theirs.close()
+        self.port: int = self._answer()
+        """The port that the daemon is to be told."""
+
+    def __enter__(self) -> TamperedLink:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._pipe.close()
+        self._process.join(_STOP_S)
+        if self._process.is_alive():
+            self._process.kill()
+
+    def cut(self, *, to_simulator: bool = False, from_simulator: bool = False) -> None:
+        """Let nothing through in these directions, and everything in the others."""
+        self._order({"to": to_simulator, "from": from_simulator}, {})
+
+    def say(self, values: Mapping[str, float]) -> None:
+        """Say this of these datarefs, whatever they are; nothing is cut."""
+        self._order({"to": False, "from": False}, dict(values))
+
+    def mend(self) -> None:
+        """Let everything through as it is."""
+        self.say({})
+
+    def _order(self, cut: dict[str, bool], says: dict[str, float]) -> None:
+        self._pipe.send((cut, says))
+        self._answer()
+
+    def _answer(self) -> int:
+        assert self._pipe.poll(_START_S), "the link does not answer"
+        answer: int = self._pipe.recv()
+        return answer

@@ -1,0 +1,219 @@
+"""A daemon that is killed in flight and started again: asserted on the aircraft.
+
+What is killed is the daemon alone; the simulator flies on, its engage switch still on, and
+the guard process gives the controls back to a pilot who leaves them as they were.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+import signal
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from daemon_under_test import (
+    DaemonUnderTest,
+    assert_released,
+    engage,
+    start,
+    wait_until,
+    write_config,
+)
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+SUCCESS = 0
+WARM = '[restart]\nmode = "warm"\n'
+# Half a minute to each leg: killed early in the first, the aircraft is far from where
+# it is to go, and what is taken up cannot be mistaken for what was captured anew.
+PATTERN = 'kind = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
+
+_AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
+
+
+@dataclass(frozen=True)
+class Aims:
+    """What the daemon aims for, in the words of its status line."""
+
+    heading_deg: float
+    altitude_ft: float
+    airspeed_kt: float
+
+    @classmethod
+    def of(cls, line: str) -> Aims:
+        found = _AIMS.search(line)
+        assert found is not None, line
+        return cls(float(found[1]), float(found[2]), float(found[3]))
+
+
+class Cockpit:
+    """A simulator in flight, and one daemon after the other."""
+
+    def __init__(self, fccd: Path, scratch: Path, simulator: StandInProcess) -> None:
+        self.fccd = fccd
+        self.scratch = scratch
+        self.simulator = simulator
+        self.state_file = scratch / "recordings" / "fccd.flight"
+        self._daemons = 0
+
+    @contextlib.contextmanager
+    def daemon(self, others: str, course: str = PATTERN) -> Iterator[DaemonUnderTest]:
+        self._daemons += 1
+        scratch = self.scratch / f"daemon-{self._daemons}"
+        scratch.mkdir()
+        config = write_config(self.scratch, self.simulator.port, others=others, course=course)
+        with start(self.fccd, scratch, config) as daemon:
+            yield daemon
+
+    def fly_and_kill(self, others: str, course: str = PATTERN) -> Aims:
+        """Fly into the first turn, and kill; return what was aimed for."""
+        with self.daemon(others, course) as daemon:
+            captured = self.engage(daemon)
+            aims = captured
+            while course == PATTERN and aims.heading_deg == captured.heading_deg:
+                aims = Aims.of(daemon.wait_for("engaged "))
+            wait_until(self.state_file.exists, "what is flown is kept")
+            # It is kept each second.
+            Aims.of(daemon.wait_for("engaged "))
+            aims = Aims.of(daemon.wait_for("engaged "))
+            daemon.end(signal.SIGKILL)
+        return aims
+
+    def engage(self, daemon: DaemonUnderTest) -> Aims:
+        engage(self.simulator, daemon)
+        return Aims.of(daemon.wait_for("engaged "))
+
+
+@pytest.fixture
+def cockpit(fccd: Path, tmp_path: Path) -> Iterator[Cockpit]:
+    with StandInProcess(Settings(port=0)) as simulator:
+        yield Cockpit(fccd, tmp_path, simulator)
+
+
+def test_a_warm_restart_goes_on_with_what_was_flown(cockpit: Cockpit) -> None:
+    simulator = cockpit.simulator
+    aims = cockpit.fly_and_kill(WARM)
+    killed_at_s = simulator.progress().time_s
+    with cockpit.daemon(WARM) as again:
+        begun_s = time.monotonic()
+        again.wait_for("taking it up")
+        said = again.wait_for("the flight was taken up")
+        took_s = time.monotonic() - begun_s
+        assert "into a pattern" in said
+        # Nominally 0.6 s; this says that nobody had to help.
+        assert took_s < 10.0
+        resumed = Aims.of(again.wait_for("engaged "))
+        assert resumed.heading_deg == aims.heading_deg
+        assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)
+        assert resumed.airspeed_kt == pytest.approx(aims.airspeed_kt, abs=0.2)
+        taken_at_s = simulator.progress().time_s
+        # The guard of the killed daemon does not pull the controls away again.
+        wait_until(
+            lambda: simulator.progress().time_s > taken_at_s + 25.0, "25 s of flight", within_s=90.0
+        )
+        assert simulator.progress().overridden
+        ending = again.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    assert ending.report["failsafes"] == 0
+
+    truth = simulator.truth()
+    time_s, altitude_ft = truth["time_s"], truth["altitude_ft"]
+    start_ft = aims.altitude_ft - 150.0
+    flown = time_s > killed_at_s
+    assert altitude_ft[flown].min() > start_ft - 50.0, "height was lost"
+    arrived = time_s > taken_at_s + 20.0
+    # The stand-in's elevation and the altimeter's altitude differ by their datum.
+    assert np.ptp(altitude_ft[arrived]) < 10.0
+    assert np.ptp(truth["heading_deg"][arrived]) < 2.0
+    assert not cockpit.state_file.exists(), "a flight that was ended is not to be taken up"
+
+
+def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
+    cockpit.fly_and_kill("")
+    with cockpit.daemon("") as again:
+        assert "standing by" in again.wait_for('restart.mode is "cold"')
+        wait_until(lambda: not cockpit.simulator.progress().overridden, "the guard releases")
+        again.wait_until_ready()
+        assert "standby" in again.wait_for("heading")
+        assert not cockpit.simulator.progress().overridden
+        # And flies when somebody wants it to.
+        cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
+        again.wait_until_ready()
+        cockpit.engage(again)
+        ending = again.end(signal.SIGTERM)
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_a_damaged_state_file_is_a_cold_restart(cockpit: Cockpit) -> None:
+    cockpit.fly_and_kill(WARM)
+    whole = cockpit.state_file.read_bytes()
+    cockpit.state_file.write_bytes(whole.replace(b'"altitude_m":', b'"altitude_m":1'))
+    with cockpit.daemon(WARM) as again:
+        assert "is damaged; standing by" in again.wait_for(str(cockpit.state_file))
+        again.wait_until_ready()
+        assert "standby" in again.wait_for("heading")
+        assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
+
+
+def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
+    cockpit.fly_and_kill(WARM)
+    with cockpit.daemon(WARM, course='kind = "hold"') as again:
+        assert "standing by" in again.wait_for("another configuration")
+        again.wait_until_ready()
+        assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
+
+
+def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
+    cockpit.fly_and_kill(WARM)
+    cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
+    with cockpit.daemon(WARM) as again:
+        again.wait_for("it was switched off since")
+        again.wait_until_ready()
+        assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
+
+
+def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> None:
+    with cockpit.daemon(WARM) as daemon:
+        cockpit.engage(daemon)
+        wait_until(cockpit.state_file.exists, "what is flown is kept")
+        daemon.end(signal.SIGTERM)
+    assert not cockpit.state_file.exists()
+    with cockpit.daemon(WARM) as again:
+        again.wait_until_ready()
+        ending = again.end(signal.SIGTERM)
+    assert ending.states == ["standby -> stopped"]
+    assert "cut off" not in ending.said
+
+
+def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:
+    """At a simulator that never answers, a guard goes on for two minutes."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as simulator:
+        simulator.bind(("127.0.0.1", 0))
+        simulator.settimeout(15.0)
+        address = "{}:{}".format(*simulator.getsockname())
+        with subprocess.Popen(
+            [fccd, "guard"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as guard:
+            assert guard.stdin is not None
+            assert guard.stderr is not None
+            guard.stdin.write(json.dumps({"simulator": address}) + f"\nheld {address}\n")
+            guard.stdin.close()
+            assert simulator.recv(600), "it releases"
+            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as relief:
+                relief.connect(f"\0fccd-guard-{address}")
+                relief.settimeout(15.0)
+                assert relief.recv(1) == b"", "it is gone"
+            assert "another has taken" in guard.stderr.read()
+    assert guard.returncode == SUCCESS

@@ -1,0 +1,137 @@
+"""What becomes of a flight when the way to the simulator is cut, or the simulator is slow."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import pytest
+from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
+from fault_flights import Flown, assert_flown_again, at_once, seconds
+from tampered_link import TamperedLink
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+SUCCESS = 0
+FAILSAFE = 3
+MAX_AGE_S = 0.6
+"""More than the default, for a busy machine."""
+PATIENT = f"[failsafe]\nhold_s = 1.0\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
+SLOW_FPS = 10.0
+
+
+def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
+    """Cut the way from the simulator: what is sent to it still gets there."""
+    scratch.mkdir()
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(
+            fccd,
+            scratch,
+            write_config(scratch, link.port, others=PATIENT),
+        ) as daemon,
+    ):
+        engage(simulator, daemon)
+        link.cut(from_simulator=True)
+        assert "attitude is missing or too old" in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("failsafe -> standby")
+        assert_released(simulator)
+        link.mend()
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        engage(simulator, daemon)
+        ending = daemon.end(signal.SIGTERM)
+    return Flown.of(ending, scratch / "recordings")
+
+
+def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
+    """Cut the way to the simulator: it flies on with what it was told last."""
+    scratch.mkdir()
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(fccd, scratch, write_config(scratch, link.port, others=PATIENT)) as daemon,
+    ):
+        engage(simulator, daemon)
+        link.cut(to_simulator=True)
+        # Somebody else lets go of the override, and the daemon cannot set it again.
+        simulator.write(OVERRIDE_JOYSTICK, 0.0)
+        assert "have no effect" in daemon.wait_for("Accept incoming connections")
+        link.mend()
+        daemon.wait_for("take effect")
+        ending = daemon.end(signal.SIGTERM)
+        wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
+    return Flown.of(ending, scratch / "recordings")
+
+
+def slow(fccd: Path, scratch: Path) -> Flown:
+    """Let the simulator make 10 frames a second: half of real time."""
+    scratch.mkdir()
+    with flight(fccd, scratch, others=PATIENT) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_frame_rate(SLOW_FPS)
+        daemon.wait_for("X-Plane is slow")
+        for _ in range(3):
+            assert "engaged" in daemon.wait_for("heading")
+        simulator.set_frame_rate(60.0)
+        daemon.wait_for("time runs again")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings")
+
+
+@pytest.fixture(scope="module")
+def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flown]:
+    """All flights, side by side."""
+    scratch = tmp_path_factory.mktemp("link")
+    return at_once(
+        {
+            "from": lambda: nothing_arrives(fccd, scratch / "from"),
+            "to": lambda: nothing_gets_there(fccd, scratch / "to"),
+            "slow": lambda: slow(fccd, scratch / "slow"),
+        }
+    )
+
+
+def test_nothing_from_the_simulator_is_failsafe_and_a_release_that_gets_there(
+    flights: dict[str, Flown],
+) -> None:
+    flown = flights["from"]
+    assert flown.ending.exit_code == FAILSAFE
+    record = flown.records[flown.failsafes[0]]
+    age_s = (record.woke_ns - record.measurements.attitude.taken_ns) * 1e-9
+    assert MAX_AGE_S < age_s < 2 * MAX_AGE_S
+
+
+def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]) -> None:
+    flown = flights["to"]
+    faults = [
+        event
+        for event in flown.events
+        if event.WhichOneof("kind") == "actuator_fault"
+        and event.actuator_fault.kind == event.actuator_fault.UNCONFIRMED
+    ]
+    recovered = [
+        event for event in flown.events if event.WhichOneof("kind") == "actuator_recovered"
+    ]
+    assert faults
+    assert recovered
+    assert flown.ending.report["released"] is True
+
+
+def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) -> None:
+    flown = flights["slow"]
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.failsafes == []
+    slow_ones = [r for r in flown.records if r.measurements.plant.state == 3]
+    plant_s = slow_ones[-1].measurements.plant.time_s - slow_ones[0].measurements.plant.time_s
+    ours_s = seconds(slow_ones[-1], slow_ones[0])
+    assert plant_s < 0.9 * ours_s
+
+
+@pytest.mark.parametrize("name", ["from", "to", "slow"])
+def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+    assert_flown_again(fccd, flights[name])

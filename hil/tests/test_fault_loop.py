@@ -1,0 +1,264 @@
+"""What a machine and a controller do to the loop itself: late, stopped, slow, hung.
+
+All flights of the built-in aircraft, side by side, and then asked.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
+from fault_flights import (
+    ENGAGED,
+    FAILSAFE,
+    NS,
+    OVERRUN,
+    Flown,
+    assert_flown_again,
+    assert_regular,
+    at_once,
+)
+
+SUCCESS = 0
+FAILSAFE_HAPPENED = 3
+HUNG = 9
+
+RATE_HZ = 40
+ENGAGED_S = 6.0
+PERIOD_NS = 1_000_000_000 // RATE_HZ
+HOLD = '[course]\nkind = "hold"\n[telemetry]\nenabled = false\n'
+NEVER_FAILSAFE = "[budget]\nfailsafe_after = 0\n"
+QUICK_WATCHDOG = "[watchdog]\nhang_after_ms = 500\n"
+
+
+def fly(
+    fccd: Path,
+    scratch: Path,
+    environment: Mapping[str, str],
+    config: str = "",
+    before: Sequence[str] = (),
+) -> DaemonUnderTest:
+    """Start a flight of the built-in aircraft; `before` is a program that starts it."""
+    scratch.mkdir()
+    path = scratch / "fccd.toml"
+    path.write_text(f"[built-in]\nengage_at_s = 1.5\n{HOLD}{config}")
+    words: list[str | Path] = [*before, fccd, "fly", "--config", path, "--json"]
+    words += ["--recordings", scratch / "recordings", "--seconds", str(ENGAGED_S)]
+    return DaemonUnderTest(words, scratch, environment)
+
+
+def flown(daemon: DaemonUnderTest, scratch: Path) -> Flown:
+    return Flown.of(daemon.end(within_s=60.0), scratch / "recordings")
+
+
+def broken(
+    fccd: Path,
+    scratch: Path,
+    config: str = "",
+    before: Sequence[str] = (),
+    **environment: str,
+) -> Flown:
+    """Fly to the end with a fault inside the daemon."""
+    with fly(fccd, scratch, environment, config, before) as daemon:
+        return flown(daemon, scratch)
+
+
+def stopped_for_a_while(fccd: Path, scratch: Path, seconds: float, config: str) -> Flown:
+    """Fly, and stop the whole process in between, as a debugger or a laptop's lid does."""
+    with fly(fccd, scratch, {}, config) as daemon:
+        daemon.wait_for("standby -> engaged")
+        time.sleep(1.0)
+        daemon.send(signal.SIGSTOP)
+        time.sleep(seconds)
+        daemon.send(signal.SIGCONT)
+        return flown(daemon, scratch)
+
+
+def wall_clock_stepped(fccd: Path, scratch: Path) -> Flown:
+    """Fly while the wall clock is set a day forwards and two days back."""
+    shim = scratch.with_suffix(".so")
+    source = Path(__file__).with_name("wall_clock.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", shim, source], check=True)
+    with fly(fccd, scratch, {"LD_PRELOAD": str(shim)}) as daemon:
+        return flown(daemon, scratch)
+
+
+@pytest.fixture(scope="module")
+def flights(
+    fccd: Path, faulty_fccd: Path, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, Flown]:
+    """All flights, side by side."""
+    scratch = tmp_path_factory.mktemp("loop")
+
+    def slow(name: str, ms: int, ticks: int, config: str = "") -> Flown:
+        return broken(
+            faulty_fccd,
+            scratch / name,
+            config,
+            FCCD_SLOW_AT_S="1",
+            FCCD_SLOW_MS=str(ms),
+            FCCD_SLOW_TICKS=str(ticks),
+        )
+
+    flown_at_once = at_once(
+        {
+            "late by one": lambda: slow("one", 60, 1),
+            "late by many": lambda: slow("many", 300, 1),
+            "late by far too many": lambda: slow("far", 900, 1),
+            "overruns": lambda: slow("overruns", 30, 1_000),
+            "a stage overruns": lambda: slow(
+                "stage", 8, 1_000, "[budget]\ncontrol_us = 4000\nfailsafe_after = 10\n"
+            ),
+            "stopped": lambda: stopped_for_a_while(
+                fccd, scratch / "stopped", 2.0, NEVER_FAILSAFE + QUICK_WATCHDOG
+            ),
+            "stopped for long": lambda: stopped_for_a_while(fccd, scratch / "long", 3.0, ""),
+            "wall clock": lambda: wall_clock_stepped(fccd, scratch / "clock"),
+            "a sensor blocks": lambda: broken(
+                faulty_fccd, scratch / "blocks", QUICK_WATCHDOG, FCCD_BLOCK_AT_S="3"
+            ),
+        }
+    )
+    # By itself, and on one core: it spins at a real-time priority, and would take
+    # half of a small machine from the others.
+    one_core = ("taskset", "--cpu-list", str(min(os.sched_getaffinity(0))))
+    hangs = broken(
+        faulty_fccd, scratch / "hangs", QUICK_WATCHDOG, before=one_core, FCCD_HANG_AT_S="1"
+    )
+    return {**flown_at_once, "control hangs": hangs}
+
+
+def phases(flight: Flown) -> set[int]:
+    return {record.state.phase for record in flight.records}
+
+
+def missed(flight: Flown) -> list[Any]:
+    return [record for record in flight.records if record.missed > 0]
+
+
+@pytest.mark.parametrize(("name", "least"), [("late by one", 1), ("late by many", 10)])
+def test_a_late_timer_is_counted_told_and_flown_through(
+    flights: dict[str, Flown], name: str, least: int
+) -> None:
+    flight = flights[name]
+    assert flight.ending.exit_code == SUCCESS
+    assert FAILSAFE not in phases(flight)
+    # The tick that took so long, and what was due meanwhile.
+    assert sum(record.missed for record in missed(flight)) >= least
+    assert flight.records[-1].overruns >= 1
+    assert any("tick overran its budget" in text for text in flight.texts())
+    assert any("ticks overran or were missed" in text for text in flight.texts())
+    assert_regular(flight.records, PERIOD_NS)
+
+
+def test_as_many_missed_as_half_a_second_has_are_failsafe(flights: dict[str, Flown]) -> None:
+    flight = flights["late by far too many"]
+    assert flight.ending.exit_code == FAILSAFE_HAPPENED
+    (place,) = flight.failsafes
+    record = flight.records[place]
+    assert record.state.cause == OVERRUN
+    assert record.missed >= RATE_HZ // 2
+    assert record.sent, "wings level at once"
+    assert_regular(flight.records, PERIOD_NS)
+
+
+def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
+    flight = flights["overruns"]
+    assert flight.ending.exit_code == FAILSAFE_HAPPENED
+    place = flight.failsafes[0]
+    record = flight.records[place]
+    assert record.state.cause == OVERRUN
+    # Told once, of the stage, and each counted: in its own record.
+    told = [event.overrun for event in flight.events if event.WhichOneof("kind") == "overrun"]
+    assert 1 <= len(told) <= 2
+    assert told[-1].longest == told[-1].CONTROL
+    assert told[-1].took_ns > 30_000_000
+    assert told[-1].budget_ns == PERIOD_NS
+    before = [r.stages.total_ns > PERIOD_NS for r in flight.records[: place + 1]]
+    assert record.overruns == sum(before)
+    # Half a second of them, missed ones included, with those of a busy machine before.
+    row = 0
+    for record in reversed(flight.records[:place]):
+        if record.stages.total_ns <= PERIOD_NS:
+            break
+        row += 1 + record.missed
+    assert row + flight.records[place].missed >= RATE_HZ // 2
+    assert row <= 2 * RATE_HZ // 2
+    assert_regular(flight.records, PERIOD_NS)
+
+
+def test_a_stage_that_overruns_is_named(flights: dict[str, Flown]) -> None:
+    flight = flights["a stage overruns"]
+    assert flight.ending.exit_code == FAILSAFE_HAPPENED
+    assert any("control overran its budget: " in text for text in flight.texts())
+    assert flight.records[flight.failsafes[0]].state.cause == OVERRUN
+
+
+def test_a_process_that_was_stopped_goes_on_where_it_is(flights: dict[str, Flown]) -> None:
+    """Its own watchdog was stopped with it, and takes nobody's life for that."""
+    flight = flights["stopped"]
+    assert flight.ending.exit_code == SUCCESS
+    assert max(record.missed for record in flight.records) >= 1.5 * RATE_HZ
+    assert flight.records[-2].state.phase == ENGAGED
+    assert any("the timer woke" in text for text in flight.texts())
+    assert_regular(flight.records, PERIOD_NS)
+    long = flights["stopped for long"]
+    assert long.ending.exit_code == FAILSAFE_HAPPENED
+    assert long.records[long.failsafes[0]].state.cause == OVERRUN
+
+
+def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> None:
+    flight = flights["wall clock"]
+    assert flight.ending.exit_code == SUCCESS
+    assert flight.failsafes == []
+    assert_regular(flight.records, PERIOD_NS)
+    times = [record.woke_ns for record in flight.records]
+    assert times == sorted(times)
+    assert (times[-1] - times[0]) * NS == pytest.approx(7.5, abs=1.0)
+    assert flight.ending.report["recording"]["stopped"] is None
+
+
+@pytest.mark.parametrize("name", ["control hangs", "a sensor blocks"])
+def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
+    flights: dict[str, Flown], name: str
+) -> None:
+    flight = flights[name]
+    assert flight.ending.exit_code == HUNG
+    assert flight.ending.report["ending"] == "the loop hung"
+    assert flight.ending.report["released"] is True
+    last = flight.events[-1]
+    assert last.WhichOneof("kind") == "hung"
+    assert last.hung.silent_ns >= 500_000_000
+    assert "the watchdog gave the controls back" in flight.ending.said
+    # All up to the tick that hangs, which has no end and so no record.
+    assert [record.tick for record in flight.records][-1] == last.tick
+    assert flight.records[-1].state.phase == ENGAGED
+    assert_regular(flight.records, PERIOD_NS)
+
+
+@pytest.mark.parametrize("name", ["overruns", "late by far too many", "stopped", "control hangs"])
+def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+    assert_flown_again(fccd, flights[name])
+
+
+def test_a_loop_that_hangs_gives_x_plane_its_controls_back(
+    faulty_fccd: Path, tmp_path: Path
+) -> None:
+    environment = {"FCCD_HANG_AT_S": "1"}
+    with flight(faulty_fccd, tmp_path, others=QUICK_WATCHDOG, environment=environment) as (
+        simulator,
+        daemon,
+    ):
+        engage(simulator, daemon)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == HUNG
+    assert ending.report["released"] is True
+    assert ending.events[-2] == "the loop hung: no progress for 0.5 s"

@@ -1,0 +1,294 @@
+"""What single sensors do to a flight: fall silent, freeze, lie, jump, come late.
+
+One flight for each of the six quantities that control needs, all six at once. In each
+the faults follow one another: engaged, broken, seen, mended, engaged again.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import signal
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from daemon_under_test import DaemonUnderTest, Ending, start, write_config
+from fault_flights import Flown, assert_flown_again, at_once, seconds
+from tampered_link import TamperedLink
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.quantities import SENSORS
+from fcc_hil.sensor_faults import Kind, SensorFault
+from fcc_hil.standin import Settings
+
+MAX_AGE_S = 0.6
+"""Older readings are a loss of their sensor; more than the default, for a busy machine
+lets all of them come late now and then."""
+FROZEN_S = 2.0
+"""The daemon's default: the same for so long, while the aircraft moves, is frozen."""
+
+# A pattern that turns and climbs soon after engaging: what is frozen shows in motion.
+PATTERN = 'kind = "timed-pattern"\nhold_s = 1.0\nleg_s = 20.0'
+PATIENT = f"[failsafe]\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
+FLOWN_THROUGH_S = 3.0
+
+P = "sim/flightmodel/position/"
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One of the quantities, and what can be made of it that no aircraft does."""
+
+    missing: str
+    """What the daemon says if nothing comes that can be used."""
+    frozen: str
+    value: Callable[[Any], tuple[float, ...]]
+    """Of a record."""
+    impossible: Mapping[str, float]
+    """Datarefs and values, finite and out of range."""
+    infinite: Mapping[str, float]
+    jump: float
+    """In SI units: at once, and within the range."""
+
+
+def _one(name: str) -> Callable[[Any], tuple[float, ...]]:
+    return lambda record: (getattr(record.measurements, name).value,)
+
+
+def _three(name: str, *axes: str) -> Callable[[Any], tuple[float, ...]]:
+    return lambda record: tuple(getattr(getattr(record.measurements, name), axis) for axis in axes)
+
+
+SENSED: dict[str, Sensor] = {
+    "attitude": Sensor(
+        "attitude is missing or too old",
+        "attitude is frozen",
+        _three("attitude", "pitch_rad", "roll_rad"),
+        {P + "theta": 95.0},
+        {P + "phi": math.inf},
+        jump=math.radians(45.0),
+    ),
+    "heading": Sensor(
+        "heading is missing or too old",
+        "heading is frozen",
+        _one("heading_rad"),
+        {P + "mag_psi": 1e4},
+        {P + "mag_psi": -math.inf},
+        jump=math.radians(90.0),
+    ),
+    "body_rates": Sensor(
+        "body rates are missing or too old",
+        "body rates are frozen",
+        _three("body_rates", "roll_radps", "pitch_radps", "yaw_radps"),
+        {P + "Prad": 60.0},
+        {P + "Rrad": math.inf},
+        jump=3.0,
+    ),
+    "specific_force": Sensor(
+        "acceleration is missing or too old",
+        "acceleration is frozen",
+        _three("specific_force", "x_mps2", "y_mps2", "z_mps2"),
+        {P + "local_ay": 900.0},
+        {P + "local_ax": math.inf},
+        jump=60.0,
+    ),
+    "airspeed": Sensor(
+        "airspeed is missing or too old",
+        "airspeed is frozen",
+        _one("airspeed_mps"),
+        {P + "indicated_airspeed": -5_000.0},
+        {P + "indicated_airspeed": math.inf},
+        jump=40.0,
+    ),
+    "altitude": Sensor(
+        "altitude is missing or too old",
+        "altitude is frozen",
+        _one("altitude_m"),
+        {"sim/cockpit2/gauges/indicators/altitude_ft_pilot": 2e6},
+        {"sim/cockpit2/gauges/indicators/altitude_ft_pilot": math.inf},
+        jump=300.0,
+    ),
+}
+LOSSES = ("silent", "nan", "infinite", "out of range", "jumping", "late")
+FAULTS = (*LOSSES, "frozen")
+
+
+def test_the_sensors_are_those_that_control_needs() -> None:
+    assert set(SENSED) == set(SENSORS)
+
+
+class Breaking:
+    """A flight in which one sensor breaks, in one way after the other."""
+
+    def __init__(
+        self, name: str, simulator: StandInProcess, link: TamperedLink, daemon: DaemonUnderTest
+    ) -> None:
+        self.name = name
+        self.simulator = simulator
+        self.link = link
+        self.daemon = daemon
+
+    def put_in(self, fault: str) -> None:
+        sensor = SENSED[self.name]
+        if fault == "out of range":
+            self.link.say(sensor.impossible)
+        elif fault == "infinite":
+            self.link.say(sensor.infinite)
+        else:
+            made = {
+                "silent": (Kind.LOSS, 0.0),
+                "nan": (Kind.NAN, 0.0),
+                "jumping": (Kind.BIAS, sensor.jump),
+                "late": (Kind.DELAY, 3 * MAX_AGE_S),
+                "frozen": (Kind.FREEZE, 0.0),
+                "a little late": (Kind.DELAY, 0.05),
+                "reordered": (Kind.REORDER, 0.0),
+            }
+            kind, amount = made[fault]
+            share = 0.5 if kind is Kind.REORDER else 1.0
+            channels = SENSORS[self.name]
+            self.simulator.set_sensor_faults(
+                [SensorFault(kind, self.name, channels, 0.0, amount=amount, share=share)]
+            )
+
+    def mend(self) -> None:
+        self.link.mend()
+        self.simulator.set_sensor_faults([])
+
+    def engage(self) -> None:
+        self.daemon.wait_until_ready()
+        self.simulator.write(ENGAGE_SWITCH, 1.0)
+        self.daemon.wait_for("standby -> engaged")
+
+    def disengage(self) -> None:
+        self.simulator.write(ENGAGE_SWITCH, 0.0)
+        self.daemon.wait_for("-> standby")
+
+
+def fly(fccd: Path, scratch: Path, name: str) -> Ending:
+    """Fly one sensor through all of its faults."""
+    scratch.mkdir()
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(
+            fccd, scratch, write_config(scratch, link.port, others=PATIENT, course=PATTERN)
+        ) as daemon,
+    ):
+        flight = Breaking(name, simulator, link, daemon)
+        for fault in ("reordered", "a little late"):
+            flight.engage()
+            flight.put_in(fault)
+            began_s = simulator.progress().time_s
+            while simulator.progress().time_s < began_s + FLOWN_THROUGH_S:
+                assert "engaged" in daemon.wait_for("heading"), daemon.said
+            flight.disengage()
+            flight.mend()
+        for fault in FAULTS:
+            flight.engage()
+            flight.put_in(fault)
+            words = SENSED[name].frozen if fault == "frozen" else SENSED[name].missing
+            said = daemon.wait_for("engaged -> ", within_s=40.0)
+            assert "failsafe" in said, said
+            assert words in said, f"{fault}: {said}"
+            flight.mend()
+            flight.disengage()
+        return daemon.end(signal.SIGTERM)
+
+
+@pytest.fixture(scope="module")
+def flown(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flown]:
+    """All six flights, side by side."""
+    scratch = tmp_path_factory.mktemp("sensors")
+    endings = at_once({name: functools.partial(fly, fccd, scratch / name, name) for name in SENSED})
+    return {
+        name: Flown.of(ending, scratch / name / "recordings") for name, ending in endings.items()
+    }
+
+
+def failsafe_of(flown: Flown, fault: str) -> int:
+    """Return where in the records a fault led to failsafe."""
+    assert len(flown.failsafes) == len(FAULTS), flown.texts()
+    return flown.failsafes[FAULTS.index(fault)]
+
+
+def last_good(flown: Flown, name: str, fault: str) -> int:
+    """Return where in the records the last value is that a fault left good."""
+    sensor = SENSED[name]
+    place = failsafe_of(flown, fault)
+    present = sensor.value(flown.records[place])
+    if fault == "jumping":
+        half = sensor.jump / 2
+        while (
+            max(
+                abs(is_ - was)
+                for is_, was in zip(sensor.value(flown.records[place]), present, strict=True)
+            )
+            < half
+        ):
+            place -= 1
+        return place
+    taken = _taken_ns(flown.records[failsafe_of(flown, fault)], name)
+    while flown.records[place].woke_ns > taken:
+        place -= 1
+    return place
+
+
+def _taken_ns(record: Any, name: str) -> int:
+    names = {"heading": "heading_rad", "airspeed": "airspeed_mps", "altitude": "altitude_m"}
+    taken: int = getattr(record.measurements, names.get(name, name)).taken_ns
+    return taken
+
+
+@pytest.mark.parametrize("fault", LOSSES)
+@pytest.mark.parametrize("name", SENSED)
+def test_a_loss_is_failsafe_when_it_is_too_old(
+    flown: dict[str, Flown], name: str, fault: str
+) -> None:
+    flight = flown[name]
+    record = flight.records[failsafe_of(flight, fault)]
+    after_s = seconds(record, flight.records[last_good(flight, name, fault)])
+    # As soon as the last good one is too old, within a tick or two that may be missed.
+    assert MAX_AGE_S < after_s < 2 * MAX_AGE_S
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
+    flown: dict[str, Flown], name: str
+) -> None:
+    flight, sensor = flown[name], SENSED[name]
+    place = failsafe_of(flight, "frozen")
+    last = flight.records[place]
+    present = sensor.value(last)
+    while sensor.value(flight.records[place - 1]) == pytest.approx(present, rel=0, abs=1e-5):
+        place -= 1
+    after_s = seconds(last, flight.records[place])
+    assert after_s + 0.1 >= FROZEN_S
+    # A second of hold, a bank within three, a climb within ten.
+    assert after_s < 15.0
+    # It came all the time: by its age nothing is wrong with it.
+    assert (last.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_what_is_reordered_or_a_little_late_is_flown_through(
+    flown: dict[str, Flown], name: str
+) -> None:
+    states = [text for text in flown[name].texts() if " -> " in text]
+    assert states[:4] == ["standby -> engaged", "engaged -> standby"] * 2
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_every_failsafe_ends_in_a_release(flown: dict[str, Flown], name: str) -> None:
+    flight = flown[name]
+    assert flight.ending.report["released"] is True
+    assert flight.texts().count("actuators released") == len(FAULTS) + 3
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_it_is_the_same_when_flown_again(fccd: Path, flown: dict[str, Flown], name: str) -> None:
+    assert_flown_again(fccd, flown[name])

@@ -1,0 +1,273 @@
+"""What surrounds a flight and breaks: disk, terminal, watchers, configuration, a second daemon."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import live
+import pytest
+from daemon_under_test import (
+    DaemonUnderTest,
+    Ending,
+    assert_released,
+    engage,
+    flight,
+    start,
+    wait_until,
+    write_config,
+)
+from fault_flights import ENGAGED, FAILSAFE, Flown, assert_flown_again, assert_regular, at_once
+from recordings import RECORD, attachments, in_sequence, only_recording
+
+SUCCESS = 0
+FAILURE = 1
+
+FAST_HZ = 1_000
+RING_S = 4.2
+"""The loop's ring has room for so much of a flight at 1 kHz."""
+HOLD = '[course]\nkind = "hold"\n'
+EXAMPLE = Path(live.__file__)
+UNTIL_STOPPED = ["--seconds", "3600"]
+
+
+def fly(
+    fccd: Path, scratch: Path, config: str, *words: str | Path, before: tuple[str, ...] = ()
+) -> DaemonUnderTest:
+    """Start a flight of the built-in aircraft; `before` is a program that starts it."""
+    scratch.mkdir(exist_ok=True)
+    path = scratch / "fccd.toml"
+    path.write_text(f"[built-in]\nengage_at_s = 1.5\n{HOLD}{config}")
+    starts: list[str | Path] = [*before, fccd, "fly", "--config", path, "--json"]
+    return DaemonUnderTest([*starts, *UNTIL_STOPPED, *words], scratch)
+
+
+def a_full_disk(fccd: Path, scratch: Path) -> Ending:
+    """Fly on a disk that is full after some seconds: no file may grow beyond 300 kB."""
+    limited = ("prlimit", "--fsize=300000", "--")
+    config = 'compression = "none"\n[telemetry]\nenabled = false\n'
+    with fly(
+        fccd,
+        scratch,
+        f'[recording]\nfolder = "{scratch}/recordings"\n{config}',
+        before=limited,
+    ) as daemon:
+        daemon.wait_for("standby -> engaged")
+        daemon.wait_for("recording stopped", within_s=60.0)
+        for _ in range(2):
+            assert "engaged" in daemon.wait_for("heading")
+        return daemon.end(signal.SIGTERM)
+
+
+def a_changed_configuration(fccd: Path, scratch: Path) -> Flown:
+    """Fly while somebody writes nonsense, and then nothing, over the configuration."""
+    recordings = scratch / "recordings"
+    with fly(fccd, scratch, "[telemetry]\nenabled = false\n", "--recordings", recordings) as daemon:
+        daemon.wait_for("standby -> engaged")
+        path = scratch / "fccd.toml"
+        given = path.read_text()
+        path.write_text("[loop]\nrate_hz = 7\n[nonsense")
+        for _ in range(2):
+            assert "engaged" in daemon.wait_for("heading")
+        path.unlink()
+        assert "engaged" in daemon.wait_for("heading")
+        flown = Flown.of(daemon.end(signal.SIGTERM), recordings)
+    assert attachments(flown.recording)["config-as-given.toml"].decode() == given
+    return flown
+
+
+def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
+    """Fly while one program that watches is stopped and never reads again."""
+    recordings, instance = scratch / "recordings", f"hung-{os.getpid()}"
+    words = ("--recordings", recordings, "--instance", instance)
+    with fly(fccd, scratch, f"[loop]\nrate_hz = {FAST_HZ}\n", *words) as daemon:
+        daemon.wait_for("standby -> engaged")
+        watcher = subprocess.Popen(
+            [sys.executable, EXAMPLE, instance],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+        assert watcher.stdout is not None
+        watcher.stdout.readline()
+        watcher.send_signal(signal.SIGSTOP)
+        try:
+            # More than fit into its buffer of 1,024 records.
+            for _ in range(3):
+                assert "engaged" in daemon.wait_for("heading")
+            # Who comes now sees the newest all the same.
+            assert live.Watcher(instance).info.process_id == daemon.pid
+            return Flown.of(daemon.end(signal.SIGTERM), recordings)
+        finally:
+            watcher.kill()
+            watcher.wait()
+
+
+class StuckTerminal:
+    """A daemon whose words go into a pipe that is full, as on a terminal that is held."""
+
+    def __init__(self, fccd: Path, scratch: Path) -> None:
+        scratch.mkdir()
+        config = scratch / "fccd.toml"
+        config.write_text(
+            f"[built-in]\nengage_at_s = 1.5\n{HOLD}[loop]\nrate_hz = {FAST_HZ}\n"
+            "[telemetry]\nenabled = false\n"
+        )
+        self.recordings = scratch / "recordings"
+        words = [fccd, "fly", "--config", config, "--recordings", self.recordings]
+        # A pipe with a name, so that the daemon's end is another than ours: ours
+        # must not wait, and the daemon's must.
+        terminal = scratch / "terminal"
+        os.mkfifo(terminal)
+        self._read = os.open(terminal, os.O_RDONLY | os.O_NONBLOCK)
+        self._write = os.open(terminal, os.O_WRONLY | os.O_NONBLOCK)
+        fcntl.fcntl(self._write, fcntl.F_SETPIPE_SZ, 4_096)
+        with terminal.open("wb") as theirs:
+            self._process = subprocess.Popen(
+                [*map(str, words), *UNTIL_STOPPED, "--json"],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=theirs,
+            )
+        self._said = b""
+
+    def hear(self) -> bytes:
+        with contextlib.suppress(BlockingIOError):
+            self._said += os.read(self._read, 65_536)
+        return self._said
+
+    def hold(self) -> None:
+        """Fill the pipe up: the next word of the daemon waits."""
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(self._write, b".")
+
+    def end(self) -> int:
+        self._process.send_signal(signal.SIGTERM)
+
+        def is_over() -> bool:
+            self.hear()
+            return self._process.poll() is not None
+
+        wait_until(is_over, "it ends once it is heard")
+        os.close(self._read)
+        os.close(self._write)
+        return self._process.returncode
+
+    def __enter__(self) -> StuckTerminal:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+
+
+def a_full_ring(fccd: Path, scratch: Path) -> Flown:
+    """Fly at 1 kHz, and hold the terminal until what waits to be fetched finds no room."""
+    with StuckTerminal(fccd, scratch) as daemon:
+        wait_until(lambda: b"standby -> engaged" in daemon.hear(), "it is engaged")
+        daemon.hold()
+        # The ring has room for 4,096 ticks. Nobody knows from outside that it is full:
+        # twice that time passes before somebody reads again.
+        time.sleep(2 * RING_S)
+        heard = len(daemon.hear())
+        wait_until(lambda: b"records lost" in daemon.hear()[heard:], "it tells of the gap", 30.0)
+        exit_code = daemon.end()
+    return Flown.of(Ending(exit_code, {}, ""), daemon.recordings)
+
+
+@pytest.fixture(scope="module")
+def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
+    """All flights, side by side."""
+    scratch = tmp_path_factory.mktemp("surroundings")
+    assert shutil.which("prlimit"), "install util-linux"
+    made: dict[str, Callable[[], object]] = {
+        "disk": lambda: a_full_disk(fccd, scratch / "disk"),
+        "configuration": lambda: a_changed_configuration(fccd, scratch / "configuration"),
+        "watcher": lambda: a_hung_watcher(fccd, scratch / "watcher"),
+        "ring": lambda: a_full_ring(fccd, scratch / "ring"),
+    }
+    return at_once(made)
+
+
+def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
+    flights: dict[str, object],
+) -> None:
+    ending = flights["disk"]
+    assert isinstance(ending, Ending)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    recording = ending.report["recording"]
+    assert "all before is safe" in recording["stopped"]
+    (name,) = recording["files"]
+    seen = in_sequence(Path(name))
+    ticks = [message.content.tick for message in seen if message.topic == RECORD]
+    assert len(ticks) == recording["ticks"] > 0
+
+
+def test_a_configuration_that_changes_in_flight_changes_nothing(
+    fccd: Path, flights: dict[str, object]
+) -> None:
+    flown = flights["configuration"]
+    assert isinstance(flown, Flown)
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.ending.states == ["standby -> engaged", "engaged -> stopped"]
+    assert_flown_again(fccd, flown)
+
+
+def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> None:
+    flown = flights["watcher"]
+    assert isinstance(flown, Flown)
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.records[-1].records_dropped == 0
+    assert len(flown.records) > 3 * FAST_HZ
+    assert_regular(flown.records, 1_000_000_000 // FAST_HZ)
+
+
+def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> None:
+    flown = flights["ring"]
+    assert isinstance(flown, Flown)
+    assert flown.ending.exit_code == SUCCESS
+    kinds = [event.WhichOneof("kind") for event in flown.events]
+    gap = flown.events[kinds.index("records_dropped")].records_dropped
+    assert gap.count == flown.records[-1].records_dropped > 0
+    ticks = [record.tick for record in flown.records]
+    lost = set(range(gap.first, gap.last + 1))
+    assert lost.isdisjoint(ticks)
+    assert {gap.first - 1, gap.last + 1} & set(ticks), "told where the gap is"
+    # The loop never waited: before, in and after the gap it was engaged.
+    after = [record for record in flown.records if record.tick > gap.last]
+    assert after[0].state.phase == ENGAGED
+    assert all(record.state.phase != FAILSAFE for record in flown.records)
+
+
+def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: Path) -> None:
+    scratch = tmp_path / "second"
+    scratch.mkdir()
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        with start(fccd, scratch, write_config(scratch, simulator.port)) as second:
+            refused = second.end()
+        assert refused.exit_code == FAILURE
+        assert f"another fccd on this machine flies X-Plane at 127.0.0.1:{simulator.port}" in (
+            refused.said
+        )
+        assert simulator.progress().overridden, "the first flies on"
+        daemon.send(signal.SIGKILL)
+        daemon.end()
+        # What was killed leaves nothing behind that is in the way.
+        third_scratch = tmp_path / "third"
+        third_scratch.mkdir()
+        with start(fccd, third_scratch, write_config(third_scratch, simulator.port)) as third:
+            third.wait_for("answers")
+            assert third.end(signal.SIGTERM).exit_code == SUCCESS
+        assert_released(simulator)
+    assert only_recording(third_scratch / "recordings")

@@ -1,0 +1,71 @@
+"""The table of faults: every fault that must be in it is, and every row names a test there is."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parent
+DOCUMENT = TESTS.parents[1] / "docs" / "faults.md"
+SHOWN_BY = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
+COLUMNS = 5
+
+REQUIRED = (
+    "sensor silent",
+    "sensor frozen",
+    "sensor NaN",
+    "sensor infinite",
+    "sensor out of range",
+    "sensor jumping",
+    "sensor late",
+    "sensor reordered",
+    "simulator paused",
+    "simulator slow",
+    "simulator gone",
+    "simulator back",
+    "link cut, nothing from",
+    "link cut, nothing to",
+    "timer late by one",
+    "timer late by many",
+    "clock stepped",
+    "disk full",
+    "ring full",
+    "telemetry reader hung",
+    "configuration changed",
+    "second instance started",
+    "SIGTERM",
+    "SIGKILL",
+    "controller panics",
+    "controller hangs",
+    "controller returns NaN",
+    "tick overruns",
+)
+
+
+def rows() -> list[list[str]]:
+    """Return the cells of each row of each table, without their headings."""
+    lines = [line for line in DOCUMENT.read_text().splitlines() if line.startswith("|")]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+    return [row for row in cells if row[0] != "fault" and not row[0].startswith("---")]
+
+
+ROWS = rows()
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[row[0] for row in ROWS])
+def test_a_row_is_whole_and_names_a_test_there_is(row: list[str]) -> None:
+    assert len(row) == COLUMNS
+    assert all(row)
+    shown = SHOWN_BY.findall(row[-1])
+    assert shown
+    for file, name in shown:
+        module = ast.parse((TESTS / file).read_text())
+        assert name in {node.name for node in module.body if isinstance(node, ast.FunctionDef)}
+
+
+@pytest.mark.parametrize("fault", REQUIRED)
+def test_a_fault_that_must_be_there_is(fault: str) -> None:
+    assert any(row[0].startswith(fault) for row in ROWS)

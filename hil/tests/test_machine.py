@@ -1,0 +1,166 @@
+"""The daemon's own loop from Python: its states, what it says, its recording."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import fcc
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from recordings import EVENT, RECORD, by_index, metadata
+
+from fcc_hil.lockstep import measurements
+from fcc_hil.plant import Plant
+
+HOLD = '[course]\nkind = "hold"\n'
+STANDING = (0.6, 0.0, 0.0, 0.0)
+SENSORS = ("attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude")
+
+bad_numbers = st.sampled_from([math.nan, math.inf, -math.inf])
+
+
+@pytest.fixture(scope="module")
+def level() -> fcc.Measurements:
+    """Return what sensors say of a trimmed Cessna."""
+    return measurements(Plant("c172p").state())
+
+
+def _watch(machine: fcc.Machine, level: fcc.Measurements, seconds: float) -> None:
+    for _ in range(round(seconds / machine.period_s)):
+        machine.step(level, standing=STANDING, switch=False)
+
+
+def _texts(machine: fcc.Machine) -> list[str]:
+    return [event.text for event in machine.events()]
+
+
+def test_it_engages_by_the_switch_and_gives_back_by_it(level: fcc.Measurements) -> None:
+    machine = fcc.Machine(HOLD)
+    assert (machine.state, machine.tick, machine.time_s) == ("standby", 0, 0.0)
+    _watch(machine, level, 2.0)
+    assert (machine.state, machine.tick, machine.blockers) == ("standby", 80, [])
+    assert machine.time_s == pytest.approx(2.0)
+    surfaces = machine.step(level, standing=STANDING, switch=True)
+    assert surfaces is not None
+    assert surfaces.throttle == pytest.approx(STANDING[0], abs=0.05), "no bump"
+    assert (machine.state, machine.holds_control) == ("engaged", True)
+    assert machine.step(level, standing=STANDING, switch=False) is None
+    assert (machine.state, machine.holds_control) == ("standby", False)
+    assert _texts(machine) == ["standby -> engaged", "engaged -> standby", "actuators released"]
+    assert _texts(machine) == [], "each is told once"
+
+
+def test_what_blocks_engaging_is_said(level: fcc.Measurements) -> None:
+    machine = fcc.Machine(HOLD)
+    machine.engage()
+    assert machine.step(level) is None
+    assert _texts(machine) == ["ordered: engage", "not engaged: navigation is settling"]
+    assert machine.blockers == ["navigation is settling"]
+
+
+@pytest.mark.parametrize("sensor", SENSORS)
+def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
+    level: fcc.Measurements, sensor: str
+) -> None:
+    """250 ms by default, and a second of failsafe by this configuration."""
+    machine = fcc.Machine(HOLD + "[failsafe]\nhold_s = 1.0\n")
+    _watch(machine, level, 2.0)
+    machine.step(level, standing=STANDING, switch=True)
+    for _ in range(10):
+        machine.step(level, missing=[sensor], standing=STANDING, switch=True)
+        assert machine.state == "engaged"
+    machine.step(level, missing=[sensor], standing=STANDING, switch=True)
+    assert machine.state == "failsafe"
+    words = {"body_rates": "body rates are", "specific_force": "acceleration is"}
+    assert machine.faults == [f"{words.get(sensor, sensor + ' is')} missing or too old"]
+    for _ in range(39):
+        assert machine.step(level, missing=[sensor], switch=True) is not None
+    assert machine.step(level, missing=[sensor], switch=True) is None
+    assert (machine.state, machine.holds_control) == ("standby", False)
+
+
+def test_nothing_at_all_is_a_silent_sensor(level: fcc.Measurements) -> None:
+    machine = fcc.Machine(HOLD)
+    _watch(machine, level, 2.0)
+    machine.step(level, standing=STANDING, switch=True)
+    machine.step()
+    machine.step(level, standing=STANDING, switch=True)
+    assert _texts(machine) == [
+        "standby -> engaged",
+        "sensor lockstep: nothing arrives",
+        "sensor lockstep: works again",
+    ]
+
+
+def test_orders_move_the_set_points(level: fcc.Measurements) -> None:
+    machine = fcc.Machine(HOLD)
+    _watch(machine, level, 2.0)
+    machine.engage()
+    machine.step(level, standing=STANDING)
+    machine.order(heading_rad=1.0, altitude_m=1_000.0, airspeed_mps=50.0)
+    machine.step(level)
+    aims = machine.setpoints
+    assert (aims.heading_rad, aims.altitude_m, aims.airspeed_mps) == (1.0, 1_000.0, 50.0)
+    machine.disengage()
+    assert machine.step(level) is None
+    machine.stop()
+    machine.step(level)
+    assert machine.state == "stopped"
+    assert machine.step(level) is None
+    with pytest.raises(RuntimeError, match="stopped"):
+        machine.engage()
+
+
+def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) -> None:
+    """Read back by PyPI's mcap, which knows nothing of us."""
+    machine = fcc.Machine(HOLD)
+    _watch(machine, level, 2.0)
+    machine.step(level, standing=STANDING, switch=True)
+    files = machine.record_to(tmp_path / "flights", aircraft="a Cessna", ending="enough")
+    assert [path.parent for path in files] == [tmp_path / "flights"]
+    messages = by_index(files[0])
+    assert sum(message.topic == RECORD for message in messages) == 81
+    assert sum(message.topic == EVENT for message in messages) == 1
+    said = metadata(files[0])
+    assert said["fcc.recording"]["aircraft"] == "a Cessna"
+    assert said["fcc.end"]["ending"] == "enough"
+
+
+def test_a_folder_that_cannot_be_written_to_is_an_error(level: fcc.Measurements) -> None:
+    machine = fcc.Machine(HOLD)
+    machine.step(level)
+    with pytest.raises(OSError, match="/proc/none"):
+        machine.record_to("/proc/none")
+
+
+@given(value=bad_numbers, name=st.sampled_from(["airspeed_mps", "heading_rad", "altitude_m"]))
+def test_orders_that_are_no_numbers_are_refused(value: float, name: str) -> None:
+    with pytest.raises(ValueError, match=f"{name} is .*finite"):
+        fcc.Machine(HOLD).order(**{name: value})
+
+
+@given(
+    standing=st.tuples(*[st.floats(allow_nan=True)] * 4).filter(
+        lambda s: not (0.0 <= s[0] <= 1.0 and all(-1.0 <= value <= 1.0 for value in s[1:]))
+    )
+)
+def test_controls_that_cannot_stand_so_are_refused(
+    standing: tuple[float, float, float, float],
+) -> None:
+    machine = fcc.Machine(HOLD)
+    with pytest.raises(ValueError, match="throttle is 0 to 1"):
+        machine.step(standing=standing)
+    assert machine.tick == 0, "no half a tick"
+
+
+@given(name=st.text().filter(lambda name: name not in SENSORS))
+def test_sensors_that_do_not_exist_are_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=r"(?s)there is no sensor .*attitude, heading"):
+        fcc.Machine(HOLD).step(missing=[name])
+
+
+def test_a_configuration_that_is_wrong_is_refused_with_its_line() -> None:
+    with pytest.raises(ValueError, match=r"config:2: .*failsafe\.hold_s"):
+        fcc.Machine("[failsafe]\nhold_s = -1.0\n")

@@ -1,0 +1,83 @@
+"""The marks of a test: what they ask for, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import fcc
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fcc_hil.aircraft import AIRCRAFT
+from fcc_hil.marks import aircraft_mark, autopilot_mark
+from fcc_hil.pattern import TimedPattern
+from fcc_hil.plant import Weather
+
+
+def test_an_aircraft_as_it_is_asked_for() -> None:
+    settings = aircraft_mark("c172x", wind=(270, 10), turbulence=3, seed=7, noise=True, heading=90)
+    assert (settings.aircraft, settings.seed, settings.noise) == ("c172x", 7, True)
+    assert settings.heading_deg == 90.0
+    assert settings.weather == Weather(270.0, 10.0, 3)
+
+
+def test_an_autopilot_as_it_is_asked_for() -> None:
+    mark = autopilot_mark(hold_s=5, leg_s=15, turn_deg=-45, climb_ft=0, failsafe_hold_s=2)
+    assert mark.course == TimedPattern(5.0, 15.0, -45.0, 0.0)
+    assert autopilot_mark("hold").course is None
+
+
+@given(
+    course=st.sampled_from(["timed-pattern", "hold"]),
+    hold_s=st.floats(0.0, 86_400.0),
+    leg_s=st.floats(1.0, 86_400.0),
+    turn_deg=st.floats(-179.0, 179.0),
+    climb_ft=st.floats(-5_000.0, 5_000.0),
+    failsafe_hold_s=st.floats(0.0, 600.0),
+)
+def test_whatever_a_mark_takes_the_daemon_takes(course: str, **others: float) -> None:
+    fcc.Machine(autopilot_mark(course, **others).toml())  # type: ignore[arg-type]
+
+
+BAD: st.SearchStrategy[Any] = st.sampled_from(
+    [math.nan, math.inf, -math.inf, 1e9, -1e9, "1", None, []]
+)
+
+
+@given(
+    name=st.sampled_from(["hold_s", "leg_s", "turn_deg", "climb_ft", "failsafe_hold_s"]), value=BAD
+)
+def test_an_autopilot_that_cannot_be_is_refused_by_name(name: str, value: float) -> None:
+    with pytest.raises((TypeError, ValueError), match=f"^{name} is "):
+        autopilot_mark(**{name: value})  # type: ignore[arg-type]
+
+
+@given(name=st.sampled_from(["wind", "turbulence", "seed", "heading"]), value=BAD)
+def test_an_aircraft_that_cannot_be_is_refused_by_name(name: str, value: float) -> None:
+    with pytest.raises((TypeError, ValueError), match=f"^{name} is "):
+        aircraft_mark(**{name: value})  # type: ignore[arg-type]
+
+
+@given(wind=st.tuples(BAD, BAD))
+def test_a_wind_that_cannot_blow_is_refused(wind: tuple[float, float]) -> None:
+    with pytest.raises((TypeError, ValueError), match=r"^wind from is "):
+        aircraft_mark(wind=wind)
+
+
+@given(name=st.text().filter(lambda name: name not in AIRCRAFT))
+def test_an_aircraft_that_is_not_there_is_refused(name: str) -> None:
+    with pytest.raises(ValueError, match="choose one of: c172p"):
+        aircraft_mark(name)
+
+
+def test_other_nonsense_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"timed-pattern or hold"):
+        autopilot_mark("loops")
+    with pytest.raises(TypeError, match=r"^config is"):
+        autopilot_mark(config=3)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^noise is"):
+        aircraft_mark(noise="much")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"^aircraft is"):
+        aircraft_mark(3)  # type: ignore[arg-type]
