@@ -36,7 +36,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-live doc build clean
+.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -137,6 +137,10 @@ bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their
 
 bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench
+
+bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircraft, all weathers, against stated limits
+	@mkdir -p target
+	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
 	cargo build --locked --release -p fcc-telemetry --example watch

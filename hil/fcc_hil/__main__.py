@@ -1,4 +1,4 @@
-"""Commands for people: `python -m fcc_hil fly | standin | peer | bench | bench-live`."""
+"""Commands for people: `fcc COMMAND`, or `python -m fcc_hil COMMAND`."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from . import commands as flights
 from . import watched
 from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
@@ -277,7 +278,7 @@ def _bench_live(options: argparse.Namespace) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m fcc_hil", description=__doc__)
+    parser = argparse.ArgumentParser(prog="fcc", description=__doc__)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     flies = commands.add_parser(
@@ -339,6 +340,8 @@ def _parser() -> argparse.ArgumentParser:
         "--watchers", type=int, default=1000, help="in every second flight (%(default)s)"
     )
     bench_live.set_defaults(run=_bench_live)
+
+    flights.add(commands)
     return parser
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import fcc
 
+from .beginning import Beginning, begin
 from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
@@ -19,8 +20,6 @@ from .score import Score, score
 from .state import Controls, State
 from .truth import STEPS_PER_ROW, TRUTH_HZ, Truth, row
 
-_SETTLING_S = 5.0
-"""Sensors are watched for so long before engaging, as the daemon does in standby."""
 _CALM = Weather()
 _THESIS_PATTERN = TimedPattern()
 
@@ -39,6 +38,7 @@ class Scenario:
     pattern: TimedPattern = _THESIS_PATTERN
     config: str = ""
     """Text of a configuration; the gains as they stand if empty."""
+    beginning: Beginning = Beginning.TRIMMED
 
 
 def measurements(state: State) -> fcc.Measurements:
@@ -75,10 +75,19 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
     plant = Plant(scenario.aircraft, seed=scenario.seed, weather=scenario.weather)
     autopilot = fcc.Autopilot(scenario.config)
     sensors = _Sensors(scenario)
-    for _ in range(round(_SETTLING_S * TRUTH_HZ)):
-        autopilot.observe(sensors.read(plant.state()), 1 / TRUTH_HZ)
-        plant.step(STEPS_PER_ROW)
-    autopilot.engage(sensors.read(plant.state()), 1 / TRUTH_HZ, throttle=plant.controls.throttle)
+
+    def watch(state: State) -> None:
+        autopilot.observe(sensors.read(state), 1 / TRUTH_HZ)
+
+    standing = begin(plant, scenario.beginning, scenario.config, measurements, watch)
+    autopilot.engage(
+        sensors.read(plant.state()),
+        1 / TRUTH_HZ,
+        throttle=standing.throttle,
+        elevator=standing.elevator,
+        aileron=standing.aileron,
+        rudder=standing.rudder,
+    )
 
     engaged_at_s = plant.time_s
     rows = [row(plant.state(), plant.controls)]

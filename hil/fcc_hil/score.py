@@ -101,7 +101,7 @@ def score(trace: Trace, legs: Sequence[Leg]) -> Score:
     if not legs:
         raise ValueError("no legs to score; fly at least one")
     scores = [_score_leg(trace.between(leg.start_s, leg.end_s), leg) for leg in legs]
-    return {"legs": scores, "worst": _worst(scores)}
+    return {"legs": scores, "worst": worst(scores)}
 
 
 def _score_leg(flown: Trace, leg: Leg) -> LegScore:
@@ -158,7 +158,8 @@ def _worst_settle(values: Sequence[float | None]) -> float | None:
     return max(settled) if len(settled) == len(values) else None
 
 
-def _worst(legs: Sequence[LegScore]) -> LegScore:
+def worst(legs: Sequence[LegScore]) -> LegScore:
+    """Return the worst of each figure over legs, at least one."""
     return {
         "heading_settle_s": _worst_settle([leg["heading_settle_s"] for leg in legs]),
         "heading_overshoot_deg": max(leg["heading_overshoot_deg"] for leg in legs),

@@ -64,6 +64,10 @@ class Truth:
         """Return a column by its name in COLUMNS."""
         return self._table[:, COLUMNS.index(column)]
 
+    def table(self) -> npt.NDArray[np.float64]:
+        """Return all rows, their columns in the order of COLUMNS."""
+        return self._table
+
     def trace(self) -> Trace:
         """Return what the score looks at."""
         return Trace(*(self[name] for name in COLUMNS[:5]))

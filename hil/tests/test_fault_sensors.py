@@ -92,7 +92,7 @@ SENSED: dict[str, Sensor] = {
         "acceleration is missing or too old",
         "acceleration is frozen",
         _three("specific_force", "x_mps2", "y_mps2", "z_mps2"),
-        {P + "local_ay": 900.0},
+        {P + "local_ay": 2_000.0},
         {P + "local_ax": math.inf},
         jump=60.0,
     ),

@@ -660,3 +660,25 @@ fn a_flight_that_cannot_have_been_is_not_taken_up() {
         assert!((aims.altitude_m - 914.4).abs() < 1e-6, "{resume:?}");
     }
 }
+
+/// At engagement the altitude is known to a foot or so; what is measured in
+/// the seconds after says where that was. An altitude that is ordered stays.
+#[test]
+fn the_captured_altitude_is_learnt_and_an_ordered_one_is_kept() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    let captured = cockpit.autopilot.setpoints().altitude_m;
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    let learnt = cockpit.autopilot.setpoints().altitude_m - captured;
+    assert!((0.01..0.3).contains(&learnt), "{learnt}");
+
+    cockpit.autopilot.command(&Order::Altitude(950.0));
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    assert_eq!(cockpit.autopilot.setpoints().altitude_m, 950.0);
+}

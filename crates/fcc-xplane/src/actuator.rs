@@ -1,5 +1,6 @@
 //! X-Plane as an actuator.
 
+use core::sync::atomic::Ordering;
 use core::time::Duration;
 use std::net::SocketAddrV4;
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
 use crate::link::{Control, Link, count};
 use crate::port::{Errno, Port, UdpPort};
 use crate::protocol::PathError;
+use crate::protocol::dref::WRITE_BYTES;
 use crate::sensor::send;
 
 /// While control is held the overrides are set anew this often, for a lost
@@ -82,9 +84,11 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             }
         };
         let simulator = held.simulator;
-        let write = |datagram: &[u8]| {
-            count(&link.counters.writes);
-            send(port, link, datagram, simulator)
+        let write = |datagrams: &[u8]| {
+            let number = datagrams.len().div_ceil(WRITE_BYTES) as u64;
+            link.counters.writes.fetch_add(number, Ordering::Relaxed);
+            port.send_each(datagrams, WRITE_BYTES, simulator)
+                .inspect_err(|_| count(&link.counters.refused))
         };
 
         let mut sent = Ok(());

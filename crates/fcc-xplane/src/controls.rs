@@ -9,6 +9,8 @@
 //! this order. The throttle has no centre; it stays where it is until the
 //! released override gives it back to the lever in the cockpit.
 
+use core::iter;
+
 use fcc_core::flight::Surfaces;
 
 use crate::config::{Output, XPlaneConfig};
@@ -38,9 +40,9 @@ pub(crate) struct Controls {
 #[derive(Clone, Debug)]
 enum Way {
     Dref {
-        /// Elevator, aileron, rudder.
-        yoke: [Write; 3],
-        throttles: Vec<Write>,
+        /// Elevator, aileron, rudder, then the throttles: back to back, so
+        /// that they can be sent at one go.
+        writes: Box<[[u8; dref::WRITE_BYTES]]>,
     },
     Data {
         engines: usize,
@@ -89,16 +91,16 @@ impl Controls {
     pub(crate) fn new(config: &XPlaneConfig) -> Result<Self, PathError> {
         let engines = usize::from(config.engines);
         let way = match config.output {
-            Output::Dref => Way::Dref {
-                yoke: [
-                    write_to(YOKE_PITCH)?,
-                    write_to(YOKE_ROLL)?,
-                    write_to(YOKE_HEADING)?,
-                ],
-                throttles: (0..engines)
-                    .map(|engine| write_to(&format!("{THROTTLE}[{engine}]")))
-                    .collect::<Result<_, _>>()?,
-            },
+            Output::Dref => {
+                let yoke = [YOKE_PITCH, YOKE_ROLL, YOKE_HEADING].map(str::to_owned);
+                let throttles = (0..engines).map(|engine| format!("{THROTTLE}[{engine}]"));
+                let writes = yoke
+                    .into_iter()
+                    .chain(throttles)
+                    .map(|path| write_to(&path).map(|write| *write))
+                    .collect::<Result<_, _>>()?;
+                Way::Dref { writes }
+            }
             Output::Data => Way::Data {
                 engines,
                 datagram: [0; data::size(2)],
@@ -118,7 +120,8 @@ impl Controls {
         self.set_overrides(1.0, &mut send)
     }
 
-    /// Writes surfaces and throttles.
+    /// Writes surfaces and throttles. What is handed to `send` may be several
+    /// datagrams of [`dref::WRITE_BYTES`] back to back.
     pub(crate) fn set(
         &mut self,
         surfaces: &Surfaces,
@@ -164,11 +167,20 @@ impl Controls {
     ) -> Result<(), Errno> {
         let mut outcome = Ok(());
         match &mut self.way {
-            Way::Dref { yoke, throttles } => {
-                let throttles = throttles.iter_mut().map(|write| (write, to.throttle));
-                for (write, value) in yoke.iter_mut().zip(to.yoke).chain(throttles) {
-                    if let Some(value) = value {
-                        dref::set_value(write, value);
+            Way::Dref { writes } => {
+                let values = to.yoke.into_iter().chain(iter::repeat(to.throttle));
+                let mut all = true;
+                for (write, value) in writes.iter_mut().zip(values.clone()) {
+                    match value {
+                        Some(value) => dref::set_value(write, value),
+                        None => all = false,
+                    }
+                }
+                if all {
+                    return send(writes.as_flattened());
+                }
+                for (write, value) in writes.iter().zip(values) {
+                    if value.is_some() {
                         outcome = outcome.and(send(write.as_slice()));
                     }
                 }
@@ -203,7 +215,8 @@ mod tests {
     fn sent(act: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), Errno>)) -> Vec<Vec<u8>> {
         let mut datagrams = Vec::new();
         act(&mut |datagram| {
-            datagrams.push(datagram.to_vec());
+            let each = datagram.chunks(dref::WRITE_BYTES);
+            datagrams.extend(each.map(<[u8]>::to_vec));
             Ok(())
         });
         datagrams

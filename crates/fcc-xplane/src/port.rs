@@ -1,9 +1,13 @@
 //! Where datagrams come from and go to.
 
+use core::sync::atomic::{AtomicBool, Ordering};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 
+use nix::sys::socket::{setsockopt, sockopt::UdpGsoSegment};
 use socket2::{Domain, Protocol, Socket, Type};
+
+use crate::protocol::dref;
 
 /// An operating system's error number, 0 if it gave none.
 pub type Errno = i32;
@@ -23,11 +27,45 @@ pub trait Port: Send + Sync {
     /// # Errors
     /// The operating system's error number.
     fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno>;
+
+    /// Sends datagrams of `size` bytes that lie back to back; every one, even
+    /// if another fails.
+    ///
+    /// # Errors
+    /// The first failure's error number.
+    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddrV4) -> Result<(), Errno> {
+        send_one_by_one(self, datagrams, size, to)
+    }
 }
 
+fn send_one_by_one<P: Port + ?Sized>(
+    port: &P,
+    datagrams: &[u8],
+    size: usize,
+    to: SocketAddrV4,
+) -> Result<(), Errno> {
+    let mut outcome = Ok(());
+    for datagram in datagrams.chunks(size.max(1)) {
+        outcome = outcome.and(port.send(datagram, to));
+    }
+    outcome
+}
+
+/// The writes of a tick are cut into datagrams of this size by the kernel.
+/// Nothing else that is sent here is longer.
+const SEGMENT_BYTES: usize = dref::WRITE_BYTES;
+
 /// A non-blocking IPv4 UDP socket.
+///
+/// Datagrams of one size go through the kernel's stack at one go where it can
+/// cut them apart itself (`UDP_SEGMENT`, Linux 4.18); on the wire they are what
+/// they would have been one by one.
 #[derive(Debug)]
-pub struct UdpPort(UdpSocket);
+pub struct UdpPort {
+    socket: UdpSocket,
+    /// Whether the kernel cuts, as far as is known.
+    cuts: AtomicBool,
+}
 
 impl UdpPort {
     /// Binds to a local port, 0 for any that is free.
@@ -38,7 +76,11 @@ impl UdpPort {
         let socket = socket()?;
         socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port).into())?;
         socket.set_nonblocking(true)?;
-        Ok(Self(socket.into()))
+        let cuts = setsockopt(&socket, UdpGsoSegment, &(SEGMENT_BYTES as i32)).is_ok();
+        Ok(Self {
+            socket: socket.into(),
+            cuts: AtomicBool::new(cuts),
+        })
     }
 
     /// Joins the multicast group of the beacons. Other programs on this
@@ -57,7 +99,10 @@ impl UdpPort {
             outside.or(inside)?;
         }
         socket.set_nonblocking(true)?;
-        Ok(Self(socket.into()))
+        Ok(Self {
+            socket: socket.into(),
+            cuts: AtomicBool::new(false),
+        })
     }
 
     /// The port it is bound to.
@@ -65,12 +110,12 @@ impl UdpPort {
     /// # Errors
     /// When the operating system refuses.
     pub fn local_port(&self) -> io::Result<u16> {
-        self.0.local_addr().map(|address| address.port())
+        self.socket.local_addr().map(|address| address.port())
     }
 
     /// The socket itself, for set-up that may wait.
     pub(crate) const fn socket(&self) -> &UdpSocket {
-        &self.0
+        &self.socket
     }
 }
 
@@ -84,7 +129,7 @@ fn errno(error: &io::Error) -> Errno {
 
 impl Port for UdpPort {
     fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
-        match self.0.recv_from(into) {
+        match self.socket.recv_from(into) {
             Ok((length, SocketAddr::V4(from))) => Ok(Some((length, from))),
             // An IPv4 socket has no other senders.
             Ok((_, SocketAddr::V6(_))) => Ok(None),
@@ -97,9 +142,79 @@ impl Port for UdpPort {
     }
 
     fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno> {
-        match self.0.send_to(datagram, to) {
+        match self.socket.send_to(datagram, to) {
             Ok(_) => Ok(()),
             Err(error) => Err(errno(&error)),
         }
+    }
+
+    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddrV4) -> Result<(), Errno> {
+        if size == SEGMENT_BYTES && self.cuts.load(Ordering::Relaxed) {
+            match self.socket.send_to(datagrams, to) {
+                Ok(_) => return Ok(()),
+                // A network device or a tunnel that cannot have it cut.
+                Err(error) if is_about_cutting(&error) => self.stop_cutting(),
+                Err(error) => return Err(errno(&error)),
+            }
+        }
+        send_one_by_one(self, datagrams, size, to)
+    }
+}
+
+impl UdpPort {
+    /// From now on datagrams are sent one by one.
+    fn stop_cutting(&self) {
+        self.cuts.store(false, Ordering::Relaxed);
+        // Without effect on what is shorter than a segment, should it fail.
+        let _ = setsockopt(&self.socket, UdpGsoSegment, &0);
+    }
+}
+
+fn is_about_cutting(error: &io::Error) -> bool {
+    let about = [
+        nix::errno::Errno::EIO,
+        nix::errno::Errno::EINVAL,
+        nix::errno::Errno::EMSGSIZE,
+        nix::errno::Errno::EOPNOTSUPP,
+    ];
+    about.iter().any(|code| *code as i32 == errno(error))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// Four datagrams, each full of its own number, as another socket gets
+    /// them.
+    fn received_of_four(prepare: impl FnOnce(&UdpPort)) -> Vec<Vec<u8>> {
+        let other = UdpSocket::bind("127.0.0.1:0").unwrap();
+        other
+            .set_read_timeout(Some(Duration::from_secs(10)))
+            .unwrap();
+        let SocketAddr::V4(address) = other.local_addr().unwrap() else {
+            panic!("bound to IPv4");
+        };
+        let port = UdpPort::bind(0).unwrap();
+        prepare(&port);
+        let four = [1_u8, 2, 3, 4].map(|number| [number; SEGMENT_BYTES]);
+        port.send_each(four.as_flattened(), SEGMENT_BYTES, address)
+            .unwrap();
+        port.send(b"the end", address).unwrap();
+        let mut buffer = [0; 4_096];
+        std::iter::from_fn(|| {
+            let (length, _) = other.recv_from(&mut buffer).unwrap();
+            let datagram = buffer[..length].to_vec();
+            (datagram != b"the end").then_some(datagram)
+        })
+        .collect()
+    }
+
+    #[test]
+    fn datagrams_sent_at_one_go_arrive_one_by_one() {
+        let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
+        assert_eq!(received_of_four(|_| {}), four);
+        assert_eq!(received_of_four(UdpPort::stop_cutting), four);
     }
 }

@@ -70,8 +70,7 @@ fn draw(
         let corner = (column * PANEL_WIDTH_PX, line * panel_height);
         draw_panel(area, corner, panel)?;
     }
-    let legend = "dot: median; thick line: to p99; bar: p99.9; ring: largest; \
-                  medians over the rounds, logarithmic scale";
+    let legend = "dot: median; thick: to p99; bar: p99.9; ring: largest; medians of rounds";
     let y = lines * panel_height + ROW_PX / 2;
     area.draw_text(legend, &words(HPos::Left), (8, y))?;
     area.present()?;

@@ -118,6 +118,9 @@ impl Outcome {
         if self.failsafes > 0 {
             let _ = write!(text, "; failsafe {} times", self.failsafes);
         }
+        if self.overruns > 0 {
+            let _ = write!(text, "; {} ticks overran their budget", self.overruns);
+        }
         if !self.released {
             text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
         }

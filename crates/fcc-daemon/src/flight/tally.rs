@@ -89,6 +89,7 @@ impl Tally {
             records_dropped: self.last.records_dropped,
             events_dropped: 0,
             cpu_time: Duration::ZERO,
+            page_faults: Some(self.last.page_faults),
             grants: Some(grants),
         }
     }

@@ -32,3 +32,25 @@ impl Capture {
         by_m
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_set_point_follows_what_is_learnt() {
+        let mut capture = Capture::of(900.0);
+        let moved: f64 = [900.1, 900.15, 900.12]
+            .into_iter()
+            .map(|known| capture.shift_m(known))
+            .sum();
+        assert!((moved - 0.12).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_barometer_that_jumps_does_not_take_the_set_point_along() {
+        let mut capture = Capture::of(900.0);
+        assert!((capture.shift_m(950.0) - MAX_SHIFT_M).abs() < 1e-9);
+        assert!((capture.shift_m(900.0) + MAX_SHIFT_M).abs() < 1e-9);
+    }
+}

@@ -40,12 +40,12 @@ pub struct AltitudeConfig {
 impl Default for AltitudeConfig {
     fn default() -> Self {
         Self {
-            altitude_gain_per_s: 1.4,
+            altitude_gain_per_s: 1.5,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
             climb_rate_gain: 1.8,
-            climb_rate_integral_gain_per_s: 0.39,
-            flight_path_lag_s: 0.25,
+            climb_rate_integral_gain_per_s: 0.35,
+            flight_path_lag_s: 0.2,
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
             pitch_gain_per_s: 6.2,
             max_pitch_rate_radps: 0.174_533, // 10 °/s

@@ -41,7 +41,7 @@ pub struct HeadingConfig {
 impl Default for HeadingConfig {
     fn default() -> Self {
         Self {
-            heading_gain_per_s: 0.84,
+            heading_gain_per_s: 0.92,
             rollout_rate_radps: 0.366_519, // 21 °/s
             lead_s: 0.28,
             roll_gain_per_s: 3.1,

@@ -5,6 +5,7 @@
 //! one that did not arrive: the last good one stays, and grows old. A single
 //! outlier costs nothing then; one that stays is a loss of its sensor.
 
+use core::f64::consts::PI;
 use core::time::Duration;
 
 use crate::blocks::wrap_pi;
@@ -37,12 +38,12 @@ struct Reach {
 /// turn a second: twice what trainers do.
 const ATTITUDE_RAD: Reach = Reach {
     at_once: 0.175,
-    per_s: 3.14,
+    per_s: PI,
 };
 /// 15° of a compass that swings, and half a turn a second: a fast spin.
 const HEADING_RAD: Reach = Reach {
     at_once: 0.26,
-    per_s: 3.14,
+    per_s: PI,
 };
 /// A gust, and the roll acceleration of full aileron twice over.
 const RATES_RADPS: Reach = Reach {

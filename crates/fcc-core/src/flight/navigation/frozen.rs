@@ -197,7 +197,7 @@ impl FrozenWatch {
         let before = self.before.replace(angles).unwrap_or(angles);
         let said = angle_rates(measurements, angles);
 
-        self.step_angles(&attitude.taken, &heading.taken, angles, said, dt_s);
+        self.step_angles(attitude.taken, heading.taken, angles, said, dt_s);
         self.step_rates(measurements, angles, before, said, dt_s);
         self.step_altitude(now, measurements, estimate, dt_s);
 
@@ -224,8 +224,8 @@ impl FrozenWatch {
 
     fn step_angles(
         &mut self,
-        attitude_taken: &Time,
-        heading_taken: &Time,
+        attitude_taken: Time,
+        heading_taken: Time,
         [roll, pitch, heading]: Angles,
         said: Angles,
         dt_s: f64,
@@ -240,7 +240,7 @@ impl FrozenWatch {
             .zip(taken)
             .zip(said)
         {
-            if stuck.has_changed([value], EXACTLY, *taken, dt_s) {
+            if stuck.has_changed([value], EXACTLY, taken, dt_s) {
                 *turned = Leaky::default();
             } else {
                 turned.add(rate * dt_s, dt_s);

@@ -47,7 +47,7 @@ impl Default for NavigationConfig {
         Self {
             attitude_tau_s: 1.36,
             heading_tau_s: 1.44,
-            vertical_bandwidth_radps: 0.6,
+            vertical_bandwidth_radps: 0.68,
             airspeed_tau_s: 0.89,
             side_force_tau_s: 0.19,
         }

@@ -1,0 +1,192 @@
+"""The commands `suite` and `tune`: what they are asked, and what they say."""
+
+from __future__ import annotations
+
+import argparse
+import fnmatch
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from .aircraft import AIRCRAFT
+
+_LARGEST_SEEDS = 1_000
+
+
+@contextmanager
+def _bar(what: str, total: int) -> Iterator[Any]:
+    """Give a function that says how far it is; silent where nobody watches."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task(what, total=total)
+
+        def say(done: int, doing: str) -> None:
+            progress.update(task, completed=done, description=doing)
+
+        yield say
+
+
+def seeds(text: str) -> tuple[int, ...]:
+    """Read seeds such as `1,2,7-9`. Raises argparse.ArgumentTypeError."""
+    found: list[int] = []
+    for part in text.split(","):
+        first, dash, last = part.partition("-")
+        try:
+            begin, end = int(first), int(last if dash else first)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}': give seeds, as in 1,2,7-9") from None
+        if not 0 <= begin <= end or end - begin >= _LARGEST_SEEDS:
+            raise argparse.ArgumentTypeError(
+                f"'{part}': give seeds from 0 up, ascending, at most {_LARGEST_SEEDS}"
+            )
+        found += range(begin, end + 1)
+    return tuple(found)
+
+
+def _positive(text: str) -> int:
+    if not text.isdigit() or not 0 < int(text) <= 1_000_000:
+        raise argparse.ArgumentTypeError(f"'{text}': give a number from 1 up")
+    return int(text)
+
+
+def add(commands: Any) -> None:
+    """Add both commands to a parser's."""
+    suite = commands.add_parser(
+        "suite", help="fly many aircraft in all weathers and hold them to stated limits"
+    )
+    suite.add_argument(
+        "--only", metavar="PATTERN", help="cases whose name matches, as in 'c172*noise*'"
+    )
+    suite.add_argument("--quick", action="store_true", help="only those flown as a test")
+    suite.add_argument("--workers", type=_positive, metavar="N", help="processes (all processors)")
+    suite.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
+    suite.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    suite.set_defaults(run=_suite)
+
+    tune = commands.add_parser("tune", help="search gains for an aircraft")
+    tune.add_argument(
+        "--aircraft",
+        required=True,
+        choices=list(AIRCRAFT),
+        metavar="NAME",
+        help=f"one of {', '.join(AIRCRAFT)}",
+    )
+    tune.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    tune.add_argument(
+        "--from",
+        dest="given",
+        type=Path,
+        metavar="FILE",
+        help="configuration to begin with (the aircraft's own, or stock gains)",
+    )
+    tune.add_argument(
+        "--cost",
+        default="even",
+        metavar="COST",
+        help="even, accurate, gentle, or weights, as in altitude_rms_ft=2,movement=1 (%(default)s)",
+    )
+    tune.add_argument(
+        "--search",
+        metavar="KEY,KEY",
+        help="numbers of the configuration to search (the five of autopilot.scale)",
+    )
+    tune.add_argument("--seeds", type=seeds, default=(1, 2), metavar="1,2,7-9")
+    tune.add_argument("--legs", type=_positive, default=2, help="of each flight (%(default)s)")
+    tune.add_argument(
+        "--turbulence", type=int, default=0, choices=range(8), metavar="0..7", help="severity"
+    )
+    tune.add_argument(
+        "--evaluations", type=_positive, default=120, metavar="N", help="candidates (%(default)s)"
+    )
+    tune.add_argument("--workers", type=_positive, metavar="N", help="processes (all processors)")
+    tune.add_argument(
+        "--dask", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
+    )
+    tune.set_defaults(run=_tune)
+
+
+def _suite(options: argparse.Namespace) -> int:
+    from .suite import report  # noqa: PLC0415 - needs the module fcc, which others do not
+    from .suite.flying import fly_all  # noqa: PLC0415
+    from .suite.matrix import cases, scenario_of  # noqa: PLC0415
+    from .suite.speed import measure  # noqa: PLC0415
+
+    chosen = [
+        case
+        for case in cases()
+        if (case.is_quick or not options.quick)
+        and fnmatch.fnmatchcase(case.name, options.only or "*")
+    ]
+    if not chosen:
+        names = "\n  ".join(case.name for case in cases())
+        raise ValueError(f"--only '{options.only}' matches no case; there are:\n  {names}")
+    flown = {}
+    with _bar("flying", len(chosen)) as say:
+        for outcome in fly_all(chosen, options.workers):
+            flown[outcome.case.name] = outcome
+            say(len(flown), outcome.case.name)
+    outcomes = [flown[case.name] for case in chosen]
+    # Alone, when the other processes have ended.
+    speed = measure(scenario_of("c172p"))
+    print(report.text(outcomes, speed))
+    if options.json:
+        document = report.document(outcomes, speed)
+        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    if options.picture:
+        from .suite.picture import draw  # noqa: PLC0415 - matplotlib takes a second
+
+        draw(options.picture, outcomes)
+    return 1 if any(outcome.broken for outcome in outcomes) else 0
+
+
+def _tune(options: argparse.Namespace) -> int:
+    from . import tuning  # noqa: PLC0415 - needs the module fcc
+
+    order = tuning.Order(
+        aircraft=options.aircraft,
+        config=options.given.read_text(encoding="utf-8") if options.given else None,
+        keys=tuple(options.search.split(",")) if options.search else tuning.SCALE_KEYS,
+        cost=tuning.cost_of(options.cost),
+        seeds=options.seeds,
+        evaluations=options.evaluations,
+        legs=options.legs,
+        turbulence=options.turbulence,
+    )
+    # Hours of search must not end at a folder that is not there.
+    if not options.output.parent.is_dir():
+        raise ValueError(f"{options.output}: there is no folder {options.output.parent}")
+    workers = (
+        tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
+    )
+    with workers as fly_all, _bar("tuning", order.evaluations) as bar:
+
+        def say(flown: int, least: float) -> None:
+            bar(min(flown, order.evaluations), f"cost {least:.3f}")
+
+        found = tuning.tune(order, fly_all, say)
+    head = (
+        f"# Tuned for JSBSim's {order.aircraft}: cost '{order.cost.name}' {found.after:.3f}, was "
+        f"{found.before:.3f};\n# {found.evaluations} candidates on seeds "
+        f"{', '.join(map(str, order.seeds))}.\n\n"
+    )
+    options.output.write_text(head + found.config, encoding="utf-8")
+    print(
+        f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured answers, "
+        f"{found.after:.3f} found in {found.evaluations} candidates",
+    )
+    for key, value in found.values.items():
+        print(f"  {key} = {value:g}")
+    print(f"written: {options.output}", file=sys.stderr)
+    return 0

@@ -1,0 +1,156 @@
+"""Fly the suite's cases in parallel processes and judge them."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from ..lockstep import Scenario, fly
+from ..pattern import Leg
+from ..peer import fly_peer
+from ..score import LegScore, Score, score, worst
+from ..truth import Truth
+from .limits import broken
+from .matrix import Case
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a case went."""
+
+    case: Case
+    figures: dict[str, float | None]
+    """By the names in `limits.UNITS`."""
+    score: Score | None
+    """None where the flight ended before its legs did."""
+    broken: tuple[str, ...]
+    """Limits that the flight broke, in words; the reason where it could not be flown."""
+    digest: str
+    """Of every bit of what was flown: equal for equal flights."""
+    simulated_s: float
+    cpu_s: float
+    """Processor time of flying and scoring, trimming included."""
+
+    def document(self) -> dict[str, Any]:
+        """Return what JSON takes."""
+        return {
+            "name": self.case.name,
+            "group": self.case.group,
+            "aircraft": self.case.scenario.aircraft,
+            "seeds": list(self.case.seeds),
+            "figures": self.figures,
+            "limits": dict(self.case.limits),
+            "broken": list(self.broken),
+            "legs": self.score["legs"] if self.score else [],
+            "digest": self.digest,
+            "simulated_s": self.simulated_s,
+            "cpu_s": self.cpu_s,
+        }
+
+
+def fly_case(case: Case) -> Outcome:
+    """Fly one case and judge it. What cannot be flown is an outcome too, not an exception."""
+    began_s = time.process_time()
+    try:
+        flights = [_fly(case, seed) for seed in case.seeds]
+    except (ValueError, RuntimeError, ArithmeticError) as error:
+        reason = f"not flown to its end: {error}"
+        return Outcome(case, {}, None, (reason,), "", 0.0, time.process_time() - began_s)
+    figures = _figures(case.scenario, flights)
+    digest = hashlib.sha256()
+    for _, truth in flights:
+        digest.update(truth.table().tobytes())
+    return Outcome(
+        case=case,
+        figures=figures,
+        score=_together(flights),
+        broken=tuple(broken(figures, case.limits)),
+        digest=digest.hexdigest(),
+        simulated_s=sum(float(truth["time_s"][-1]) for _, truth in flights),
+        cpu_s=time.process_time() - began_s,
+    )
+
+
+def fly_all(cases: Sequence[Case], workers: int | None = None) -> Iterator[Outcome]:
+    """Fly cases in `workers` processes (one for each processor by default).
+
+    Yields each outcome as it comes, in no certain order. Each flight depends on its case
+    alone, so the number of processes changes no bit of it.
+    """
+    workers = workers or os.cpu_count() or 1
+    if workers == 1:
+        yield from map(fly_case, cases)
+        return
+    # Forked children would inherit the threads' locks of whoever calls.
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        # The longest first, so that no process is left with one at the end.
+        flights = [pool.submit(fly_case, case) for case in sorted(cases, key=_duration_s)[::-1]]
+        for flight in as_completed(flights):
+            yield flight.result()
+
+
+def _duration_s(case: Case) -> float:
+    return case.scenario.pattern.duration_s(case.scenario.legs) * len(case.seeds)
+
+
+def _fly(case: Case, seed: int) -> tuple[Score, Truth]:
+    scenario = replace(case.scenario, seed=seed)
+    if case.is_peer:
+        return fly_peer(scenario.legs, seed, scenario.pattern)
+    return fly(scenario)
+
+
+def _together(flights: Sequence[tuple[Score, Truth]]) -> Score:
+    legs = [leg for flown, _ in flights for leg in flown["legs"]]
+    return {"legs": legs, "worst": worst(legs)}
+
+
+def _figures(scenario: Scenario, flights: Sequence[tuple[Score, Truth]]) -> dict[str, float | None]:
+    together = _together(flights)
+    legs = together["legs"]
+    figures: dict[str, float | None] = dict(together["worst"].items())  # type: ignore[arg-type]
+    unsettled = sum(leg["heading_settle_s"] is None for leg in legs)
+    holds = [_hold(scenario, truth) for _, truth in flights]
+    return figures | {
+        "unsettled_share": unsettled / len(legs),
+        "mean_altitude_rms_ft": float(np.mean([leg["altitude_rms_ft"] for leg in legs])),
+        "largest_bank_deg": max(float(np.max(np.abs(truth["roll_deg"]))) for _, truth in flights),
+        "turned_back_deg": max(_turned_back_deg(scenario, truth) for _, truth in flights),
+        "hold_heading_error_deg": max(hold["heading_rms_deg"] for hold in holds),
+        "hold_altitude_error_ft": max(hold["altitude_rms_ft"] for hold in holds),
+    }
+
+
+def _turned_back_deg(scenario: Scenario, truth: Truth) -> float:
+    """Return how far the heading ever goes back on the turns' direction, once they began."""
+    time_s = truth["time_s"] - truth["time_s"][0]
+    turned_deg = np.degrees(np.unwrap(np.radians(truth["heading_deg"])))
+    turning = (
+        math.copysign(1.0, scenario.pattern.turn_deg) * turned_deg[time_s > scenario.pattern.hold_s]
+    )
+    return float(np.max(np.maximum.accumulate(turning) - turning))
+
+
+def _hold(scenario: Scenario, truth: Truth) -> LegScore:
+    """Score the hold before the first leg, by its end: what was captured, kept."""
+    start_s = float(truth["time_s"][0])
+    captured = truth.captured_at(start_s)
+    leg = Leg(
+        start_s=start_s,
+        end_s=start_s + scenario.pattern.hold_s,
+        heading_from_deg=captured.heading_deg,
+        heading_deg=captured.heading_deg,
+        altitude_from_ft=captured.altitude_ft,
+        altitude_ft=captured.altitude_ft,
+        airspeed_kt=captured.airspeed_kt,
+    )
+    return score(truth.trace(), [leg])["worst"]

@@ -1,0 +1,116 @@
+"""What a flight is worth: a weighted sum of its figures, each against what is good.
+
+A figure counts as two parts its mean over the legs and one part the worst leg, divided by
+what is good for a light aircraft; the times to settle by the length of the leg, twice that
+where a leg never settles. Movement is how far elevator, aileron and rudder move in a second,
+against 0.5 of their range: without it, the search buys a little accuracy with surfaces that
+shake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from ..lockstep import Scenario, fly
+from ..score import Score
+from ..truth import TRUTH_HZ, Truth
+
+_GOOD = MappingProxyType(
+    {
+        "heading_overshoot_deg": 0.5,
+        "heading_rms_deg": 0.4,
+        "altitude_overshoot_ft": 2.0,
+        "altitude_rms_ft": 1.0,
+        "turn_loss_ft": 2.0,
+        "airspeed_error_kt": 3.0,
+        "lateral_acceleration_g": 0.05,
+    }
+)
+_SETTLING = ("heading_settle_s", "altitude_settle_s")
+_MOVEMENT = "movement"
+_GOOD_MOVEMENT_PER_S = 0.5
+_SURFACES = ("elevator", "aileron", "rudder")
+
+NOT_FLOWN = 1_000.0
+"""What a flight costs that does not come to its end, or cannot be begun."""
+
+Weights = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Weights of the figures; a figure that is not named does not count."""
+
+    name: str
+    weights: Weights
+
+
+# Plain dictionaries: they travel to the processes that fly.
+_EVEN: Weights = dict.fromkeys((*_SETTLING, *_GOOD, _MOVEMENT), 1.0)
+
+COSTS = MappingProxyType(
+    {
+        "even": Cost("even", _EVEN),
+        "accurate": Cost("accurate", {**_EVEN, "altitude_rms_ft": 4.0, "heading_rms_deg": 2.0}),
+        "gentle": Cost("gentle", {**_EVEN, "lateral_acceleration_g": 3.0, _MOVEMENT: 4.0}),
+    }
+)
+"""Costs by name."""
+
+
+def cost_of(text: str) -> Cost:
+    """Return a cost by its name in COSTS, or made of weights, as in `altitude_rms_ft=2,movement=1`.
+
+    Raises ValueError with the names that there are.
+    """
+    if text in COSTS:
+        return COSTS[text]
+    weights = {}
+    for part in text.split(","):
+        name, equals, number = part.partition("=")
+        if name not in _EVEN or not equals:
+            raise ValueError(
+                f"cost '{text}': give one of {', '.join(COSTS)}, or weights of "
+                f"{', '.join(_EVEN)}, as in altitude_rms_ft=2,movement=1"
+            )
+        try:
+            weights[name] = float(number)
+        except ValueError:
+            weights[name] = float("nan")
+        if not 0.0 <= weights[name] < float("inf"):
+            raise ValueError(f"cost: the weight of {name} is '{number}': give a number from 0 up")
+    if not any(weights.values()):
+        raise ValueError("cost: every weight is 0: give at least one above")
+    return Cost(text, weights)
+
+
+def flight_cost(scenario: Scenario, weights: Weights) -> float:
+    """Fly a scenario; return what the flight costs. A flight that fails costs NOT_FLOWN."""
+    try:
+        flown, truth = fly(scenario)
+    except (ValueError, RuntimeError, ArithmeticError):
+        return NOT_FLOWN
+    total = weighed(flown, truth, scenario.pattern.leg_s, weights)
+    return min(total, NOT_FLOWN) if np.isfinite(total) else NOT_FLOWN
+
+
+def weighed(flown: Score, truth: Truth, leg_s: float, weights: Weights) -> float:
+    """Return the weighted sum of a flight's figures."""
+    total = 0.0
+    for name, weight in weights.items():
+        if name == _MOVEMENT:
+            total += weight * _movement_per_s(truth) / _GOOD_MOVEMENT_PER_S
+            continue
+        good = leg_s if name in _SETTLING else _GOOD[name]
+        values = [dict(leg)[name] for leg in flown["legs"]]
+        known = [value if isinstance(value, float) else 2.0 * leg_s for value in values]
+        total += weight * (2.0 * sum(known) / len(known) + max(known)) / 3.0 / good
+    return float(total)
+
+
+def _movement_per_s(truth: Truth) -> float:
+    return float(np.mean([np.mean(np.abs(np.diff(truth[name]))) * TRUTH_HZ for name in _SURFACES]))

@@ -1,0 +1,164 @@
+"""Search for gains: CMA-ES (Hansen 2016) over the logarithm of each.
+
+A gain half as large is as far from right as one twice as large, and gains that hang
+together are found together. Every candidate flies the same seeds, so candidates differ by
+their gains alone; the search itself is seeded, so the same order finds the same gains.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..configurations import configuration, pattern_of, value_of, with_values
+from ..lockstep import Scenario
+from ..plant import Weather
+from .cost import COSTS, Cost
+from .identify import first_guess
+from .workers import Flight, FlyAll
+
+SCALE_KEYS = tuple(
+    f"autopilot.scale.{name}" for name in ("elevator", "aileron", "rudder", "throttle", "pace")
+)
+"""What is searched unless told otherwise: the scale of the one set of gains."""
+
+_FIRST_STEP = 0.25
+"""One sigma of the first candidates, in the logarithm: a quarter more or less."""
+_DIGITS = 4
+
+
+@dataclass(frozen=True)
+class Order:
+    """What to search for."""
+
+    aircraft: str
+    config: str | None = None
+    """Where to begin; by default the aircraft's own, and stock gains where it has none."""
+    keys: Sequence[str] = SCALE_KEYS
+    """Numbers of the configuration to search, by dotted key, each above 0."""
+    cost: Cost = field(default_factory=lambda: COSTS["even"])
+    seeds: Sequence[int] = (1, 2)
+    evaluations: int = 120
+    """How many candidates to fly, each once for each seed."""
+    legs: int = 2
+    turbulence: int = 0
+    """Severity after MIL-F-8785C, 0 calm."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """The best that was found."""
+
+    config: str
+    before: float
+    """Cost of the configuration as it was given; means over the seeds."""
+    guessed: float
+    """Cost of the first guess from the measured answers."""
+    after: float
+    values: dict[str, float]
+    evaluations: int
+
+
+Say = Callable[[int, float], None]
+"""Is told after each round how many candidates were flown, and the least cost so far."""
+
+
+def tune(order: Order, fly_all: FlyAll, say: Say = lambda _flown, _least: None) -> Found:
+    """Search; returns the best configuration, which is never worse than the given one.
+
+    Raises ValueError for an order that cannot be carried out.
+    """
+    _check(order)
+    import cma  # noqa: PLC0415 - the extra `tune`
+
+    given = order.config if order.config is not None else configuration(order.aircraft)
+    is_scaled = any(value_of(given, key, 0.0) for key in SCALE_KEYS)
+    begun = given if is_scaled else first_guess(order.aircraft, given)
+    begun = with_values(begun, {key: _start(begun, key) for key in order.keys})
+    start = np.log([value_of(begun, key, 1.0) for key in order.keys])
+
+    before, guessed = _costs(order, [given, begun], fly_all)
+    least, best = min((before, given), (guessed, begun))
+    flown = 2
+    search = cma.CMAEvolutionStrategy(
+        start, _FIRST_STEP, {"seed": 1, "verbose": -9, "maxfevals": order.evaluations}
+    )
+    while flown < order.evaluations and not search.stop():
+        points = search.ask()
+        configs = [with_values(begun, _values(order.keys, point)) for point in points]
+        costs = _costs(order, configs, fly_all)
+        search.tell(points, costs)
+        flown += len(points)
+        least, best = min((least, best), *zip(costs, configs, strict=True))
+        say(flown, least)
+    return Found(
+        config=_complete(best),
+        before=before,
+        guessed=guessed,
+        after=least,
+        values={key: value_of(best, key, math.nan) for key in order.keys},
+        evaluations=flown,
+    )
+
+
+def scenarios(order: Order, config: str) -> list[Scenario]:
+    """Return the flights of one candidate: noisy sensors, 25 ms late, one for each seed."""
+    one = Scenario(
+        aircraft=order.aircraft,
+        legs=order.legs,
+        noise=True,
+        delay_ticks=1,
+        weather=Weather(turbulence_severity=order.turbulence),
+        pattern=pattern_of(config),
+        config=config,
+    )
+    return [replace(one, seed=seed) for seed in order.seeds]
+
+
+def _check(order: Order) -> None:
+    if not order.seeds:
+        raise ValueError("no seeds: give at least one")
+    if order.evaluations < 3:
+        raise ValueError(f"{order.evaluations} evaluations: give at least 3")
+    if not order.keys:
+        raise ValueError("nothing to search: give at least one key")
+    try:
+        import cma  # noqa: F401, PLC0415 - the extra `tune`
+    except ImportError:
+        raise ValueError("the optimiser is not installed: pip install 'fcc-hil[tune]'") from None
+
+
+def _start(config: str, key: str) -> float:
+    value = value_of(config, key, 1.0 if key in SCALE_KEYS else 0.0)
+    if value <= 0.0:
+        raise ValueError(
+            f"{key}: the search begins at a number above 0: put one into the configuration"
+        )
+    return value
+
+
+def _values(keys: Sequence[str], point: Sequence[float]) -> dict[str, float]:
+    return {key: float(f"{math.exp(x):.{_DIGITS}g}") for key, x in zip(keys, point, strict=True)}
+
+
+def _costs(order: Order, configs: Sequence[str], fly_all: FlyAll) -> list[float]:
+    """Return each configuration's mean cost over the seeds."""
+    flights = [
+        Flight(scenario, order.cost.weights)
+        for config in configs
+        for scenario in scenarios(order, config)
+    ]
+    costs = list(fly_all(flights))
+    each = len(order.seeds)
+    return [sum(costs[i : i + each]) / each for i in range(0, len(costs), each)]
+
+
+def _complete(config: str) -> str:
+    """Return a configuration that the daemon takes: with the section of what is flown."""
+    sections = ("[x-plane]", "[built-in]")
+    if any(section in config for section in sections):
+        return config
+    return "[x-plane]\n\n" + config
