@@ -22,6 +22,8 @@ TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
 # The same with faults on purpose, for tests.
 FAULTY   := $(TARGET)/release/fccd-faulty
+# Where the Python module's wheels go.
+WHEELS   := $(TARGET)/wheels
 # A workspace of its own, built with the same compiler.
 TIMING_TARGET := $(abspath $(TARGET))/bench-timing
 BENCH_TIMING  := cargo build --locked --release --manifest-path bench/timing/Cargo.toml --target-dir $(TIMING_TARGET)
@@ -34,7 +36,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live doc build clean
+.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -74,7 +76,9 @@ lint-rust: $(STAMPS)/rust
 
 lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff check hil deploy
+	$(PYTHON) -m ruff check --config hil/pyproject.toml crates/fcc-py/fcc.pyi
 	$(PYTHON) -m ruff format --check hil deploy
+	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi
 	cd hil && ../$(PYTHON) -m mypy
 
 deny: $(STAMPS)/rust
@@ -145,6 +149,10 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
 
+wheels: $(STAMPS)/rust $(STAMPS)/wheel-tools ## Build the Python module's wheels for x86-64 and ARM, and try one
+	./scripts/build-wheels $(abspath $(VENV))/bin $(WHEELS)
+	./scripts/try-wheel $(WHEELS)
+
 clean: ## Remove what was built
 	cargo clean
 	rm -rf $(VENV) $(STAMPS)
@@ -167,6 +175,11 @@ $(STAMPS)/python: hil/pyproject.toml
 $(STAMPS)/strace:
 	@command -v strace >/dev/null || ./scripts/apt-install strace
 	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/wheel-tools: $(STAMPS)/python
+	@command -v aarch64-linux-gnu-gcc >/dev/null || ./scripts/apt-install gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+	$(PYTHON) -m pip install --quiet 'ziglang>=0.13'
+	@touch $@
 
 $(STAMPS)/valgrind:
 	@command -v valgrind >/dev/null || ./scripts/apt-install valgrind

@@ -37,6 +37,9 @@ pub enum Command {
     /// Watch a flight on this machine, live
     #[cfg(feature = "live")]
     Top(TopArgs),
+    /// Give a daemon on this machine an order
+    #[cfg(feature = "live")]
+    Order(OrderArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Say what this machine offers a real-time loop, and what it lacks
@@ -211,6 +214,51 @@ pub struct TopArgs {
     /// Print one snapshot as JSON and end
     #[arg(long)]
     pub json: bool,
+}
+
+/// `fccd order`.
+#[cfg(feature = "live")]
+#[derive(Args, Debug)]
+pub struct OrderArgs {
+    /// What to do
+    #[command(subcommand)]
+    pub what: OrderWhat,
+    /// Which daemon: the name that it was given by --instance, or in its configuration
+    #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
+    pub instance: Instance,
+    /// Print the result as JSON
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// What may be ordered.
+#[cfg(feature = "live")]
+#[derive(Subcommand, Debug)]
+pub enum OrderWhat {
+    /// Take over as things are
+    Engage,
+    /// Give the controls back
+    Disengage,
+    /// Give the controls back and end the daemon
+    Stop,
+    /// Fly by other set points; those that are not given stay
+    Set(SetArgs),
+}
+
+/// `fccd order set`.
+#[cfg(feature = "live")]
+#[derive(Args, Debug)]
+#[group(required = true, multiple = true)]
+pub struct SetArgs {
+    /// Magnetic heading, -360 to 360; turned to the shorter way
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub heading_deg: Option<f64>,
+    /// Barometric altitude
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub altitude_ft: Option<f64>,
+    /// Indicated airspeed
+    #[arg(long, value_name = "KT", allow_negative_numbers = true)]
+    pub airspeed_kt: Option<f64>,
 }
 
 /// `fccd check`.

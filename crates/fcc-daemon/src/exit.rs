@@ -29,6 +29,8 @@ pub enum Exit {
     Hung = 9,
     /// The machine lacks something that a real-time loop needs.
     MachineLacks = 10,
+    /// The daemon refused an order.
+    Refused = 11,
 }
 
 /// For `--help`.
@@ -44,7 +46,8 @@ Exit codes:
   7  a recording flown again gave other outputs
   8  a recording could not be flown again to its end; nothing else differs
   9  the loop hung; the watchdog released the controls and ended the program
- 10  the machine lacks something that a real-time loop needs (doctor)";
+ 10  the machine lacks something that a real-time loop needs (doctor)
+ 11  the daemon refused the order";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -1,43 +1,36 @@
 //! The autopilot, stepped by hand.
 
-use std::time::Duration;
-
-use fcc_core::flight::{Autopilot, Measurements, Order, Surfaces};
-use fcc_core::framework::{Controller, Tick, Time};
-use fcc_daemon::config::Config;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use fcc_core::flight::{Order, Surfaces};
+use fcc_core::framework::Controller;
+use numpy::{PyArray2, ToPyArray};
 use pyo3::prelude::*;
 
-use crate::values::{PyMeasurements, PySetpoints, PySurfaces};
-
-/// The longest step, s: past it, nothing is a control loop any more.
-const MAX_STEP_S: f64 = 1.0;
+use crate::arguments::{rows, step_s, within};
+use crate::config::autopilot_config;
+use crate::errors;
+use crate::stepped::{Stepped, names};
+use crate::values::{
+    COLUMNS, PyEstimate, PyMeasurements, PySetpoints, PySurfaces, checked_surfaces,
+};
 
 /// The autopilot, stepped by hand: `observe` while somebody else flies,
-/// `engage` once, then `step` for each tick.
+/// `engage` once, then `step` for each tick; `observe_series` and `fly` do the
+/// same for a recorded series of measurements.
 ///
-/// `config` is the text of a configuration file as `fccd` reads it; its
-/// sections `[course]` and `[autopilot]` matter here.
-#[pyclass(name = "Autopilot")]
+/// `config` is a `Config`, or the text of a configuration file as `fccd` reads
+/// it; its sections `[course]`, `[autopilot]` and `[failsafe]` matter here.
+#[pyclass(name = "Autopilot", module = "fcc")]
 pub(crate) struct PyAutopilot {
-    autopilot: Autopilot,
-    tick: Tick,
-    time_s: f64,
-    engaged: bool,
+    stepped: Stepped,
 }
 
 #[pymethods]
 impl PyAutopilot {
     #[new]
-    #[pyo3(signature = (config = ""))]
-    fn new(config: &str) -> PyResult<Self> {
-        let config = Config::parse_autopilot(config, "config")
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+    #[pyo3(signature = (config = None))]
+    fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         Ok(Self {
-            autopilot: Autopilot::new(config),
-            tick: Tick::default(),
-            time_s: 0.0,
-            engaged: false,
+            stepped: Stepped::new(&autopilot_config(config)?),
         })
     }
 
@@ -45,14 +38,33 @@ impl PyAutopilot {
     /// that the filters settle.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
-        self.take(measurements, dt, Surfaces::default()).map(|_| ())
+        self.stepped.observe(*measurements, step_s(dt)?);
+        Ok(())
+    }
+
+    /// Takes a series of measurements without controlling: an array of shape
+    /// (n, 11), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
+    #[pyo3(signature = (measurements, dt = 0.025))]
+    fn observe_series(
+        &mut self,
+        py: Python<'_>,
+        measurements: &Bound<'_, PyAny>,
+        dt: f64,
+    ) -> PyResult<()> {
+        let (series, dt_s) = (series(measurements)?, step_s(dt)?);
+        py.detach(|| {
+            for row in &series {
+                self.stepped.observe(PyMeasurements::from_row(row), dt_s);
+            }
+        });
+        Ok(())
     }
 
     /// Takes over, `dt` seconds after the last measurements: the present
     /// becomes the set points. `throttle`, `elevator`, `aileron` and `rudder`
     /// are where the controls stand.
     ///
-    /// Raises `RuntimeError` if something blocks it, with what.
+    /// Raises `EngageError` if something blocks it, with what.
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
                         elevator = 0.0, aileron = 0.0, rudder = 0.0))]
     fn engage(
@@ -64,38 +76,55 @@ impl PyAutopilot {
         aileron: f64,
         rudder: f64,
     ) -> PyResult<()> {
-        let standing = Surfaces {
+        let standing = checked_surfaces(Surfaces {
             throttle,
             elevator,
             aileron,
             rudder,
-        };
-        if !standing.is_valid() {
-            return Err(PyValueError::new_err(format!(
-                "the controls stand at {standing:?}: throttle is 0 to 1, the others -1 to 1"
-            )));
-        }
-        let taken = self.take(measurements, dt, standing)?;
-        let blockers = self.autopilot.blockers(&self.tick, &taken);
-        if !blockers.is_empty() {
-            let names: Vec<_> = blockers.iter().map(Autopilot::flag_name).collect();
-            return Err(PyRuntimeError::new_err(format!(
-                "not engaged: {}",
-                names.join(", ")
-            )));
-        }
-        self.autopilot.engage(&self.tick, &taken);
-        self.engaged = true;
-        Ok(())
+        })?;
+        self.stepped
+            .engage(*measurements, step_s(dt)?, standing)
+            .map_err(|words| errors::ENGAGE.say(words))
     }
 
     /// One tick, `dt` seconds after the last: the surfaces to set.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
-        self.must_be_engaged()?;
-        let taken = self.take(measurements, dt, Surfaces::default())?;
-        self.autopilot.guide(&self.tick, &taken);
-        Ok(self.autopilot.control(&self.tick, &taken).into())
+        self.stepped.must_be_engaged()?;
+        Ok(self.stepped.step(*measurements, step_s(dt)?).into())
+    }
+
+    /// One tick for each row of a series, as `step` does: what the autopilot
+    /// would have set. `measurements` is an array of shape (n, 11), the columns
+    /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
+    /// (n, 4), the columns being `fcc.SURFACES`.
+    #[pyo3(signature = (measurements, dt = 0.025))]
+    fn fly<'py>(
+        &mut self,
+        py: Python<'py>,
+        measurements: &Bound<'py, PyAny>,
+        dt: f64,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (series, dt_s) = (series(measurements)?, step_s(dt)?);
+        self.stepped.must_be_engaged()?;
+        let flown: Vec<[f64; 4]> = py.detach(|| {
+            let step = |row| surface_row(self.stepped.step(PyMeasurements::from_row(row), dt_s));
+            series.iter().map(step).collect()
+        });
+        matrix(py, flown)
+    }
+
+    /// One tick of failsafe, `dt` seconds after the last: the safest surfaces
+    /// that what is left of the measurements allows.
+    #[pyo3(signature = (measurements, dt = 0.025))]
+    fn failsafe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
+        self.stepped.must_be_engaged()?;
+        Ok(self.stepped.failsafe(*measurements, step_s(dt)?).into())
+    }
+
+    /// Lets go.
+    fn disengage(&mut self) {
+        self.stepped.disengage();
     }
 
     /// Orders another airspeed (m/s), heading (rad) or altitude (m); ends a
@@ -107,57 +136,85 @@ impl PyAutopilot {
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
-        self.must_be_engaged()?;
-        let orders = [
-            airspeed_mps.map(Order::Airspeed),
-            heading_rad.map(Order::Heading),
-            altitude_m.map(Order::Altitude),
-        ];
-        for order in orders.into_iter().flatten() {
-            self.autopilot.command(&order);
-        }
+        self.stepped.must_be_engaged()?;
+        let orders = checked_orders(airspeed_mps, heading_rad, altitude_m)?;
+        self.stepped.order(orders);
         Ok(())
+    }
+
+    /// Whether it is engaged.
+    #[getter]
+    fn engaged(&self) -> bool {
+        self.stepped.is_engaged()
     }
 
     /// The present set points.
     #[getter]
     fn setpoints(&self) -> PySetpoints {
-        self.autopilot.setpoints().into()
+        self.stepped.autopilot.setpoints().into()
+    }
+
+    /// What navigation makes of the measurements.
+    #[getter]
+    fn estimate(&self) -> PyEstimate {
+        self.stepped.autopilot.estimated().into()
+    }
+
+    /// Why it may not engage now, in words; empty if it may.
+    #[getter]
+    fn blockers(&self) -> Vec<&'static str> {
+        names(self.stepped.blockers())
+    }
+
+    /// What makes flying on unsafe now, in words; empty if nothing does.
+    #[getter]
+    fn faults(&self) -> Vec<&'static str> {
+        names(self.stepped.faults())
     }
 }
 
-impl PyAutopilot {
-    fn must_be_engaged(&self) -> PyResult<()> {
-        if self.engaged {
-            return Ok(());
-        }
-        Err(PyRuntimeError::new_err(
-            "the autopilot is not engaged: call engage() first",
-        ))
-    }
+/// A series of measurements.
+pub(crate) fn series(measurements: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; COLUMNS.len()]>> {
+    rows("measurements", "fcc.MEASUREMENTS", measurements)
+}
 
-    fn take(
-        &mut self,
-        measurements: &PyMeasurements,
-        dt_s: f64,
-        standing: Surfaces,
-    ) -> PyResult<Measurements> {
-        if !(dt_s > 0.0 && dt_s <= MAX_STEP_S) {
-            return Err(PyValueError::new_err(format!(
-                "dt is {dt_s} s: it must be above 0 and at most {MAX_STEP_S}"
-            )));
-        }
-        self.time_s += dt_s;
-        let now = Time::from_nanos(Duration::from_secs_f64(self.time_s).as_nanos() as i64);
-        self.tick = Tick {
-            number: self.tick.number + 1,
-            scheduled: now,
-            woke: now,
-            missed: 0,
-            dt_s,
-        };
-        let taken = measurements.to_core(now, self.time_s, standing);
-        self.autopilot.estimate(&self.tick, &taken);
-        Ok(taken)
-    }
+/// A row of surfaces.
+pub(crate) const fn surface_row(surfaces: Surfaces) -> [f64; 4] {
+    [
+        surfaces.throttle,
+        surfaces.elevator,
+        surfaces.aileron,
+        surfaces.rudder,
+    ]
+}
+
+/// Rows as an array.
+pub(crate) fn matrix<const N: usize>(
+    py: Python<'_>,
+    rows: Vec<[f64; N]>,
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    use numpy::PyArrayMethods;
+    let count = rows.len();
+    rows.into_flattened().to_pyarray(py).reshape([count, N])
+}
+
+/// Orders for the controller, each in its range: airspeed in m/s, heading in
+/// rad, altitude in m.
+pub(crate) fn checked_orders(
+    airspeed_mps: Option<f64>,
+    heading_rad: Option<f64>,
+    altitude_m: Option<f64>,
+) -> PyResult<Vec<Order>> {
+    use std::f64::consts::TAU;
+    let airspeed = airspeed_mps.map(|mps| within("airspeed_mps", mps, 5.0, 340.0));
+    let heading = heading_rad.map(|rad| within("heading_rad", rad, -TAU, TAU));
+    let altitude = altitude_m.map(|m| within("altitude_m", m, -500.0, 20_000.0));
+    [
+        airspeed.map(|mps| mps.map(Order::Airspeed)),
+        heading.map(|rad| rad.map(Order::Heading)),
+        altitude.map(|m| m.map(Order::Altitude)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }

@@ -1,19 +1,108 @@
-//! The Python module `fcc`: the autopilot in lockstep with whatever simulates
-//! the aircraft, as fast as the machine can.
+//! The Python module `fcc`: what the flight control computer computes, records
+//! and tells, for tests and experiments.
+//!
+//! | module | what Python gets |
+//! |---|---|
+//! | `autopilot`, `fleet` | the autopilot stepped by hand; many of them together |
+//! | `machine` | the daemon's loop, a call a tick, around a plant of one's own |
+//! | `flight`, `guests` | a whole flight of the built-in aircraft in one call, with Python in the loop if it must be |
+//! | `aircraft` | the built-in aircraft alone |
+//! | `config` | configurations, by key |
+//! | `blocks`, `formulas` | the core's blocks and formulas |
+//! | `timers` | the kernel's timers |
+//! | `recordings` | recordings as numpy arrays; list, recover, report, replay |
+//! | `live` | a running daemon, watched and given orders |
+//! | `values`, `structured`, `events`, `errors`, `arguments`, `json` | what they all speak with |
+//!
+//! Nothing here computes anything of its own: each call hands on to the crate
+//! that the daemon uses.
 
+mod aircraft;
+mod arguments;
 mod autopilot;
+mod blocks;
+mod config;
+mod errors;
+mod events;
+mod fleet;
+mod flight;
+mod formulas;
+mod guests;
+mod json;
+#[cfg(feature = "live")]
+mod live;
 mod machine;
+mod recordings;
+mod stepped;
+mod structured;
+mod timers;
 mod values;
 
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
-/// The flight control computer: its autopilot, stepped by hand.
+/// The flight control computer: its autopilot and aircraft in lockstep, its
+/// recordings, a running daemon. SI and radians throughout.
 #[pymodule]
 fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<autopilot::PyAutopilot>()?;
+    let py = module.py();
+    structured::prepare(py)?;
+    errors::register(module)?;
+
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("MEASUREMENTS", PyTuple::new(py, values::COLUMNS)?)?;
+    module.add("SURFACES", PyTuple::new(py, values::SURFACE_COLUMNS)?)?;
+    module.add("TRUTH", PyTuple::new(py, fcc_sim::Truth::NAMES)?)?;
+    module.add(
+        "STATES",
+        PyTuple::new(py, ["standby", "engaged", "failsafe", "stopped"])?,
+    )?;
+    module.add("RECORD", structured::record_dtype(py)?)?;
+    module.add("TRUTH_RECORD", structured::truth_dtype(py)?)?;
+
     module.add_class::<values::PyMeasurements>()?;
     module.add_class::<values::PySurfaces>()?;
     module.add_class::<values::PySetpoints>()?;
-    machine::register(module)?;
+    module.add_class::<values::PyEstimate>()?;
+    module.add_class::<values::PyTruth>()?;
+    module.add_class::<events::PyEvent>()?;
+    module.add_class::<config::PyConfig>()?;
+    module.add_class::<autopilot::PyAutopilot>()?;
+    module.add_class::<fleet::PyFleet>()?;
+    module.add_class::<machine::PyMachine>()?;
+    module.add_class::<aircraft::PyAircraft>()?;
+    module.add_class::<flight::PyFlight>()?;
+    module.add_function(wrap_pyfunction!(flight::fly, module)?)?;
+
+    module.add_class::<blocks::PyPid>()?;
+    module.add_class::<blocks::PyLowPass>()?;
+    module.add_class::<blocks::PyHighPass>()?;
+    module.add_class::<blocks::PyRateLimit>()?;
+    module.add_class::<blocks::PyComplementary>()?;
+    module.add_class::<blocks::PySquareRootProfile>()?;
+    module.add_function(wrap_pyfunction!(formulas::pressure_pa, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::pressure_altitude_m, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::density_ratio, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::true_airspeed_mps, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::wrap_pi, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::wrap_two_pi, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::quaternion_from_euler, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::euler_from_quaternion, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::body_to_earth, module)?)?;
+    module.add_function(wrap_pyfunction!(formulas::earth_to_body, module)?)?;
+
+    module.add_class::<timers::PyTimer>()?;
+    module.add_class::<timers::PyExpiry>()?;
+    module.add_class::<timers::PyTimingSummary>()?;
+    module.add_class::<recordings::PyRecording>()?;
+    module.add_function(wrap_pyfunction!(recordings::list_recordings, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::recover, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::report, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::replay, module)?)?;
+    #[cfg(feature = "live")]
+    {
+        module.add_class::<live::PyWatcher>()?;
+        module.add_class::<live::PyCommander>()?;
+    }
     Ok(())
 }

@@ -45,11 +45,39 @@ pub struct Truth {
 }
 
 /// Numbers in a [`Truth`].
-pub(crate) const NUMBERS: usize = 24;
+pub const NUMBERS: usize = 24;
 
 impl Truth {
-    /// Every number, in the order of the fields.
-    pub(crate) fn to_array(self) -> [f64; NUMBERS] {
+    /// What the numbers of [`to_array`](Self::to_array) are called.
+    pub const NAMES: [&str; NUMBERS] = [
+        "time_s",
+        "roll_rad",
+        "pitch_rad",
+        "heading_rad",
+        "roll_rate_radps",
+        "pitch_rate_radps",
+        "yaw_rate_radps",
+        "specific_force_x_mps2",
+        "specific_force_y_mps2",
+        "specific_force_z_mps2",
+        "true_airspeed_mps",
+        "indicated_airspeed_mps",
+        "angle_of_attack_rad",
+        "sideslip_rad",
+        "north_m",
+        "east_m",
+        "altitude_m",
+        "north_mps",
+        "east_mps",
+        "down_mps",
+        "throttle",
+        "elevator_rad",
+        "aileron_rad",
+        "rudder_rad",
+    ];
+
+    /// Every number, in the order of the fields: as [`Truth::NAMES`] names them.
+    pub fn to_array(self) -> [f64; NUMBERS] {
         [
             self.time_s,
             self.roll_rad,

@@ -6,6 +6,7 @@
 
 mod flight;
 mod instance;
+mod layout;
 #[cfg(feature = "live")]
 pub mod live;
 mod message;
@@ -18,6 +19,7 @@ pub mod units;
 
 pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};
+pub use layout::{FIELDS, Field, FieldKind, RECORD_BYTES, RecordWords, words_of};
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, recordings_table, timing_table};

@@ -13,6 +13,7 @@ pub mod control;
 pub mod guidance;
 mod measurements;
 pub mod navigation;
+pub mod orientation;
 mod setpoints;
 mod surfaces;
 

@@ -6,6 +6,8 @@ mod doctor;
 mod fly;
 mod guard;
 mod list;
+#[cfg(feature = "live")]
+mod order;
 mod progress;
 mod recover;
 mod replay;
@@ -33,6 +35,8 @@ pub fn run(cli: Cli) -> Exit {
         Command::Recover(args) => recover::recover(&args),
         Command::Timing(args) => timing::timing(&args),
         Command::Replay(args) => replay::replay(&args),
+        #[cfg(feature = "live")]
+        Command::Order(args) => order::order(&args),
         #[cfg(feature = "live")]
         Command::Top(args) => top::top(&args),
         Command::Check(args) => check::check(&args),

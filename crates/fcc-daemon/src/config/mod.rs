@@ -18,6 +18,7 @@ mod restart;
 mod runtime;
 mod telemetry;
 mod units;
+mod values;
 mod wording;
 mod x_plane;
 
@@ -41,6 +42,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
+pub(crate) use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.

@@ -56,6 +56,7 @@ impl Follower<'_> {
         while hung.is_none() && !self.link.messages.is_over() {
             self.drain();
             self.watch.service.tell();
+            self.watch.live.pass_orders(&mut self.link.orders);
             let said = [
                 news.take(),
                 self.watch

@@ -1,20 +1,28 @@
 //! Lets others watch a flight, live.
 
+use fcc_core::flight::Order as Command;
+use fcc_runtime::OrderSender;
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
 use fcc_timer::RealtimeGrants;
 
+use super::orders::Orders;
 use crate::config::{LoopSection, TelemetrySection};
 
-/// Lets others watch a flight; where that cannot be, nothing comes of it.
+/// Lets others watch a flight and give it orders; where that cannot be, nothing
+/// comes of it.
 pub(super) struct Live {
     publisher: Option<Publisher>,
+    orders: Orders,
 }
 
 impl Live {
     /// Nobody may watch.
-    pub(super) const fn off() -> Self {
-        Self { publisher: None }
+    pub(super) fn off() -> Self {
+        Self {
+            publisher: None,
+            orders: Orders::default(),
+        }
     }
 
     /// Begins to publish, if that is wanted. Without shared memory the flight
@@ -23,12 +31,20 @@ impl Live {
         if !section.enabled {
             return Self::off();
         }
-        let publisher = Publisher::start(&section.instance)
+        let start = if section.orders {
+            Publisher::start_with_orders
+        } else {
+            Publisher::start
+        };
+        let publisher = start(&section.instance)
             .inspect_err(|error| {
                 eprintln!("no live telemetry, so nobody can watch this flight: {error}");
             })
             .ok();
-        Self { publisher }
+        Self {
+            publisher,
+            orders: Orders::default(),
+        }
     }
 
     /// Says who flies: from here on it can be watched.
@@ -56,6 +72,9 @@ impl Live {
     pub(super) fn record(&mut self, record: &FlightRecord) {
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
+            while let Some((id, verdict)) = self.orders.verdict(record) {
+                publisher.answer(id, verdict);
+            }
         }
     }
 
@@ -63,6 +82,7 @@ impl Live {
     pub(super) fn event(&mut self, event: &FlightEvent, text: &str) {
         if let Some(publisher) = &mut self.publisher {
             publisher.event(Event::new(event, text));
+            self.orders.event(event);
         }
     }
 
@@ -93,6 +113,18 @@ impl Live {
                 None => name.unwrap_or_default().to_string_lossy().into_owned(),
             },
         });
+    }
+
+    /// Sends the loop what other programs have ordered.
+    pub(super) fn pass_orders(&mut self, to: &mut OrderSender<Command>) {
+        let Some(publisher) = &mut self.publisher else {
+            return;
+        };
+        while let Some(asked) = publisher.next_order() {
+            if let Some((id, verdict)) = self.orders.send(asked, to) {
+                publisher.answer(id, verdict);
+            }
+        }
     }
 
     /// Publishes now what was handed over; gives words if there is trouble.

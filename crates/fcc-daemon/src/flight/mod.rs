@@ -14,6 +14,8 @@ mod hang;
 mod injection;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
 mod live;
+#[cfg(feature = "live")]
+mod orders;
 mod outcome;
 mod recording;
 mod relief;
@@ -31,6 +33,7 @@ pub use fly::{FlyError, Length, Pace, Plan, fly};
 pub use guard::{GuardError, stand_guard};
 pub use outcome::{EventEntry, Outcome};
 pub use recording::{RecordingOutcome, RecordingWish, about};
+pub use watch::true_sample;
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
 

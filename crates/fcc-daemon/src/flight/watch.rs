@@ -258,7 +258,8 @@ fn pattern(course: &Course) -> Option<TimedPatternConfig> {
     }
 }
 
-fn true_sample(time_s: f64, truth: &Truth) -> Sample {
+/// A sample of a flight as it truly was, for scoring.
+pub fn true_sample(time_s: f64, truth: &Truth) -> Sample {
     Sample {
         time_s,
         heading_deg: truth.heading_rad.to_degrees(),

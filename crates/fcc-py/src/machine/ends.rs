@@ -4,14 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{
-    Actuator, ActuatorFault, Reading, Sensor, SensorFault, Switch, Tick, Time,
-};
+use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Switch, Tick};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rtrb::{Consumer, Producer, RingBuffer};
 
-use crate::values::PyMeasurements;
+use crate::values::{Measured, PyMeasurements};
 
 /// The sensors that can be missing from a tick, by the names they go by in
 /// Python.
@@ -75,7 +73,7 @@ pub(super) struct Said {
     /// Where the controls stand; none if the plant does not tell.
     pub(super) standing: Option<Surfaces>,
     /// The engage switch; none if there is none.
-    pub(super) switch: Option<bool>,
+    pub(super) switch: Option<Switch>,
     /// The plant's own time, s.
     pub(super) plant_time_s: f64,
 }
@@ -99,10 +97,12 @@ impl HandedOver {
 impl Sensor<Measurements> for HandedOver {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let said = self.said.pop().map_err(|_| SensorFault::Silent)?;
-        let standing = said.standing.unwrap_or_default();
-        let new = said
-            .measurements
-            .to_core(tick.woke, said.plant_time_s, standing);
+        let new = said.measurements.to_core(&Measured {
+            now: tick.woke,
+            plant_s: said.plant_time_s,
+            standing: said.standing,
+            switch: said.switch,
+        });
         let missing = said.missing;
         take(&mut into.attitude, new.attitude, missing, Part::Attitude);
         take(
@@ -139,8 +139,8 @@ impl Sensor<Measurements> for HandedOver {
         if said.standing.is_some() {
             into.surfaces = new.surfaces;
         }
-        if let Some(on) = said.switch {
-            into.engage_switch = position(on, tick.woke);
+        if said.switch.is_some() {
+            into.engage_switch = new.engage_switch;
         }
         Ok(())
     }
@@ -155,10 +155,6 @@ fn take<T>(reading: &mut Reading<T>, new: Reading<T>, missing: Missing, part: Pa
     if !missing.has(part) {
         *reading = new;
     }
-}
-
-const fn position(on: bool, at: Time) -> Reading<Switch> {
-    Reading::new(if on { Switch::On } else { Switch::Off }, at)
 }
 
 /// An actuator that remembers whether the loop holds it; what was sent is in

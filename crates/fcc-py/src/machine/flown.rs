@@ -6,29 +6,14 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use fcc_core::framework::Message;
 use fcc_daemon::config::Config;
 use fcc_daemon::flight::about;
+use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
-use fcc_telemetry::{FlightMessage, event_words};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
 use super::ends::{HandedOver, Held};
-
-/// Something that happened in the loop: when (s on the loop's clock), in which
-/// tick, and what, in the words of a recording.
-#[pyclass(name = "Event", frozen, get_all)]
-#[derive(Clone)]
-pub(crate) struct PyEvent {
-    time_s: f64,
-    tick: u64,
-    text: String,
-}
-
-#[pymethods]
-impl PyEvent {
-    fn __repr__(&self) -> String {
-        format!("Event({:.3} s: {})", self.time_s, self.text)
-    }
-}
+use crate::events::PyEvent;
+use crate::structured::RecordRow;
 
 /// Every record and event of a flight, in memory: 20 kB a second at 40 Hz.
 pub(super) struct Flown {
@@ -68,15 +53,23 @@ impl Flown {
         let new = self.messages.get(self.looked_at..).unwrap_or_default();
         let events = new.iter().filter_map(|message| match message {
             Message::Tick(_) => None,
-            Message::Event(event) => Some(PyEvent {
-                time_s: event.time.as_nanos().max(0) as f64 * 1e-9,
-                tick: event.tick,
-                text: event_words(event, &self.about.sensors, &self.about.actuators),
-            }),
+            Message::Event(event) => {
+                let about = &self.about;
+                Some(PyEvent::of(event, &about.sensors, &about.actuators))
+            }
         });
         let events = events.collect();
         self.looked_at = self.messages.len();
         events
+    }
+
+    /// The record of every tick so far.
+    pub(super) fn rows(&self) -> Vec<RecordRow> {
+        let record = |message: &FlightMessage| match message {
+            Message::Tick(record) => Some(RecordRow::from(record)),
+            Message::Event(_) => None,
+        };
+        self.messages.iter().filter_map(record).collect()
     }
 
     /// Writes all of it into a folder, as the daemon records; gives the files.

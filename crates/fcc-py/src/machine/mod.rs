@@ -9,30 +9,30 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use fcc_core::flight::{Autopilot, Order as FlightOrder, Surfaces};
-use fcc_core::framework::{Controller, Flags, Order, State};
-use fcc_daemon::config::Config;
+use fcc_core::framework::{Order, State, Switch};
 use fcc_runtime::{Link, Machine, Parts};
 use fcc_timer::ManualTimer;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use numpy::PyArray1;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 use rtrb::Producer;
 
-use crate::values::{PyMeasurements, PySetpoints, PySurfaces};
+use crate::autopilot::checked_orders;
+use crate::config::{configuration, refused};
+use crate::errors;
+use crate::events::PyEvent;
+use crate::stepped::names;
+use crate::structured::{self, RecordRow};
+use crate::values::{PyEstimate, PyMeasurements, PySetpoints, PySurfaces, checked_surfaces};
 use ends::{HandedOver, Held, Missing, Said};
-use flown::{Flown, PyEvent};
-
-/// Adds this part's classes to the module.
-pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<PyMachine>()?;
-    module.add_class::<PyEvent>()
-}
+use flown::Flown;
 
 /// The daemon's loop, one call one tick: the very machine that `fccd` runs, on
 /// a clock that stands still between calls.
 ///
-/// `config` is the text of a configuration file as `fccd` reads it, without
-/// `[x-plane]` and `[built-in]`: Python is the aircraft.
-#[pyclass(name = "Machine")]
+/// `config` is a `Config`, or the text of a configuration file as `fccd` reads
+/// it; what it says of an aircraft does not matter here: Python is the aircraft.
+#[pyclass(name = "Machine", module = "fcc")]
 pub(crate) struct PyMachine {
     // A loop's ends are for one thread at a time, and so is `&mut self`.
     stepped: Mutex<Stepped>,
@@ -52,11 +52,11 @@ struct Stepped {
 #[pymethods]
 impl PyMachine {
     #[new]
-    #[pyo3(signature = (config = ""))]
-    fn new(config: &str) -> PyResult<Self> {
-        let parsed = Config::parse_without_aircraft(config, "config")
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let refused = |error: fcc_timer::TimerError| PyValueError::new_err(error.to_string());
+    #[pyo3(signature = (config = None))]
+    fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let parsed = configuration(config)?;
+        let as_given = as_given(config)?;
+        let refused = |error: fcc_timer::TimerError| errors::TIMER.say(error);
         let timer = ManualTimer::new(parsed.tick.period()).map_err(refused)?;
         let (hand_over, sensor) = HandedOver::new();
         let (held, actuator) = Held::new();
@@ -75,7 +75,7 @@ impl PyMachine {
                 link,
                 hand_over,
                 held,
-                flown: Flown::new(&parsed, config, "manual"),
+                flown: Flown::new(&parsed, &as_given, "manual"),
                 next_s: period_s,
             }),
             period_s,
@@ -89,7 +89,8 @@ impl PyMachine {
     /// `missing` names the sensors that say nothing in this tick: attitude,
     /// heading, `body_rates`, `specific_force`, airspeed, altitude. `standing`
     /// is where the controls stand: throttle 0..1, elevator, aileron and rudder
-    /// -1..1; `None` if the aircraft does not tell. `switch` is the engage
+    /// -1..1, as `Surfaces` or as four numbers; `None` if the aircraft does not
+    /// tell. `switch` is the engage
     /// switch; `None` if there is none.
     #[pyo3(signature = (measurements = None, *, missing = Vec::new(), standing = None,
                         switch = None))]
@@ -97,7 +98,7 @@ impl PyMachine {
         &mut self,
         measurements: Option<&PyMeasurements>,
         missing: Vec<String>,
-        standing: Option<(f64, f64, f64, f64)>,
+        standing: Option<&Bound<'_, PyAny>>,
         switch: Option<bool>,
     ) -> PyResult<Option<PySurfaces>> {
         let missing = Missing::named(missing)?;
@@ -109,7 +110,7 @@ impl PyMachine {
                 measurements: *measurements,
                 missing,
                 standing,
-                switch,
+                switch: switch.map(|on| if on { Switch::On } else { Switch::Off }),
                 plant_time_s: stepped.next_s,
             };
             // Full only once the loop is over and reads no more.
@@ -146,23 +147,8 @@ impl PyMachine {
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
-        let orders = [
-            ("airspeed_mps", airspeed_mps, FlightOrder::Airspeed as Make),
-            ("heading_rad", heading_rad, FlightOrder::Heading),
-            ("altitude_m", altitude_m, FlightOrder::Altitude),
-        ];
-        for (name, value, _) in &orders {
-            if value.is_some_and(|value| !value.is_finite()) {
-                return Err(PyValueError::new_err(format!(
-                    "{name} is {:?}: give a finite number",
-                    value.unwrap_or_default()
-                )));
-            }
-        }
-        for (_, value, make) in orders {
-            if let Some(value) = value {
-                self.stepped().send(Order::Controller(make(value)))?;
-            }
+        for order in checked_orders(airspeed_mps, heading_rad, altitude_m)? {
+            self.stepped().send(Order::Controller(order))?;
         }
         Ok(())
     }
@@ -170,6 +156,11 @@ impl PyMachine {
     /// What happened since the last call.
     fn events(&mut self) -> Vec<PyEvent> {
         self.stepped().flown.events()
+    }
+
+    /// The records of all ticks so far, as a structured array (`fcc.RECORD`).
+    fn records<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<RecordRow>> {
+        structured::records(py, self.stepped().flown.rows())
     }
 
     /// Writes every tick and event so far into `folder`, as the daemon records;
@@ -218,6 +209,12 @@ impl PyMachine {
         self.stepped().machine.record().setpoints.into()
     }
 
+    /// What navigation makes of the measurements.
+    #[getter]
+    fn estimate(&mut self) -> PyEstimate {
+        self.stepped().machine.controller().estimated().into()
+    }
+
     /// The number of the last tick; 0 before the first.
     #[getter]
     fn tick(&mut self) -> u64 {
@@ -238,8 +235,6 @@ impl PyMachine {
     }
 }
 
-type Make = fn(f64) -> FlightOrder;
-
 impl PyMachine {
     fn stepped(&mut self) -> &mut Stepped {
         let stepped = self.stepped.get_mut();
@@ -250,12 +245,11 @@ impl PyMachine {
 impl Stepped {
     fn send(&mut self, order: Order<FlightOrder>) -> PyResult<()> {
         if self.machine.state() == State::Stopped {
-            return Err(PyRuntimeError::new_err(
-                "the loop has stopped and takes no orders: make another Machine",
-            ));
+            return Err(errors::ENGAGE
+                .say("the loop has stopped and takes no orders: make another Machine"));
         }
         let sent = self.link.orders.send(order);
-        sent.map_err(|full| PyRuntimeError::new_err(full.to_string()))
+        sent.map_err(|full| errors::ENGAGE.say(full))
     }
 
     fn fetch(&mut self) {
@@ -265,21 +259,26 @@ impl Stepped {
     }
 }
 
-fn names(flags: Flags) -> Vec<&'static str> {
-    flags.iter().map(Autopilot::flag_name).collect()
-}
-
-fn surfaces((throttle, elevator, aileron, rudder): (f64, f64, f64, f64)) -> PyResult<Surfaces> {
-    let standing = Surfaces {
+/// Where the controls stand, as `Surfaces` or as four numbers.
+fn surfaces(standing: &Bound<'_, PyAny>) -> PyResult<Surfaces> {
+    if let Ok(surfaces) = standing.cast::<PySurfaces>() {
+        return Ok(surfaces.get().to_core());
+    }
+    let (throttle, elevator, aileron, rudder) = standing.extract()?;
+    checked_surfaces(Surfaces {
         throttle,
         elevator,
         aileron,
         rudder,
-    };
-    if standing.is_valid() {
-        return Ok(standing);
+    })
+}
+
+/// The text of a configuration, as a recording keeps it.
+fn as_given(config: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
+    match config.map(|config| config.cast::<PyString>()) {
+        Some(Ok(text)) => Ok(text.to_str()?.to_owned()),
+        _ => configuration(config)?
+            .to_toml()
+            .map_err(|error| refused(&error)),
     }
-    Err(PyValueError::new_err(format!(
-        "the controls stand at {standing:?}: throttle is 0 to 1, the others -1 to 1"
-    )))
 }

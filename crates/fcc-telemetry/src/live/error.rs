@@ -57,6 +57,9 @@ pub enum WatchError {
     /// The daemon belongs to another user.
     #[error("fccd '{0}' belongs to another user: only the daemon's own user may watch it")]
     NotPermitted(Instance),
+    /// The daemon that was watched is gone.
+    #[error("fccd '{0}' has ended: it publishes no more")]
+    Ended(Instance),
     /// What lies in shared memory is no record.
     #[error(
         "fccd '{0}' publishes what is no record: another program writes to its services, or this \

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use rtrb::{Producer, RingBuffer};
 
+use super::order::{Asked, Desk, Ends, Verdict};
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use crate::{FlightRecord, Instance};
@@ -48,26 +49,41 @@ pub struct Publisher {
     left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
     words: Receiver<String>,
+    orders: Option<Ends>,
     over: bool,
 }
 
 impl Publisher {
-    /// Starts to publish as `instance`.
+    /// Starts to publish as `instance`, and takes no orders.
     ///
     /// # Errors
     /// When there is no shared memory to be had, or the name is taken. Whoever
     /// flies goes on without.
     pub fn start(instance: &Instance) -> Result<Self, PublishError> {
+        Self::start_thread(instance, false)
+    }
+
+    /// Starts to publish as `instance`, and to take orders: who flies looks
+    /// for them by [`next_order`](Self::next_order) and answers each.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn start_with_orders(instance: &Instance) -> Result<Self, PublishError> {
+        Self::start_thread(instance, true)
+    }
+
+    fn start_thread(instance: &Instance, takes_orders: bool) -> Result<Self, PublishError> {
         let (ring, items) = RingBuffer::new(WAITING);
         let (started, start) = mpsc::sync_channel::<Started>(1);
         // More than the thread will ever have to say unheard.
         let (say, words) = mpsc::sync_channel(16);
+        let (orders, rings) = takes_orders.then(Desk::rings).unzip();
         let owned = instance.clone();
         let left_out = Arc::new(AtomicU64::new(0));
         let seen = Arc::clone(&left_out);
         let thread = std::thread::Builder::new()
             .name(thread::NAME.to_owned())
-            .spawn(move || thread::publish(&owned, items, &seen, &started, &say))
+            .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &say))
             .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
         match start.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(Self {
@@ -75,6 +91,7 @@ impl Publisher {
                 left_out,
                 thread,
                 words,
+                orders,
                 over: false,
             }),
             Ok(Err(error)) => Err(error),
@@ -106,6 +123,21 @@ impl Publisher {
     /// Tells how recording goes: it is in the next status.
     pub fn recorder(&mut self, status: RecorderStatus) {
         self.put(Item::Recorder(Box::new(status)));
+    }
+
+    /// The next order from another program, if there is one. Each wants its
+    /// [`answer`](Self::answer).
+    pub fn next_order(&mut self) -> Option<Asked> {
+        self.orders.as_ref()?.orders.try_recv().ok()
+    }
+
+    /// Says what became of an order.
+    pub fn answer(&mut self, id: u64, verdict: Verdict) {
+        if let Some(ends) = &self.orders {
+            // As many answers as orders have room; a thread that is gone has
+            // nobody to tell.
+            let _ = ends.verdicts.try_send((id, verdict));
+        }
     }
 
     /// Wakes the publishing thread: what was handed over is published now and

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use iceoryx2::config::Config;
 use iceoryx2::node::{Node, NodeBuilder, NodeCreationFailure};
 use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
-use iceoryx2::prelude::{BackpressureStrategy, SignalHandlingMode, ZeroCopySend, ipc};
+use iceoryx2::prelude::{BackpressureStrategy, SignalHandlingMode, ZeroCopySend, ipc_threadsafe};
 use iceoryx2::service::builder::publish_subscribe::{
     PublishSubscribeCreateError, PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
 };
@@ -34,12 +34,16 @@ const MAX_NODES: usize = MAX_WATCHERS + 32;
 /// Samples that a watcher may hold at once.
 const BORROWED: usize = 2;
 
+/// Shared memory between processes. Both ends may move between threads, as a
+/// Python program's objects do; the same services as those of iceoryx2's
+/// single-threaded kind.
+pub(super) type Ipc = ipc_threadsafe::Service;
 /// A service of plain data.
-pub(super) type Service<T> = PortFactory<ipc::Service, T, ()>;
+pub(super) type Service<T> = PortFactory<Ipc, T, ()>;
 /// An end of a service that writes.
-pub(super) type Out<T> = Publisher<ipc::Service, T, ()>;
+pub(super) type Out<T> = Publisher<Ipc, T, ()>;
 /// A process' access to all services.
-pub(super) type Access = Node<ipc::Service>;
+pub(super) type Access = Node<Ipc>;
 
 /// One of the services of a daemon.
 #[derive(Clone, Copy, Debug)]
@@ -202,7 +206,7 @@ pub(super) fn access() -> Result<Access, String> {
     let access = NodeBuilder::new()
         // The daemon and its commands have ways of their own with signals.
         .signal_handling_mode(SignalHandlingMode::Disabled)
-        .create::<ipc::Service>()
+        .create::<Ipc>()
         .map_err(|error| match error {
             NodeCreationFailure::InsufficientPermissions => not_permitted(),
             error => format!("{error:?}"),

@@ -11,6 +11,7 @@ use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
 use super::lateness::Lateness;
+use super::order::{Desk, Rings};
 use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
@@ -29,15 +30,17 @@ const STATUS_EVERY: Duration = Duration::from_secs(1);
 /// Whether publishing began.
 pub(super) type Started = Result<(), PublishError>;
 
-/// Publishes what comes by the ring, until nobody can put anything there.
+/// Publishes what comes by the ring, until nobody can put anything there, and
+/// takes orders if there are rings for them.
 pub(super) fn publish(
     instance: &Instance,
+    orders: Option<Rings>,
     mut items: Consumer<Item>,
     left_out: &AtomicU64,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::open(instance) {
+    let mut thread = match Publishing::open(instance, orders) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this; if it has given up, nobody does.
@@ -65,9 +68,11 @@ pub(super) fn publish(
             thread.tell_status(left_out.load(Ordering::Relaxed));
         }
         if over {
+            thread.close();
             return;
         }
         thread.greet();
+        thread.take_orders();
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
@@ -81,6 +86,7 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
 }
 
 struct Publishing {
+    desk: Option<Desk>,
     records: Out<Published>,
     service: Service<Published>,
     events: Out<Event>,
@@ -96,7 +102,7 @@ struct Publishing {
 }
 
 impl Publishing {
-    fn open(instance: &Instance) -> Result<Self, PublishError> {
+    fn open(instance: &Instance, orders: Option<Rings>) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
@@ -106,7 +112,11 @@ impl Publishing {
         let (service, records) = RECORD.publish(&access, instance)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
+        let desk = orders
+            .map(|rings| Desk::open(&access, instance, rings))
+            .transpose()?;
         Ok(Self {
+            desk,
             records,
             service,
             events,
@@ -119,6 +129,20 @@ impl Publishing {
             paused: false,
             access,
         })
+    }
+
+    /// Takes and answers orders; they wait while shared memory is nearly full.
+    fn take_orders(&mut self) {
+        if let Some(desk) = self.desk.as_mut().filter(|_| !self.paused) {
+            desk.serve();
+        }
+    }
+
+    /// Nothing comes any more: nor will answers.
+    fn close(&mut self) {
+        if let Some(desk) = self.desk.take() {
+            desk.close();
+        }
     }
 
     /// Pauses while shared memory is nearly full; gives words when that changes.

@@ -3,10 +3,10 @@
 use std::time::{Duration, Instant};
 
 use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
-use iceoryx2::prelude::{PortFactory, ZeroCopySend, ipc};
+use iceoryx2::prelude::{PortFactory, ZeroCopySend};
 
 use super::record::Found;
-use super::services::{self, Access, EVENT, INFO, RECORD, STATUS, Service};
+use super::services::{self, Access, EVENT, INFO, Ipc, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
 use crate::{FlightRecord, Instance};
@@ -16,7 +16,7 @@ use crate::{FlightRecord, Instance};
 const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
-type In<T> = Subscriber<ipc::Service, T, ()>;
+type In<T> = Subscriber<Ipc, T, ()>;
 
 /// Watches a daemon on this machine, from this or another process.
 ///
@@ -59,14 +59,7 @@ impl Watcher {
         }
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
-        if !info.is_understood() {
-            return Err(WatchError::OtherLayout {
-                instance: instance.clone(),
-                software: info.software.as_str().to_owned(),
-                layout: info.layout,
-                own: LAYOUT,
-            });
-        }
+        check_layout(&info, instance)?;
         let service = RECORD.watch::<Found>(&access, instance)?;
         Ok(Self {
             info,
@@ -147,8 +140,21 @@ fn publishes<T: std::fmt::Debug + ZeroCopySend>(access: &Access, service: &Servi
     service.dynamic_config().number_of_publishers() > 0
 }
 
+/// Whether this program understands what the daemon publishes.
+pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
+    if info.is_understood() {
+        return Ok(());
+    }
+    Err(WatchError::OtherLayout {
+        instance: instance.clone(),
+        software: info.software.as_str().to_owned(),
+        layout: info.layout,
+        own: LAYOUT,
+    })
+}
+
 /// What a daemon says of itself.
-fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
+pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
     let service = INFO.watch::<Info>(access, instance)?;
     let infos = subscribe(&service, instance)?;
     let deadline = Instant::now() + PATIENCE;

@@ -1,0 +1,166 @@
+//! A configuration by its keys: for programs that ask for one value, and that
+//! fly with others.
+
+use toml::Value;
+use toml::map::Entry;
+
+use super::{Config, ConfigError, Problem};
+
+/// What the configuration is called in messages when no file is meant.
+const NO_FILE: &str = "config";
+
+impl Config {
+    /// The whole configuration, defaults included, as TOML.
+    ///
+    /// # Errors
+    /// When a number is too large for TOML, which has no integers above
+    /// [`i64::MAX`].
+    pub fn to_toml(&self) -> Result<String, ConfigError> {
+        toml::to_string(self).map_err(|error| invalid(None, error.to_string()))
+    }
+
+    /// All values, section by section.
+    ///
+    /// # Errors
+    /// As [`to_toml`](Self::to_toml).
+    pub fn values(&self) -> Result<Value, ConfigError> {
+        Value::try_from(self).map_err(|error| invalid(None, error.to_string()))
+    }
+
+    /// The value of a key with its sections, such as
+    /// `autopilot.envelope.max_bank_deg`, or a whole section.
+    ///
+    /// # Errors
+    /// When there is no such key.
+    pub fn value(&self, key: &str) -> Result<Value, ConfigError> {
+        let values = self.values()?;
+        let found = key
+            .split('.')
+            .try_fold(&values, |section, part| section.get(part));
+        found.cloned().ok_or_else(|| unknown(key))
+    }
+
+    /// The configuration with other values for some keys; a key with a table
+    /// changes the whole section. All is checked as a file is.
+    ///
+    /// # Errors
+    /// When there is no such key, or a value is out of its range: the words of
+    /// [`Config::parse`], without lines, as there is no file.
+    pub fn with_values<'k>(
+        &self,
+        changes: impl IntoIterator<Item = (&'k str, Value)>,
+    ) -> Result<Self, ConfigError> {
+        let mut values = self.values()?;
+        for (key, value) in changes {
+            put(&mut values, key, value).ok_or_else(|| unknown(key))?;
+        }
+        let text = toml::to_string(&values).map_err(|error| invalid(None, error.to_string()))?;
+        Self::parse_without_aircraft(&text, NO_FILE).map_err(without_lines)
+    }
+}
+
+/// Puts a value in its place; none if a section on the way is a value.
+fn put(values: &mut Value, key: &str, value: Value) -> Option<()> {
+    let (sections, name) = match key.rsplit_once('.') {
+        Some((sections, name)) => (Some(sections), name),
+        None => (None, key),
+    };
+    let mut section = values.as_table_mut()?;
+    for part in sections.iter().flat_map(|sections| sections.split('.')) {
+        let inner = match section.entry(part) {
+            Entry::Occupied(there) => there.into_mut(),
+            Entry::Vacant(free) => free.insert(Value::Table(toml::Table::new())),
+        };
+        section = inner.as_table_mut()?;
+    }
+    section.insert(name.to_owned(), value);
+    Some(())
+}
+
+fn unknown(key: &str) -> ConfigError {
+    invalid(Some(key), "there is no such key".to_owned())
+}
+
+fn invalid(key: Option<&str>, message: String) -> ConfigError {
+    ConfigError::Invalid {
+        file: NO_FILE.to_owned(),
+        problems: vec![Problem {
+            line: None,
+            key: key.map(str::to_owned),
+            message,
+        }],
+    }
+}
+
+/// The lines of a text that nobody wrote lead nowhere.
+fn without_lines(error: ConfigError) -> ConfigError {
+    match error {
+        ConfigError::Invalid { file, mut problems } => {
+            for problem in &mut problems {
+                problem.line = None;
+            }
+            ConfigError::Invalid { file, problems }
+        }
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plain() -> Config {
+        Config::parse_without_aircraft("", "test").unwrap()
+    }
+
+    #[test]
+    fn a_value_is_found_and_changed_by_its_key() {
+        const KEY: &str = "autopilot.envelope.max_bank_deg";
+        let changed = plain().with_values([(KEY, Value::Integer(20))]).unwrap();
+        assert_eq!(changed.value(KEY).unwrap().as_float(), Some(20.0));
+        assert_eq!(
+            plain().value("loop.rate_hz").unwrap().as_float(),
+            Some(40.0)
+        );
+    }
+
+    #[test]
+    fn a_section_is_changed_as_a_whole() {
+        let hold = toml::from_str("kind = \"hold\"").unwrap();
+        let changed = plain()
+            .with_values([("course", Value::Table(hold))])
+            .unwrap();
+        assert_eq!(changed.value("course.kind").unwrap().as_str(), Some("hold"));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_in_the_words_of_a_file() {
+        let words =
+            |key: &str, value: Value| plain().with_values([(key, value)]).unwrap_err().to_string();
+        assert_eq!(
+            words("autopilot.envelope.max_bank_deg", Value::Float(95.0)),
+            "config: autopilot.envelope.max_bank_deg: is 95: choose 5 to 60"
+        );
+        let unknown = words("autopilot.bank", Value::Float(1.0));
+        assert!(
+            unknown.contains("there is no such key: choose"),
+            "{unknown}"
+        );
+        let through = words("loop.rate_hz.x", Value::Float(1.0));
+        assert_eq!(through, "config: loop.rate_hz.x: there is no such key");
+        let nan = words("loop.rate_hz", Value::Float(f64::NAN));
+        assert!(
+            nan.contains("loop.rate_hz: is NaN: choose 1 to 2000"),
+            "{nan}"
+        );
+        let missing = plain().value("loop.hz").unwrap_err().to_string();
+        assert_eq!(missing, "config: loop.hz: there is no such key");
+    }
+
+    #[test]
+    fn the_whole_configuration_reads_back_as_itself() {
+        let text = plain().to_toml().unwrap();
+        let again = Config::parse(&text, "again").unwrap().to_toml().unwrap();
+        assert_eq!(text, again);
+    }
+}

@@ -1,0 +1,122 @@
+//! The built-in aircraft, flown on by hand.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use fcc_core::flight::{Measurements, Surfaces};
+use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
+use fcc_daemon::config::Aircraft;
+use fcc_sim::{SimConfig, Simulation};
+use pyo3::prelude::*;
+
+use crate::arguments::step_s;
+use crate::config::configuration;
+use crate::errors;
+use crate::values::{PyMeasurements, PySurfaces, PyTruth, checked_surfaces};
+
+/// The built-in aircraft, in lockstep: a light single with six degrees of
+/// freedom, as the section `[built-in]` of the configuration says, with its
+/// wind, gusts, noise and delay. The same seed flies the same flight, to the
+/// last bit.
+#[pyclass(name = "BuiltInAircraft", module = "fcc")]
+pub(crate) struct PyAircraft {
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    simulation: Simulation,
+    measured: Measurements,
+    tick: Tick,
+    time_s: f64,
+}
+
+impl PyAircraft {
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl PyAircraft {
+    #[new]
+    #[pyo3(signature = (config = None))]
+    fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let config = configuration(config)?;
+        let Aircraft::BuiltIn(section) = config.aircraft() else {
+            return Err(
+                errors::FLIGHT.say("the configuration has [x-plane]: that aircraft is not here")
+            );
+        };
+        let simulation = Simulation::new(&SimConfig::from(section))
+            .map_err(|error| errors::FLIGHT.say(format_args!("the built-in aircraft: {error}")))?;
+        Ok(Self {
+            inner: Mutex::new(Inner {
+                simulation,
+                measured: Measurements::default(),
+                tick: Tick::default(),
+                time_s: 0.0,
+            }),
+        })
+    }
+
+    /// Flies on for `dt` s with these controls, and measures. None lets the
+    /// controls go: they stand at the trim.
+    #[pyo3(signature = (surfaces, dt = 0.025))]
+    fn step(&self, surfaces: Option<&PySurfaces>, dt: f64) -> PyResult<PyMeasurements> {
+        let dt_s = step_s(dt)?;
+        let commands = surfaces
+            .map(|surfaces| checked_surfaces(surfaces.to_core()))
+            .transpose()?;
+        let mut inner = self.inner();
+        let Inner {
+            simulation,
+            measured,
+            tick,
+            time_s,
+        } = &mut *inner;
+        let moved = match commands {
+            Some(commands) => simulation.actuator.apply(tick, &commands),
+            None => simulation.actuator.release(),
+        };
+        moved.map_err(|fault| errors::FLIGHT.say(fault))?;
+        *time_s += dt_s;
+        let now = Time::from_nanos(Duration::from_secs_f64(*time_s).as_nanos() as i64);
+        *tick = Tick {
+            number: tick.number + 1,
+            scheduled: now,
+            woke: now,
+            missed: 0,
+            dt_s,
+        };
+        simulation.sensor.sample(tick, measured).map_err(|_| {
+            errors::FLIGHT.say("the aircraft has left all bounds: its state is no number any more")
+        })?;
+        Ok(PyMeasurements::from_core(measured))
+    }
+
+    /// What is true of it now.
+    #[getter]
+    fn truth(&self) -> PyTruth {
+        PyTruth(self.inner().simulation.truth.get())
+    }
+
+    /// Where its engage switch stands, by the configuration's script.
+    #[getter]
+    fn switch(&self) -> bool {
+        self.inner().measured.engage_switch.value == Switch::On
+    }
+
+    /// Where its controls stand: what was commanded last, or the trim.
+    #[getter]
+    fn controls(&self) -> PySurfaces {
+        let inner = self.inner();
+        if inner.measured.surfaces.is_never() {
+            let throttle = inner.simulation.trim.throttle;
+            return PySurfaces::from(Surfaces {
+                throttle,
+                ..Surfaces::default()
+            });
+        }
+        inner.measured.surfaces.value.into()
+    }
+}

@@ -1,0 +1,111 @@
+//! Arguments checked: every refusal names the argument, what it was and what
+//! it may be.
+
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// The longest step, s: past it, nothing is a control loop any more.
+const MAX_STEP_S: f64 = 1.0;
+
+/// A time step in s: above 0, at most 1.
+pub(crate) fn step_s(dt: f64) -> PyResult<f64> {
+    if dt > 0.0 && dt <= MAX_STEP_S {
+        return Ok(dt);
+    }
+    Err(PyValueError::new_err(format!(
+        "dt is {dt} s: it must be above 0 and at most {MAX_STEP_S}"
+    )))
+}
+
+/// A number that is one.
+pub(crate) fn finite(name: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(PyValueError::new_err(format!(
+        "{name} is {value}: it must be a finite number"
+    )))
+}
+
+/// A finite number in a range.
+pub(crate) fn within(name: &str, value: f64, least: f64, most: f64) -> PyResult<f64> {
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    Err(PyValueError::new_err(format!(
+        "{name} is {value}: choose {least} to {most}"
+    )))
+}
+
+/// Anything that numpy makes an array of numbers of; its shape and its values,
+/// row by row.
+pub(crate) fn numbers(name: &str, from: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
+    let py = from.py();
+    let numpy = py.import("numpy")?;
+    let refused = |why: &dyn std::fmt::Display| {
+        PyTypeError::new_err(format!("{name} is no array of numbers: {why}"))
+    };
+    let array = numpy
+        .call_method1("asarray", (from,))
+        .map_err(|error| refused(&error.value(py)))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !matches!(kind.as_str(), "f" | "i" | "u") {
+        let dtype = array.getattr("dtype")?.str()?;
+        return Err(refused(&format_args!("its dtype is {dtype}")));
+    }
+    let array = numpy.call_method1("ascontiguousarray", (&array, "float64"))?;
+    let array = array.cast::<PyArrayDyn<f64>>()?;
+    let values = array.readonly().as_slice()?.to_vec();
+    Ok((array.shape().to_vec(), values))
+}
+
+/// An array of `N` columns; its rows.
+pub(crate) fn rows<const N: usize>(
+    name: &str,
+    columns: &str,
+    from: &Bound<'_, PyAny>,
+) -> PyResult<Vec<[f64; N]>> {
+    let (shape, values) = numbers(name, from)?;
+    match shape.as_slice() {
+        [_, n] if *n == N => {}
+        _ => {
+            return Err(PyValueError::new_err(format!(
+                "{name} is of shape {}: give (n, {N}), the columns being {columns}",
+                shape_words(&shape)
+            )));
+        }
+    }
+    let (rows, _) = values.as_chunks::<N>();
+    Ok(rows.to_vec())
+}
+
+/// A vector of `N` numbers.
+pub(crate) fn vector<const N: usize>(name: &str, from: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
+    let (shape, values) = numbers(name, from)?;
+    let wrong = || {
+        PyValueError::new_err(format!(
+            "{name} is of shape {}: give ({N},)",
+            shape_words(&shape)
+        ))
+    };
+    if shape.len() != 1 {
+        return Err(wrong());
+    }
+    let vector: [f64; N] = values.try_into().map_err(|_| wrong())?;
+    for (at, value) in vector.iter().enumerate() {
+        finite(&format!("{name}[{at}]"), *value)?;
+    }
+    Ok(vector)
+}
+
+/// A shape as Python writes it.
+pub(crate) fn shape_words(shape: &[usize]) -> String {
+    match shape {
+        [one] => format!("({one},)"),
+        many => {
+            let many: Vec<_> = many.iter().map(ToString::to_string).collect();
+            format!("({})", many.join(", "))
+        }
+    }
+}

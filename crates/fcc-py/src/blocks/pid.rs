@@ -1,0 +1,115 @@
+//! PID controller.
+
+use fcc_core::blocks::{AntiWindup, Pid, PidConfig};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::{passed_s, positive, tau_s};
+use crate::arguments::finite;
+
+/// PID controller with derivative on measurement, anti-windup, limits on output
+/// and its rate, feed-forward, and take-over without a bump.
+///
+/// `kp` is output per error, `ki` output per error and second, `kd` output per
+/// error per second; `derivative_tau_s` is the time constant of the
+/// derivative's low pass. The integral stands still in a limit, or is drawn
+/// back with the time constant `tracking_tau_s` if one is given (Åström and
+/// Hägglund 1995, section 3.5).
+#[pyclass(name = "Pid", module = "fcc")]
+pub(crate) struct PyPid(Pid);
+
+#[pymethods]
+impl PyPid {
+    #[new]
+    #[pyo3(signature = (kp = 0.0, ki = 0.0, kd = 0.0, *, derivative_tau_s = 0.0,
+        output_min = f64::NEG_INFINITY, output_max = f64::INFINITY,
+        output_rate_per_s = f64::INFINITY, tracking_tau_s = None))]
+    #[expect(clippy::too_many_arguments, reason = "most are by keyword only")]
+    fn new(
+        kp: f64,
+        ki: f64,
+        kd: f64,
+        derivative_tau_s: f64,
+        output_min: f64,
+        output_max: f64,
+        output_rate_per_s: f64,
+        tracking_tau_s: Option<f64>,
+    ) -> PyResult<Self> {
+        // False for NaN as well.
+        if !matches!(
+            output_min.partial_cmp(&output_max),
+            Some(std::cmp::Ordering::Less)
+        ) {
+            return Err(PyValueError::new_err(format!(
+                "output_min is {output_min} and output_max {output_max}: the first must be less"
+            )));
+        }
+        if output_rate_per_s.is_nan() || output_rate_per_s <= 0.0 {
+            return Err(PyValueError::new_err(format!(
+                "output_rate_per_s is {output_rate_per_s}: it must be above 0"
+            )));
+        }
+        Ok(Self(Pid::new(PidConfig {
+            kp: finite("kp", kp)?,
+            ki: finite("ki", ki)?,
+            kd: finite("kd", kd)?,
+            derivative_tau_s: tau_s(derivative_tau_s)?,
+            output_min,
+            output_max,
+            output_rate_per_s,
+            anti_windup: match tracking_tau_s {
+                None => AntiWindup::Clamping,
+                Some(tau) => AntiWindup::BackCalculation {
+                    tracking_tau_s: positive("tracking_tau_s", tau)?,
+                },
+            },
+        })))
+    }
+
+    /// One step, `dt` s after the last; the output. `feed_forward` is in units
+    /// of the output, `gain_scale` multiplies all gains.
+    #[pyo3(signature = (setpoint, measurement, dt, *, feed_forward = 0.0, gain_scale = 1.0))]
+    fn step(
+        &mut self,
+        setpoint: f64,
+        measurement: f64,
+        dt: f64,
+        feed_forward: f64,
+        gain_scale: f64,
+    ) -> PyResult<f64> {
+        Ok(self.0.step_scheduled(
+            finite("setpoint", setpoint)?,
+            finite("measurement", measurement)?,
+            finite("feed_forward", feed_forward)?,
+            finite("gain_scale", gain_scale)?,
+            passed_s(dt)?,
+        ))
+    }
+
+    /// Takes over at a present output: the next step with the same arguments
+    /// yields it again.
+    #[pyo3(signature = (output, setpoint, measurement, *, feed_forward = 0.0, gain_scale = 1.0))]
+    fn engage(
+        &mut self,
+        output: f64,
+        setpoint: f64,
+        measurement: f64,
+        feed_forward: f64,
+        gain_scale: f64,
+    ) -> PyResult<()> {
+        self.0.engage(
+            finite("output", output)?,
+            finite("setpoint", setpoint)?,
+            finite("measurement", measurement)?,
+            finite("feed_forward", feed_forward)?,
+            finite("gain_scale", gain_scale)?,
+        );
+        Ok(())
+    }
+
+    /// The integral, in units of the output.
+    #[getter]
+    fn integral(&self) -> f64 {
+        self.0.integral()
+    }
+}

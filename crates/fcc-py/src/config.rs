@@ -1,0 +1,210 @@
+//! Configuration: files, texts, values by their keys, with the daemon's words.
+
+use std::path::PathBuf;
+
+use fcc_core::flight::AutopilotConfig;
+use fcc_daemon::config::{Config, ConfigError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
+use toml::Value;
+
+use crate::errors;
+
+/// What a text is called in messages.
+const NAME: &str = "config";
+
+/// A configuration as `fccd` reads it; what it does not say is as by default.
+/// It cannot be changed: `replace` gives another one.
+///
+/// `Config()` is the default, `Config(text)` reads TOML; where a text says
+/// neither `[x-plane]` nor `[built-in]`, the aircraft is the built-in one.
+/// Raises `ConfigError` with every problem, its line and its key.
+#[pyclass(name = "Config", module = "fcc", frozen)]
+#[derive(Clone)]
+pub(crate) struct PyConfig {
+    pub(crate) config: Config,
+}
+
+pub(crate) fn refused(error: &ConfigError) -> PyErr {
+    errors::CONFIG.say(error)
+}
+
+#[pymethods]
+impl PyConfig {
+    #[new]
+    #[pyo3(signature = (text = ""))]
+    fn new(text: &str) -> PyResult<Self> {
+        Config::parse_without_aircraft(text, NAME)
+            .map(|config| Self { config })
+            .map_err(|error| refused(&error))
+    }
+
+    /// Reads and checks a file, as `fccd check` does.
+    #[staticmethod]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "pyo3 hands paths over by value"
+    )]
+    fn load(path: PathBuf) -> PyResult<Self> {
+        Config::load(&path)
+            .map(|config| Self { config })
+            .map_err(|error| refused(&error))
+    }
+
+    /// The value of a key with its sections, such as
+    /// `"autopilot.envelope.max_bank_deg"`; of a section, a dict.
+    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
+        let value = self.config.value(key).map_err(|error| refused(&error))?;
+        to_python(py, &value)
+    }
+
+    fn __contains__(&self, key: &str) -> bool {
+        self.config.value(key).is_ok()
+    }
+
+    /// Every key with its sections, in the order of a file.
+    fn keys(&self) -> PyResult<Vec<String>> {
+        let values = self.config.values().map_err(|error| refused(&error))?;
+        let mut keys = Vec::new();
+        gather(&values, "", &mut keys);
+        Ok(keys)
+    }
+
+    /// Another configuration, with other values for some keys:
+    /// `config.replace({"autopilot.heading.roll_gain_per_s": 2.0})`. A dict
+    /// replaces a whole section. All is checked as a file is.
+    fn replace(&self, values: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let mut changes = Vec::new();
+        for (key, value) in values {
+            let key: String = key
+                .extract()
+                .map_err(|_| PyTypeError::new_err(format!("the key {key} is no text")))?;
+            let value = from_python(&key, &value)?;
+            changes.push((key, value));
+        }
+        let changes = changes
+            .iter()
+            .map(|(key, value)| (key.as_str(), value.clone()));
+        self.config
+            .with_values(changes)
+            .map(|config| Self { config })
+            .map_err(|error| refused(&error))
+    }
+
+    /// The whole configuration, defaults included, as TOML.
+    fn to_toml(&self) -> PyResult<String> {
+        self.config.to_toml().map_err(|error| refused(&error))
+    }
+
+    /// The whole configuration, defaults included, as dicts in a dict.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let values = self.config.values().map_err(|error| refused(&error))?;
+        to_python(py, &values)
+    }
+
+    fn __eq__(&self, other: &Self) -> PyResult<bool> {
+        Ok(self.to_toml()? == other.to_toml()?)
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        Ok(format!("Config({:?})", self.to_toml()?))
+    }
+}
+
+/// A configuration given as a `Config`, as a text or not at all.
+pub(crate) fn configuration(given: Option<&Bound<'_, PyAny>>) -> PyResult<Config> {
+    let Some(given) = given.filter(|given| !given.is_none()) else {
+        return PyConfig::new("").map(|config| config.config);
+    };
+    if let Ok(config) = given.cast::<PyConfig>() {
+        return Ok(config.get().config.clone());
+    }
+    match given.cast::<PyString>() {
+        Ok(text) => PyConfig::new(text.to_str()?).map(|config| config.config),
+        Err(_) => Err(PyTypeError::new_err(format!(
+            "config is of type {}: give a Config or the text of a configuration",
+            given.get_type().name()?
+        ))),
+    }
+}
+
+/// The autopilot's part of it.
+pub(crate) fn autopilot_config(given: Option<&Bound<'_, PyAny>>) -> PyResult<AutopilotConfig> {
+    configuration(given).map(|config| config.autopilot_config())
+}
+
+fn gather(value: &Value, prefix: &str, keys: &mut Vec<String>) {
+    match value {
+        Value::Table(table) => {
+            for (name, inner) in table {
+                let key = if prefix.is_empty() {
+                    name.clone()
+                } else {
+                    format!("{prefix}.{name}")
+                };
+                gather(inner, &key, keys);
+            }
+        }
+        _ => keys.push(prefix.to_owned()),
+    }
+}
+
+fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::String(text) => text.into_pyobject(py)?.into_any(),
+        Value::Integer(whole) => whole.into_pyobject(py)?.into_any(),
+        Value::Float(number) => number.into_pyobject(py)?.into_any(),
+        Value::Boolean(truth) => truth.into_pyobject(py)?.to_owned().into_any(),
+        Value::Datetime(time) => time.to_string().into_pyobject(py)?.into_any(),
+        Value::Array(values) => {
+            let values = values
+                .iter()
+                .map(|value| to_python(py, value))
+                .collect::<PyResult<Vec<_>>>()?;
+            values.into_pyobject(py)?.into_any()
+        }
+        Value::Table(table) => {
+            let dict = PyDict::new(py);
+            for (key, value) in table {
+                dict.set_item(key, to_python(py, value)?)?;
+            }
+            dict.into_any()
+        }
+    })
+}
+
+fn from_python(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    // A bool is an int in Python, so it comes first.
+    if let Ok(truth) = value.cast::<PyBool>() {
+        return Ok(Value::Boolean(truth.is_true()));
+    }
+    if let Ok(whole) = value.cast::<PyInt>() {
+        return whole.extract().map(Value::Integer).map_err(|_| {
+            PyValueError::new_err(format!("{key} is {whole}: no configuration holds so much"))
+        });
+    }
+    if let Ok(number) = value.cast::<PyFloat>() {
+        return Ok(Value::Float(number.extract()?));
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return Ok(Value::String(text.to_str()?.to_owned()));
+    }
+    if let Ok(section) = value.cast::<PyDict>() {
+        let mut table = toml::Table::new();
+        for (name, value) in section {
+            let name: String = name.extract()?;
+            let value = from_python(&format!("{key}.{name}"), &value)?;
+            table.insert(name, value);
+        }
+        return Ok(Value::Table(table));
+    }
+    // What numpy and others call a number.
+    if let Ok(number) = value.extract::<f64>() {
+        return Ok(Value::Float(number));
+    }
+    Err(PyTypeError::new_err(format!(
+        "{key} is of type {}: give a number, a text, True or False, or a dict for a section",
+        value.get_type().name()?
+    )))
+}

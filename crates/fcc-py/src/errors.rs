@@ -1,0 +1,151 @@
+//! Exceptions: one base, one subclass for each part, with the daemon's words.
+//!
+//! Those that a built-in exception names as well are of that kind too: a bad
+//! configuration is a `ValueError`, an autopilot that is not engaged a
+//! `RuntimeError`.
+
+use std::fmt::Display;
+
+use pyo3::exceptions::{PyException, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple, PyType};
+
+/// One exception of the module: made once, by `type(name, bases, ...)`, as a
+/// class with two bases is not to be had otherwise.
+pub(crate) struct Exception {
+    name: &'static str,
+    doc: &'static str,
+    base: Option<&'static Self>,
+    also: Also,
+    class: PyOnceLock<Py<PyType>>,
+}
+
+/// Which built-in exception it is as well.
+enum Also {
+    Exception,
+    ValueError,
+    RuntimeError,
+}
+
+impl Exception {
+    const fn new(
+        name: &'static str,
+        base: Option<&'static Self>,
+        also: Also,
+        doc: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            doc,
+            base,
+            also,
+            class: PyOnceLock::new(),
+        }
+    }
+
+    fn class<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyType>> {
+        let class = self.class.get_or_try_init(py, || self.make(py))?;
+        Ok(class.bind(py).clone())
+    }
+
+    fn make(&self, py: Python<'_>) -> PyResult<Py<PyType>> {
+        let builtin = match self.also {
+            Also::Exception => None,
+            Also::ValueError => Some(py.get_type::<PyValueError>()),
+            Also::RuntimeError => Some(py.get_type::<PyRuntimeError>()),
+        };
+        let own = match self.base {
+            Some(base) => base.class(py)?,
+            None => py.get_type::<PyException>(),
+        };
+        let bases = PyTuple::new(py, std::iter::once(own).chain(builtin).collect::<Vec<_>>())?;
+        let names = PyDict::new(py);
+        names.set_item("__doc__", self.doc)?;
+        names.set_item("__module__", "fcc")?;
+        let class = py.get_type::<PyType>().call1((self.name, bases, names))?;
+        Ok(class.cast_into::<PyType>()?.unbind())
+    }
+
+    /// An exception with these words.
+    pub(crate) fn say(&self, words: impl Display) -> PyErr {
+        Python::attach(|py| match self.class(py) {
+            Ok(class) => PyErr::from_type(class, words.to_string()),
+            Err(error) => error,
+        })
+    }
+}
+
+/// Whatever goes wrong in this module and is not an argument.
+static ERROR: Exception = Exception::new(
+    "Error",
+    None,
+    Also::Exception,
+    "Whatever goes wrong in this module and is no wrong argument.",
+);
+
+/// A configuration that cannot be flown.
+pub(crate) static CONFIG: Exception = Exception::new(
+    "ConfigError",
+    Some(&ERROR),
+    Also::ValueError,
+    "A configuration that cannot be read or flown: every problem with its line and key.",
+);
+
+/// Not engaged.
+pub(crate) static ENGAGE: Exception = Exception::new(
+    "EngageError",
+    Some(&ERROR),
+    Also::RuntimeError,
+    "The autopilot is not engaged, or may not engage: what blocks it.",
+);
+
+/// An aircraft or a flight that cannot be.
+pub(crate) static FLIGHT: Exception = Exception::new(
+    "FlightError",
+    Some(&ERROR),
+    Also::Exception,
+    "The aircraft cannot be had, or the flight did not begin.",
+);
+
+/// A file that is no recording.
+pub(crate) static RECORDING: Exception = Exception::new(
+    "RecordingError",
+    Some(&ERROR),
+    Also::Exception,
+    "A recording that cannot be read, recovered, reported or flown again.",
+);
+
+/// A daemon that cannot be watched.
+pub(crate) static TELEMETRY: Exception = Exception::new(
+    "TelemetryError",
+    Some(&ERROR),
+    Also::Exception,
+    "A daemon that cannot be watched: it does not run, is of another version or has ended.",
+);
+
+/// An order that was not carried out.
+pub(crate) static ORDER: Exception = Exception::new(
+    "OrderError",
+    Some(&ERROR),
+    Also::Exception,
+    "An order that a daemon refused, with its reason, or did not answer.",
+);
+
+/// A timer that fails.
+pub(crate) static TIMER: Exception = Exception::new(
+    "TimerError",
+    Some(&ERROR),
+    Also::Exception,
+    "A timer that cannot be made, started or waited for.",
+);
+
+/// Adds the exceptions to the module.
+pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    for exception in [
+        &ERROR, &CONFIG, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &ORDER, &TIMER,
+    ] {
+        module.add(exception.name, exception.class(module.py())?)?;
+    }
+    Ok(())
+}

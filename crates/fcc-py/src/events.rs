@@ -1,0 +1,73 @@
+//! Something that happened once.
+
+use fcc_core::framework::{EventKind, Time};
+use fcc_telemetry::{FlightEvent, event_words};
+use pyo3::prelude::*;
+
+/// Something that happened once: the number of its tick, when that tick woke
+/// in s and in ns on the loop's clock (0 and None before the first), what kind
+/// of thing it was, and in words.
+#[pyclass(name = "Event", module = "fcc", frozen, get_all)]
+#[derive(Clone)]
+pub(crate) struct PyEvent {
+    pub(crate) tick: u64,
+    pub(crate) time_s: f64,
+    pub(crate) time_ns: Option<i64>,
+    pub(crate) kind: &'static str,
+    pub(crate) text: String,
+}
+
+#[pymethods]
+impl PyEvent {
+    fn __repr__(&self) -> String {
+        format!(
+            "Event(tick={}, kind={:?}, text={:?})",
+            self.tick, self.kind, self.text
+        )
+    }
+
+    fn __str__(&self) -> &str {
+        &self.text
+    }
+}
+
+impl PyEvent {
+    /// An event, its sensors and actuators called by their names.
+    pub(crate) fn of(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> Self {
+        Self {
+            tick: event.tick,
+            time_s: seconds(event.time),
+            time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
+            kind: kind_of(event),
+            text: event_words(event, sensors, actuators),
+        }
+    }
+}
+
+/// An instant in s on the loop's clock; 0 for never.
+pub(crate) fn seconds(time: Time) -> f64 {
+    time.as_nanos().max(0) as f64 * 1e-9
+}
+
+fn kind_of(event: &FlightEvent) -> &'static str {
+    match event.kind {
+        EventKind::StateChanged { .. } => "state-changed",
+        EventKind::Ordered(_) => "ordered",
+        EventKind::ToldToStop => "told-to-stop",
+        EventKind::EngageRefused { .. } => "engage-refused",
+        EventKind::SensorFault { .. } => "sensor-fault",
+        EventKind::SensorRecovered { .. } => "sensor-recovered",
+        EventKind::ActuatorFault { .. } => "actuator-fault",
+        EventKind::ActuatorRecovered { .. } => "actuator-recovered",
+        EventKind::RecordsDropped { .. } => "records-dropped",
+        EventKind::EventsDropped { .. } => "events-dropped",
+        EventKind::NotRecorded { .. } => "not-recorded",
+        EventKind::Released { .. } => "released",
+        EventKind::Panicked => "panicked",
+        EventKind::TimerFailed => "timer-failed",
+        EventKind::Overrun { .. } => "overrun",
+        EventKind::OverrunsOver { .. } => "overruns-over",
+        EventKind::Hung { .. } => "hung",
+        _ => "other",
+    }
+}

@@ -1,0 +1,159 @@
+//! A sensor or a controller written in Python, as a guest in the loop: for
+//! experiments, never in real time.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
+use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick};
+use pyo3::prelude::*;
+
+use crate::values::{PyMeasurements, PySetpoints, PySurfaces};
+
+/// The first exception that a guest raised.
+#[derive(Clone, Default)]
+pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    fn keep(&self, error: PyErr) {
+        self.lock().get_or_insert(error);
+    }
+
+    /// The exception, if there was one.
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.lock().take()
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<PyErr>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A sensor in Python: called with the plant's time and what the sensors
+/// before it have measured, gives other measurements or None.
+pub(crate) struct GuestSensor {
+    pub(crate) call: Py<PyAny>,
+    pub(crate) raised: Raised,
+}
+
+impl Sensor<Measurements> for GuestSensor {
+    fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        let measured = PyMeasurements::from_core(into);
+        let said = Python::attach(|py| -> PyResult<Option<PyMeasurements>> {
+            let said = self
+                .call
+                .bind(py)
+                .call1((into.plant.value.time_s, measured))?;
+            if said.is_none() {
+                return Ok(None);
+            }
+            Ok(Some(*said.cast::<PyMeasurements>()?.borrow()))
+        });
+        match said {
+            Ok(None) => Ok(()),
+            Ok(Some(measured)) => {
+                measured.write_over(into);
+                Ok(())
+            }
+            Err(error) => {
+                self.raised.keep(error);
+                Err(SensorFault::Malformed)
+            }
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        "Python"
+    }
+}
+
+/// A controller in Python beside the autopilot: navigation, guidance, states
+/// and failsafe are the autopilot's, and its surfaces are a proposal.
+pub(crate) struct GuestController {
+    pub(crate) autopilot: Autopilot,
+    pub(crate) call: Py<PyAny>,
+    pub(crate) raised: Raised,
+}
+
+/// What is no output: the loop never sends it.
+const NO_OUTPUT: Surfaces = Surfaces {
+    throttle: f64::NAN,
+    elevator: f64::NAN,
+    aileron: f64::NAN,
+    rudder: f64::NAN,
+};
+
+impl Controller for GuestController {
+    type Measurements = Measurements;
+    type Setpoints = Setpoints;
+    type Outputs = Surfaces;
+    type Order = Order;
+
+    fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.estimate(tick, measurements);
+    }
+
+    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.blockers(tick, measurements)
+    }
+
+    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.faults(tick, measurements)
+    }
+
+    fn flag_name(bit: u32) -> &'static str {
+        Autopilot::flag_name(bit)
+    }
+
+    fn write_order(order: &Order, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        Autopilot::write_order(order, f)
+    }
+
+    fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.engage(tick, measurements);
+    }
+
+    fn guide(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.guide(tick, measurements);
+    }
+
+    fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        let proposed = self.autopilot.control(tick, measurements);
+        let said = Python::attach(|py| -> PyResult<Surfaces> {
+            let said = self.call.bind(py).call1((
+                measurements.plant.value.time_s,
+                PyMeasurements::from_core(measurements),
+                PySetpoints::from(self.autopilot.setpoints()),
+                PySurfaces::from(proposed),
+            ))?;
+            Ok(said.cast::<PySurfaces>()?.get().to_core())
+        });
+        said.unwrap_or_else(|error| {
+            self.raised.keep(error);
+            NO_OUTPUT
+        })
+    }
+
+    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        self.autopilot.failsafe(tick, measurements)
+    }
+
+    fn disengage(&mut self) {
+        self.autopilot.disengage();
+    }
+
+    fn command(&mut self, order: &Order) {
+        self.autopilot.command(order);
+    }
+
+    fn setpoints(&self) -> Setpoints {
+        self.autopilot.setpoints()
+    }
+
+    fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
+        outputs.is_valid()
+    }
+
+    fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
+        self.autopilot.switch(measurements)
+    }
+}

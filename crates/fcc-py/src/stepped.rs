@@ -1,0 +1,122 @@
+//! An autopilot whose ticks are somebody else's calls.
+
+use std::time::Duration;
+
+use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Order, Surfaces};
+use fcc_core::framework::{Controller, Flags, Tick, Time};
+use pyo3::prelude::*;
+
+use crate::errors;
+use crate::values::{Measured, PyMeasurements};
+
+/// An autopilot, and the time that its caller has let pass.
+#[derive(Clone)]
+pub(crate) struct Stepped {
+    pub(crate) autopilot: Autopilot,
+    tick: Tick,
+    time_s: f64,
+    engaged: bool,
+    taken: Measurements,
+}
+
+impl Stepped {
+    pub(crate) fn new(config: &AutopilotConfig) -> Self {
+        Self {
+            autopilot: Autopilot::new(*config),
+            tick: Tick::default(),
+            time_s: 0.0,
+            engaged: false,
+            taken: Measurements::default(),
+        }
+    }
+
+    /// Takes measurements without controlling.
+    pub(crate) fn observe(&mut self, measured: PyMeasurements, dt_s: f64) {
+        self.take(measured, dt_s, Surfaces::default());
+    }
+
+    /// Takes over from controls that stand there.
+    pub(crate) fn engage(
+        &mut self,
+        measured: PyMeasurements,
+        dt_s: f64,
+        standing: Surfaces,
+    ) -> Result<(), String> {
+        self.take(measured, dt_s, standing);
+        let blockers = self.blockers();
+        if !blockers.is_empty() {
+            return Err(format!("not engaged: {}", names(blockers).join(", ")));
+        }
+        self.autopilot.engage(&self.tick, &self.taken);
+        self.engaged = true;
+        Ok(())
+    }
+
+    /// One tick of control.
+    pub(crate) fn step(&mut self, measured: PyMeasurements, dt_s: f64) -> Surfaces {
+        self.take(measured, dt_s, Surfaces::default());
+        self.autopilot.guide(&self.tick, &self.taken);
+        self.autopilot.control(&self.tick, &self.taken)
+    }
+
+    /// One tick of failsafe.
+    pub(crate) fn failsafe(&mut self, measured: PyMeasurements, dt_s: f64) -> Surfaces {
+        self.take(measured, dt_s, Surfaces::default());
+        self.autopilot.failsafe(&self.tick, &self.taken)
+    }
+
+    /// Lets go.
+    pub(crate) fn disengage(&mut self) {
+        self.autopilot.disengage();
+        self.engaged = false;
+    }
+
+    pub(crate) const fn is_engaged(&self) -> bool {
+        self.engaged
+    }
+
+    pub(crate) fn must_be_engaged(&self) -> PyResult<()> {
+        if self.engaged {
+            return Ok(());
+        }
+        Err(errors::ENGAGE.say("the autopilot is not engaged: call engage() first"))
+    }
+
+    pub(crate) fn order(&mut self, orders: impl IntoIterator<Item = Order>) {
+        for order in orders {
+            self.autopilot.command(&order);
+        }
+    }
+
+    pub(crate) fn blockers(&self) -> Flags {
+        self.autopilot.blockers(&self.tick, &self.taken)
+    }
+
+    pub(crate) fn faults(&self) -> Flags {
+        self.autopilot.faults(&self.tick, &self.taken)
+    }
+
+    fn take(&mut self, measured: PyMeasurements, dt_s: f64, standing: Surfaces) {
+        self.time_s += dt_s;
+        let now = Time::from_nanos(Duration::from_secs_f64(self.time_s).as_nanos() as i64);
+        self.tick = Tick {
+            number: self.tick.number + 1,
+            scheduled: now,
+            woke: now,
+            missed: 0,
+            dt_s,
+        };
+        self.taken = measured.to_core(&Measured {
+            now,
+            plant_s: self.time_s,
+            standing: Some(standing),
+            switch: None,
+        });
+        self.autopilot.estimate(&self.tick, &self.taken);
+    }
+}
+
+/// Conditions in words.
+pub(crate) fn names(flags: Flags) -> Vec<&'static str> {
+    flags.iter().map(Autopilot::flag_name).collect()
+}

@@ -1,0 +1,234 @@
+//! The kernel's timers, and how well they keep time.
+
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
+
+use fcc_timer::{Expiry, Timer, TimerKind, TimingStats, TimingSummary};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arguments::within;
+use crate::errors;
+
+/// One deadline that was served: its number (from 1), when it was due and when
+/// the thread woke in ns on `CLOCK_MONOTONIC`, how many deadlines passed
+/// unserved before it.
+#[pyclass(name = "Expiry", module = "fcc", frozen, get_all)]
+pub(crate) struct PyExpiry {
+    number: u64,
+    scheduled_ns: i64,
+    woke_ns: i64,
+    missed: u64,
+}
+
+#[pymethods]
+impl PyExpiry {
+    /// How late the thread woke, ns after the deadline.
+    #[getter]
+    const fn lateness_ns(&self) -> i64 {
+        self.woke_ns.saturating_sub(self.scheduled_ns)
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Expiry(number={}, lateness_ns={}, missed={})",
+            self.number,
+            self.lateness_ns(),
+            self.missed
+        )
+    }
+}
+
+impl From<Expiry> for PyExpiry {
+    fn from(expiry: Expiry) -> Self {
+        Self {
+            number: expiry.number,
+            scheduled_ns: expiry.scheduled_ns,
+            woke_ns: expiry.woke_ns,
+            missed: expiry.missed,
+        }
+    }
+}
+
+/// How well a timer kept time: periods in ms, lateness in µs, the share of
+/// periods within 2 % of the nominal one 0..1. Figures of periods are NaN
+/// before the second tick, those of lateness before the first.
+#[pyclass(name = "TimingSummary", module = "fcc", frozen, get_all)]
+pub(crate) struct PyTimingSummary {
+    rate_hz: f64,
+    ticks: u64,
+    missed: u64,
+    runtime_s: f64,
+    period_mean_ms: f64,
+    period_median_ms: f64,
+    period_min_ms: f64,
+    period_max_ms: f64,
+    period_range_ms: f64,
+    period_within_2_percent: f64,
+    lateness_p50_us: f64,
+    lateness_p99_us: f64,
+    lateness_p99_9_us: f64,
+    lateness_max_us: f64,
+}
+
+#[pymethods]
+impl PyTimingSummary {
+    fn __repr__(&self) -> String {
+        format!(
+            "TimingSummary(rate_hz={}, ticks={}, missed={}, period_mean_ms={:.4}, \
+             lateness_p99_us={:.1}, lateness_max_us={:.1})",
+            self.rate_hz,
+            self.ticks,
+            self.missed,
+            self.period_mean_ms,
+            self.lateness_p99_us,
+            self.lateness_max_us
+        )
+    }
+}
+
+impl From<TimingSummary> for PyTimingSummary {
+    fn from(summary: TimingSummary) -> Self {
+        Self {
+            rate_hz: summary.rate_hz,
+            ticks: summary.ticks,
+            missed: summary.missed,
+            runtime_s: summary.runtime_s,
+            period_mean_ms: summary.period_mean_ms,
+            period_median_ms: summary.period_median_ms,
+            period_min_ms: summary.period_min_ms,
+            period_max_ms: summary.period_max_ms,
+            period_range_ms: summary.period_range_ms,
+            period_within_2_percent: summary.period_within_2_percent,
+            lateness_p50_us: summary.lateness_p50_us,
+            lateness_p99_us: summary.lateness_p99_us,
+            lateness_p99_9_us: summary.lateness_p99_9_us,
+            lateness_max_us: summary.lateness_max_us,
+        }
+    }
+}
+
+/// A periodic timer of the kernel, `"timerfd"`, `"posix"` or `"nanosleep"`:
+/// absolute deadlines on `CLOCK_MONOTONIC`, `period_s` (10 µs to 1 h) apart,
+/// whose phase never moves. The GIL is released while it waits; a key for
+/// interruption is heard at the next deadline.
+///
+/// Iterating starts the timer if need be, and gives an `Expiry` for each
+/// deadline, without an end.
+#[pyclass(name = "Timer", module = "fcc")]
+pub(crate) struct PyTimer {
+    timer: Mutex<Started>,
+    stats: Mutex<TimingStats>,
+    kind: TimerKind,
+    period: Duration,
+}
+
+struct Started {
+    timer: Box<dyn Timer>,
+    started: bool,
+}
+
+impl PyTimer {
+    fn timer(&self) -> PyResult<MutexGuard<'_, Started>> {
+        match self.timer.try_lock() {
+            Ok(timer) => Ok(timer),
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => {
+                Err(errors::TIMER.say("another thread waits for this timer: give each its own"))
+            }
+        }
+    }
+
+    fn stats(&self) -> MutexGuard<'_, TimingStats> {
+        self.stats.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[pymethods]
+impl PyTimer {
+    #[new]
+    #[pyo3(signature = (period_s, kind = "timerfd"))]
+    fn new(period_s: f64, kind: &str) -> PyResult<Self> {
+        let period = Duration::from_secs_f64(within("period_s", period_s, 1e-5, 3_600.0)?);
+        let kind: TimerKind = kind
+            .parse()
+            .map_err(|error: fcc_timer::UnknownTimer| PyValueError::new_err(error.to_string()))?;
+        let refused = |error| errors::TIMER.say(error);
+        let timer = kind.build(period).map_err(refused)?;
+        Ok(Self {
+            timer: Mutex::new(Started {
+                timer,
+                started: false,
+            }),
+            stats: Mutex::new(TimingStats::new(period).map_err(refused)?),
+            kind,
+            period,
+        })
+    }
+
+    /// Sets the deadlines going, from now, on the thread that will wait;
+    /// calling it again begins anew, the statistics too.
+    fn start(&self) -> PyResult<()> {
+        let mut timer = self.timer()?;
+        timer
+            .timer
+            .start()
+            .map_err(|error| errors::TIMER.say(error))?;
+        timer.started = true;
+        self.stats().reset();
+        Ok(())
+    }
+
+    /// Waits for the next deadline; never returns before it. Deadlines that
+    /// passed unserved are counted, and the latest of them is served at once.
+    fn wait(&self, py: Python<'_>) -> PyResult<PyExpiry> {
+        let waited = py.detach(|| -> PyResult<Expiry> {
+            let mut timer = self.timer()?;
+            let expiry = timer
+                .timer
+                .wait()
+                .map_err(|error| errors::TIMER.say(error))?;
+            self.stats().record(&expiry);
+            Ok(expiry)
+        });
+        py.check_signals()?;
+        waited.map(PyExpiry::from)
+    }
+
+    fn __iter__(this: PyRef<'_, Self>) -> PyResult<PyRef<'_, Self>> {
+        let started = this.timer()?.started;
+        if !started {
+            this.start()?;
+        }
+        Ok(this)
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<PyExpiry> {
+        self.wait(py)
+    }
+
+    /// How well it kept time since it was started.
+    fn summary(&self) -> PyTimingSummary {
+        self.stats().summary().into()
+    }
+
+    /// Which timer of the kernel it is.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// Time between deadlines, s.
+    #[getter]
+    fn period_s(&self) -> f64 {
+        self.period.as_secs_f64()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "Timer({}, {:?})",
+            self.period.as_secs_f64(),
+            self.kind.name()
+        )
+    }
+}

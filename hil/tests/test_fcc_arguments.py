@@ -1,0 +1,250 @@
+"""Whatever is given to the module `fcc`, it answers or raises, and says what was wrong."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fcc
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+HOLD = '[course]\nkind = "hold"\n'
+LEVEL = fcc.BuiltInAircraft().step(None)
+
+numbers = st.one_of(
+    st.floats(),
+    st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -0.0, -1.0, 1e308, 5e-324]),
+    st.integers(-(10**30), 10**30),
+)
+things = st.one_of(
+    numbers,
+    st.none(),
+    st.booleans(),
+    st.text(max_size=8),
+    st.binary(max_size=8),
+    st.lists(numbers, max_size=12),
+    st.lists(st.lists(numbers, max_size=12), max_size=4),
+    st.dictionaries(st.text(max_size=4), numbers, max_size=2),
+    st.just(object()),
+    st.builds(np.zeros, st.tuples(st.integers(0, 3), st.integers(0, 12))),
+    st.just(np.array(["a"])),
+    st.just(np.array([1 + 2j])),
+)
+
+ALLOWED = (fcc.Error, ValueError, TypeError, OverflowError)
+
+
+def answers(call: Callable[[], Any]) -> None:
+    """Answer or raise one of the allowed exceptions, in words."""
+    words = "answered"
+    try:
+        call()
+    except ALLOWED as error:
+        words = str(error)
+    assert words.strip()
+
+
+def engaged() -> fcc.Autopilot:
+    autopilot = fcc.Autopilot(HOLD)
+    for _ in range(50):
+        autopilot.observe(LEVEL)
+    autopilot.engage(LEVEL, throttle=0.6)
+    return autopilot
+
+
+ONE: dict[str, Callable[..., Any]] = {
+    "Autopilot": fcc.Autopilot,
+    "Autopilot.observe dt": lambda dt: engaged().observe(LEVEL, dt),
+    "Autopilot.engage": lambda given: engaged().engage(LEVEL, throttle=given),
+    "Autopilot.step dt": lambda dt: engaged().step(LEVEL, dt),
+    "Fleet": fcc.Fleet,
+    "Machine": fcc.Machine,
+    "Machine.step": lambda given: fcc.Machine().step(given),
+    "Machine.step missing": lambda given: fcc.Machine().step(LEVEL, missing=given),
+    "Machine.step standing": lambda given: fcc.Machine().step(LEVEL, standing=given),
+    "Machine.step switch": lambda given: fcc.Machine().step(LEVEL, switch=given),
+    "BuiltInAircraft": fcc.BuiltInAircraft,
+    "BuiltInAircraft.step dt": lambda dt: fcc.BuiltInAircraft().step(None, dt),
+    "Measurements": lambda given: fcc.Measurements(pitch_rad=given),  # type: ignore[call-arg]
+    "Measurements.from_array": fcc.Measurements.from_array,
+    "Config": fcc.Config,
+    "Config.load": fcc.Config.load,
+    "Config[]": lambda given: fcc.Config()[given],
+    "Config.replace gain": lambda given: fcc.Config().replace({"loop.rate_hz": given}),
+    "fly seconds": lambda given: fcc.fly(seconds=given if given in (0, None) else math.nan),
+    "fly config": lambda given: fcc.fly(given, seconds=0.1),
+    "LowPass": fcc.LowPass,
+    "LowPass.reset": lambda given: fcc.LowPass(1.0).reset(given),
+    "HighPass": fcc.HighPass,
+    "RateLimit": fcc.RateLimit,
+    "Complementary": fcc.Complementary,
+    "SquareRootProfile.speed": lambda given: fcc.SquareRootProfile(1.0, 1.0).speed(given),
+    "pressure_pa": fcc.pressure_pa,
+    "pressure_altitude_m": fcc.pressure_altitude_m,
+    "density_ratio": fcc.density_ratio,
+    "wrap_pi": fcc.wrap_pi,
+    "wrap_two_pi": fcc.wrap_two_pi,
+    "euler_from_quaternion": fcc.euler_from_quaternion,
+    "Recording": fcc.Recording,
+    "list_recordings": fcc.list_recordings,
+    "recover": fcc.recover,
+    "report": fcc.report,
+    "Watcher": fcc.Watcher,
+    "Commander": fcc.Commander,
+}
+"""What is called with one argument."""
+TWO: dict[str, Callable[..., Any]] = {
+    "Autopilot.observe": lambda a, b: engaged().observe(a, b),
+    "Autopilot.observe_series": lambda a, b: engaged().observe_series(a, b),
+    "Autopilot.fly": lambda a, b: engaged().fly(a, b),
+    "Autopilot.failsafe": lambda a, b: engaged().failsafe(a, b),
+    "Autopilot.order": lambda a, b: engaged().order(airspeed_mps=a, heading_rad=b),
+    "Fleet.engage": lambda a, b: fcc.Fleet([HOLD]).engage(a, b),
+    "Fleet.observe": lambda a, b: fcc.Fleet([HOLD]).observe(a, b),
+    "Fleet.step": lambda a, b: fcc.Fleet([HOLD]).step(a, b),
+    "Machine.order": lambda a, b: fcc.Machine().order(altitude_m=a, heading_rad=b),
+    "BuiltInAircraft.step": lambda a, b: fcc.BuiltInAircraft().step(a, b),
+    "Surfaces": lambda a, b: fcc.Surfaces(throttle=a, elevator=b),
+    "Config.replace": lambda a, b: fcc.Config().replace({a: b}),
+    "Pid": fcc.Pid,
+    "Pid limits": lambda a, b: fcc.Pid(output_min=a, output_max=b),
+    "Pid.step": lambda a, b: fcc.Pid(1.0).step(a, 0.0, b),
+    "Pid.engage": lambda a, b: fcc.Pid(1.0).engage(a, b, 0.0),
+    "LowPass.step": lambda a, b: fcc.LowPass(1.0).step(a, b),
+    "LowPass.run": lambda a, b: fcc.LowPass(1.0).run(a, b),
+    "HighPass.step": lambda a, b: fcc.HighPass(1.0).step(a, b),
+    "HighPass.run": lambda a, b: fcc.HighPass(1.0).run(a, b),
+    "RateLimit.step": lambda a, b: fcc.RateLimit(1.0).step(a, b),
+    "RateLimit.run": lambda a, b: fcc.RateLimit(1.0).run(a, b),
+    "Complementary.predict": lambda a, b: fcc.Complementary(1.0).predict(a, b),
+    "Complementary.correct": lambda a, b: fcc.Complementary(1.0).correct(a, b),
+    "SquareRootProfile": fcc.SquareRootProfile,
+    "true_airspeed_mps": fcc.true_airspeed_mps,
+    "quaternion_from_euler": lambda a, b: fcc.quaternion_from_euler(a, b, 0.0),
+    "body_to_earth": fcc.body_to_earth,
+    "earth_to_body": fcc.earth_to_body,
+    "Timer": fcc.Timer,
+    "replay": fcc.replay,
+}
+"""What is called with two."""
+
+
+@pytest.mark.parametrize("name", ONE)
+@settings(max_examples=60, deadline=None)
+@given(thing=things)
+def test_anything_is_answered_or_refused_in_words(name: str, thing: object) -> None:
+    answers(lambda: ONE[name](thing))
+
+
+@pytest.mark.parametrize("name", TWO)
+@settings(max_examples=60, deadline=None)
+@given(a=things, b=things)
+def test_any_two_are_answered_or_refused_in_words(name: str, a: object, b: object) -> None:
+    answers(lambda: TWO[name](a, b))
+
+
+FINITE = ["LowPass.step", "Pid.step", "RateLimit.step", "wrap_pi", "pressure_pa", "density_ratio"]
+
+
+@pytest.mark.parametrize("name", FINITE)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_what_is_no_number_is_named(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match=r"is (NaN|-?inf)"):
+        ONE[name](value) if name in ONE else TWO[name](value, 0.025)
+
+
+@given(shape=st.tuples(st.integers(0, 5), st.integers(0, 14)).filter(lambda shape: shape[1] != 11))
+def test_a_wrong_shape_is_said_with_the_right_one(shape: tuple[int, int]) -> None:
+    words = rf"measurements is of shape \({shape[0]}, {shape[1]}\): give \(n, 11\)"
+    with pytest.raises(ValueError, match=words):
+        engaged().fly(np.zeros(shape))
+    with pytest.raises(ValueError, match="one for each of the 2 autopilots"):
+        fcc.Fleet([HOLD, HOLD]).step(np.zeros((3, 11)))
+
+
+@given(dt=numbers.filter(lambda dt: not 0 < dt <= 1))
+def test_a_wrong_step_is_said(dt: float) -> None:
+    for call in (engaged().step, engaged().observe):
+        with pytest.raises((ValueError, OverflowError)):
+            call(LEVEL, dt)
+
+
+def test_ranges_are_said() -> None:
+    said: dict[Callable[[], object], str] = {
+        (lambda: fcc.pressure_pa(30_000.0)): "altitude_m is 30000: choose -500 to 20000",
+        (lambda: fcc.pressure_altitude_m(-1.0)): "pressure_pa is -1: choose 1000 to 120000",
+        (lambda: fcc.Timer(0.0)): "period_s is 0: choose 0.00001 to 3600",
+        (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
+        (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 0 to 1",
+        (lambda: engaged().order(heading_rad=9.0)): "heading_rad is 9",
+        (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
+        (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
+        (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
+        (lambda: fcc.Machine().step(None, missing=["tail"])): "there is no sensor 'tail'",
+    }
+    for call, words in said.items():
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
+def test_a_bad_configuration_is_told_in_the_daemons_own_words(fccd: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.toml"
+    for text in (
+        "[built-in]\nseed = -1\n",
+        "[autopilot]\nbank = 3\n[built-in]\n",
+        "[built-in\n",
+        "[loop]\nrate_hz = nan\n",
+        "",
+    ):
+        bad.write_text(text)
+        said = subprocess.run([fccd, "check", bad], capture_output=True, text=True, check=False)
+        with pytest.raises(fcc.ConfigError) as refused:
+            fcc.Config.load(bad)
+        assert str(refused.value) == said.stderr.strip()
+    with pytest.raises(fcc.ConfigError, match="cannot be read"):
+        fcc.Config.load(tmp_path / "none.toml")
+    assert issubclass(fcc.ConfigError, ValueError)
+
+
+@settings(max_examples=60, deadline=None)
+@given(head=st.sampled_from([b"", b"\x89MCAP0\r\n"]), tail=st.binary(max_size=200))
+def test_any_bytes_are_no_recording_and_no_crash(head: bytes, tail: bytes) -> None:
+    content = head + tail
+    with tempfile.NamedTemporaryFile(suffix=".mcap") as file:
+        file.write(content)
+        file.flush()
+        for read in (fcc.Recording, fcc.report, fcc.replay, fcc.recover):
+            with pytest.raises(fcc.RecordingError, match="is no recording of fccd"):
+                read(file.name)
+
+
+def test_a_file_that_cannot_be_read_is_said(tmp_path: Path) -> None:
+    for call in (fcc.Recording, fcc.recover, fcc.report, fcc.replay):
+        with pytest.raises(fcc.RecordingError, match="cannot be read"):
+            call(tmp_path / "none.mcap")
+    with pytest.raises(fcc.RecordingError, match="cannot be listed"):
+        fcc.list_recordings(tmp_path / "none")
+
+
+def test_every_exception_is_an_error_of_the_module() -> None:
+    for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Order", "Timer"):
+        assert issubclass(getattr(fcc, f"{name}Error"), fcc.Error)
+    assert fcc.Error.__module__ == "fcc"
+
+
+def test_the_stubs_say_what_the_module_has() -> None:
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "fcc", "--ignore-disjoint-bases"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert checked.returncode == 0, checked.stdout

@@ -1,0 +1,131 @@
+"""Whole flights of the built-in aircraft in one call, and Python in the loop."""
+
+from __future__ import annotations
+
+import threading
+import time
+import warnings
+
+import fcc
+import numpy as np
+import pytest
+
+FOOT_M = 0.3048
+SLOWEST_TIMES_REAL_TIME = 100.0
+"""It is some thousands; a machine that does much else must not fail this."""
+
+
+def test_the_timed_pattern_is_flown_and_scored() -> None:
+    flight = fcc.fly()
+    assert flight.state == "engaged"
+    # The switch goes on at 2 s; then a hold of 20 s and 8 legs of 20 s.
+    assert flight.seconds == pytest.approx(182.0, abs=0.05)
+    assert len(flight.records) == len(flight.truth) == 7_280
+    assert flight.score is not None
+    assert len(flight.score["legs"]) == 8
+    # The pattern's own criteria in shared terms: turned within 20 s, climbed within it.
+    assert flight.score["worst"]["heading_settle_s"] < 20.0
+    assert flight.score["worst"]["altitude_settle_s"] < 20.0
+    turned = np.unwrap(flight.truth["heading_rad"])
+    assert np.degrees(turned[-1] - turned[0]) == pytest.approx(8 * 90.0, abs=4.0)
+    assert np.ptp(flight.truth["altitude_m"]) == pytest.approx(150 * FOOT_M, abs=6.0)
+    assert flight.times_real_time > SLOWEST_TIMES_REAL_TIME
+    assert flight.timing["ticks"] == 7_280
+
+
+def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:
+    rough = fcc.Config().replace({"built-in.gusts": "severe", "built-in.seed": 7})
+    one, same = fcc.fly(rough, seconds=20.0), fcc.fly(rough, seconds=20.0)
+    assert one.records.tobytes() == same.records.tobytes()
+    assert one.truth.tobytes() == same.truth.tobytes()
+    other = fcc.fly(rough.replace({"built-in.seed": 8}), seconds=20.0)
+    assert one.truth.tobytes() != other.truth.tobytes()
+
+
+def test_the_gil_is_free_meanwhile() -> None:
+    """Another thread counts on while a flight of a day is flown."""
+    over = threading.Event()
+    counted = 0
+
+    def fly() -> None:
+        fcc.fly(seconds=86_400.0, keep=False)
+        over.set()
+
+    thread = threading.Thread(target=fly)
+    thread.start()
+    while not over.is_set() and counted < 100:
+        counted += 1
+        time.sleep(0.001)
+    assert counted >= 20
+    thread.join()
+
+
+def test_a_controller_in_python_flies_and_a_warning_says_what_that_is() -> None:
+    asked = []
+
+    def controller(
+        time_s: float,
+        measurements: fcc.Measurements,
+        setpoints: fcc.Setpoints,
+        surfaces: fcc.Surfaces,
+    ) -> fcc.Surfaces:
+        asked.append(time_s)
+        assert measurements.airspeed_mps > 0.0
+        assert setpoints.altitude_m > 0.0
+        return surfaces
+
+    with pytest.warns(RuntimeWarning, match="not real time"):
+        guided = fcc.fly(seconds=20.0, controller=controller)
+    # It proposes what the autopilot does, so nothing is changed.
+    assert guided.records.tobytes() == fcc.fly(seconds=20.0).records.tobytes()
+    assert len(asked) == np.count_nonzero(guided.records["state"] == 1)
+
+
+def test_a_sensor_in_python_breaks_another() -> None:
+    def freeze(time_s: float, measurements: fcc.Measurements) -> fcc.Measurements | None:
+        if time_s < 10.0:
+            return None
+        measurements.altitude_m = float("nan")
+        return measurements
+
+    with pytest.warns(RuntimeWarning):
+        flight = fcc.fly(seconds=12.0, sensor=freeze)
+    texts = [event.text for event in flight.events]
+    assert "engaged -> failsafe: altitude is missing or too old" in texts
+    failed = flight.records["state"] == 2
+    failed_at_s = flight.records["plant_time_s"][np.argmax(failed)]
+    assert failed_at_s == pytest.approx(10.25, abs=0.06)
+
+
+def test_what_python_raises_in_the_loop_is_raised() -> None:
+    def sensor(time_s: float, measurements: fcc.Measurements) -> None:
+        del measurements
+        if time_s > 1.0:
+            raise KeyError("broken")
+
+    def controller(*_: object) -> int:
+        return 3
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        with pytest.raises(KeyError, match="broken"):
+            fcc.fly(sensor=sensor)
+        with pytest.raises(TypeError, match="Surfaces"):
+            fcc.fly(controller=controller)  # type: ignore[arg-type]
+
+
+def test_in_real_time_time_passes() -> None:
+    fast = fcc.Config().replace({"built-in.engage_at_s": 1.2, "loop.rate_hz": 100.0})
+    began_s = time.monotonic()
+    flight = fcc.fly(fast, seconds=0.3, real_time=True)
+    assert time.monotonic() - began_s >= 1.4
+    assert flight.timing["timer"] == "timerfd"
+    assert flight.timing["ticks"] + flight.timing["missed"] >= 150
+
+
+def test_x_planes_aircraft_is_not_here() -> None:
+    x_plane = "[x-plane]\n"
+    with pytest.raises(fcc.FlightError, match="x-plane"):
+        fcc.fly(x_plane)
+    with pytest.raises(fcc.FlightError, match="x-plane"):
+        fcc.BuiltInAircraft(x_plane)
