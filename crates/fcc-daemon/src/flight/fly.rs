@@ -4,7 +4,7 @@ use std::io;
 use std::sync::atomic::Ordering;
 
 use fcc_core::framework::State;
-use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError, WatchdogConfig};
+use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError};
 use fcc_xplane::Simulator;
@@ -134,14 +134,10 @@ pub fn fly(
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
-            let watchdog = assembly.watchdog.enabled.then(|| {
-                let config = WatchdogConfig {
-                    hang_after: assembly.watchdog.hang_after(period),
-                    loop_priority: assembly.loop_config.realtime.priority,
-                };
-                HangWatch::start(link.pulse.clone(), link.stop.clone(), &config, held_at)
-            });
-            let watchdog = watchdog.transpose().map_err(FlyError::Watchdog)?;
+            let wishes = &assembly.loop_config.realtime;
+            let watchdog =
+                HangWatch::start(&assembly.watchdog, period, wishes.priority, &link, held_at)
+                    .map_err(FlyError::Watchdog)?;
             let mut tally = Tally::new(period)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
@@ -191,21 +187,7 @@ pub fn fly(
             (report, recording, interrupted)
         }
     };
-    let confirmed = connection.is_none_or(Connection::end);
-    if let Some(restart) = watch.restart.take() {
-        restart.end();
-    }
-    if !confirmed {
-        watch.remark(
-            "X-Plane did not show that it has its controls back; the guard process goes on \
-             trying for two minutes"
-                .to_owned(),
-        );
-    }
-    let report = LoopReport {
-        released: report.released && confirmed,
-        ..report
-    };
+    let report = give_back(report, connection, &mut watch);
     // The controls were given back before; the disk may take its time now.
     let recording =
         recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
@@ -217,6 +199,26 @@ pub fn fly(
     let mut outcome = Outcome::new(timer_name, report, events, score, recording);
     outcome.explain(interrupted, refused);
     Ok(outcome)
+}
+
+/// Waits until X-Plane shows that it has its controls back, and says in the
+/// report whether it does.
+fn give_back(report: LoopReport, connection: Option<Connection>, watch: &mut Watch) -> LoopReport {
+    let confirmed = connection.is_none_or(Connection::end);
+    if let Some(restart) = watch.restart.take() {
+        restart.end();
+    }
+    if !confirmed {
+        watch.remark(
+            "X-Plane did not show that it has its controls back; the guard process goes on \
+             trying for two minutes"
+                .to_owned(),
+        );
+    }
+    LoopReport {
+        released: report.released && confirmed,
+        ..report
+    }
 }
 
 fn run_in_lockstep(

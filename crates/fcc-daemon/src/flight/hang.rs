@@ -12,11 +12,12 @@ use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::Duration;
 
-use fcc_runtime::{Hang, Pulse, StopHandle, WatchdogConfig, watch};
+use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGrants;
 use fcc_xplane::{Control, Released, XPlane, XPlaneConfig, XPlaneStatus};
 
-use crate::config::XPlaneSection;
+use super::Pilot;
+use crate::config::{WatchdogSection, XPlaneSection};
 use crate::exit::Exit;
 
 /// How long the watchdog waits for X-Plane to show that it has its controls
@@ -40,18 +41,28 @@ pub(super) struct HangWatch {
 }
 
 impl HangWatch {
-    /// Starts the watchdog. Gives also what the kernel granted it.
+    /// Starts the watchdog, if one is wanted. Gives also what the kernel granted
+    /// it; `at` is where controls may be held.
     ///
     /// # Errors
     /// When there is no thread to be had.
     pub(super) fn start(
-        pulse: Pulse,
-        stop: StopHandle,
-        config: &WatchdogConfig,
+        section: &WatchdogSection,
+        period: Duration,
+        loop_priority: Option<u8>,
+        link: &Link<Pilot>,
         at: Option<(XPlaneStatus, XPlaneSection)>,
-    ) -> io::Result<(Self, RealtimeGrants)> {
+    ) -> io::Result<Option<(Self, RealtimeGrants)>> {
+        if !section.enabled {
+            return Ok(None);
+        }
+        let config = WatchdogConfig {
+            hang_after: section.hang_after(period),
+            loop_priority,
+        };
+        let stop = link.stop.clone();
         let (tell, told) = mpsc::channel();
-        let grants = watch(pulse, config, move |Hang { silent }| {
+        let grants = watch(link.pulse.clone(), &config, move |Hang { silent }| {
             // Should it wake up once more, it lets go by itself.
             stop.stop();
             let released = at.is_none_or(|(status, section)| give_back(&status, &section));
@@ -65,7 +76,7 @@ impl HangWatch {
             };
             std::process::exit(i32::from(exit as u8));
         })?;
-        Ok((Self { told }, grants))
+        Ok(Some((Self { told }, grants)))
     }
 
     /// The hang, once the controls were given back.
