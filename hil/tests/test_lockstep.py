@@ -190,3 +190,25 @@ def test_the_legs_are_those_of_the_pattern() -> None:
     )
     flown, _ = fly(Scenario(seed=SEED, legs=3, pattern=pattern, config=config))
     _hold(flown["worst"], heading_settle_s=12.0, altitude_settle_s=12.0)
+
+
+@pytest.mark.parametrize(
+    ("aircraft", "rms_ft", "airspeed_kt", "settle_s", "loss_ft"),
+    [("c172p", 0.9, 2.5, 16.6, 1.6), ("c172x", 1.4, 5.0, 16.4, 2.5)],
+)
+def test_better_than_a_first_controller_in_every_column(
+    aircraft: str, rms_ft: float, airspeed_kt: float, settle_s: float, loss_ft: float
+) -> None:
+    """Noise and 25 ms delay; the limits are what a first controller reached."""
+    flown, _ = fly(Scenario(aircraft=aircraft, seed=SEED, noise=True, delay_ticks=1))
+    _hold(
+        flown["worst"],
+        heading_settle_s=settle_s,
+        heading_overshoot_deg=0.5,
+        heading_rms_deg=0.4,
+        altitude_settle_s=10.5,
+        altitude_rms_ft=rms_ft,
+        turn_loss_ft=loss_ft,
+        airspeed_error_kt=airspeed_kt,
+        lateral_acceleration_g=0.05,
+    )

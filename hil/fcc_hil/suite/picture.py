@@ -10,6 +10,7 @@ import matplotlib as mpl
 mpl.use("Agg")
 
 import matplotlib.pyplot as plt
+from matplotlib.ticker import NullFormatter
 
 from .flying import Outcome
 
@@ -48,6 +49,8 @@ def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
         if theirs is not None:
             axes.axvline(max(theirs, least), color=_PEER, linestyle="--", linewidth=1.0)
         axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(lambda value, _position: f"{value:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_title(title, fontsize=9)
         axes.grid(visible=True, axis="x", color=_GRID, linewidth=0.6)
         axes.tick_params(labelsize=7)
@@ -59,5 +62,5 @@ def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
         "Worst leg of each flight (dot), its limit (red line), JSBSim's own autopilot (dashed)",
         fontsize=10,
     )
-    figure.savefig(path, dpi=80)
+    figure.savefig(path, dpi=60)
     plt.close(figure)
