@@ -1,0 +1,190 @@
+//! What the daemon's commands do with recordings: list, recover, report,
+//! replay.
+
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "pyo3 hands paths over by value"
+)]
+
+use std::path::{Path, PathBuf};
+
+use fcc_core::flight::Course;
+use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_daemon::config::Config;
+use fcc_daemon::replay::{Chain, Deviation, Identity, Replay, Run, run};
+use fcc_telemetry::recording::{self, Recording};
+use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
+use pyo3::prelude::*;
+use serde::Serialize;
+
+use crate::config::configuration;
+use crate::errors;
+use crate::json;
+
+/// The recordings in a folder, oldest first, each as a dict. What is no
+/// recording has the keys `path` and `error` alone.
+#[pyfunction]
+pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    #[derive(Serialize)]
+    #[serde(untagged)]
+    enum Listed {
+        Entry(recording::Entry),
+        Not { path: PathBuf, error: String },
+    }
+    let listed = py.detach(|| -> Result<Vec<Listed>, String> {
+        let files = recording::files(&folder).map_err(|error| {
+            format!(
+                "{}: cannot be listed: {error}. Give the folder that flights were recorded to",
+                folder.display()
+            )
+        })?;
+        let entry = |path: PathBuf| match recording::entry(&path) {
+            Ok(entry) => Listed::Entry(entry),
+            Err(error) => Listed::Not {
+                path,
+                error: error.to_string(),
+            },
+        };
+        Ok(files.into_iter().map(entry).collect())
+    });
+    json::to_python(py, &listed.map_err(|words| errors::RECORDING.say(words))?)
+}
+
+/// Makes a whole recording of one that was cut off, in its place; a whole one
+/// is left alone. What came of it is a dict.
+#[pyfunction]
+pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    let recovered = py
+        .detach(|| recording::recover(&path, |_| {}))
+        .map_err(|error| errors::RECORDING.say(error))?;
+    json::to_python(py, &recovered)
+}
+
+/// Reports on a recording as `fccd report` does: all statistics as a dict.
+/// `html` is a page to write with all plots, `csv` a folder for every tick and
+/// event as tables.
+#[pyfunction]
+#[pyo3(signature = (path, *, html = None, csv = None))]
+pub(crate) fn report(
+    py: Python<'_>,
+    path: PathBuf,
+    html: Option<PathBuf>,
+    csv: Option<PathBuf>,
+) -> PyResult<Bound<'_, PyAny>> {
+    let made = py.detach(|| -> Result<Report, String> {
+        let report = survey(&path, csv.as_deref())?;
+        if let Some(html) = &html {
+            if same_file(html, &path) {
+                return Err(format!(
+                    "{}: is the recording itself: give the page another name",
+                    html.display()
+                ));
+            }
+            let page = report.to_html().map_err(|error| error.to_string())?;
+            std::fs::write(html, page).map_err(|error| not_written(html, &error))?;
+        }
+        Ok(report)
+    });
+    json::to_python(py, &made.map_err(|words| errors::RECORDING.say(words))?)
+}
+
+fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
+    let recording = Recording::open(path).map_err(|error| error.to_string())?;
+    let origin = Origin::of(&recording);
+    let folder = csv.unwrap_or(Path::new(""));
+    let refused = |error: std::io::Error| not_written(folder, &error);
+    let mut tables = csv
+        .map(|folder| CsvFolder::create(folder, &origin))
+        .transpose()
+        .map_err(refused)?;
+    let mut survey = Survey::new(origin, pattern(&recording));
+    let mut messages = recording.messages().map_err(|error| error.to_string())?;
+    for message in &mut messages {
+        survey
+            .take(&message)
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        if let Some(tables) = &mut tables {
+            tables.take(&message).map_err(refused)?;
+        }
+    }
+    if let Some(tables) = tables {
+        tables.finish().map_err(refused)?;
+    }
+    Ok(survey.finish(FileEnd::of(&recording, messages.cut())))
+}
+
+/// The pattern that was to be flown; a configuration of another version may
+/// not be understood, and then nothing is scored.
+fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
+    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
+    match config.course {
+        Course::TimedPattern(pattern) => Some(pattern),
+        Course::Hold => None,
+    }
+}
+
+fn not_written(path: &Path, error: &std::io::Error) -> String {
+    format!("{}: cannot be written: {error}", path.display())
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// Flies a recording again through the very code that flew it, as
+/// `fccd replay` does: a dict with `identical`, and where it is not. With
+/// another `config` the dict says where that one would have commanded
+/// otherwise. `paths` is a file, or the parts of a recording, oldest first.
+#[pyfunction]
+#[pyo3(signature = (paths, config = None))]
+pub(crate) fn replay<'py>(
+    py: Python<'py>,
+    paths: &Bound<'py, PyAny>,
+    config: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    #[derive(Serialize)]
+    struct Flown {
+        #[serde(flatten)]
+        run: Run,
+        cuts: Vec<String>,
+        identical: Option<bool>,
+        identity: Option<Identity>,
+        deviation: Option<Deviation>,
+    }
+    let paths: Vec<PathBuf> = match paths.extract::<PathBuf>() {
+        Ok(one) => vec![one],
+        Err(_) => paths.extract()?,
+    };
+    let other = config
+        .map(|config| configuration(Some(config)))
+        .transpose()?;
+    let flown = py.detach(|| -> Result<Flown, String> {
+        let chain = Chain::open(&paths).map_err(|error| error.to_string())?;
+        let mut config = other.clone().unwrap_or_else(|| chain.config().clone());
+        // The times of a recording cannot be changed.
+        config.tick.rate_hz = chain.config().tick.rate_hz;
+        let replay = Replay::new(&config).map_err(|error| format!("the loop's timer: {error}"))?;
+        let mut messages = chain.messages();
+        let mut identity = Identity::default();
+        let mut deviation = Deviation::default();
+        let run = run(replay, &mut messages, |recorded, again| {
+            if other.is_some() {
+                deviation.take(recorded, again);
+            } else {
+                identity.take(recorded, again);
+            }
+        });
+        let same = other.is_none();
+        Ok(Flown {
+            run,
+            cuts: messages.cuts().to_vec(),
+            identical: same.then(|| identity.is_identical()),
+            identity: same.then_some(identity),
+            deviation: (!same).then_some(deviation),
+        })
+    });
+    json::to_python(py, &flown.map_err(|words| errors::RECORDING.say(words))?)
+}

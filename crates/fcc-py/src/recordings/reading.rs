@@ -1,0 +1,203 @@
+//! A recording, read into numpy.
+
+use std::path::PathBuf;
+
+use fcc_core::framework::Message;
+use fcc_telemetry::recording::{About, End, Recording};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyDict;
+
+use super::frame;
+use crate::config::{PyConfig, refused};
+use crate::errors;
+use crate::events::PyEvent;
+use crate::structured::{self, RecordRow};
+
+/// Rows that are asked room for at most before they are there: an hour at
+/// 40 Hz. What a file says of itself is not believed further.
+const ROOM: u64 = 144_000;
+
+/// A recording of a flight, whole or cut off: what is known of the flight, its
+/// records as a structured array, its events.
+///
+/// Opening reads its two ends; the first use of `records`, `events` or `cut`
+/// reads all of it, and the GIL is released meanwhile. Raises `RecordingError`
+/// where a file cannot be read or is something else.
+#[pyclass(name = "Recording", module = "fcc", frozen)]
+pub(crate) struct PyRecording {
+    recording: Recording,
+    contents: PyOnceLock<Contents>,
+}
+
+struct Contents {
+    records: Py<PyArray1<RecordRow>>,
+    events: Vec<PyEvent>,
+    cut: Option<String>,
+}
+
+#[pymethods]
+impl PyRecording {
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let recording = py
+            .detach(|| Recording::open(path))
+            .map_err(|error| errors::RECORDING.say(error))?;
+        Ok(Self {
+            recording,
+            contents: PyOnceLock::new(),
+        })
+    }
+
+    /// All records, oldest first, as a structured array (`fcc.RECORD`): a row
+    /// for each tick, a column for each number, with the unit at the end of its
+    /// name. Instants are ns on the loop's clock, the smallest number standing
+    /// for never; the value beside such a time means nothing.
+    #[getter]
+    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<RecordRow>>> {
+        Ok(self.contents(py)?.records.bind(py).clone())
+    }
+
+    /// What happened, oldest first.
+    #[getter]
+    fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEvent>> {
+        Ok(self.contents(py)?.events.clone())
+    }
+
+    /// Where and why reading ended before the recording did; None for a whole
+    /// one.
+    #[getter]
+    fn cut(&self, py: Python<'_>) -> PyResult<Option<String>> {
+        Ok(self.contents(py)?.cut.clone())
+    }
+
+    /// What is known of the flight: program, machine, loop, sensors.
+    #[getter]
+    fn about<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        about(py, self.recording.about())
+    }
+
+    /// The configuration that was flown, defaults included.
+    #[getter]
+    fn config(&self) -> PyResult<PyConfig> {
+        let name = format!("{}: config.toml", self.recording.path().display());
+        fcc_daemon::config::Config::parse(&self.recording.about().config, &name)
+            .map(|config| PyConfig { config })
+            .map_err(|error| refused(&error))
+    }
+
+    /// The account at the end of the file, or counted from what is there of a
+    /// cut one.
+    fn account<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let end = py
+            .detach(|| self.recording.account())
+            .map_err(|error| errors::RECORDING.say(error))?;
+        account(py, &end)
+    }
+
+    /// Whether the file ends as it should; if not, see `recover`.
+    #[getter]
+    fn is_whole(&self) -> bool {
+        self.recording.is_whole()
+    }
+
+    /// Where the file is.
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.recording.path().to_owned()
+    }
+
+    /// How long the file is.
+    #[getter]
+    fn bytes(&self) -> u64 {
+        self.recording.bytes()
+    }
+
+    /// All records as a `pandas.DataFrame`, the index being seconds since the
+    /// first record; what was never measured is NaN. Needs pandas.
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        frame::of(self.contents(py)?.records.bind(py).as_any())
+    }
+
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.contents(py)?.records.bind(py).len()
+    }
+
+    fn __repr__(&self) -> String {
+        let path = self.recording.path().display().to_string();
+        format!("Recording({path:?})")
+    }
+}
+
+impl PyRecording {
+    fn contents(&self, py: Python<'_>) -> PyResult<&Contents> {
+        self.contents.get_or_try_init(py, || {
+            let (rows, events, cut) = py.detach(|| self.read())?;
+            Ok(Contents {
+                records: structured::records(py, rows).unbind(),
+                events,
+                cut,
+            })
+        })
+    }
+
+    fn read(&self) -> PyResult<(Vec<RecordRow>, Vec<PyEvent>, Option<String>)> {
+        let about = self.recording.about();
+        let said = self.recording.end().map_or(0, |end| end.ticks);
+        let mut rows = Vec::with_capacity(said.min(ROOM) as usize);
+        let mut events = Vec::new();
+        let mut messages = self
+            .recording
+            .messages()
+            .map_err(|error| errors::RECORDING.say(error))?;
+        for message in &mut messages {
+            match message {
+                Message::Tick(record) => rows.push(RecordRow::from(&record)),
+                Message::Event(event) => {
+                    events.push(PyEvent::of(&event, &about.sensors, &about.actuators));
+                }
+            }
+        }
+        Ok((rows, events, messages.cut().map(str::to_owned)))
+    }
+}
+
+fn about<'py>(py: Python<'py>, about: &About) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("software", &about.software)?;
+    dict.set_item("git_hash", &about.git_hash)?;
+    dict.set_item("host", &about.host)?;
+    dict.set_item("kernel", &about.kernel)?;
+    dict.set_item("aircraft", &about.aircraft)?;
+    dict.set_item("rate_hz", about.rate_hz)?;
+    dict.set_item("timer", &about.timer)?;
+    dict.set_item("sensors", &about.sensors)?;
+    dict.set_item("actuators", &about.actuators)?;
+    dict.set_item("policy", &about.realtime.policy)?;
+    dict.set_item("priority", about.realtime.priority)?;
+    dict.set_item("memory_locked", about.realtime.memory_locked)?;
+    dict.set_item("refused", &about.realtime.refused)?;
+    dict.set_item("started", about.started())?;
+    dict.set_item("started_unix_ns", about.started_unix_ns)?;
+    dict.set_item("clock_offset_ns", about.clock_offset_ns)?;
+    dict.set_item("config_as_given", &about.config_as_given)?;
+    dict.set_item("config", &about.config)?;
+    dict.set_item("config_sha256", about.config_sha256())?;
+    dict.set_item("part", about.part)?;
+    Ok(dict)
+}
+
+fn account<'py>(py: Python<'py>, end: &End) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("ending", &end.ending)?;
+    dict.set_item("ticks", end.ticks)?;
+    dict.set_item("first_tick", end.first_tick)?;
+    dict.set_item("last_tick", end.last_tick)?;
+    dict.set_item("missed", end.missed)?;
+    dict.set_item("duration_ns", end.duration_ns)?;
+    dict.set_item("worst_lateness_ns", end.worst_lateness_ns)?;
+    dict.set_item("state", &end.state)?;
+    dict.set_item("not_recorded", end.not_recorded)?;
+    Ok(dict)
+}
