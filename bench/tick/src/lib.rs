@@ -14,7 +14,12 @@
 mod flight;
 pub mod marks;
 mod stages;
-#[allow(missing_docs, reason = "it is a test's own")]
+#[allow(
+    missing_docs,
+    clippy::missing_panics_doc,
+    clippy::new_without_default,
+    reason = "it is a test's own"
+)]
 #[path = "../../../crates/fcc-xplane/tests/support/mod.rs"]
 mod support;
 
