@@ -29,9 +29,11 @@ fn whole(criterion: &mut Criterion) {
     });
 }
 
+type Stage = fn(&mut Stages);
+
 fn stages(criterion: &mut Criterion) {
     let mut stages = Stages::engaged();
-    let each: [(&str, fn(&mut Stages)); 6] = [
+    let each: [(&str, Stage); 6] = [
         ("sensors, decoding", Stages::sensors),
         ("navigation", Stages::navigation),
         ("guidance", Stages::guidance),

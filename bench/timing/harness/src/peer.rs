@@ -1,7 +1,7 @@
 //! Who is compared, and how each is started.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::Context as _;
@@ -90,7 +90,7 @@ impl Peer {
         let seconds = under.seconds.to_string();
         let run = ["--rate", &rate, "--seconds", &seconds];
         let ours = |timer: &str| -> anyhow::Result<Vec<String>> {
-            let mut words = words(beside("peer")?, &[timer]);
+            let mut words = words(&beside("peer")?, &[timer]);
             words.extend(run.map(str::to_owned));
             if self.spins() {
                 words.push("--spin".to_owned());
@@ -103,9 +103,9 @@ impl Peer {
             Self::NanosleepSpin | Self::Nanosleep => ours("nanosleep")?,
             Self::Rtsc => ours("rtsc")?,
             Self::Tokio => ours("tokio")?,
-            Self::CopperPrecise => words(beside("peer-copper-precise")?, &run),
-            Self::Copper => words(beside("peer-copper")?, &run),
-            Self::Python => words("python3".into(), &["-c", PYTHON_LOOP, &rate, &seconds]),
+            Self::CopperPrecise => words(&beside("peer-copper-precise")?, &run),
+            Self::Copper => words(&beside("peer-copper")?, &run),
+            Self::Python => words(Path::new("python3"), &["-c", PYTHON_LOOP, &rate, &seconds]),
             Self::Cyclictest => return Ok(cyclictest(under)),
         };
         let mut command = bounded(under);
@@ -126,7 +126,7 @@ fn bounded(under: Conditions) -> Command {
     command
 }
 
-fn words(program: PathBuf, arguments: &[&str]) -> Vec<String> {
+fn words(program: &Path, arguments: &[&str]) -> Vec<String> {
     let mut words = vec![program.to_string_lossy().into_owned()];
     words.extend(arguments.iter().map(|&argument| argument.to_owned()));
     words

@@ -90,9 +90,9 @@ impl Figures {
             .map_or(0, |(l, f)| l - f);
         let earliest_us = origin_ns.map(|origin| {
             let phase = (first - origin).rem_euclid(period_ns) as f64 / 1e3;
-            let period_us = period_ns as f64 / 1e3;
-            let phase = if phase > (1.0 - TOLERANCE) * period_us {
-                phase - period_us
+            let whole_us = period_ns as f64 / 1e3;
+            let phase = if phase > (1.0 - TOLERANCE) * whole_us {
+                phase - whole_us
             } else {
                 phase
             };
@@ -159,7 +159,9 @@ fn grid_numbers(ticks_ns: &[i64], period_ns: i64) -> Vec<i64> {
         behind_ns.push(tick - number * period_ns);
     }
     let first = numbers.first().copied().unwrap_or(0);
-    numbers.iter_mut().for_each(|number| *number -= first);
+    for number in &mut numbers {
+        *number -= first;
+    }
     numbers
 }
 

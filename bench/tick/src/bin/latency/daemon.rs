@@ -33,10 +33,10 @@ impl Daemon {
     ) -> Result<Self, Box<dyn Error>> {
         let folder = tempfile::tempdir()?;
         let config = folder.path().join("fccd.toml");
-        let recordings = folder.path().join("recordings");
+        let recordings = folder.path().join("recordings").display().to_string();
         let text = format!(
             "[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
-             [recording]\nfolder = {recordings:?}\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
+             [recording]\nfolder = \"{recordings}\"\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
              [course]\nkind = \"hold\"\n"
         );
         fs::write(&config, text)?;
