@@ -236,7 +236,7 @@ class Machine:
         self,
         measurements: Measurements | None = None,
         *,
-        missing: Sequence[str] = (),
+        missing: Sequence[str] = ...,
         standing: Surfaces | tuple[float, float, float, float] | None = None,
         switch: bool | None = None,
     ) -> Surfaces | None:

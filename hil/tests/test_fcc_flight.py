@@ -43,12 +43,12 @@ def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:
 
 
 def test_the_gil_is_free_meanwhile() -> None:
-    """Another thread counts on while a flight of a day is flown."""
+    """Another thread counts on while a flight of hours is flown."""
     over = threading.Event()
     counted = 0
 
     def fly() -> None:
-        fcc.fly(seconds=86_400.0, keep=False)
+        fcc.fly(seconds=20_000.0, keep=False)
         over.set()
 
     thread = threading.Thread(target=fly)
@@ -90,8 +90,9 @@ def test_a_sensor_in_python_breaks_another() -> None:
 
     with pytest.warns(RuntimeWarning):
         flight = fcc.fly(seconds=12.0, sensor=freeze)
-    texts = [event.text for event in flight.events]
-    assert "engaged -> failsafe: altitude is missing or too old" in texts
+    failures = [event.text for event in flight.events if "-> failsafe" in event.text]
+    assert len(failures) == 1
+    assert "altitude is missing or too old" in failures[0]
     failed = flight.records["state"] == 2
     failed_at_s = flight.records["plant_time_s"][np.argmax(failed)]
     assert failed_at_s == pytest.approx(10.25, abs=0.06)

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from recordings import EVENT, RECORD, by_index, only_recording
 
-SECONDS = 25
+SECONDS = 200
+"""Long enough for several chunks, of which a cut file still has the first."""
 
 
 @pytest.fixture(scope="module")

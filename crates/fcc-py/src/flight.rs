@@ -289,9 +289,7 @@ impl Flown {
     fn into_flight(self, py: Python<'_>) -> PyFlight {
         let realtime = Realtime {
             policy: "not asked for".to_owned(),
-            priority: 0,
-            memory_locked: false,
-            refused: Vec::new(),
+            ..Realtime::default()
         };
         let log = self.log;
         // A leg that was not flown to its end has no figures, and the flight
