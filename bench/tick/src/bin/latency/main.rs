@@ -39,7 +39,7 @@ struct Cli {
     /// The simulator's frames per second
     #[arg(long, default_value_t = 60)]
     frames: u32,
-    /// Lines for the daemon's section [loop], such as 'timer = "posix"'
+    /// Lines for the daemon's loop section, such as 'timer = "posix"'
     #[arg(long, default_value = "")]
     with: String,
     /// Writes the figures here
