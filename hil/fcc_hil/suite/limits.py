@@ -2,8 +2,8 @@
 
 The two Cessnas with noise and a delay of 25 ms are held to the figures of a first
 controller, which they have to beat in every column. The others are held to what was
-measured on other seeds and a margin of about a third: a figure beyond it says that
-something changed.
+measured on the seeds flown here and a margin of about a third: a figure beyond it says
+that something changed.
 """
 
 from __future__ import annotations
