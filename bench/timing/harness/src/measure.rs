@@ -62,11 +62,7 @@ fn run_cyclictest(under: Conditions) -> anyhow::Result<Ticks> {
     let cpu_ns = children_cpu_ns()? - before_ns;
     let text = String::from_utf8(output.stdout).context("cyclictest printed no text")?;
     let period_ns = 1_000_000_000 / i64::from(under.rate_hz);
-    let ticks_ns = text
-        .lines()
-        .filter_map(latency)
-        .map(|(number, late_ns)| number * period_ns + late_ns)
-        .collect();
+    let ticks_ns = times_of(text.lines().filter_map(latency), period_ns);
     let (policy, priority) = under.priority.map_or(("SCHED_OTHER", 0), |priority| {
         ("SCHED_FIFO", i32::from(priority))
     });
@@ -77,6 +73,19 @@ fn run_cyclictest(under: Conditions) -> anyhow::Result<Ticks> {
         cpu_ns,
         ticks_ns,
     })
+}
+
+/// When ticks came that were so late, ns. One that comes after further
+/// deadlines have passed makes cyclictest skip these, and count on by one.
+fn times_of(latencies: impl Iterator<Item = (i64, i64)>, period_ns: i64) -> Vec<i64> {
+    let mut skipped = 0;
+    latencies
+        .map(|(number, late_ns)| {
+            let tick_ns = (number + skipped) * period_ns + late_ns;
+            skipped += late_ns / period_ns;
+            tick_ns
+        })
+        .collect()
 }
 
 /// Number and lateness of a line such as `0: 17: 14091`; no other line has
@@ -132,5 +141,13 @@ mod tests {
         assert_eq!(latency("Thread 0 Interval: 10500"), None);
         let summary = "T: 0 ( 2699) P:80 I:10000 C: 5 Min: 13991 Act: 14207";
         assert_eq!(latency(summary), None);
+    }
+
+    #[test]
+    fn what_cyclictest_skips_moves_the_ticks_after_it() {
+        // Due at 0, 10, 20 and then, 32 ms late, after 30, 40 and 50, at 60.
+        let latencies = [(0, 1), (1, 2), (2, 32), (3, 1)];
+        let times = times_of(latencies.into_iter(), 10);
+        assert_eq!(times, [1, 12, 52, 61]);
     }
 }
