@@ -1,5 +1,6 @@
 //! Who publishes, and in which layout.
 
+use nix::sys::time::TimeValLike;
 use nix::time::{ClockId, clock_gettime};
 
 use super::{Event, LAYOUT, Status, Text};
@@ -77,9 +78,7 @@ impl Default for Info {
 impl Info {
     /// This process as it begins to publish: process, time and layout.
     pub fn of_this_process() -> Self {
-        let now_ns = |clock| {
-            clock_gettime(clock).map_or(0, |now| now.tv_sec() * 1_000_000_000 + now.tv_nsec())
-        };
+        let now_ns = |clock| clock_gettime(clock).map_or(0, |now| now.num_nanoseconds());
         Self {
             process_id: std::process::id(),
             started_unix_ns: now_ns(ClockId::CLOCK_REALTIME),

@@ -60,13 +60,17 @@ pub(super) fn is_locked() -> bool {
 }
 
 /// How many bytes the calling thread may lock; `None` for any number.
+#[cfg_attr(
+    target_pointer_width = "64",
+    expect(clippy::unnecessary_cast, reason = "32-bit systems count in 32 bits")
+)]
 fn limit() -> Option<u64> {
     let (soft, _) = getrlimit(Resource::RLIMIT_MEMLOCK).unwrap_or((0, 0));
     let exempt = || {
         fs::read_to_string(STATUS).is_ok_and(|status| has_capability(&status, CAP_IPC_LOCK))
             && fs::read_to_string(UID_MAP).is_ok_and(|map| is_whole_system(&map))
     };
-    (soft != libc::RLIM_INFINITY && !exempt()).then_some(soft)
+    (soft != libc::RLIM_INFINITY && !exempt()).then_some(soft as u64)
 }
 
 fn kib(status: &str, field: &str) -> Option<u64> {
