@@ -30,7 +30,7 @@ def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnd
     path = scratch / "fccd.toml"
     path.write_text(f'[built-in]\nengage_at_s = 1.5\n[course]\nkind = "hold"\n{config}')
     words: list[str | Path] = [fccd, "fly", "--config", path, "--instance", instance, "--json"]
-    return DaemonUnderTest([*words, "--no-recording", "--seconds", "600"], scratch)
+    return DaemonUnderTest([*words, "--recordings", scratch, "--seconds", "600"], scratch)
 
 
 def order(fccd: Path, instance: str, *words: str) -> subprocess.CompletedProcess[str]:
@@ -142,9 +142,9 @@ def test_an_engagement_that_is_refused_says_what_blocks_it(
 ) -> None:
     path = tmp_path / "fccd.toml"
     # Nobody is there to be flown.
-    path.write_text('[x-plane]\nsimulator = "127.0.0.1:9"\n[recording]\nenabled = false\n')
+    path.write_text('[x-plane]\nsimulator = "127.0.0.1:9"\n')
     words: list[str | Path] = [fccd, "run", "--config", path, "--instance", instance, "--json"]
-    with DaemonUnderTest(words, tmp_path) as daemon:
+    with DaemonUnderTest([*words, "--recordings", tmp_path], tmp_path) as daemon:
         daemon.wait_for("no aircraft yet")
         commander = fcc.Commander(instance)
         with pytest.raises(fcc.OrderError, match="attitude is missing or too old"):
