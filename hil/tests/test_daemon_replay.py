@@ -56,7 +56,7 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
             ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == FAILSAFE
 
-    (recording,) = recordings.iterdir()
+    (recording,) = recordings.glob("*.mcap")
     exit_code, found = replay(fccd, recording)
     assert exit_code == SUCCESS, found
     assert found["identity"]["differing"] == 0
