@@ -184,7 +184,7 @@ def test_ranges_are_said() -> None:
         (lambda: fcc.Timer(0.0)): "period_s is 0: choose 0.00001 to 3600",
         (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
         (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 0 to 1",
-        (lambda: engaged().order(heading_rad=9.0)): "heading_rad is 9",
+        (lambda: engaged().order(altitude_m=9e9)): "altitude_m is 9000000000: choose",
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",

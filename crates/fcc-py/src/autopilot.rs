@@ -5,7 +5,7 @@ use fcc_core::framework::Controller;
 use numpy::{PyArray2, ToPyArray};
 use pyo3::prelude::*;
 
-use crate::arguments::{rows, step_s, within};
+use crate::arguments::{finite, rows, step_s, within};
 use crate::config::autopilot_config;
 use crate::errors;
 use crate::stepped::{Stepped, names};
@@ -198,21 +198,19 @@ pub(crate) fn matrix<const N: usize>(
     rows.into_flattened().to_pyarray(py).reshape([count, N])
 }
 
-/// Orders for the controller, each in its range: airspeed in m/s, heading in
-/// rad, altitude in m.
+/// Orders for the controller: airspeed in m/s, 5 to 340; heading in rad, any
+/// number of turns; altitude in m, -500 to 20,000.
 pub(crate) fn checked_orders(
     airspeed_mps: Option<f64>,
     heading_rad: Option<f64>,
     altitude_m: Option<f64>,
 ) -> PyResult<Vec<Order>> {
-    use std::f64::consts::TAU;
-    let airspeed = airspeed_mps.map(|mps| within("airspeed_mps", mps, 5.0, 340.0));
-    let heading = heading_rad.map(|rad| within("heading_rad", rad, -TAU, TAU));
-    let altitude = altitude_m.map(|m| within("altitude_m", m, -500.0, 20_000.0));
+    let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, 5.0, 340.0);
+    let altitude = |m| within("altitude_m", finite("altitude_m", m)?, -500.0, 20_000.0);
     [
-        airspeed.map(|mps| mps.map(Order::Airspeed)),
-        heading.map(|rad| rad.map(Order::Heading)),
-        altitude.map(|m| m.map(Order::Altitude)),
+        airspeed_mps.map(|mps| airspeed(mps).map(Order::Airspeed)),
+        heading_rad.map(|rad| finite("heading_rad", rad).map(Order::Heading)),
+        altitude_m.map(|m| altitude(m).map(Order::Altitude)),
     ]
     .into_iter()
     .flatten()
