@@ -32,7 +32,7 @@ def test_an_altimeter_that_errs_is_followed(flight: Flight, faults: Faults) -> N
     flight.engages(by=3)
     faults.bias(altitude("m"), by=10)
     wrong_m = flight.captured.altitude_ft * 0.3048 - 10
-    flight.settles(altitude("m"), at=wrong_m, within=3, by=20)
+    flight.settles(altitude("m"), at=wrong_m, within=2, by=40)
     flight.never(pitch < -15)
     flight.never("failsafe")
 
