@@ -35,7 +35,11 @@ impl Flight {
         let parts = Parts {
             timer: Box::new(Unwaiting(ManualTimer::new(PERIOD).expect("a fair period"))),
             sensors: vec![Box::new(sensor)],
-            controller: Autopilot::new(AutopilotConfig::default()),
+            controller: Autopilot::new(AutopilotConfig {
+                // The simulator's values stand still, which is no fault here.
+                frozen_after: Duration::ZERO,
+                ..AutopilotConfig::default()
+            }),
             actuators: vec![Box::new(actuator)],
         };
         let (mut machine, link) =

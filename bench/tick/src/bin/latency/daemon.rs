@@ -34,8 +34,9 @@ impl Daemon {
         let folder = tempfile::tempdir()?;
         let config = folder.path().join("fccd.toml");
         let recordings = folder.path().join("recordings").display().to_string();
+        // The simulator's values stand still, which is no fault of sensors here.
         let text = format!(
-            "[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
+            "[failsafe]\nsensor_frozen_s = 0.0\n\n[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
              [recording]\nfolder = \"{recordings}\"\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
              [course]\nkind = \"hold\"\n"
         );
