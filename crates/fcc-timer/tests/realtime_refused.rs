@@ -3,12 +3,12 @@
 #![cfg(test)]
 #![allow(unsafe_code)]
 
-use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use std::thread;
 
 use fcc_timer::{CpuWish, RealtimeWishes, Strictness};
 
-const ALLOWED_BYTES: u64 = 64 << 10;
+const ALLOWED_BYTES: rlim_t = 64 << 10;
 
 /// Runs a check in a thread that may do no more than anybody may.
 fn without_rights(check: fn()) {
