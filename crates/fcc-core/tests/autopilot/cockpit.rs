@@ -1,0 +1,206 @@
+//! An autopilot with somebody in the other seat, who moves the instruments.
+
+use core::time::Duration;
+
+use fcc_core::flight::{
+    Attitude, Autopilot, AutopilotConfig, BodyRates, Course, Measurements, Plant, PlantState,
+    SpecificForce, Surfaces, flags,
+};
+use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
+
+/// Every sensor that control needs, by its fault.
+pub(crate) const SENSORS: [Flags; 6] = [
+    flags::ATTITUDE,
+    flags::HEADING,
+    flags::BODY_RATES,
+    flags::SPECIFIC_FORCE,
+    flags::AIRSPEED,
+    flags::ALTITUDE,
+];
+
+pub(crate) const DT_S: f64 = 0.025;
+pub(crate) const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
+
+/// An autopilot and the aircraft that it believes to be in.
+pub(crate) struct Cockpit {
+    pub(crate) autopilot: Autopilot,
+    pub(crate) tick: Tick,
+    /// What the sensors say; stamped at each tick.
+    pub(crate) feel: Feel,
+    pub(crate) measurements: Measurements,
+    pub(crate) silent: Flags,
+    pub(crate) switch: Option<Switch>,
+}
+
+#[derive(Clone, Copy)]
+pub(crate) struct Feel {
+    pub(crate) pitch_deg: f64,
+    pub(crate) roll_deg: f64,
+    pub(crate) heading_deg: f64,
+    pub(crate) airspeed_kt: f64,
+    pub(crate) altitude_m: f64,
+    pub(crate) plant: Option<PlantState>,
+}
+
+pub(crate) const LEVEL: Feel = Feel {
+    pitch_deg: 0.0,
+    roll_deg: 0.0,
+    heading_deg: 30.0,
+    airspeed_kt: 100.0,
+    altitude_m: 914.4,
+    plant: None,
+};
+
+pub(crate) const STANDING: Surfaces = Surfaces {
+    throttle: 0.62,
+    elevator: 0.05,
+    aileron: -0.02,
+    rudder: 0.01,
+};
+
+impl Cockpit {
+    pub(crate) fn new(course: Course) -> Self {
+        let config = AutopilotConfig {
+            course,
+            // What it feels here is the same to the last bit until it is told
+            // otherwise.
+            frozen_after: Duration::ZERO,
+            ..AutopilotConfig::default()
+        };
+        let mut cockpit = Self {
+            autopilot: Autopilot::new(config),
+            tick: Tick {
+                dt_s: DT_S,
+                scheduled: Time::from_nanos(0),
+                woke: Time::from_nanos(0),
+                ..Tick::default()
+            },
+            feel: LEVEL,
+            measurements: Measurements::default(),
+            silent: Flags::NONE,
+            switch: None,
+        };
+        for _ in 0..80 {
+            cockpit.observe();
+        }
+        cockpit
+    }
+
+    pub(crate) fn engaged(course: Course) -> Self {
+        let mut cockpit = Self::new(course);
+        assert_eq!(cockpit.blockers(), Flags::NONE);
+        cockpit
+            .autopilot
+            .engage(&cockpit.tick, &cockpit.measurements);
+        cockpit
+    }
+
+    pub(crate) fn observe(&mut self) {
+        self.tick.number += 1;
+        self.tick.woke = self.tick.woke + Duration::from_millis(25);
+        self.tick.scheduled = self.tick.woke;
+        let (feel, now) = (self.feel, self.tick.woke);
+        let before = self.measurements;
+        self.measurements = Measurements {
+            attitude: Reading::new(
+                Attitude {
+                    pitch_rad: feel.pitch_deg.to_radians(),
+                    roll_rad: feel.roll_deg.to_radians(),
+                },
+                now,
+            ),
+            heading_rad: Reading::new(feel.heading_deg.to_radians(), now),
+            body_rates: Reading::new(BodyRates::default(), now),
+            specific_force: Reading::new(
+                SpecificForce {
+                    z_mps2: -9.806_65,
+                    ..SpecificForce::default()
+                },
+                now,
+            ),
+            airspeed_mps: Reading::new(feel.airspeed_kt * KNOT_MPS, now),
+            altitude_m: Reading::new(feel.altitude_m, now),
+            surfaces: Reading::new(STANDING, now),
+            plant: feel.plant.map_or_else(Reading::default, |state| {
+                Reading::new(
+                    Plant {
+                        time_s: now.as_nanos() as f64 * 1e-9,
+                        state,
+                    },
+                    now,
+                )
+            }),
+            engage_switch: self
+                .switch
+                .map_or(before.engage_switch, |switch| Reading::new(switch, now)),
+            ..Measurements::default()
+        };
+        let (silent, now) = (self.silent, &mut self.measurements);
+        if silent.contains(flags::ATTITUDE) {
+            now.attitude = before.attitude;
+        }
+        if silent.contains(flags::HEADING) {
+            now.heading_rad = before.heading_rad;
+        }
+        if silent.contains(flags::BODY_RATES) {
+            now.body_rates = before.body_rates;
+        }
+        if silent.contains(flags::SPECIFIC_FORCE) {
+            now.specific_force = before.specific_force;
+        }
+        if silent.contains(flags::AIRSPEED) {
+            now.airspeed_mps = before.airspeed_mps;
+        }
+        if silent.contains(flags::ALTITUDE) {
+            now.altitude_m = before.altitude_m;
+        }
+        if silent.contains(flags::PLANT_STALLED) {
+            now.plant.value.time_s = before.plant.value.time_s;
+            now.plant.value.state = PlantState::Stalled;
+        }
+        self.autopilot.estimate(&self.tick, &self.measurements);
+    }
+
+    /// A tick on which everything speaks, but the plant's clock stands still.
+    pub(crate) fn pause(&mut self, time_s: f64) {
+        self.tick.number += 1;
+        self.tick.woke = self.tick.woke + Duration::from_millis(25);
+        self.tick.scheduled = self.tick.woke;
+        let now = self.tick.woke;
+        let measured = &mut self.measurements;
+        measured.attitude.taken = now;
+        measured.heading_rad.taken = now;
+        measured.body_rates.taken = now;
+        measured.specific_force.taken = now;
+        measured.airspeed_mps.taken = now;
+        measured.altitude_m.taken = now;
+        let paused = Plant {
+            time_s,
+            state: PlantState::Paused,
+        };
+        measured.plant = Reading::new(paused, now);
+        self.autopilot.estimate(&self.tick, &self.measurements);
+    }
+
+    pub(crate) fn step(&mut self) -> Surfaces {
+        self.observe();
+        self.act()
+    }
+
+    pub(crate) fn act(&mut self) -> Surfaces {
+        self.autopilot.guide(&self.tick, &self.measurements);
+        self.autopilot.control(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn steps(&mut self, count: u32) -> Surfaces {
+        (0..count).fold(Surfaces::default(), |_, _| self.step())
+    }
+
+    pub(crate) fn blockers(&self) -> Flags {
+        self.autopilot.blockers(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn faults(&self) -> Flags {
+        self.autopilot.faults(&self.tick, &self.measurements)
+    }
+}

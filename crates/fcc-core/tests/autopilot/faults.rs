@@ -1,0 +1,242 @@
+//! What it may not fly by, and what it does then.
+
+use fcc_core::flight::{Autopilot, AutopilotConfig, Course, Order, PlantState, Surfaces, flags};
+use fcc_core::framework::{Controller, Flags, Switch};
+
+use crate::cockpit::{Cockpit, DT_S, Feel, LEVEL, SENSORS, STANDING};
+
+#[test]
+fn each_silent_sensor_is_its_own_fault_once_it_is_too_old() {
+    for sensor in SENSORS {
+        let mut cockpit = Cockpit::engaged(Course::Hold);
+        cockpit.step();
+        cockpit.silent = sensor;
+        // 250 ms are allowed.
+        for _ in 0..10 {
+            cockpit.step();
+            assert_eq!(cockpit.faults(), Flags::NONE);
+        }
+        cockpit.step();
+        assert_eq!(cockpit.faults(), sensor);
+    }
+}
+
+#[test]
+fn a_switch_that_falls_silent_is_a_fault() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.switch = Some(Switch::On);
+    cockpit.step();
+    cockpit.switch = None;
+    // 1 s is allowed.
+    cockpit.steps(40);
+    assert_eq!(cockpit.faults(), Flags::NONE);
+    cockpit.step();
+    assert_eq!(cockpit.faults(), flags::ENGAGE_SWITCH);
+}
+
+/// The simulator's clock is lost while everything else goes on: the loops must
+/// not freeze with the last command standing.
+#[test]
+fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.plant = Some(PlantState::Running);
+    cockpit.observe();
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    cockpit.silent = flags::PLANT_STALLED;
+    for _ in 0..10 {
+        cockpit.step();
+        assert_eq!(cockpit.faults(), Flags::NONE);
+    }
+    cockpit.steps(2);
+    assert_eq!(cockpit.faults(), flags::PLANT_STALLED);
+    // And the controls move again: 20° of bank is flown off.
+    cockpit.feel.roll_deg = 20.0;
+    let first = cockpit.steps(1);
+    let later = cockpit.steps(20);
+    assert!(later.aileron < first.aileron - 0.05);
+}
+
+#[test]
+fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30] {
+        let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+        cockpit.step();
+        cockpit.feel = Feel {
+            pitch_deg: bad,
+            roll_deg: bad,
+            heading_deg: bad,
+            airspeed_kt: bad,
+            altitude_m: bad,
+            plant: None,
+        };
+        for _ in 0..20 {
+            let out = cockpit.step();
+            assert!(cockpit.autopilot.outputs_are_valid(&out), "{out:?}");
+        }
+        assert!(
+            cockpit
+                .faults()
+                .contains(flags::ATTITUDE | flags::HEADING | flags::AIRSPEED | flags::ALTITUDE)
+        );
+    }
+}
+
+/// Paused in the middle of things: the climb rate is not settled, the
+/// altitude is off, the bank is not where it is asked to be.
+#[test]
+fn a_paused_simulator_leaves_everything_as_it_is() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.plant = Some(PlantState::Running);
+    cockpit.observe();
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit
+        .autopilot
+        .command(&Order::Heading(100.0_f64.to_radians()));
+    cockpit.feel.altitude_m += 14.0;
+    cockpit.feel.roll_deg = 5.0;
+    let before = cockpit.steps(20);
+    let estimated = *cockpit.autopilot.estimated();
+    assert!(estimated.climb_rate_mps.abs() > 0.5);
+
+    // The plant's clock stands still from the last running tick on.
+    let time_s = cockpit.measurements.plant.value.time_s;
+    cockpit.feel.plant = Some(PlantState::Paused);
+    for _ in 0..400 {
+        cockpit.pause(time_s);
+        let held = cockpit.act();
+        for (held, before) in [
+            (held.throttle, before.throttle),
+            (held.elevator, before.elevator),
+            (held.aileron, before.aileron),
+            (held.rudder, before.rudder),
+        ] {
+            assert!((held - before).abs() < 1e-12);
+        }
+    }
+    assert_eq!(*cockpit.autopilot.estimated(), estimated);
+    assert_eq!(cockpit.blockers(), flags::PLANT_PAUSED);
+    assert_eq!(cockpit.faults(), Flags::NONE);
+}
+
+#[test]
+fn a_jump_of_the_simulator_is_a_fault() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.feel.plant = Some(PlantState::Jumped);
+    cockpit.step();
+    assert!(cockpit.faults().contains(flags::PLANT_JUMPED));
+}
+
+/// 300 m in a tick: not believed while it is news, and a loss when the last good
+/// altitude is too old.
+#[test]
+fn a_jump_of_a_sensor_is_its_loss() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    cockpit.feel.altitude_m += 300.0;
+    for _ in 0..10 {
+        cockpit.step();
+        assert_eq!(cockpit.faults(), Flags::NONE);
+        let altitude_m = cockpit.autopilot.estimated().altitude_m;
+        assert!((altitude_m - LEVEL.altitude_m).abs() < 1.0, "{altitude_m}");
+    }
+    cockpit.step();
+    assert_eq!(cockpit.faults(), flags::ALTITUDE | flags::REJECTED);
+}
+
+#[test]
+fn failsafe_levels_the_wings_while_the_attitude_is_known() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    for _ in 0..40 {
+        cockpit.feel.roll_deg += 0.5;
+        cockpit.observe();
+    }
+    let out = (0..8).fold(Surfaces::default(), |_, _| {
+        cockpit.observe();
+        cockpit
+            .autopilot
+            .failsafe(&cockpit.tick, &cockpit.measurements)
+    });
+    assert!(out.aileron < STANDING.aileron - 0.05, "{}", out.aileron);
+    let trim = cockpit.autopilot.config().airspeed.trim_throttle;
+    assert!((out.throttle - trim).abs() < 1e-12);
+}
+
+#[test]
+fn failsafe_without_attitude_keeps_the_trim() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    cockpit.silent = SENSORS.into_iter().fold(Flags::NONE, |all, one| all | one);
+    let out = (0..40).fold(Surfaces::default(), |_, _| {
+        cockpit.observe();
+        cockpit
+            .autopilot
+            .failsafe(&cockpit.tick, &cockpit.measurements)
+    });
+    assert!((out.elevator - STANDING.elevator).abs() < 0.01, "{out:?}");
+    assert!((out.aileron - STANDING.aileron).abs() < 0.01, "{out:?}");
+    assert!((out.rudder - STANDING.rudder).abs() < 0.01, "{out:?}");
+}
+
+#[test]
+fn what_blocks_engaging_is_said() {
+    let mut slow = Cockpit::new(Course::Hold);
+    slow.feel.airspeed_kt = 40.0;
+    for _ in 0..400 {
+        slow.observe();
+    }
+    assert_eq!(slow.blockers(), flags::TOO_SLOW);
+
+    let mut upset = Cockpit::new(Course::Hold);
+    upset.feel.roll_deg = 75.0;
+    for _ in 0..400 {
+        upset.observe();
+    }
+    assert_eq!(upset.blockers(), flags::UPSET);
+    assert_eq!(
+        Autopilot::flag_name(9),
+        "bank or pitch is beyond 60 degrees"
+    );
+}
+
+#[test]
+fn it_engages_only_after_it_has_watched_for_a_second() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.autopilot = Autopilot::new(*cockpit.autopilot.config());
+    for _ in 0..40 {
+        cockpit.observe();
+        assert_eq!(cockpit.blockers(), flags::SETTLING);
+    }
+    cockpit.observe();
+    assert_eq!(cockpit.blockers(), Flags::NONE);
+}
+
+/// Engaged with the nose 12° up; the failsafe does not keep that pitch.
+#[test]
+fn failsafe_flies_level_whatever_the_pitch_was() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.pitch_deg = 12.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    // The altimeter says that it climbs at 5 m/s.
+    for _ in 0..400 {
+        cockpit.feel.altitude_m += 5.0 * DT_S;
+        cockpit.observe();
+        cockpit
+            .autopilot
+            .failsafe(&cockpit.tick, &cockpit.measurements);
+    }
+    let aims = cockpit.autopilot.setpoints();
+    assert_eq!(aims.climb_rate_mps, 0.0);
+    assert!(aims.pitch_rad.to_degrees() < 5.0, "{}", aims.pitch_rad);
+}

@@ -1,0 +1,154 @@
+//! What the autopilot flies once it is engaged.
+
+use fcc_core::flight::{AutopilotConfig, Course, Order};
+use fcc_core::framework::Controller;
+
+use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
+
+#[test]
+fn taking_over_in_steady_flight_moves_nothing() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let first = cockpit.step();
+    for (ours, standing) in [
+        (first.throttle, STANDING.throttle),
+        (first.elevator, STANDING.elevator),
+        (first.aileron, STANDING.aileron),
+        (first.rudder, STANDING.rudder),
+    ] {
+        assert!((ours - standing).abs() < 1e-6, "{ours} against {standing}");
+    }
+    let aims = cockpit.autopilot.setpoints();
+    assert!((aims.heading_rad.to_degrees() - 30.0).abs() < 1e-6);
+    assert!((aims.altitude_m - 914.4).abs() < 1e-6);
+    assert!((aims.airspeed_mps / KNOT_MPS - 100.0).abs() < 1e-6);
+}
+
+#[test]
+fn surfaces_act_in_the_directions_of_the_house() {
+    let mut right = Cockpit::engaged(Course::Hold);
+    right
+        .autopilot
+        .command(&Order::Heading(120.0_f64.to_radians()));
+    assert!(right.steps(8).aileron > STANDING.aileron + 0.01);
+
+    let mut up = Cockpit::engaged(Course::Hold);
+    up.autopilot.command(&Order::Altitude(914.4 + 50.0));
+    let out = up.steps(8);
+    assert!(out.elevator > STANDING.elevator + 0.001);
+    assert!(out.throttle > STANDING.throttle + 0.01);
+
+    let mut fast = Cockpit::engaged(Course::Hold);
+    fast.autopilot.command(&Order::Airspeed(110.0 * KNOT_MPS));
+    assert!(fast.steps(8).throttle > STANDING.throttle + 0.01);
+}
+
+#[test]
+fn the_bank_asked_for_ends_at_the_limit() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit
+        .autopilot
+        .command(&Order::Heading((30.0_f64 - 120.0).to_radians()));
+    cockpit.steps(40);
+    let bank = cockpit.autopilot.setpoints().roll_rad.to_degrees();
+    assert!((bank + 30.0).abs() < 1e-9, "{bank}");
+}
+
+/// The aircraft does not turn at all, so that commands pile up past 180°.
+#[test]
+fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    for second in 0..120 {
+        cockpit.steps(40);
+        let bank = cockpit.autopilot.setpoints().roll_rad;
+        if second > 21 {
+            assert!(bank > 0.5, "after {second} s the bank is {bank} rad");
+        }
+    }
+}
+
+#[test]
+fn too_slow_trades_altitude_for_speed() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.autopilot.command(&Order::Altitude(1_200.0));
+    cockpit.feel.airspeed_kt = 55.0; // the floor is 33 m/s, 64 kt
+    let out = cockpit.steps(400);
+    assert!(out.throttle > 0.999, "{}", out.throttle);
+    let aims = cockpit.autopilot.setpoints();
+    assert!(aims.climb_rate_mps < -1.0, "{}", aims.climb_rate_mps);
+}
+
+/// The ceiling is 135 kt and the margin 8 kt: engaged above, it slows down to
+/// where it can still descend, instead of climbing for ever.
+#[test]
+fn what_is_captured_is_inside_the_envelope() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.airspeed_kt = 150.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.step();
+    let aim_kt = cockpit.autopilot.setpoints().airspeed_mps / KNOT_MPS;
+    assert!((aim_kt - 127.0).abs() < 0.01, "{aim_kt}");
+}
+
+/// From 64 to 70 kt in steps of a hundredth of a knot: around the floor, the
+/// throttle never jumps.
+#[test]
+fn the_throttle_is_steady_around_the_floor() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.feel.airspeed_kt = 70.0;
+    let mut last = cockpit.steps(400).throttle;
+    for n in 0..600 {
+        cockpit.feel.airspeed_kt = 70.0 - f64::from(n) * 0.01;
+        let throttle = cockpit.step().throttle;
+        assert!((throttle - last).abs() < 0.03, "{last} to {throttle}");
+        last = throttle;
+    }
+    assert!(last > 0.999, "{last}");
+}
+
+/// From 0°, told 90° and then 260°: 100° to the left is shorter than 260° to
+/// the right.
+#[test]
+fn a_heading_is_turned_to_from_where_the_nose_points() {
+    let mut cockpit = Cockpit::new(Course::Hold);
+    cockpit.feel.heading_deg = 0.0;
+    for _ in 0..400 {
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    for heading_deg in [90.0_f64, 260.0] {
+        cockpit
+            .autopilot
+            .command(&Order::Heading(heading_deg.to_radians()));
+        cockpit.step();
+    }
+    assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
+}
+
+/// At engagement the altitude is known to a foot or so; what is measured in
+/// the seconds after says where that was. An altitude that is ordered stays.
+#[test]
+fn the_captured_altitude_is_learnt_and_an_ordered_one_is_kept() {
+    let mut cockpit = Cockpit::engaged(Course::Hold);
+    cockpit.step();
+    let captured = cockpit.autopilot.setpoints().altitude_m;
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    let learnt = cockpit.autopilot.setpoints().altitude_m - captured;
+    assert!((0.01..0.3).contains(&learnt), "{learnt}");
+
+    cockpit.autopilot.command(&Order::Altitude(950.0));
+    cockpit.feel.altitude_m += 0.3;
+    for _ in 0..200 {
+        cockpit.step();
+    }
+    assert_eq!(cockpit.autopilot.setpoints().altitude_m, 950.0);
+}

@@ -1,0 +1,8 @@
+//! The autopilot seen from outside: scripted measurements in, surfaces out.
+#![cfg(test)]
+#![cfg(feature = "flight")]
+
+mod cockpit;
+mod faults;
+mod flying;
+mod resuming;

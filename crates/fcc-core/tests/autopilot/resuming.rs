@@ -1,0 +1,99 @@
+//! A flight that was cut off, taken up again.
+
+use fcc_core::flight::{AutopilotConfig, Course, Order, Resume, Surfaces, guidance::Targets};
+use fcc_core::framework::Controller;
+
+use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
+
+/// Cut off 65 s into the pattern, whose start was at 350° and 3,000 ft: in
+/// leg 3, which the thesis flies 270° further and 150 ft higher.
+#[test]
+fn a_pattern_is_gone_on_with_where_it_was() {
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    cockpit.step();
+    let resume = Resume {
+        targets: Targets {
+            airspeed_mps: 95.0 * KNOT_MPS,
+            heading_rad: 350.0_f64.to_radians(),
+            altitude_m: 914.4,
+        },
+        pattern_s: Some(65.0),
+        surfaces: STANDING,
+    };
+    cockpit.autopilot.command(&Order::Resume(resume));
+    let aims_at = |cockpit: &mut Cockpit, heading_deg: f64, altitude_ft: f64| {
+        cockpit.step();
+        let aims = cockpit.autopilot.setpoints();
+        assert!((aims.heading_rad.to_degrees() - heading_deg).abs() < 1e-6);
+        assert!((aims.altitude_m / 0.304_8 - altitude_ft).abs() < 1e-6);
+        assert!((aims.airspeed_mps / KNOT_MPS - 95.0).abs() < 1e-6);
+    };
+    aims_at(&mut cockpit, 260.0, 3_150.0);
+    // From 30° to 260°: the shorter way is to the left.
+    cockpit.steps(40);
+    assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
+    // 15 s to the next leg, of which 41 ticks are over.
+    cockpit.steps(15 * 40);
+    aims_at(&mut cockpit, 350.0, 3_000.0);
+}
+
+#[test]
+fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    let flew = Surfaces {
+        throttle: 0.8,
+        elevator: 0.11,
+        aileron: 0.03,
+        rudder: -0.04,
+    };
+    let resume = Resume {
+        targets: Targets {
+            airspeed_mps: 100.0 * KNOT_MPS,
+            heading_rad: 30.0_f64.to_radians(),
+            altitude_m: 914.4,
+        },
+        pattern_s: None,
+        surfaces: flew,
+    };
+    cockpit.autopilot.command(&Order::Resume(resume));
+    let first = cockpit.step();
+    for (ours, was) in [
+        (first.throttle, flew.throttle),
+        (first.elevator, flew.elevator),
+        (first.aileron, flew.aileron),
+        (first.rudder, flew.rudder),
+    ] {
+        assert!((ours - was).abs() < 1e-6, "{ours} against {was}");
+    }
+    cockpit.steps(40 * 60);
+    let aims = cockpit.autopilot.setpoints();
+    assert!((aims.heading_rad.to_degrees() - 30.0).abs() < 1e-6, "held");
+}
+
+#[test]
+fn a_flight_that_cannot_have_been_is_not_taken_up() {
+    let sane = Resume {
+        targets: Targets {
+            airspeed_mps: 50.0,
+            heading_rad: 3.0,
+            altitude_m: 2_000.0,
+        },
+        pattern_s: None,
+        surfaces: STANDING,
+    };
+    let mut no_altitude = sane;
+    no_altitude.targets.altitude_m = f64::NAN;
+    let mut too_much_throttle = sane;
+    too_much_throttle.surfaces.throttle = 1.5;
+    let a_pattern = Resume {
+        pattern_s: Some(10.0),
+        ..sane
+    };
+    for resume in [no_altitude, too_much_throttle, a_pattern] {
+        let mut cockpit = Cockpit::engaged(Course::Hold);
+        cockpit.autopilot.command(&Order::Resume(resume));
+        cockpit.step();
+        let aims = cockpit.autopilot.setpoints();
+        assert!((aims.altitude_m - 914.4).abs() < 1e-6, "{resume:?}");
+    }
+}
