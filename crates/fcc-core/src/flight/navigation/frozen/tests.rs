@@ -1,0 +1,187 @@
+//! Sensors that hang, and good ones that only seem to.
+
+use std::vec::Vec;
+
+use super::*;
+use crate::flight::{Attitude, BodyRates, SpecificForce, Velocity};
+use crate::framework::Reading;
+
+const DT_S: f64 = 0.025;
+const AFTER_S: f64 = 2.0;
+
+/// An aircraft that rolls by 10 °/s for 3 s, then turns by 5 °/s and
+/// climbs by 5 m/s; every value a little different from tick to tick.
+fn flying(tick: i64) -> Measurements {
+    let at = Time::from_nanos(tick * 25_000_000);
+    let t_s = tick as f64 * DT_S;
+    let tiny = (tick % 7) as f64 * 1e-9;
+    let rolling = t_s < 3.0;
+    let roll_deg = 10.0 * t_s.min(3.0);
+    let since_s = (t_s - 3.0).max(0.0);
+    let heading_rad = (5.0 * since_s).to_radians();
+    let yaw = if rolling { 0.0 } else { 5.0_f64.to_radians() };
+    let roll_rad = roll_deg.to_radians();
+    let rates = BodyRates {
+        roll_radps: if rolling { 10.0_f64.to_radians() } else { 0.0 } + tiny,
+        pitch_radps: yaw * sin(roll_rad),
+        yaw_radps: yaw * cos(roll_rad),
+    };
+    let climb_mps = if rolling { 0.0 } else { 5.0 };
+    let force = SpecificForce {
+        z_mps2: -9.81 / cos(roll_rad) + tiny,
+        ..SpecificForce::default()
+    };
+    let attitude = Attitude {
+        roll_rad: roll_rad + tiny,
+        pitch_rad: 0.05 + tiny,
+    };
+    Measurements {
+        attitude: Reading::new(attitude, at),
+        heading_rad: Reading::new(heading_rad + tiny, at),
+        body_rates: Reading::new(rates, at),
+        specific_force: Reading::new(force, at),
+        airspeed_mps: Reading::new(51.0 + tiny, at),
+        altitude_m: Reading::new(914.0 + 5.0 * since_s + tiny, at),
+        velocity: Reading::new(
+            Velocity {
+                down_mps: -climb_mps,
+                ..Velocity::default()
+            },
+            at,
+        ),
+        ..Measurements::default()
+    }
+}
+
+/// When, in s, each quantity is called frozen over 20 s.
+fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
+    let mut watch = FrozenWatch::new(AFTER_S);
+    let estimate = Estimate::default();
+    let mut seen = Vec::new();
+    for tick in 0..800 {
+        let measurements = measured(tick);
+        let now = measurements.attitude.taken;
+        watch.step(now, &measurements, &estimate, DT_S);
+        let frozen = watch.frozen();
+        if seen.last().is_none_or(|(_, last)| *last != frozen) {
+            seen.push((tick as f64 * DT_S, frozen));
+        }
+    }
+    seen
+}
+
+/// The flight with one quantity as it was at the start, but for its time.
+fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen)> {
+    let start = flying(0);
+    watch(|tick| {
+        let mut measurements = flying(tick);
+        freeze(&mut measurements, &start);
+        measurements
+    })
+}
+
+#[test]
+fn what_moves_is_not_frozen() {
+    assert_eq!(watch(flying), [(0.0, Frozen::default())]);
+}
+
+#[test]
+fn each_is_seen_when_the_aircraft_moves_and_alone() {
+    type Case = (fn(&mut Measurements, &Measurements), Frozen, f64);
+    let none = Frozen::default();
+    let cases: [Case; 6] = [
+        // 5° are rolled after half a second; the least time is 2 s.
+        (
+            |m, start| m.attitude.value = start.attitude.value,
+            Frozen {
+                attitude: true,
+                ..none
+            },
+            2.0,
+        ),
+        // 5 °/s from 3 s on: 5° at 4 s, and a little leaks.
+        (
+            |m, start| m.heading_rad.value = start.heading_rad.value,
+            Frozen {
+                heading: true,
+                ..none
+            },
+            4.05,
+        ),
+        // They go on saying 10 °/s from 3 s on, where it does not roll.
+        (
+            |m, start| m.body_rates.value = start.body_rates.value,
+            Frozen {
+                body_rates: true,
+                ..none
+            },
+            3.5,
+        ),
+        // 10° of bank are there after a second.
+        (
+            |m, start| m.specific_force.value = start.specific_force.value,
+            Frozen {
+                specific_force: true,
+                ..none
+            },
+            2.0,
+        ),
+        (
+            |m, start| m.airspeed_mps.value = start.airspeed_mps.value,
+            Frozen {
+                airspeed: true,
+                ..none
+            },
+            2.0,
+        ),
+        // 5 m/s from 3 s on: 15 m at 6 s, and what leaks (10 s).
+        (
+            |m, start| m.altitude_m.value = start.altitude_m.value,
+            Frozen {
+                altitude: true,
+                ..none
+            },
+            6.55,
+        ),
+    ];
+    for (freeze, expected, at_s) in cases {
+        let seen = with_frozen(freeze);
+        let [_, (seen_s, frozen)] = seen[..] else {
+            panic!("{seen:?} is not {expected:?}");
+        };
+        assert_eq!(frozen, expected);
+        assert!((seen_s - at_s).abs() < 0.1, "{frozen:?} at {seen_s} s");
+    }
+}
+
+#[test]
+fn in_calm_air_the_same_for_minutes_is_not_frozen() {
+    let calm = flying(0);
+    let seen = watch(|tick| {
+        let at = Time::from_nanos(tick * 25_000_000);
+        let mut measurements = calm;
+        measurements.body_rates.value.roll_radps = 0.4_f64.to_radians();
+        measurements.attitude.taken = at;
+        measurements.heading_rad.taken = at;
+        measurements.body_rates.taken = at;
+        measurements.airspeed_mps.taken = at;
+        measurements.altitude_m.taken = at;
+        measurements.specific_force.taken = at;
+        measurements
+    });
+    assert_eq!(seen, [(0.0, Frozen::default())]);
+}
+
+#[test]
+fn one_that_moves_again_is_not_frozen_any_more() {
+    let start = flying(0);
+    let seen = watch(|tick| {
+        let mut measurements = flying(tick);
+        if tick < 400 {
+            measurements.airspeed_mps.value = start.airspeed_mps.value;
+        }
+        measurements
+    });
+    assert_eq!(seen.len(), 3, "{seen:?}");
+    assert_eq!(seen[2], (10.0, Frozen::default()));
+}
