@@ -33,6 +33,7 @@ pub struct ManualTimer {
     now_ns: i64,
     deadlines: Option<Deadlines>,
     late: Vec<(u64, Duration)>,
+    rehearses: bool,
 }
 
 impl ManualTimer {
@@ -46,6 +47,7 @@ impl ManualTimer {
             now_ns: 0,
             deadlines: None,
             late: Vec::new(),
+            rehearses: false,
         })
     }
 
@@ -54,6 +56,13 @@ impl ManualTimer {
     #[must_use]
     pub fn late_at(mut self, number: u64, by: Duration) -> Self {
         self.late.push((number, by));
+        self
+    }
+
+    /// Has each wait rehearse, as a timer does that wakes early in good time.
+    #[must_use]
+    pub const fn rehearsing(mut self) -> Self {
+        self.rehearses = true;
         self
     }
 
@@ -77,6 +86,13 @@ impl Timer for ManualTimer {
             self.now_ns = self.now_ns.saturating_add(by.as_nanos() as i64);
         }
         Ok(deadlines.woken_uncounted(self.now_ns))
+    }
+
+    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
+        if self.rehearses {
+            rehearse();
+        }
+        self.wait()
     }
 
     fn period(&self) -> Duration {

@@ -46,16 +46,19 @@ impl Nanosleep {
 
 impl Timer for Nanosleep {
     fn start(&mut self) -> Result<(), TimerError> {
-        let mut deadlines = Deadlines::new(monotonic_ns(), self.period);
-        deadlines.wake_early(self.early.as_ref().map_or(0, Early::margin_ns));
+        let deadlines = Early::grid(self.early.as_ref(), self.period);
         self.deadlines = Some(deadlines);
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
+        self.wait_rehearsing(&mut || ())
+    }
+
+    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
         if let Some(early) = &mut self.early {
-            return early.wait(deadlines, &mut Sleep);
+            return early.wait(deadlines, &mut Sleep, rehearse);
         }
         let alarm_ns = deadlines.alarm_ns();
         loop {

@@ -26,6 +26,17 @@ pub trait Timer: Send {
     /// never for a signal that interrupts.
     fn wait(&mut self) -> Result<Expiry, TimerError>;
 
+    /// Waits like [`wait`](Self::wait). A timer that wakes early, and has time
+    /// left, calls `rehearse` before it spins: for what warms the caches for
+    /// the tick and changes nothing. The others do not call it.
+    ///
+    /// # Errors
+    /// Those of `wait`.
+    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
+        let _ = rehearse;
+        self.wait()
+    }
+
     /// The time between deadlines.
     fn period(&self) -> Duration;
 
@@ -51,7 +62,7 @@ pub struct Expiry {
     /// How long before the deadline the kernel was asked to wake the thread,
     /// ns; 0 for a timer that does not wake early ([`crate::EarlyWake`]).
     pub early_wake_ns: u64,
-    /// How long the thread then spun towards the deadline, ns.
+    /// How long the thread then rehearsed and spun towards the deadline, ns.
     pub spun_ns: u64,
     /// How late the kernel woke the thread, ns after the time it was asked to:
     /// the lateness that there would be without waking early. Where the thread

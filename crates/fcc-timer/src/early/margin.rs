@@ -61,6 +61,11 @@ impl Margin {
         self.now_ns
     }
 
+    /// The most it may ever be.
+    pub(super) const fn longest_ns(&self) -> i64 {
+        self.longest_ns
+    }
+
     /// Counts a wake-up that came so long after its alarm.
     pub(super) fn observe(&mut self, lateness_ns: i64) {
         let bucket = (lateness_ns / self.bucket_ns).clamp(0, BUCKETS as i64) as u16;
@@ -78,8 +83,9 @@ impl Margin {
         self.next = (self.next + 1) % WINDOW;
     }
 
-    /// To be called once a tick; whether the margin is another now.
-    pub(super) fn review(&mut self) -> bool {
+    /// To be called once a tick; whether the margin is another now. It has to
+    /// hold what is done between wake-up and spin, too.
+    pub(super) fn review(&mut self, rehearsal_ns: i64) -> bool {
         self.review_in = self.review_in.saturating_sub(1);
         if self.review_in > 0 {
             return false;
@@ -88,7 +94,7 @@ impl Margin {
         if self.seen == 0 {
             return false;
         }
-        let wanted_ns = self.wanted_ns();
+        let wanted_ns = self.wanted_ns(rehearsal_ns);
         let saved_ns = self.now_ns.saturating_sub(wanted_ns);
         if saved_ns < 0 || saved_ns > self.now_ns / WORTH_SAVING {
             self.now_ns = wanted_ns;
@@ -98,7 +104,7 @@ impl Margin {
     }
 
     /// The margin that the wake-ups of the window ask for.
-    fn wanted_ns(&self) -> i64 {
+    fn wanted_ns(&self, rehearsal_ns: i64) -> i64 {
         let beyond = self.counts.last().copied().map_or(0, usize::from);
         if 2 * beyond >= self.seen {
             return self.longest_ns;
@@ -115,6 +121,7 @@ impl Margin {
         }
         covered_ns
             .saturating_add(self.guard_ns)
+            .saturating_add(rehearsal_ns)
             .clamp(self.shortest_ns, self.longest_ns)
     }
 }
@@ -138,7 +145,7 @@ mod tests {
             .into_iter()
             .map(|us| {
                 margin.observe(us * US);
-                u32::from(margin.review())
+                u32::from(margin.review(0))
             })
             .sum()
     }

@@ -7,17 +7,24 @@
 //! by one reading of the clock, as long as the margin was long enough.
 //!
 //! How long is enough is measured ([`margin`]); what it may cost is bounded
-//! ([`EarlyWake`]). The three timers of the kernel share all of this: each is
-//! an [`Alarm`], and [`Early::wait`] is their common way to a deadline.
+//! ([`EarlyWake`]). The grid is laid where no tick of the kernel comes between
+//! alarm and deadline ([`kernel_tick`]), and what is left of the margin warms
+//! the caches for the tick ([`rehearsal`]). The three timers of the kernel share
+//! all of this: each is an [`Alarm`], and [`Early::wait`] is their common way to
+//! a deadline.
 
+mod kernel_tick;
 mod margin;
+mod rehearsal;
 
-use std::hint::spin_loop;
+use std::hint::black_box;
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::{Expiry, TimerError};
+use kernel_tick::KernelTick;
 use margin::Margin;
+use rehearsal::Rehearsal;
 
 /// No margin is longer, so that windows of lateness have a useful resolution.
 const LONGEST_MARGIN: Duration = Duration::from_millis(10);
@@ -116,6 +123,7 @@ pub(crate) trait Alarm {
 #[derive(Debug)]
 pub(crate) struct Early {
     margin: Margin,
+    rehearsal: Rehearsal,
 }
 
 impl Early {
@@ -125,22 +133,38 @@ impl Early {
         wish.check()?;
         Ok(Self {
             margin: Margin::new(wish, period.ns()),
+            rehearsal: Rehearsal::new(),
         })
     }
 
-    /// The present margin.
-    pub(crate) const fn margin_ns(&self) -> i64 {
-        self.margin.ns()
+    /// The grid of a timer that starts now, waking early or not. Waking early,
+    /// it starts up to a tick of the kernel later, where that keeps the kernel's
+    /// ticks out of the margin; to find them takes three of them.
+    pub(crate) fn grid(early: Option<&Self>, period: Period) -> Deadlines {
+        let Some(early) = early else {
+            return Deadlines::new(monotonic_ns(), period);
+        };
+        let tick = KernelTick::find();
+        let now_ns = monotonic_ns();
+        let start_ns = tick.map_or(now_ns, |tick| {
+            tick.clear_start_ns(now_ns, period.ns(), early.margin.longest_ns())
+        });
+        let mut deadlines = Deadlines::new(start_ns, period);
+        deadlines.wake_early(early.margin.ns());
+        deadlines
     }
 
     /// Waits for the next deadline. What has passed is told by the clock: an
     /// alarm is no deadline, so the kernel's count of alarms says nothing here.
+    ///
+    /// `rehearse` is called once the thread is awake, if there is time for it.
     pub(crate) fn wait(
         &mut self,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
+        rehearse: &mut dyn FnMut(),
     ) -> Result<Expiry, TimerError> {
-        if self.margin.review() {
+        if self.margin.review(self.rehearsal.allowance_ns()) {
             deadlines.wake_early(self.margin.ns());
             // A system call, but one in 32 ticks at most, and before the wait:
             // to ask for each alarm by itself would be one in each tick.
@@ -162,17 +186,39 @@ impl Early {
         }
         // Beyond the deadline it is not the spin that takes the time.
         let spun_ns = due_ns.saturating_sub(now_ns).max(0).unsigned_abs();
-        while now_ns < due_ns {
-            spin_loop();
+        if due_ns.saturating_sub(now_ns) >= self.rehearsal.allowance_ns() {
+            rehearse();
+            // What comes after the spin is to be warm, too.
+            black_box(spin(&mut deadlines.clone(), now_ns));
+            let since_ns = now_ns;
             now_ns = monotonic_ns();
+            self.rehearsal.took(now_ns.saturating_sub(since_ns));
+        } else {
+            self.rehearsal.skipped();
         }
-        let expiry = deadlines.woken_uncounted(now_ns);
+        let expiry = spin(deadlines, due_ns);
         Ok(Expiry {
             early_wake_ns: self.margin.ns().unsigned_abs(),
             spun_ns,
             kernel_lateness_ns: kernel_lateness_ns.unwrap_or(expiry.kernel_lateness_ns),
             ..expiry
         })
+    }
+}
+
+/// Reads the clock until it is there. One function, so that who rehearses it
+/// runs the very instructions that come at the deadline.
+///
+/// Without [`std::hint::spin_loop`]: a hypervisor takes many of these in a row
+/// for a lock that another of its CPUs holds, and lets others run (pause-loop
+/// exiting).
+#[inline(never)]
+fn spin(deadlines: &mut Deadlines, until_ns: i64) -> Expiry {
+    loop {
+        let now_ns = monotonic_ns();
+        if now_ns >= until_ns {
+            return deadlines.woken_uncounted(now_ns);
+        }
     }
 }
 
@@ -269,9 +315,9 @@ mod tests {
         let period = Period::new(Duration::from_millis(300)).unwrap();
         let mut early = Early::new(&EarlyWake::default(), period).unwrap();
         let mut deadlines = Deadlines::new(monotonic_ns(), period);
-        deadlines.wake_early(early.margin_ns());
+        deadlines.wake_early(early.margin.ns());
         let mut kernel = Impatient { stale: 3 };
-        let expiry = early.wait(&mut deadlines, &mut kernel).unwrap();
+        let expiry = early.wait(&mut deadlines, &mut kernel, &mut || ()).unwrap();
         assert_eq!(kernel.stale, 0);
         assert!(expiry.woke_ns >= expiry.scheduled_ns);
         assert_eq!(expiry.early_wake_ns, 250_000);

@@ -67,8 +67,7 @@ impl Timer for PosixTimer {
         // The timer of a start before goes first, and its signal with it.
         self.running = None;
         let mut signals = Signals::new(self.period)?;
-        let mut deadlines = Deadlines::new(monotonic_ns(), self.period);
-        deadlines.wake_early(self.early.as_ref().map_or(0, Early::margin_ns));
+        let deadlines = Early::grid(self.early.as_ref(), self.period);
         signals.move_to(deadlines.alarm_ns())?;
         self.running = Some(Running {
             deadlines,
@@ -79,12 +78,16 @@ impl Timer for PosixTimer {
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
+        self.wait_rehearsing(&mut || ())
+    }
+
+    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
         let running = self.running.as_mut().ok_or(TimerError::NotStarted)?;
         if running.thread != thread::current().id() {
             return Err(TimerError::WrongThread);
         }
         if let Some(early) = &mut self.early {
-            return early.wait(&mut running.deadlines, &mut running.signals);
+            return early.wait(&mut running.deadlines, &mut running.signals, rehearse);
         }
         running.signals.signal.wait()?;
         let woke_ns = monotonic_ns();

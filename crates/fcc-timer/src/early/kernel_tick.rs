@@ -1,0 +1,202 @@
+//! When the kernel's own periodic tick comes, and deadlines out of its way.
+//!
+//! While a thread runs, the kernel interrupts it `CONFIG_HZ` times a second
+//! for its accounting: 2 to 20 µs each, more on a small board. A thread that
+//! spins to its deadline is hit by such a tick now and then, and where the
+//! period is a multiple of the tick's it is always hit or never, by chance of
+//! the moment at which it started. So that moment is chosen.
+//!
+//! The coarse clock of the kernel goes on with each tick, and its resolution is
+//! the tick's period: `clock_getres(2)`, `time(7)`. Watching it needs neither
+//! a right nor a file.
+
+use nix::sys::time::TimeValLike as _;
+use nix::time::{ClockId, clock_getres, clock_gettime};
+
+use crate::deadlines::monotonic_ns;
+
+/// Ticks that are watched; the one seen most sharply counts.
+const WATCHED: u32 = 3;
+/// A clock whose resolution is not in this range is not the tick's: 1 kHz to
+/// 24 Hz, where the kernel's range is 1000 to 100.
+const PERIODS_NS: std::ops::RangeInclusive<i64> = 900_000..=42_000_000;
+/// Room between the tick and what it shall not meet. With less nothing is
+/// gained: the tick's own work may last as long.
+const LEAST_ROOM_NS: i64 = 50_000;
+
+/// The kernel's periodic tick: at `phase_ns + n * period_ns`.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct KernelTick {
+    period_ns: i64,
+    phase_ns: i64,
+}
+
+impl KernelTick {
+    /// Watches the coarse clock for some ticks: up to 12 ms where there are
+    /// 250 in a second. `None` where it does not behave.
+    pub(super) fn find() -> Option<Self> {
+        let resolution = clock_getres(ClockId::CLOCK_MONOTONIC_COARSE).ok()?;
+        let period_ns = resolution.num_nanoseconds();
+        if !PERIODS_NS.contains(&period_ns) {
+            return None;
+        }
+        let give_up_ns = monotonic_ns().saturating_add(2 * i64::from(WATCHED) * period_ns);
+        let mut sharpest: Option<(i64, i64)> = None;
+        let mut seen = 0;
+        let mut coarse_ns = coarse_now_ns()?;
+        while seen < WATCHED {
+            let before_ns = monotonic_ns();
+            let now_coarse_ns = coarse_now_ns()?;
+            let after_ns = monotonic_ns();
+            if now_coarse_ns != coarse_ns {
+                coarse_ns = now_coarse_ns;
+                seen += 1;
+                // Whoever was interrupted in between knows it less exactly.
+                let blur_ns = after_ns.saturating_sub(before_ns);
+                if sharpest.is_none_or(|(least_ns, _)| blur_ns < least_ns) {
+                    sharpest = Some((blur_ns, before_ns));
+                }
+            }
+            if after_ns > give_up_ns {
+                break;
+            }
+        }
+        let (_, at_ns) = sharpest?;
+        Some(Self {
+            period_ns,
+            phase_ns: at_ns.rem_euclid(period_ns),
+        })
+    }
+
+    /// The first time from `earliest_ns` on from which a grid of `period_ns`
+    /// may be laid so that no tick comes between the alarm, `margin_ns` before
+    /// each deadline, and the deadline; with equal room on both sides.
+    /// `earliest_ns` itself where no grid is clear of the ticks.
+    pub(super) fn clear_start_ns(self, earliest_ns: i64, period_ns: i64, margin_ns: i64) -> i64 {
+        // Seen from the ticks, deadlines fall on every multiple of this.
+        let step_ns = greatest_common_divisor(period_ns, self.period_ns);
+        let room_ns = (step_ns - margin_ns) / 2;
+        if room_ns < LEAST_ROOM_NS {
+            return earliest_ns;
+        }
+        let after_tick_ns = margin_ns + room_ns;
+        let wait_ns = (self.phase_ns + after_tick_ns - earliest_ns).rem_euclid(step_ns);
+        earliest_ns.saturating_add(wait_ns)
+    }
+}
+
+fn coarse_now_ns() -> Option<i64> {
+    let now = clock_gettime(ClockId::CLOCK_MONOTONIC_COARSE).ok()?;
+    Some(now.num_nanoseconds())
+}
+
+/// Of two positive numbers, by Euclid's algorithm.
+const fn greatest_common_divisor(one: i64, other: i64) -> i64 {
+    let (mut one, mut other) = (one, other);
+    while other > 0 {
+        (one, other) = (other, one % other);
+    }
+    one
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = 1_000_000;
+
+    /// 250 ticks in a second, as Debian's kernels have them, 3.9 ms after each
+    /// multiple of 4 ms.
+    const DEBIAN: KernelTick = KernelTick {
+        period_ns: 4 * MS,
+        phase_ns: 3_900_000,
+    };
+
+    /// How long after the tick before it a time is.
+    fn after_tick_ns(tick: KernelTick, at_ns: i64) -> i64 {
+        (at_ns - tick.phase_ns).rem_euclid(tick.period_ns)
+    }
+
+    #[test]
+    fn no_tick_comes_between_alarm_and_deadline() {
+        let margin_ns = 250_000;
+        for (tick, period_ns) in [
+            (DEBIAN, 25 * MS),
+            (DEBIAN, 20 * MS),
+            (DEBIAN, 10 * MS),
+            (DEBIAN, MS),
+            // A kernel with 1000 ticks in a second, one with 100.
+            (
+                KernelTick {
+                    period_ns: MS,
+                    phase_ns: 0,
+                },
+                25 * MS,
+            ),
+            (
+                KernelTick {
+                    period_ns: 10 * MS,
+                    phase_ns: 9_999_999,
+                },
+                25 * MS,
+            ),
+        ] {
+            for earliest_ns in [0, 1, 123_456_789, 987_654_321_012_345] {
+                let start_ns = tick.clear_start_ns(earliest_ns, period_ns, margin_ns);
+                assert!((0..10 * MS).contains(&(start_ns - earliest_ns)));
+                for number in 1..200 {
+                    let due_ns = after_tick_ns(tick, start_ns + number * period_ns);
+                    assert!(
+                        due_ns >= margin_ns + LEAST_ROOM_NS
+                            && due_ns <= tick.period_ns - LEAST_ROOM_NS,
+                        "{tick:?}, every {period_ns} ns: {due_ns} ns after a tick"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn forty_hertz_beside_250_ticks_stand_in_the_middle_of_a_millisecond() {
+        // 25 ms after a tick is 1 ms after a tick, then 2, 3 and 0: so alarm and
+        // deadline, 0.25 ms apart, have 0.375 ms on both sides.
+        let start_ns = DEBIAN.clear_start_ns(0, 25 * MS, 250_000);
+        assert_eq!(after_tick_ns(DEBIAN, start_ns) % MS, 625_000);
+    }
+
+    #[test]
+    fn a_period_that_meets_the_tick_at_every_phase_starts_at_once() {
+        // 60 Hz in whole nanoseconds has no divisor in common with 4 ms.
+        assert_eq!(DEBIAN.clear_start_ns(77, 16_666_667, 250_000), 77);
+        // Nor is there room in 0.1 ms, the divisor of 4 ms and 0.7 ms.
+        assert_eq!(DEBIAN.clear_start_ns(77, 700_000, 20_000), 77);
+    }
+
+    #[test]
+    fn the_divisor_is_that_of_euclid() {
+        // Elements, book VII, proposition 2, with the numbers of Knuth, The Art
+        // of Computer Programming, 1.1: 544 and 119.
+        assert_eq!(greatest_common_divisor(544, 119), 17);
+        assert_eq!(greatest_common_divisor(119, 544), 17);
+        assert_eq!(greatest_common_divisor(4 * MS, 25 * MS), MS);
+    }
+
+    #[test]
+    fn this_machines_tick_is_found_again_where_it_was() {
+        // A machine that stops for a while may blur one look; not nine of ten.
+        let looks: Vec<KernelTick> = (0..10).filter_map(|_| KernelTick::find()).collect();
+        let closest = |look: &KernelTick| {
+            looks
+                .iter()
+                .filter(|other| {
+                    let apart_ns = (other.phase_ns - look.phase_ns).rem_euclid(look.period_ns);
+                    apart_ns.min(look.period_ns - apart_ns) < look.period_ns / 8
+                })
+                .count()
+        };
+        assert!(
+            looks.iter().map(closest).max() >= Some(5),
+            "the tick moves about: {looks:?}"
+        );
+    }
+}
