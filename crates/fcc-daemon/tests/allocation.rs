@@ -1,5 +1,6 @@
 //! Ten thousand ticks of the whole thing - aircraft, navigation, guidance,
-//! control, actuators, record - do not touch the allocator.
+//! control, actuators, record, and a rehearsal before each - do not touch the
+//! allocator.
 #![cfg(test)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -53,7 +54,11 @@ fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
     };
     let assembly = assemble(&config).unwrap();
     let parts = Parts {
-        timer: Box::new(ManualTimer::new(Duration::from_millis(25)).unwrap()),
+        timer: Box::new(
+            ManualTimer::new(Duration::from_millis(25))
+                .unwrap()
+                .rehearsing(),
+        ),
         sensors: assembly.sensors,
         controller: assembly.autopilot,
         actuators: assembly.actuators,

@@ -137,13 +137,35 @@ impl<C: Controller> Machine<C> {
         if self.state == State::Stopped {
             return self.state;
         }
-        match panics::caught(|| self.timer.wait()) {
+        match panics::caught(|| self.wait()) {
             Ok(Ok(expiry)) => return self.tick(expiry),
             Ok(Err(TimerError::Ended)) => self.leave(Ending::TimerEnded),
             Ok(Err(error)) => self.leave(Ending::TimerFailed(error)),
             Err(words) => self.leave(Ending::Panicked(words)),
         }
         self.state
+    }
+
+    /// Waits for the deadline. A timer that wakes early has the controller
+    /// rehearse in what time is left.
+    fn wait(&mut self) -> Result<Expiry, TimerError> {
+        let Self {
+            timer,
+            period_s,
+            controller,
+            measurements,
+            record,
+            ..
+        } = self;
+        let due = record.tick.scheduled + timer.period();
+        let next = Tick {
+            number: record.tick.number.saturating_add(1),
+            scheduled: due,
+            woke: due,
+            missed: 0,
+            dt_s: *period_s,
+        };
+        timer.wait_rehearsing(&mut || controller.rehearse(&next, measurements))
     }
 
     /// Performs the tick of a deadline; gives the state after it. Allocates

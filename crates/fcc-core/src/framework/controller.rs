@@ -74,6 +74,11 @@ pub trait Controller: Send {
     /// The safest outputs that what is left of the measurements allows.
     fn failsafe(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
 
+    /// Warms what the next tick will run and touch, without effect: its outputs
+    /// are to the last bit what they would have been. Called shortly before a
+    /// tick where there is time; under the rules of a tick.
+    fn rehearse(&self, _tick: &Tick, _measurements: &Self::Measurements) {}
+
     /// Lets go.
     fn disengage(&mut self) {}
 

@@ -8,6 +8,7 @@ mod resume;
 mod scale;
 
 use core::fmt;
+use core::hint::black_box;
 use core::time::Duration;
 
 use libm::cos;
@@ -267,6 +268,14 @@ impl Controller for Autopilot {
                 ..Surfaces::default()
             });
         self.take_over(&standing);
+    }
+
+    fn rehearse(&self, tick: &Tick, measurements: &Measurements) {
+        let mut double = self.clone();
+        double.estimate(tick, measurements);
+        let _ = black_box(double.faults(tick, measurements));
+        double.guide(tick, measurements);
+        black_box(double.control(tick, measurements));
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {

@@ -1,0 +1,53 @@
+//! A rehearsal leaves no trace: a flight with one before each tick is to the
+//! last bit the flight without.
+#![cfg(test)]
+
+use std::time::Duration;
+
+use fcc_core::flight::{Measurements, Setpoints, Surfaces};
+use fcc_core::framework::State;
+use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
+use fcc_daemon::flight::assemble;
+use fcc_runtime::{Machine, Parts};
+use fcc_timer::ManualTimer;
+
+/// 75 s: standby, engaged, three legs of the pattern in gusts.
+const TICKS: usize = 3_000;
+
+fn fly(timer: ManualTimer) -> Vec<(State, Surfaces, Setpoints, Measurements)> {
+    let config = Config {
+        built_in: Some(BuiltInSection {
+            gusts: GustsChoice::Moderate,
+            ..BuiltInSection::default()
+        }),
+        ..Config::default()
+    };
+    let assembly = assemble(&config).unwrap();
+    let parts = Parts {
+        timer: Box::new(timer),
+        sensors: assembly.sensors,
+        controller: assembly.autopilot,
+        actuators: assembly.actuators,
+    };
+    let (mut machine, _link) = Machine::new(parts, &assembly.loop_config).unwrap();
+    machine.start().unwrap();
+    (0..TICKS)
+        .map(|_| {
+            let state = machine.step();
+            let record = machine.record();
+            (state, record.outputs, record.setpoints, record.measurements)
+        })
+        .collect()
+}
+
+#[test]
+fn a_rehearsed_flight_is_the_same_flight() {
+    let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
+    let plain = fly(timer.clone());
+    let rehearsed = fly(timer.rehearsing());
+    assert!(plain.iter().any(|(state, ..)| *state == State::Engaged));
+    // Equal numbers are equal bits here, but for zeros of two signs.
+    for (tick, (plain, rehearsed)) in plain.iter().zip(&rehearsed).enumerate() {
+        assert_eq!(plain, rehearsed, "tick {tick}");
+    }
+}
