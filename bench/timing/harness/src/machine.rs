@@ -1,6 +1,25 @@
 //! On what it was measured.
 
-use std::fs;
+use std::{fs, thread};
+
+use anyhow::anyhow;
+use fcc_timer::{CpuWish, RealtimeWishes};
+
+/// The CPU that everybody is bound to, and why: the one that `fccd` would
+/// choose for its loop, an isolated one or one that stays off the interrupts;
+/// the last where none is better than the others.
+pub(crate) fn quiet_cpu() -> anyhow::Result<(usize, String)> {
+    let auto = RealtimeWishes {
+        cpu: Some(CpuWish::Auto),
+        ..RealtimeWishes::default()
+    };
+    // In a thread of its own: whoever chooses is bound to what it chose.
+    let grants = thread::spawn(move || auto.apply())
+        .join()
+        .map_err(|_| anyhow!("choosing a CPU panicked"))??;
+    let last = thread::available_parallelism()?.get() - 1;
+    Ok((grants.cpu.unwrap_or(last), grants.cpu_because))
+}
 
 /// Kernel, processors and clock source in words.
 pub(crate) fn describe() -> String {

@@ -13,7 +13,6 @@ mod stats;
 
 use std::fs;
 use std::path::PathBuf;
-use std::thread::available_parallelism;
 
 use anyhow::Context as _;
 use clap::{Parser, ValueEnum};
@@ -42,7 +41,8 @@ struct Cli {
     /// Who is compared; all if left out
     #[arg(long, value_delimiter = ',', value_enum)]
     peers: Vec<Peer>,
-    /// The CPU that all of them run on, the last if left out
+    /// The CPU that all of them run on; if left out, an isolated one or one that
+    /// takes few interrupts of devices
     #[arg(long)]
     cpu: Option<usize>,
     /// Their priority under `SCHED_FIFO`
@@ -96,10 +96,11 @@ fn run(cli: &Cli) -> anyhow::Result<Results> {
     } else {
         &cli.peers
     };
-    let cpu = match cli.cpu {
-        Some(cpu) => cpu,
-        None => available_parallelism()?.get() - 1,
+    let (cpu, because) = match cli.cpu {
+        Some(cpu) => (cpu, "it was asked for".to_owned()),
+        None => machine::quiet_cpu()?,
     };
+    eprintln!("on CPU {cpu}: {because}");
     let priority = is_granted(cli.priority).then_some(cli.priority);
     if priority.is_none() {
         eprintln!(
@@ -116,7 +117,7 @@ fn run(cli: &Cli) -> anyhow::Result<Results> {
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let mut results = Results {
-        machine: machine::describe(),
+        machine: format!("{}; on CPU {cpu}: {because}", machine::describe()),
         seconds: cli.seconds,
         rounds: cli.rounds,
         runs: Vec::with_capacity(runs),

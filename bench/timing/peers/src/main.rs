@@ -64,7 +64,7 @@ impl Ours {
         let first = timer.wait()?;
         log.set_origin(first.scheduled_ns - period.as_nanos() as i64);
         while log.tick() {
-            timer.wait()?;
+            timer.wait_rehearsing(&mut || log.rehearse())?;
         }
         log.print()
     }
