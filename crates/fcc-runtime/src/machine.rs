@@ -5,7 +5,7 @@ use std::time::Duration;
 use fcc_core::framework::{
     Cause, Controller, Order, Record, RecordOf, StageTimes, State, SwitchOff, Tick, Time,
 };
-use fcc_timer::{Expiry, Timer, TimerError, TimingStats, usage};
+use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
 
 use crate::actuators::Actuators;
@@ -137,35 +137,39 @@ impl<C: Controller> Machine<C> {
         if self.state == State::Stopped {
             return self.state;
         }
-        match panics::caught(|| self.wait()) {
-            Ok(Ok(expiry)) => return self.tick(expiry),
-            Ok(Err(TimerError::Ended)) => self.leave(Ending::TimerEnded),
-            Ok(Err(error)) => self.leave(Ending::TimerFailed(error)),
-            Err(words) => self.leave(Ending::Panicked(words)),
+        loop {
+            match panics::caught(|| self.wait()) {
+                Ok(Ok(Some(expiry))) => return self.tick(expiry),
+                Ok(Ok(None)) => continue,
+                Ok(Err(TimerError::Ended)) => self.leave(Ending::TimerEnded),
+                Ok(Err(error)) => self.leave(Ending::TimerFailed(error)),
+                Err(words) => self.leave(Ending::Panicked(words)),
+            }
+            return self.state;
         }
-        self.state
     }
 
-    /// Waits for the deadline. A timer that wakes early has the controller
-    /// rehearse in what time is left.
-    fn wait(&mut self) -> Result<Expiry, TimerError> {
-        let Self {
-            timer,
-            period_s,
-            controller,
-            measurements,
-            record,
-            ..
-        } = self;
-        let due = record.tick.scheduled + timer.period();
-        let next = Tick {
-            number: record.tick.number.saturating_add(1),
-            scheduled: due,
-            woke: due,
-            missed: 0,
-            dt_s: *period_s,
-        };
-        timer.wait_rehearsing(&mut || controller.rehearse(&next, measurements))
+    /// Waits for the deadline, or comes back before it: a timer that wakes
+    /// early leaves time to rehearse.
+    fn wait(&mut self) -> Result<Option<Expiry>, TimerError> {
+        match self.timer.wait_or_rehearse()? {
+            Wake::Deadline(expiry) => Ok(Some(expiry)),
+            Wake::Rehearsal(expiry) => {
+                let tick = self.tick_of(&expiry);
+                self.controller.rehearse(&tick, &self.measurements);
+                Ok(None)
+            }
+        }
+    }
+
+    fn tick_of(&self, expiry: &Expiry) -> Tick {
+        Tick {
+            number: expiry.number,
+            scheduled: Time::from_nanos(expiry.scheduled_ns),
+            woke: Time::from_nanos(expiry.woke_ns),
+            missed: expiry.missed,
+            dt_s: self.period_s * (expiry.missed + 1) as f64,
+        }
     }
 
     /// Performs the tick of a deadline; gives the state after it. Allocates
@@ -188,13 +192,7 @@ impl<C: Controller> Machine<C> {
             return self.state;
         }
         self.pulse.beat();
-        let tick = Tick {
-            number: expiry.number,
-            scheduled: Time::from_nanos(expiry.scheduled_ns),
-            woke: Time::from_nanos(expiry.woke_ns),
-            missed: expiry.missed,
-            dt_s: self.period_s * (expiry.missed + 1) as f64,
-        };
+        let tick = self.tick_of(&expiry);
         self.record = Record::new(tick, self.state);
         self.overruns.begin(&tick, &mut self.outbox.events);
         if let Err(words) = panics::caught(|| self.turn(&tick)) {

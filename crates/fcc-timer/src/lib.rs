@@ -47,5 +47,5 @@ pub use nanosleep::Nanosleep;
 pub use posix::PosixTimer;
 pub use realtime::{CpuWish, RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
 pub use stats::{TimingStats, TimingSummary};
-pub use timer::{Expiry, Timer, TimerError};
+pub use timer::{Expiry, Timer, TimerError, Wake};
 pub use timerfd::TimerFd;

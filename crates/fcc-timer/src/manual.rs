@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period};
-use crate::{Expiry, Timer, TimerError};
+use crate::{Expiry, Timer, TimerError, Wake};
 
 /// A timer whose clock stands still until it is asked to wait, and then jumps
 /// to the next deadline. The clock begins at 0.
@@ -34,6 +34,7 @@ pub struct ManualTimer {
     deadlines: Option<Deadlines>,
     late: Vec<(u64, Duration)>,
     rehearses: bool,
+    rehearsed: bool,
 }
 
 impl ManualTimer {
@@ -48,6 +49,7 @@ impl ManualTimer {
             deadlines: None,
             late: Vec::new(),
             rehearses: false,
+            rehearsed: false,
         })
     }
 
@@ -88,11 +90,13 @@ impl Timer for ManualTimer {
         Ok(deadlines.woken_uncounted(self.now_ns))
     }
 
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
-        if self.rehearses {
-            rehearse();
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        if self.rehearses && !self.rehearsed {
+            self.rehearsed = true;
+            return self.clone().wait().map(Wake::Rehearsal);
         }
-        self.wait()
+        self.rehearsed = false;
+        self.wait().map(Wake::Deadline)
     }
 
     fn period(&self) -> Duration {

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
 use crate::early::{Alarm, Early};
-use crate::{EarlyWake, Expiry, Timer, TimerError};
+use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
 /// A periodic timer made of sleeps. Nothing runs in the kernel between two
 /// waits, so nothing is counted there: the clock tells which deadlines have
@@ -46,19 +46,15 @@ impl Nanosleep {
 
 impl Timer for Nanosleep {
     fn start(&mut self) -> Result<(), TimerError> {
-        let deadlines = Early::grid(self.early.as_ref(), self.period);
+        let deadlines = Early::grid(self.early.as_mut(), self.period);
         self.deadlines = Some(deadlines);
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
-        self.wait_rehearsing(&mut || ())
-    }
-
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
         if let Some(early) = &mut self.early {
-            return early.wait(deadlines, &mut Sleep, rehearse);
+            return early.wait(deadlines, &mut Sleep);
         }
         let alarm_ns = deadlines.alarm_ns();
         loop {
@@ -67,6 +63,13 @@ impl Timer for Nanosleep {
             if woke_ns >= alarm_ns {
                 return Ok(deadlines.woken_uncounted(woke_ns));
             }
+        }
+    }
+
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        match (&mut self.early, &mut self.deadlines) {
+            (Some(early), Some(deadlines)) => early.wait_or_rehearse(deadlines, &mut Sleep),
+            _ => self.wait().map(Wake::Deadline),
         }
     }
 

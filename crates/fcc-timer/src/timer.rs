@@ -26,15 +26,15 @@ pub trait Timer: Send {
     /// never for a signal that interrupts.
     fn wait(&mut self) -> Result<Expiry, TimerError>;
 
-    /// Waits like [`wait`](Self::wait). A timer that wakes early, and has time
-    /// left, calls `rehearse` before it spins: for what warms the caches for
-    /// the tick and changes nothing. The others do not call it.
+    /// Waits like [`wait`](Self::wait), but a timer that wakes early and has
+    /// time left may come back once before the deadline, with
+    /// [`Wake::Rehearsal`]: do what warms the caches for the tick and changes
+    /// nothing, and call again.
     ///
     /// # Errors
     /// Those of `wait`.
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
-        let _ = rehearse;
-        self.wait()
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        self.wait().map(Wake::Deadline)
     }
 
     /// The time between deadlines.
@@ -45,6 +45,15 @@ pub trait Timer: Send {
 
     /// What people and configuration call it: `timerfd`, `posix`, ...
     fn name(&self) -> &'static str;
+}
+
+/// What a wait ended with.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Wake {
+    /// The deadline is near. What it will be, but for the time of waking.
+    Rehearsal(Expiry),
+    /// The deadline has come.
+    Deadline(Expiry),
 }
 
 /// One deadline that was served.

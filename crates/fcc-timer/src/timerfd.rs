@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
 use crate::early::{Alarm, Early};
-use crate::{EarlyWake, Expiry, Timer, TimerError};
+use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
 /// A periodic timer on a timerfd. The kernel counts the expirations, and a
 /// read of the descriptor gives the count since the read before: all but one
@@ -54,23 +54,26 @@ impl TimerFd {
 
 impl Timer for TimerFd {
     fn start(&mut self) -> Result<(), TimerError> {
-        let deadlines = Early::grid(self.early.as_ref(), self.period);
+        let deadlines = Early::grid(self.early.as_mut(), self.period);
         self.file.move_to(deadlines.alarm_ns())?;
         self.deadlines = Some(deadlines);
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
-        self.wait_rehearsing(&mut || ())
-    }
-
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
         if let Some(early) = &mut self.early {
-            return early.wait(deadlines, &mut self.file, rehearse);
+            return early.wait(deadlines, &mut self.file);
         }
         let passed = self.file.expirations()?;
         Ok(deadlines.woken(passed, monotonic_ns()))
+    }
+
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        match (&mut self.early, &mut self.deadlines) {
+            (Some(early), Some(deadlines)) => early.wait_or_rehearse(deadlines, &mut self.file),
+            _ => self.wait().map(Wake::Deadline),
+        }
     }
 
     fn period(&self) -> Duration {

@@ -5,7 +5,7 @@
 
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
-use fcc_timer::{EarlyWake, TimerKind};
+use fcc_timer::{EarlyWake, TimerKind, Wake};
 use rtsc::time::{Interval, MissedTickBehavior};
 use ticklog::{Run, TickLog, monotonic_ns};
 use tokio::time::{self, MissedTickBehavior as TokioMissed};
@@ -63,10 +63,15 @@ impl Ours {
         timer.start()?;
         let first = timer.wait()?;
         log.set_origin(first.scheduled_ns - period.as_nanos() as i64);
-        while log.tick() {
-            timer.wait_rehearsing(&mut || log.rehearse())?;
+        log.tick();
+        loop {
+            let wake = timer.wait_or_rehearse()?;
+            // The same for a rehearsal, but that nothing is kept.
+            let now_ns = log.stamp().context("the log is full")?;
+            if matches!(wake, Wake::Deadline(_)) && !log.keep(now_ns) {
+                return log.print();
+            }
         }
-        log.print()
     }
 }
 

@@ -105,31 +105,31 @@ impl TickLog {
     /// Logs a tick, now; says whether to go on.
     #[inline]
     pub fn tick(&mut self) -> bool {
-        let Some(now_ns) = self.stamp() else {
-            return self.end();
-        };
+        match self.stamp() {
+            Some(now_ns) => self.keep(now_ns),
+            None => self.end(),
+        }
+    }
+
+    /// What a tick begins with: writes the time into the slot of the next tick.
+    /// It leaves no trace unless it is kept, so a loop may do it in a rehearsal.
+    /// `None` when the log is full.
+    #[inline(never)]
+    pub fn stamp(&mut self) -> Option<i64> {
+        let now_ns = monotonic_ns();
+        let slot = self.log.ticks_ns.get_mut(self.length)?;
+        *slot = now_ns;
+        Some(now_ns)
+    }
+
+    /// Keeps the time last written; says whether to go on.
+    pub fn keep(&mut self, now_ns: i64) -> bool {
         self.length += 1;
         if self.length == 1 {
             self.ends_ns = now_ns + self.run_ns;
             self.log.cpu_ns = usage::process_cpu_ns();
         }
         now_ns < self.ends_ns || self.end()
-    }
-
-    /// Does what a tick begins with and leaves no trace: for a loop that may
-    /// warm its caches before the tick.
-    pub fn rehearse(&mut self) {
-        self.stamp();
-    }
-
-    /// Writes the time into the slot of the next tick. One function, so that
-    /// who rehearses it runs the very instructions of the tick.
-    #[inline(never)]
-    fn stamp(&mut self) -> Option<i64> {
-        let now_ns = monotonic_ns();
-        let slot = self.log.ticks_ns.get_mut(self.length)?;
-        *slot = now_ns;
-        Some(now_ns)
     }
 
     fn end(&mut self) -> bool {

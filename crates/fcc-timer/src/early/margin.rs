@@ -91,7 +91,9 @@ impl Margin {
             return false;
         }
         self.review_in = REVIEW_TICKS;
-        if self.seen == 0 {
+        // A quantile of 0.998 is not known of less than 500: what has been seen
+        // by then is too little too often.
+        if self.spared * (self.seen as f64) < 1.0 && self.seen < WINDOW {
             return false;
         }
         let wanted_ns = self.wanted_ns(rehearsal_ns);
@@ -168,7 +170,7 @@ mod tests {
     #[test]
     fn follows_a_steady_lateness_with_the_guard() {
         let mut margin = at_40_hz();
-        ticks(&mut margin, steady(60, 64));
+        ticks(&mut margin, steady(60, 544));
         // 60 µs and 20 µs of guard, rounded up to a bucket of a microsecond.
         assert!(
             (80 * US..=81 * US).contains(&margin.ns()),
@@ -178,9 +180,19 @@ mod tests {
     }
 
     #[test]
+    fn is_as_long_as_it_may_be_until_the_quantile_is_known() {
+        let mut margin = at_40_hz();
+        // One in 500 is 0.002: of fewer, nothing is left of the quantile.
+        ticks(&mut margin, steady(60, 499));
+        assert_eq!(margin.ns(), 250 * US);
+        ticks(&mut margin, steady(60, 32));
+        assert!(margin.ns() < 100 * US, "{}", margin.ns());
+    }
+
+    #[test]
     fn keeps_between_its_bounds() {
         let mut margin = at_40_hz();
-        ticks(&mut margin, steady(0, 64));
+        ticks(&mut margin, steady(0, 544));
         assert!(
             (20 * US..=21 * US).contains(&margin.ns()),
             "{}",
@@ -193,7 +205,7 @@ mod tests {
             ..EarlyWake::default()
         };
         let mut margin = Margin::new(&floor, PERIOD_NS);
-        ticks(&mut margin, steady(3, 64));
+        ticks(&mut margin, steady(3, 544));
         assert_eq!(margin.ns(), 100 * US);
     }
 

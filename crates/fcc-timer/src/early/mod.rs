@@ -17,11 +17,10 @@ mod kernel_tick;
 mod margin;
 mod rehearsal;
 
-use std::hint::black_box;
 use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
-use crate::{Expiry, TimerError};
+use crate::{Expiry, TimerError, Wake};
 use kernel_tick::KernelTick;
 use margin::Margin;
 use rehearsal::Rehearsal;
@@ -37,7 +36,7 @@ const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 /// The margin follows the lateness with which the kernel really wakes the
 /// thread: it is the quantile of the last 2048 wake-ups plus the guard, within
 /// `min` and `max`, and never more than `cpu_cap` periods. It starts at the
-/// most it may be.
+/// most it may be, and stays there until the quantile can be known.
 ///
 /// A quantile, because a margin that follows the latest of all wake-ups would
 /// be blown up by each outlier: with 0.998, four of 2048 change nothing, and a
@@ -124,6 +123,16 @@ pub(crate) trait Alarm {
 pub(crate) struct Early {
     margin: Margin,
     rehearsal: Rehearsal,
+    /// The wake-up, while the deadline is rehearsed.
+    awake: Option<Awake>,
+}
+
+/// A thread that is awake before its deadline.
+#[derive(Clone, Copy, Debug)]
+struct Awake {
+    since_ns: i64,
+    /// How late the kernel woke it; `None` if it had not slept.
+    kernel_lateness_ns: Option<i64>,
 }
 
 impl Early {
@@ -134,16 +143,18 @@ impl Early {
         Ok(Self {
             margin: Margin::new(wish, period.ns()),
             rehearsal: Rehearsal::new(),
+            awake: None,
         })
     }
 
     /// The grid of a timer that starts now, waking early or not. Waking early,
     /// it starts up to a tick of the kernel later, where that keeps the kernel's
     /// ticks out of the margin; to find them takes three of them.
-    pub(crate) fn grid(early: Option<&Self>, period: Period) -> Deadlines {
+    pub(crate) fn grid(early: Option<&mut Self>, period: Period) -> Deadlines {
         let Some(early) = early else {
             return Deadlines::new(monotonic_ns(), period);
         };
+        early.awake = None;
         let tick = KernelTick::find();
         let now_ns = monotonic_ns();
         let start_ns = tick.map_or(now_ns, |tick| {
@@ -154,16 +165,74 @@ impl Early {
         deadlines
     }
 
-    /// Waits for the next deadline. What has passed is told by the clock: an
-    /// alarm is no deadline, so the kernel's count of alarms says nothing here.
-    ///
-    /// `rehearse` is called once the thread is awake, if there is time for it.
+    /// Waits for the next deadline, whatever was rehearsed.
     pub(crate) fn wait(
         &mut self,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
-        rehearse: &mut dyn FnMut(),
     ) -> Result<Expiry, TimerError> {
+        match self.wait_or(false, deadlines, kernel)? {
+            Wake::Rehearsal(expiry) | Wake::Deadline(expiry) => Ok(expiry),
+        }
+    }
+
+    /// Waits for the next deadline, or once before it for a rehearsal.
+    pub(crate) fn wait_or_rehearse(
+        &mut self,
+        deadlines: &mut Deadlines,
+        kernel: &mut impl Alarm,
+    ) -> Result<Wake, TimerError> {
+        self.wait_or(true, deadlines, kernel)
+    }
+
+    /// What has passed is told by the clock: an alarm is no deadline, so the
+    /// kernel's count of alarms says nothing here.
+    ///
+    /// A rehearsal comes back by the very instructions by which the deadline
+    /// will: so these are rehearsed, too.
+    fn wait_or(
+        &mut self,
+        may_rehearse: bool,
+        deadlines: &mut Deadlines,
+        kernel: &mut impl Alarm,
+    ) -> Result<Wake, TimerError> {
+        let due_ns = deadlines.due_ns(deadlines.next());
+        let rehearsed = self.awake.take();
+        let awake = if let Some(awake) = rehearsed {
+            let took_ns = monotonic_ns().saturating_sub(awake.since_ns);
+            self.rehearsal.took(took_ns);
+            awake
+        } else {
+            self.wake(deadlines, kernel)?
+        };
+        let rehearses = may_rehearse
+            && rehearsed.is_none()
+            && self.rehearsal.fits(due_ns.saturating_sub(awake.since_ns));
+        let mut served = *deadlines;
+        let expiry = spin(&mut served, if rehearses { i64::MIN } else { due_ns });
+        let expiry = Expiry {
+            early_wake_ns: self.margin.ns().unsigned_abs(),
+            // Beyond the deadline it is not the spin that takes the time.
+            spun_ns: due_ns.saturating_sub(awake.since_ns).max(0).unsigned_abs(),
+            kernel_lateness_ns: awake
+                .kernel_lateness_ns
+                .unwrap_or(expiry.kernel_lateness_ns),
+            ..expiry
+        };
+        if rehearses {
+            self.awake = Some(awake);
+            return Ok(Wake::Rehearsal(expiry));
+        }
+        *deadlines = served;
+        Ok(Wake::Deadline(expiry))
+    }
+
+    /// Sleeps until the alarm.
+    fn wake(
+        &mut self,
+        deadlines: &mut Deadlines,
+        kernel: &mut impl Alarm,
+    ) -> Result<Awake, TimerError> {
         if self.margin.review(self.rehearsal.allowance_ns()) {
             deadlines.wake_early(self.margin.ns());
             // A system call, but one in 32 ticks at most, and before the wait:
@@ -171,7 +240,6 @@ impl Early {
             kernel.move_to(deadlines.alarm_ns())?;
         }
         let alarm_ns = deadlines.alarm_ns();
-        let due_ns = deadlines.due_ns(deadlines.next());
         let mut now_ns = monotonic_ns();
         let mut kernel_lateness_ns = None;
         if now_ns < alarm_ns {
@@ -184,24 +252,9 @@ impl Early {
             self.margin.observe(late_ns);
             kernel_lateness_ns = Some(late_ns);
         }
-        // Beyond the deadline it is not the spin that takes the time.
-        let spun_ns = due_ns.saturating_sub(now_ns).max(0).unsigned_abs();
-        if due_ns.saturating_sub(now_ns) >= self.rehearsal.allowance_ns() {
-            rehearse();
-            // What comes after the spin is to be warm, too.
-            black_box(spin(&mut deadlines.clone(), now_ns));
-            let since_ns = now_ns;
-            now_ns = monotonic_ns();
-            self.rehearsal.took(now_ns.saturating_sub(since_ns));
-        } else {
-            self.rehearsal.skipped();
-        }
-        let expiry = spin(deadlines, due_ns);
-        Ok(Expiry {
-            early_wake_ns: self.margin.ns().unsigned_abs(),
-            spun_ns,
-            kernel_lateness_ns: kernel_lateness_ns.unwrap_or(expiry.kernel_lateness_ns),
-            ..expiry
+        Ok(Awake {
+            since_ns: now_ns,
+            kernel_lateness_ns,
         })
     }
 }
@@ -317,7 +370,7 @@ mod tests {
         let mut deadlines = Deadlines::new(monotonic_ns(), period);
         deadlines.wake_early(early.margin.ns());
         let mut kernel = Impatient { stale: 3 };
-        let expiry = early.wait(&mut deadlines, &mut kernel, &mut || ()).unwrap();
+        let expiry = early.wait(&mut deadlines, &mut kernel).unwrap();
         assert_eq!(kernel.stale, 0);
         assert!(expiry.woke_ns >= expiry.scheduled_ns);
         assert_eq!(expiry.early_wake_ns, 250_000);

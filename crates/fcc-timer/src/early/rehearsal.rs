@@ -32,15 +32,19 @@ impl Rehearsal {
         2 * self.longest_ns
     }
 
+    /// Whether there is time for one. If not, the next time is nearer.
+    pub(super) const fn fits(&mut self, left_ns: i64) -> bool {
+        let fits = left_ns >= self.allowance_ns();
+        if !fits {
+            self.longest_ns -= self.longest_ns / FORGOTTEN_UNTRIED;
+        }
+        fits
+    }
+
     /// Counts one that took so long.
     pub(super) fn took(&mut self, ns: i64) {
         let faded_ns = self.longest_ns - self.longest_ns / FORGOTTEN;
         self.longest_ns = faded_ns.max(ns);
-    }
-
-    /// Counts a tick without one.
-    pub(super) const fn skipped(&mut self) {
-        self.longest_ns -= self.longest_ns / FORGOTTEN_UNTRIED;
     }
 }
 
@@ -66,8 +70,7 @@ mod tests {
         let mut rehearsal = Rehearsal::new();
         rehearsal.took(400_000);
         let mut skipped = 0;
-        while rehearsal.allowance_ns() > 150_000 {
-            rehearsal.skipped();
+        while !rehearsal.fits(150_000) {
             skipped += 1;
         }
         // 800 µs fade to 150: ln(800 / 150) / -ln(1 - 1 / 64).

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::early::{Alarm, Early};
-use crate::{EarlyWake, Expiry, Timer, TimerError};
+use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 use interval::IntervalTimer;
 use signal::TimerSignal;
 
@@ -35,6 +35,17 @@ struct Running {
     deadlines: Deadlines,
     thread: ThreadId,
     signals: Signals,
+}
+
+impl Running {
+    /// The signals come to the thread that started the timer.
+    fn check_thread(&self) -> Result<(), TimerError> {
+        if self.thread == thread::current().id() {
+            Ok(())
+        } else {
+            Err(TimerError::WrongThread)
+        }
+    }
 }
 
 impl PosixTimer {
@@ -67,7 +78,7 @@ impl Timer for PosixTimer {
         // The timer of a start before goes first, and its signal with it.
         self.running = None;
         let mut signals = Signals::new(self.period)?;
-        let deadlines = Early::grid(self.early.as_ref(), self.period);
+        let deadlines = Early::grid(self.early.as_mut(), self.period);
         signals.move_to(deadlines.alarm_ns())?;
         self.running = Some(Running {
             deadlines,
@@ -78,21 +89,25 @@ impl Timer for PosixTimer {
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
-        self.wait_rehearsing(&mut || ())
-    }
-
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
         let running = self.running.as_mut().ok_or(TimerError::NotStarted)?;
-        if running.thread != thread::current().id() {
-            return Err(TimerError::WrongThread);
-        }
+        running.check_thread()?;
         if let Some(early) = &mut self.early {
-            return early.wait(&mut running.deadlines, &mut running.signals, rehearse);
+            return early.wait(&mut running.deadlines, &mut running.signals);
         }
         running.signals.signal.wait()?;
         let woke_ns = monotonic_ns();
         let passed = running.signals.timer.overruns()?.saturating_add(1);
         Ok(running.deadlines.woken(passed, woke_ns))
+    }
+
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        match (&mut self.early, &mut self.running) {
+            (Some(early), Some(running)) => {
+                running.check_thread()?;
+                early.wait_or_rehearse(&mut running.deadlines, &mut running.signals)
+            }
+            _ => self.wait().map(Wake::Deadline),
+        }
     }
 
     fn period(&self) -> Duration {

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use fcc_timer::{
     EarlyWake, Expiry, ManualTimer, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, TimingStats,
+    Wake,
 };
 
 const PERIOD: Duration = Duration::from_millis(4);
@@ -95,8 +96,8 @@ impl<T: Timer> Timer for Early<T> {
         self.0.wait()
     }
 
-    fn wait_rehearsing(&mut self, rehearse: &mut dyn FnMut()) -> Result<Expiry, TimerError> {
-        self.0.wait_rehearsing(rehearse)
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        self.0.wait_or_rehearse()
     }
 
     fn period(&self) -> Duration {
@@ -284,19 +285,45 @@ fn the_margin_and_the_spin_are_told<T: Subject>() {
     }
 }
 
-/// What is rehearsed is over before the deadline's expiry is handed out, once
-/// in a wait at the most, and not left out for ever.
-fn waits_rehearse_before_the_deadline<T: Subject>() {
+/// A rehearsal comes before its deadline and tells which one that will be; then
+/// the deadline comes, on time or not, and no other rehearsal before it.
+fn a_rehearsal_comes_before_its_deadline<T: Subject>() {
     let mut timer = started::<T>();
     let mut rehearsed = 0;
+    let mut before = timer.wait().unwrap();
     for _ in 0..100 {
-        let mut calls = 0;
-        let expiry = timer.wait_rehearsing(&mut || calls += 1).unwrap();
-        assert!(calls <= 1, "{calls}");
-        assert!(calls == 0 || expiry.spun_ns > 0, "{expiry:?}");
-        rehearsed += calls;
+        let mut wake = timer.wait_or_rehearse().unwrap();
+        if let Wake::Rehearsal(expected) = wake {
+            rehearsed += 1;
+            assert!(expected.woke_ns < expected.scheduled_ns, "{expected:?}");
+            assert_eq!(expected.number, before.number + 1);
+            wake = timer.wait_or_rehearse().unwrap();
+        }
+        let Wake::Deadline(expiry) = wake else {
+            panic!("two rehearsals of one deadline");
+        };
+        before = assert_follows(expiry, before, PERIOD_NS);
     }
     // On a busy machine some wake-ups leave no time for it.
+    assert!(rehearsed > 0);
+}
+
+/// Who rehearses for longer than there is time misses what passed, as with any
+/// long tick, and who does not ask again gets the deadline by a plain wait.
+fn a_long_rehearsal_is_a_late_tick<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut rehearsed = 0;
+    let mut before = timer.wait().unwrap();
+    for _ in 0..20 {
+        if let Wake::Rehearsal(expected) = timer.wait_or_rehearse().unwrap() {
+            rehearsed += 1;
+            timer.work(PERIOD * 5 / 2);
+            let late = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+            assert!(late.missed >= 2, "{late:?}");
+            assert!(late.number >= expected.number + 2, "{late:?}");
+        }
+        before = timer.wait().unwrap();
+    }
     assert!(rehearsed > 0);
 }
 
@@ -363,7 +390,8 @@ conformance!(
     super::Early<super::TimerFd>,
     signals_do_not_end_a_wait,
     the_margin_and_the_spin_are_told,
-    waits_rehearse_before_the_deadline,
+    a_rehearsal_comes_before_its_deadline,
+    a_long_rehearsal_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );
 conformance!(
@@ -371,7 +399,8 @@ conformance!(
     super::Early<super::PosixTimer>,
     signals_do_not_end_a_wait,
     the_margin_and_the_spin_are_told,
-    waits_rehearse_before_the_deadline,
+    a_rehearsal_comes_before_its_deadline,
+    a_long_rehearsal_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );
 conformance!(
@@ -379,6 +408,7 @@ conformance!(
     super::Early<super::Nanosleep>,
     signals_do_not_end_a_wait,
     the_margin_and_the_spin_are_told,
-    waits_rehearse_before_the_deadline,
+    a_rehearsal_comes_before_its_deadline,
+    a_long_rehearsal_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );
