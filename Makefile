@@ -17,6 +17,9 @@ LIVE     ?=
 # For bench-timing, such as TIMING="--rates 40 --seconds 20 --rounds 5".
 TIMING   ?=
 
+# For soak, such as SOAK="--minutes 5 --rate 1000".
+SOAK     ?=
+
 # Where `cargo` puts what it builds.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
@@ -36,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live doc build clean
+.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -134,6 +137,10 @@ bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their
 	$(BENCH_TIMING)
 	$(TIMING_TARGET)/release/bench-timing --json target/bench-timing.json \
 	    --markdown target/bench-timing.md --plot target/bench-timing.svg $(TIMING)
+
+soak: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/rt-tests ## Fly for half an hour at 100 Hz under stress, cyclictest beside (SOAK=)
+	@mkdir -p target
+	$(PYTHON) -m fcc_hil soak --fccd $(FCCD) --json target/soak.json $(SOAK)
 
 bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
 	$(PYTHON) -m fcc_hil bench

@@ -24,6 +24,7 @@ from .peer import fly_peer
 from .plant import TrimError, Weather
 from .plot import plot_flight
 from .process import StandInError, StandInProcess
+from .soak import SoakError
 from .standin import BEACON_GROUP, Mode, Settings
 from .table import table
 
@@ -355,6 +356,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code: int = options.run(options)
     except (
         FlightError,
+        SoakError,
         watched.FlightError,
         DaemonError,
         StandInError,

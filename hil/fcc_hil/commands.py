@@ -1,4 +1,4 @@
-"""The commands `suite` and `tune`: what they are asked, and what they say."""
+"""The commands `suite`, `tune` and `soak`: what they are asked, and what they say."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from .aircraft import AIRCRAFT
+from .soak import Soak, soak
 
 _LARGEST_SEEDS = 1_000
 
@@ -62,7 +63,7 @@ def _positive(text: str) -> int:
 
 
 def add(commands: Any) -> None:
-    """Add both commands to a parser's."""
+    """Add these commands to a parser's."""
     suite = commands.add_parser(
         "suite", help="fly many aircraft in all weathers and hold them to stated limits"
     )
@@ -115,6 +116,16 @@ def add(commands: Any) -> None:
         "--dask", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
     )
     tune.set_defaults(run=_tune)
+
+    soaks = commands.add_parser(
+        "soak", help="fly for long under stress, and compare with what the machine was late by"
+    )
+    soaks.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
+    soaks.add_argument("--minutes", type=float, default=30.0, help="(default %(default)s)")
+    soaks.add_argument("--rate", type=_positive, default=100, metavar="HZ", help="(%(default)s)")
+    soaks.add_argument("--idle", action="store_true", help="without stress-ng beside")
+    soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
+    soaks.set_defaults(run=_soak)
 
 
 def _suite(options: argparse.Namespace) -> int:
@@ -190,3 +201,33 @@ def _tune(options: argparse.Namespace) -> int:
         print(f"  {key} = {value:g}")
     print(f"written: {options.output}", file=sys.stderr)
     return 0
+
+
+def _soak(options: argparse.Namespace) -> int:
+    seconds = 60.0 * options.minutes
+    if seconds <= 0.0:
+        raise ValueError("--minutes: give more than 0")
+    order = Soak(options.fccd, seconds, options.rate, not options.idle)
+    with _bar("flying", round(seconds)) as bar:
+        result = soak(order, lambda flown_s: bar(round(flown_s), "flying"))
+    late, machine = result.lateness_us, result.machine
+    rows = {
+        "ticks": f"{result.ticks}, {result.missed} missed",
+        "late, us": f"{late['p50']:.3f} median, {late['p99']:.3f} p99, "
+        f"{late['p99_9']:.1f} p99.9, {late['max']:.0f} max",
+        "within 2 %": f"{100.0 * result.within_2_percent:.3f} % of the periods",
+        "page faults": f"{result.page_faults}",
+        "waits": f"{result.voluntary_switches_per_tick:.4f} a tick, the timer's being one; "
+        f"displaced {result.involuntary_switches} times",
+        "CPU": f"{result.cpu_percent:.2f} % of a core",
+        "cyclictest": f"{machine.cycles} ticks, {machine.periods_lost} periods lost, "
+        f"{machine.max_us:.0f} us late at most",
+    }
+    for name, figures in rows.items():
+        print(f"{name:12} {figures}")
+    failures = result.failures()
+    for failure in failures:
+        print(f"failed: {failure}", file=sys.stderr)
+    if options.json:
+        options.json.write_text(json.dumps(result.document(), indent=2) + "\n", encoding="utf-8")
+    return 1 if failures else 0
