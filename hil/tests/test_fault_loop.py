@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
+from daemon_under_test import DaemonUnderTest, assert_released, engage, flight, wait_until
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
@@ -25,6 +25,7 @@ from fault_flights import (
     assert_regular,
     at_once,
 )
+from stuck_terminal import StuckTerminal
 
 SUCCESS = 0
 FAILSAFE_HAPPENED = 3
@@ -243,6 +244,21 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     assert [record.tick for record in flight.records][-1] == last.tick
     assert flight.records[-1].state.phase == ENGAGED
     assert_regular(flight.records, PERIOD_NS)
+
+
+def test_a_loop_that_hangs_is_ended_though_the_terminal_is_held(
+    faulty_fccd: Path, tmp_path: Path
+) -> None:
+    """The main thread waits for the terminal, and can end nothing in good order."""
+    with StuckTerminal(
+        faulty_fccd,
+        tmp_path / "held",
+        f"[telemetry]\nenabled = false\n{QUICK_WATCHDOG}",
+        {"FCCD_HANG_AT_S": "2"},
+    ) as daemon:
+        wait_until(lambda: b"standby -> engaged" in daemon.hear(), "it is engaged")
+        daemon.hold()
+        assert daemon.ends_by_itself() == HUNG
 
 
 @pytest.mark.parametrize("name", ["overruns", "late by far too many", "stopped", "control hangs"])
