@@ -24,14 +24,18 @@ Result = TypeVar("Result")
 AT_ONCE = 8
 """Flights in real time mostly wait."""
 
-FAILSAFE = 2
+STANDBY = 0
 """The phase, as the recording calls it."""
 ENGAGED = 1
+FAILSAFE = 2
 
 OVERRUN = 3
 """Why the loop fell into failsafe, as the recording calls it."""
 
 NS = 1e-9
+
+AT_ONCE_S = 3.0
+"""What takes a tick, on a machine that is busy with other things."""
 
 
 def at_once(flights: dict[Key, Callable[[], Result]]) -> dict[Key, Result]:
@@ -51,9 +55,11 @@ class Flown:
     events: list[Any]
     """Decoded."""
     recording: Path
+    injected_ns: int = 0
+    """When the fault was put in, by the loop's clock, which is the machine's monotonic one."""
 
     @classmethod
-    def of(cls, ending: Ending, folder: Path) -> Flown:
+    def of(cls, ending: Ending, folder: Path, injected_ns: int = 0) -> Flown:
         """Read what a flight left in a folder of recordings."""
         path = only_recording(folder)
         seen = in_sequence(path)
@@ -62,6 +68,7 @@ class Flown:
             [message.content for message in seen if message.topic == RECORD],
             [message.content for message in seen if message.topic == EVENT],
             path,
+            injected_ns,
         )
 
     @property
@@ -98,6 +105,13 @@ def assert_flown_again(fccd: Path, flown: Flown) -> None:
 def seconds(later: Any, earlier: Any) -> float:
     """Return the time between two records, by the loop's clock."""
     return float((later.woke_ns - earlier.woke_ns) * NS)
+
+
+def assert_in_the_same_tick(flown: Flown, place: int, after_s: float) -> None:
+    """Assert that what a part does so long after engaging is answered in that very tick."""
+    engaged_ns = next(r.woke_ns for r in flown.records if r.state.phase == ENGAGED)
+    last, record = flown.records[place - 1 : place + 1]
+    assert last.woke_ns - engaged_ns < after_s / NS <= record.woke_ns - engaged_ns
 
 
 def assert_regular(records: Iterable[Any], period_ns: int) -> None:

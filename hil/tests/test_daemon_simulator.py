@@ -9,6 +9,7 @@ from pathlib import Path
 
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
 from deaf_simulator import DeafSimulator
+from fault_flights import AT_ONCE_S, NS, Flown
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
@@ -18,7 +19,17 @@ SUCCESS = 0
 FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
+MAX_AGE_S = 0.25
+"""What is older is lost, unless configured."""
+PAUSED = 1
+"""The plant's state, as the recording calls it."""
 SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
+
+
+def assert_lost_when_too_old(flown: Flown, place: int) -> None:
+    record = flown.records[place]
+    age_s = (record.woke_ns - record.measurements.attitude.taken_ns) * NS
+    assert MAX_AGE_S < age_s < MAX_AGE_S + AT_ONCE_S
 
 
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
@@ -50,6 +61,8 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
         "engaged -> standby",
         "standby -> stopped",
     ]
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert_lost_when_too_old(flown, flown.failsafes[0])
 
 
 def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
@@ -86,6 +99,7 @@ def test_a_killed_simulator_ends_the_program_where_that_is_wanted(
 def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
+        paused_ns = time.monotonic_ns()
         simulator.set_mode(Mode.PAUSED)
         daemon.wait_for("X-Plane is paused")
         stood_at_s = simulator.progress().time_s
@@ -99,6 +113,10 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
         assert_released(simulator)
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    records = Flown.of(ending, tmp_path / "recordings").records
+    paused = [record for record in records if record.measurements.plant.state == PAUSED]
+    assert (paused[0].woke_ns - paused_ns) * NS < AT_ONCE_S
+    assert len({str(record.outputs) for record in paused[1:]}) == 1, "they are held"
 
 
 def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Path) -> None:
@@ -110,6 +128,7 @@ def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Pat
         simulator.set_mode(Mode.RUNNING)
         simulator.write(ENGAGE_SWITCH, 0.0)
         engage(simulator, daemon)
+        jumped_ns = time.monotonic_ns()
         simulator.jump(100.0)
         assert "simulator time jumped" in daemon.wait_for("engaged -> failsafe")
         daemon.wait_for("failsafe -> standby")
@@ -117,6 +136,10 @@ def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Pat
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == FAILSAFE
     assert ending.report["failsafes"] == 2
+    flown = Flown.of(ending, tmp_path / "recordings")
+    hung, jumped = flown.failsafes
+    assert_lost_when_too_old(flown, hung)
+    assert 0.0 < (flown.records[jumped].woke_ns - jumped_ns) * NS < AT_ONCE_S
 
 
 def test_a_flight_that_is_loaded_anew_is_not_flown_on(fccd: Path, tmp_path: Path) -> None:

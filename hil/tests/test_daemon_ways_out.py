@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 import signal
+import time
 from pathlib import Path
 
 import pytest
 from daemon_under_test import assert_released, engage, flight, wait_until
+from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_in_the_same_tick
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
@@ -22,6 +24,7 @@ PANICKED = 6
 def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signal.Signals) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
+        told_ns = time.monotonic_ns()
         ending = daemon.end(number)
         assert_released(simulator)
     assert ending.exit_code == SUCCESS
@@ -33,6 +36,9 @@ def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signa
     assert ending.report["released"] is True
     assert ending.report["failsafes"] == 0
     assert "Accept incoming connections" not in ending.said
+    events = Flown.of(ending, tmp_path / "recordings").events
+    heard = next(event for event in events if event.WhichOneof("kind") == "told_to_stop")
+    assert (heard.time_ns - told_ns) * NS < AT_ONCE_S
 
 
 def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Path) -> None:
@@ -45,6 +51,9 @@ def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Pa
     assert "injected panic" in ending.report["ending"]
     assert "a part of the loop panicked" in ending.events
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert flown.records[-2].state.phase == ENGAGED
+    assert_in_the_same_tick(flown, len(flown.records) - 1, after_s=1.0)
 
 
 def test_a_command_that_is_no_number_never_leaves_the_daemon(
@@ -66,6 +75,8 @@ def test_a_command_that_is_no_number_never_leaves_the_daemon(
         assert all(math.isfinite(write.value) for write in simulator.journal())
     assert ending.exit_code == FAILSAFE
     assert ending.report["failsafes"] == 1
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert_in_the_same_tick(flown, flown.failsafes[0], after_s=1.0)
 
 
 def test_a_killed_daemon_leaves_a_guard_that_centres_and_releases(
@@ -73,8 +84,10 @@ def test_a_killed_daemon_leaves_a_guard_that_centres_and_releases(
 ) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
+        killed_at_s = simulator.progress().time_s
         ending = daemon.end(signal.SIGKILL)
         assert_released(simulator)
+        assert simulator.releases()[0].time_s - killed_at_s < AT_ONCE_S
         wait_until(lambda: "fccd guard: the daemon is gone" in daemon.said, "the guard's word")
     assert ending.exit_code == -signal.SIGKILL
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import signal
+import time
 from pathlib import Path
 
 import pytest
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
-from fault_flights import Flown, assert_flown_again, at_once, seconds
+from fault_flights import AT_ONCE_S, NS, Flown, assert_flown_again, at_once, seconds
 from tampered_link import TamperedLink
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
@@ -58,13 +59,14 @@ def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
         engage(simulator, daemon)
         link.cut(to_simulator=True)
         # Somebody else lets go of the override, and the daemon cannot set it again.
+        cut_ns = time.monotonic_ns()
         simulator.write(OVERRIDE_JOYSTICK, 0.0)
         assert "have no effect" in daemon.wait_for("Accept incoming connections")
         link.mend()
         daemon.wait_for("take effect")
         ending = daemon.end(signal.SIGTERM)
         wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
-    return Flown.of(ending, scratch / "recordings")
+    return Flown.of(ending, scratch / "recordings", cut_ns)
 
 
 def slow(fccd: Path, scratch: Path) -> Flown:
@@ -72,6 +74,7 @@ def slow(fccd: Path, scratch: Path) -> Flown:
     scratch.mkdir()
     with flight(fccd, scratch, others=PATIENT) as (simulator, daemon):
         engage(simulator, daemon)
+        slowed_ns = time.monotonic_ns()
         simulator.set_frame_rate(SLOW_FPS)
         daemon.wait_for("X-Plane is slow")
         for _ in range(3):
@@ -80,7 +83,7 @@ def slow(fccd: Path, scratch: Path) -> Flown:
         daemon.wait_for("time runs again")
         ending = daemon.end(signal.SIGTERM)
         assert_released(simulator)
-    return Flown.of(ending, scratch / "recordings")
+    return Flown.of(ending, scratch / "recordings", slowed_ns)
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +120,8 @@ def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]
     recovered = [
         event for event in flown.events if event.WhichOneof("kind") == "actuator_recovered"
     ]
-    assert faults
+    # A second after it shows.
+    assert 0.0 < (faults[0].time_ns - flown.injected_ns) * NS < 1.0 + AT_ONCE_S
     assert recovered
     assert flown.ending.report["released"] is True
 
@@ -127,6 +131,7 @@ def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) ->
     assert flown.ending.exit_code == SUCCESS
     assert flown.failsafes == []
     slow_ones = [r for r in flown.records if r.measurements.plant.state == 3]
+    assert 0.0 < (slow_ones[0].woke_ns - flown.injected_ns) * NS < 2.0 + AT_ONCE_S
     plant_s = slow_ones[-1].measurements.plant.time_s - slow_ones[0].measurements.plant.time_s
     ours_s = seconds(slow_ones[-1], slow_ones[0])
     assert plant_s < 0.9 * ours_s

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
+from daemon_under_test import DaemonUnderTest, assert_released, engage, flight, wait_until
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
@@ -25,6 +25,7 @@ from fault_flights import (
     assert_regular,
     at_once,
 )
+from stuck_terminal import StuckTerminal
 
 SUCCESS = 0
 FAILSAFE_HAPPENED = 3
@@ -36,6 +37,7 @@ PERIOD_NS = 1_000_000_000 // RATE_HZ
 HOLD = '[course]\nkind = "hold"\n[telemetry]\nenabled = false\n'
 NEVER_FAILSAFE = "[budget]\nfailsafe_after = 0\n"
 QUICK_WATCHDOG = "[watchdog]\nhang_after_ms = 500\n"
+HANG_AFTER_NS = 500_000_000
 
 
 def fly(
@@ -235,12 +237,28 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     assert flight.ending.report["released"] is True
     last = flight.events[-1]
     assert last.WhichOneof("kind") == "hung"
-    assert last.hung.silent_ns >= 500_000_000
+    # It looks ten times in that time, and counts two looks at most for one.
+    assert HANG_AFTER_NS <= last.hung.silent_ns < 1.2 * HANG_AFTER_NS
     assert "the watchdog gave the controls back" in flight.ending.said
     # All up to the tick that hangs, which has no end and so no record.
     assert [record.tick for record in flight.records][-1] == last.tick
     assert flight.records[-1].state.phase == ENGAGED
     assert_regular(flight.records, PERIOD_NS)
+
+
+def test_a_loop_that_hangs_is_ended_though_the_terminal_is_held(
+    faulty_fccd: Path, tmp_path: Path
+) -> None:
+    """The main thread waits for the terminal, and can end nothing in good order."""
+    with StuckTerminal(
+        faulty_fccd,
+        tmp_path / "held",
+        f"[telemetry]\nenabled = false\n{QUICK_WATCHDOG}",
+        {"FCCD_HANG_AT_S": "2"},
+    ) as daemon:
+        wait_until(lambda: b"standby -> engaged" in daemon.hear(), "it is engaged")
+        daemon.hold()
+        assert daemon.ends_by_itself() == HUNG
 
 
 @pytest.mark.parametrize("name", ["overruns", "late by far too many", "stopped", "control hangs"])

@@ -7,16 +7,25 @@ the faults follow one another: engaged, broken, seen, mended, engaged again.
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import signal
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 from daemon_under_test import DaemonUnderTest, Ending, start, write_config
-from fault_flights import Flown, assert_flown_again, at_once, seconds
+from fault_flights import (
+    ENGAGED,
+    FAILSAFE,
+    STANDBY,
+    Flown,
+    assert_flown_again,
+    at_once,
+    seconds,
+)
 from tampered_link import TamperedLink
 
 from fcc_hil.fly import ENGAGE_SWITCH
@@ -35,6 +44,8 @@ FROZEN_S = 2.0
 PATTERN = 'kind = "timed-pattern"\nhold_s = 1.0\nleg_s = 20.0'
 PATIENT = f"[failsafe]\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
 FLOWN_THROUGH_S = 3.0
+SHORT_S = 0.1
+"""A jump back so soon is none: six frames, and a sixth of what may be missing."""
 
 P = "sim/flightmodel/position/"
 
@@ -113,6 +124,7 @@ SENSED: dict[str, Sensor] = {
         jump=300.0,
     ),
 }
+HARMLESS = ("reordered", "a little late", "a short jump")
 LOSSES = ("silent", "nan", "infinite", "out of range", "jumping", "late")
 FAULTS = (*LOSSES, "frozen")
 
@@ -143,6 +155,7 @@ class Breaking:
                 "silent": (Kind.LOSS, 0.0),
                 "nan": (Kind.NAN, 0.0),
                 "jumping": (Kind.BIAS, sensor.jump),
+                "a short jump": (Kind.BIAS, sensor.jump),
                 "late": (Kind.DELAY, 3 * MAX_AGE_S),
                 "frozen": (Kind.FREEZE, 0.0),
                 "a little late": (Kind.DELAY, 0.05),
@@ -150,9 +163,14 @@ class Breaking:
             }
             kind, amount = made[fault]
             share = 0.5 if kind is Kind.REORDER else 1.0
+            begins_s, ends_s = 0.0, math.inf
+            if fault == "a short jump":
+                # Far enough ahead that it is told in time.
+                begins_s = self.simulator.progress().time_s + 1.0
+                ends_s = begins_s + SHORT_S
             channels = SENSORS[self.name]
             self.simulator.set_sensor_faults(
-                [SensorFault(kind, self.name, channels, 0.0, amount=amount, share=share)]
+                [SensorFault(kind, self.name, channels, begins_s, ends_s, amount, share)]
             )
 
     def mend(self) -> None:
@@ -180,7 +198,7 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
         ) as daemon,
     ):
         flight = Breaking(name, simulator, link, daemon)
-        for fault in ("reordered", "a little late"):
+        for fault in HARMLESS:
             flight.engage()
             flight.put_in(fault)
             began_s = simulator.progress().time_s
@@ -279,14 +297,41 @@ def test_what_is_reordered_or_a_little_late_is_flown_through(
     flown: dict[str, Flown], name: str
 ) -> None:
     states = [text for text in flown[name].texts() if " -> " in text]
-    assert states[:4] == ["standby -> engaged", "engaged -> standby"] * 2
+    through = ["standby -> engaged", "engaged -> standby"] * len(HARMLESS)
+    assert states[: len(through)] == through
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_a_short_jump_is_flown_through(flown: dict[str, Flown], name: str) -> None:
+    flight = flown[name]
+    phases = [record.state.phase for record in flight.records]
+    engaged = [
+        place
+        for place, (last, phase) in enumerate(itertools.pairwise(phases), 1)
+        if phase == ENGAGED != last
+    ]
+    begin = engaged[HARMLESS.index("a short jump")]
+    end = begin + phases[begin:].index(STANDBY)
+    assert FAILSAFE not in phases[begin:end]
+    records = flight.records[begin:end]
+    values = [SENSED[name].value(record) for record in records]
+    jumped = [place for place, step in enumerate(_steps(values), 1) if step > SENSED[name].jump / 2]
+    there, back = jumped[0], jumped[-1]
+    assert 0.0 < seconds(records[back], records[there]) < MAX_AGE_S
+
+
+def _steps(values: Sequence[tuple[float, ...]]) -> list[float]:
+    return [
+        max(abs(now - before) for now, before in zip(later, earlier, strict=True))
+        for earlier, later in itertools.pairwise(values)
+    ]
 
 
 @pytest.mark.parametrize("name", SENSED)
 def test_every_failsafe_ends_in_a_release(flown: dict[str, Flown], name: str) -> None:
     flight = flown[name]
     assert flight.ending.report["released"] is True
-    assert flight.texts().count("actuators released") == len(FAULTS) + 3
+    assert flight.texts().count("actuators released") == len(FAULTS) + len(HARMLESS) + 1
 
 
 @pytest.mark.parametrize("name", SENSED)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import os
 import shutil
 import signal
@@ -27,6 +25,7 @@ from daemon_under_test import (
 )
 from fault_flights import ENGAGED, FAILSAFE, Flown, assert_flown_again, assert_regular, at_once
 from recordings import RECORD, attachments, in_sequence, only_recording
+from stuck_terminal import StuckTerminal
 
 SUCCESS = 0
 FAILURE = 1
@@ -110,69 +109,10 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
             watcher.wait()
 
 
-class StuckTerminal:
-    """A daemon whose words go into a pipe that is full, as on a terminal that is held."""
-
-    def __init__(self, fccd: Path, scratch: Path) -> None:
-        scratch.mkdir()
-        config = scratch / "fccd.toml"
-        config.write_text(
-            f"[built-in]\nengage_at_s = 1.5\n{HOLD}[loop]\nrate_hz = {FAST_HZ}\n"
-            "[telemetry]\nenabled = false\n"
-        )
-        self.recordings = scratch / "recordings"
-        words = [fccd, "fly", "--config", config, "--recordings", self.recordings]
-        # A pipe with a name, so that the daemon's end is another than ours: ours
-        # must not wait, and the daemon's must.
-        terminal = scratch / "terminal"
-        os.mkfifo(terminal)
-        self._read = os.open(terminal, os.O_RDONLY | os.O_NONBLOCK)
-        self._write = os.open(terminal, os.O_WRONLY | os.O_NONBLOCK)
-        fcntl.fcntl(self._write, fcntl.F_SETPIPE_SZ, 4_096)
-        with terminal.open("wb") as theirs:
-            self._process = subprocess.Popen(
-                [*map(str, words), *UNTIL_STOPPED, "--json"],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
-                stderr=theirs,
-            )
-        self._said = b""
-
-    def hear(self) -> bytes:
-        with contextlib.suppress(BlockingIOError):
-            self._said += os.read(self._read, 65_536)
-        return self._said
-
-    def hold(self) -> None:
-        """Fill the pipe up: the next word of the daemon waits."""
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                os.write(self._write, b".")
-
-    def end(self) -> int:
-        self._process.send_signal(signal.SIGTERM)
-
-        def is_over() -> bool:
-            self.hear()
-            return self._process.poll() is not None
-
-        wait_until(is_over, "it ends once it is heard")
-        os.close(self._read)
-        os.close(self._write)
-        return self._process.returncode
-
-    def __enter__(self) -> StuckTerminal:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
-
-
 def a_full_ring(fccd: Path, scratch: Path) -> Flown:
     """Fly at 1 kHz, and hold the terminal until what waits to be fetched finds no room."""
-    with StuckTerminal(fccd, scratch) as daemon:
+    config = f"[loop]\nrate_hz = {FAST_HZ}\n[telemetry]\nenabled = false\n"
+    with StuckTerminal(fccd, scratch, config) as daemon:
         wait_until(lambda: b"standby -> engaged" in daemon.hear(), "it is engaged")
         daemon.hold()
         # The ring has room for 4,096 ticks. Nobody knows from outside that it is full:

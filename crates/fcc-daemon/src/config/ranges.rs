@@ -121,6 +121,9 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.seed", 0.0, 9.3e18),
 ];
 
+/// Of `SCHED_FIFO` (sched(7)).
+const HIGHEST_PRIORITY: u8 = 99;
+
 /// Smallest and largest value of a numeric key.
 pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
     RANGES
@@ -181,6 +184,16 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
             format!(
                 "is {}: choose no more than max_us, {}",
                 early.min_us, early.max_us
+            ),
+        );
+    }
+    if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
+        complain(
+            "realtime.priority",
+            format!(
+                "is {HIGHEST_PRIORITY}: choose at most {}, or the watchdog cannot have a higher \
+                 one and a loop that spins keeps it away",
+                HIGHEST_PRIORITY - 1
             ),
         );
     }
@@ -298,6 +311,25 @@ mod tests {
             }
             _ => {}
         }
+    }
+
+    #[test]
+    fn a_watchdog_has_room_above_the_loop() {
+        let mut config = Config {
+            built_in: Some(BuiltInSection::default()),
+            ..Config::default()
+        };
+        config.realtime.priority = 99;
+        let [problem] = &check(&config, "")[..] else {
+            panic!("one problem");
+        };
+        assert!(
+            problem.message.contains("at most 98"),
+            "{}",
+            problem.message
+        );
+        config.watchdog.enabled = false;
+        assert_eq!(check(&config, ""), Vec::new());
     }
 
     #[test]

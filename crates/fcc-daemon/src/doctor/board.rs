@@ -12,6 +12,8 @@ pub(super) struct Board {
     command_line: &'static str,
     /// How a word gets into that file.
     style: Style,
+    /// Whether a Raspberry Pi runs Debian and not its maker's Raspberry Pi OS.
+    is_plain_debian: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -33,7 +35,11 @@ impl Board {
                 .collect::<Vec<_>>()
                 .join(" ")
         });
-        let (command_line, style) = if name.contains("Raspberry Pi") {
+        // Debian's own system for the board writes cmdline.txt anew from this.
+        let is_plain_debian = machine.exists("etc/default/raspi-firmware");
+        let (command_line, style) = if name.contains("Raspberry Pi") && is_plain_debian {
+            ("/etc/default/raspi-extra-cmdline", Style::Bare)
+        } else if name.contains("Raspberry Pi") {
             // Before Debian 12 it was in /boot itself.
             let new = "boot/firmware/cmdline.txt";
             let old = !machine.exists(new) && machine.exists("boot/cmdline.txt");
@@ -55,6 +61,7 @@ impl Board {
             name,
             command_line,
             style,
+            is_plain_debian,
         }
     }
 
@@ -65,6 +72,10 @@ impl Board {
             Style::Variable(name) => format!("at the end of {name}: {words}"),
         };
         finding.remedy(self.command_line, line)
+    }
+
+    pub(super) const fn is_plain_debian(&self) -> bool {
+        self.is_plain_debian
     }
 
     pub(super) fn is_raspberry_pi(&self) -> bool {

@@ -1,4 +1,4 @@
-//! The CPUs: how fast they run, how deep they sleep, and what else they do.
+//! The CPUs: how fast they run, how deep they sleep, and what they share.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -65,40 +65,21 @@ pub(super) fn isolation(machine: &Machine, board: &Board) -> Finding {
                 format!("none of {}", cpus.online.len()),
             )
             .because("other programs run where the loop is to run"),
-            &format!("isolcpus={last} nohz_full={last} rcu_nocbs={last}"),
+            &isolating(*last),
         ),
     }
 }
 
-/// Where the interrupts go.
-pub(super) fn interrupts(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "interrupts";
-    const NAME: &str = "Interrupts";
-    let counts = Cpus::read(machine.root()).device_interrupts;
-    let total: u64 = counts
-        .iter()
-        .fold(0, |sum, (_, count)| sum.saturating_add(*count));
-    let Some((busiest, most)) = counts.iter().max_by_key(|(_, count)| *count) else {
-        return not_told(ID, NAME, "the kernel does not say");
+/// What keeps threads, the kernel's own work and interrupts off the last CPU;
+/// the first one has to keep the time.
+fn isolating(last: usize) -> String {
+    let others = match last {
+        1 => "0".to_owned(),
+        _ => format!("0-{}", last.saturating_sub(1)),
     };
-    if counts.len() < 2 || total == 0 {
-        return Finding::new(ID, NAME, Grade::Ok, "there is one CPU only");
-    }
-    let percent = 100.0 * *most as f64 / total as f64;
-    let found = format!("CPU {busiest} took {percent:.0} % of the devices'");
-    // With an even share nothing stays off them.
-    if percent >= 60.0 {
-        Finding::new(ID, NAME, Grade::Ok, found)
-            .remedy("fccd's configuration, [realtime]", "cpu = \"auto\"")
-    } else {
-        Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-            .because("each CPU takes some, whichever the loop runs on")
-            .remedy("shell", "systemctl disable --now irqbalance")
-            .remedy(
-                "shell, CPU 0 for all",
-                "echo 1 > /proc/irq/default_smp_affinity",
-            )
-    }
+    format!(
+        "isolcpus=managed_irq,domain,{last} nohz_full={last} rcu_nocbs={last} irqaffinity={others}"
+    )
 }
 
 /// How deep the CPUs sleep.

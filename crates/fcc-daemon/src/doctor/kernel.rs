@@ -4,6 +4,9 @@ use super::board::{Board, not_told};
 use super::machine::Machine;
 use super::{Finding, Grade};
 
+/// Where a kernel with several ways of preemption tells which is in force.
+const PREEMPTION_MODE: &str = "sys/kernel/debug/sched/preempt";
+
 /// Whether the kernel interrupts itself for a thread that is due.
 pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "preemption";
@@ -15,13 +18,8 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
         return Finding::new(ID, NAME, Grade::Ok, "PREEMPT_RT");
     }
     if has("PREEMPT_DYNAMIC") {
-        // `none voluntary (full) lazy`: the mode in force is in brackets.
-        let modes = machine.text("sys/kernel/debug/sched/preempt");
-        let modes = modes.unwrap_or_default();
-        let mode = modes
-            .split_once('(')
-            .and_then(|(_, rest)| rest.split_once(')'))
-            .map_or("not told", |(mode, _)| mode);
+        let mode = preemption_mode(machine);
+        let mode = mode.as_deref().unwrap_or("not told");
         let finding = Finding::new(
             ID,
             NAME,
@@ -30,8 +28,14 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
         );
         return match mode {
             "full" => with_rt_kernel(finding.because(WORST), board),
-            "not told" => board.kernel_option(
+            "not told" if machine.is_forbidden(PREEMPTION_MODE) => board.kernel_option(
                 finding.because("the mode is told to root only, in /sys/kernel/debug"),
+                "preempt=full",
+            ),
+            "not told" => board.kernel_option(
+                finding
+                    .because("the mode is told in /sys/kernel/debug, where nothing is mounted")
+                    .remedy("shell", "mount -t debugfs debugfs /sys/kernel/debug"),
                 "preempt=full",
             ),
             _ => board.kernel_option(
@@ -54,8 +58,28 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
     )
 }
 
+/// The mode of a kernel that has several: what is in force, or else what it was
+/// started with, unless that is not told.
+fn preemption_mode(machine: &Machine) -> Option<String> {
+    // `none voluntary (full) lazy`: the mode in force is in brackets.
+    let modes = machine.text(PREEMPTION_MODE).unwrap_or_default();
+    let in_force = modes
+        .split_once('(')
+        .and_then(|(_, rest)| rest.split_once(')'))
+        .map(|(mode, _)| mode.to_owned());
+    in_force.or_else(|| {
+        let words = machine.text("proc/cmdline")?;
+        // Of several the last counts.
+        let mode = words
+            .split_whitespace()
+            .rev()
+            .find_map(|word| word.strip_prefix("preempt="))?;
+        Some(mode.to_owned())
+    })
+}
+
 fn with_rt_kernel(finding: Finding, board: &Board) -> Finding {
-    if board.is_raspberry_pi() {
+    if board.is_raspberry_pi() && !board.is_plain_debian() {
         finding.remedy("shell", "apt install linux-image-rpi-v8-rt")
     } else if board.name.contains("BeagleBo") || board.name.contains("AM335x") {
         finding.remedy(

@@ -1,7 +1,7 @@
 //! The files of a machine.
 
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 /// No file that is looked at is longer: `/proc/cpuinfo` of 256 CPUs fits.
@@ -48,6 +48,12 @@ impl Machine {
 
     pub(super) fn exists(&self, path: &str) -> bool {
         self.root.join(path).exists()
+    }
+
+    /// Whether a file is there, or may be, for others than who asks.
+    pub(super) fn is_forbidden(&self, path: &str) -> bool {
+        let opened = File::open(self.root.join(path));
+        opened.is_err_and(|error| error.kind() == ErrorKind::PermissionDenied)
     }
 
     /// The paths of a folder's entries that begin with `prefix`, in order.

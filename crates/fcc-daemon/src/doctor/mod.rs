@@ -11,12 +11,14 @@
 //! | `board` | which board this is, and where its kernel's command line is kept |
 //! | `kernel` | preemption, timers, clock, real-time throttling |
 //! | `rights` | what the program may ask of the kernel |
-//! | `cpus` | clock speed, sleep, isolation, interrupts |
+//! | `cpus` | clock speed, sleep, isolation |
+//! | `interrupts` | which devices interrupt which CPU |
 //! | `surroundings` | power and heat, memory, virtual machine, container |
 //! | `show` | the findings for people |
 
 mod board;
 mod cpus;
+mod interrupts;
 mod kernel;
 mod machine;
 mod rights;
@@ -121,7 +123,7 @@ impl Diagnosis {
             kernel::clock_source,
             cpus::governor,
             cpus::isolation,
-            cpus::interrupts,
+            interrupts::interrupts,
             cpus::idle_states,
             cpus::hyper_threads,
             kernel::timer_slack,

@@ -21,8 +21,13 @@ pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "power";
     const NAME: &str = "Power";
     const SUPPLY: &str = "use the board's own power supply, and a short, thick cable";
+    // The folder of the firmware has another name on each board: `soc:firmware`
+    // on a Pi 4, with the address of the bus in it on a Pi 5.
     let throttled = machine
-        .text("sys/devices/platform/soc/soc:firmware/get_throttled")
+        .entries("sys/bus/platform/drivers/raspberrypi-firmware", "soc")
+        .into_iter()
+        .chain(["sys/devices/platform/soc/soc:firmware".to_owned()])
+        .find_map(|firmware| machine.text(&format!("{firmware}/get_throttled")))
         .and_then(|digits| u32::from_str_radix(digits.trim_start_matches("0x"), 16).ok());
     if let Some(bits) = throttled {
         let named = |shift: u32| {

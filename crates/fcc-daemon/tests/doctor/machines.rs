@@ -172,6 +172,7 @@ pub(crate) const VIRTUAL: Files = &[
         "sys/kernel/debug/sched/preempt",
         "none voluntary (full) lazy\n",
     ),
+    ("proc/cmdline", "root=/dev/vda preempt=none\n"),
     ("proc/self/limits", LIMITS_OF_ANYBODY),
     (
         "proc/self/status",

@@ -129,6 +129,7 @@ fn a_virtual_machine_is_called_one() {
     );
 }
 
+/// The words are those of the kernel's admin-guide/kernel-parameters.
 #[test]
 fn the_kernels_command_line_is_where_the_board_keeps_it() {
     for (files, place) in [
@@ -144,10 +145,147 @@ fn the_kernels_command_line_is_where_the_board_keeps_it() {
         };
         assert_eq!(file, place);
         assert!(
-            line.ends_with("isolcpus=3 nohz_full=3 rcu_nocbs=3"),
+            line.ends_with(
+                ": isolcpus=managed_irq,domain,3 nohz_full=3 rcu_nocbs=3 irqaffinity=0-2"
+            ),
             "{line}"
         );
     }
+}
+
+/// Debian's own system for the board has its raspi-firmware(7) write the
+/// command line, and none of Raspberry Pi's packages.
+#[test]
+fn a_pi_with_plain_debian_is_told_where_that_keeps_it() {
+    let root = machine(PI_4);
+    put(root.path(), "etc/default/raspi-firmware", "#CMA=64M\n");
+    put(root.path(), "sys/devices/system/cpu/isolated", "\n");
+    put(root.path(), "sys/kernel/realtime", "0\n");
+    put(
+        root.path(),
+        "proc/sys/kernel/version",
+        "#1 SMP Debian 6.1.140-1 (2025-05-22)\n",
+    );
+    let found = Diagnosis::of(root.path());
+    assert_eq!(
+        lines(finding(&found, "isolated_cpus"))[0].0,
+        "/etc/default/raspi-extra-cmdline"
+    );
+    assert_eq!(
+        lines(finding(&found, "preemption")),
+        [(
+            "shell",
+            "apt install linux-image-rt-$(dpkg --print-architecture)"
+        )]
+    );
+}
+
+/// The modes are those of the kernel's parameter `preempt=`.
+#[test]
+fn the_preemption_mode_is_what_is_in_force_or_what_the_kernel_began_with() {
+    const MODES: &str = "sys/kernel/debug/sched/preempt";
+    let root = machine(VIRTUAL);
+    let of = |root: &std::path::Path| finding(&Diagnosis::of(root), "preemption").clone();
+    assert!(of(root.path()).found.ends_with("mode: full"));
+    std::fs::remove_file(root.path().join(MODES)).unwrap();
+    assert!(of(root.path()).found.ends_with("mode: none"));
+    put(
+        root.path(),
+        "proc/cmdline",
+        "root=/dev/vda preempt=none preempt=full\n",
+    );
+    assert!(of(root.path()).found.ends_with("mode: full"));
+    put(root.path(), "proc/cmdline", "root=/dev/vda\n");
+    let not_told = of(root.path());
+    assert!(not_told.found.ends_with("mode: not told"));
+    assert!(
+        not_told.why.contains("nothing is mounted"),
+        "{}",
+        not_told.why
+    );
+    assert_eq!(
+        lines(&not_told)[0],
+        ("shell", "mount -t debugfs debugfs /sys/kernel/debug")
+    );
+}
+
+const DISK_ON_CPU_1: &str = "           CPU0       CPU1\n\
+     \x2034:        404          0 PCI-MSIX-0000:00:05.0   1-edge      virtio4-input\n\
+     \x2036:          0   15745011 PCI-MSIX-0000:00:02.0   1-edge      virtio1-req.0\n\
+     LOC:    7761385    8227841   Local timer interrupts\n";
+
+#[test]
+fn a_device_that_interrupts_often_is_named_with_its_cpu() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
+    let found = Diagnosis::of(root.path());
+    let interrupts = finding(&found, "interrupts");
+    assert_eq!(interrupts.grade, Grade::Ok);
+    assert_eq!(interrupts.found, "CPU 1: virtio1-req.0 100 %");
+    assert!(
+        interrupts.why.contains("CPU 0 has none"),
+        "{}",
+        interrupts.why
+    );
+    assert_eq!(
+        lines(interrupts),
+        [("fccd's configuration, [realtime]", "cpu = \"auto\"")]
+    );
+}
+
+/// `smp_affinity_list` is of the kernel's core-api/irq/irq-affinity, the line of
+/// tmpfiles.d(5), the last of irqbalance(1).
+#[test]
+fn a_device_that_interrupts_an_isolated_cpu_is_to_be_moved() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
+    put(root.path(), "sys/devices/system/cpu/isolated", "1\n");
+    put(root.path(), "etc/default/irqbalance", "");
+    let of = |root: &std::path::Path| finding(&Diagnosis::of(root), "interrupts").clone();
+    let there = of(root.path());
+    assert_eq!(there.grade, Grade::CouldBeBetter);
+    assert_eq!(
+        lines(&there),
+        [
+            (
+                "/etc/tmpfiles.d/fccd.conf, for virtio1-req.0",
+                "w /proc/irq/36/smp_affinity_list - - - - 0"
+            ),
+            (
+                "/etc/default/irqbalance, or it moves them back",
+                "IRQBALANCE_BANNED_CPULIST=1"
+            ),
+            ("fccd's configuration, [realtime]", "cpu = 1"),
+        ]
+    );
+    // Where it comes now counts, and not where it came before.
+    put(root.path(), "proc/irq/36/effective_affinity_list", "0\n");
+    let moved = of(root.path());
+    assert_eq!(moved.grade, Grade::Ok);
+    assert_eq!(moved.found, "CPU 0: virtio1-req.0 100 %");
+}
+
+#[test]
+fn cpus_without_interrupts_of_devices_are_not_called_one() {
+    let root = machine(VIRTUAL);
+    let quiet = "           CPU0       CPU1\nLOC:    3461567    3545716   Local timer interrupts\n";
+    put(root.path(), "proc/interrupts", quiet);
+    let found = Diagnosis::of(root.path());
+    assert_eq!(
+        finding(&found, "interrupts").found,
+        "no device has interrupted yet"
+    );
+}
+
+/// A Pi 5 has the address of its bus in the name of the firmware's folder.
+#[test]
+fn the_firmware_of_a_pi_5_is_asked_too() {
+    let root = machine(PI_4);
+    let driver = "sys/bus/platform/drivers/raspberrypi-firmware";
+    let file = format!("{driver}/soc@107c000000:firmware/get_throttled");
+    put(root.path(), &file, "50005\n");
+    let found = Diagnosis::of(root.path());
+    assert_eq!(finding(&found, "power").grade, Grade::Lacks);
 }
 
 /// The bits are those of the Raspberry Pi's documentation of `vcgencmd`.

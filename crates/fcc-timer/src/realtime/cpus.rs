@@ -54,6 +54,13 @@ impl Cpus {
         }
     }
 
+    /// The CPU that a loop is best kept on, where it may have any; none where
+    /// none is better than the others.
+    pub fn for_a_loop(&self) -> Option<usize> {
+        let online: Vec<usize> = self.online.iter().copied().collect();
+        self.best(&online, |_| true).ok().map(|choice| choice.cpu)
+    }
+
     /// The best CPU for a thread that may run on `allowed`; an isolated one
     /// may be asked for even so. What the kernel refuses is asked of `may_use`.
     pub(super) fn best(
@@ -146,35 +153,65 @@ pub fn parse_mask(text: &str) -> BTreeSet<usize> {
     cpus
 }
 
-/// Interrupts of devices, CPU by CPU, from `/proc/interrupts`: the rows whose
-/// name is a number. The others are the CPUs' own affairs: their timers, and
-/// what they tell each other.
+/// Interrupts of devices, CPU by CPU, from `/proc/interrupts`.
 pub fn parse_interrupts(text: &str) -> Vec<(usize, u64)> {
-    let mut lines = text.lines();
-    let header = lines.next().unwrap_or_default();
-    let mut counts: Vec<(usize, u64)> = header
-        .split_whitespace()
-        .map_while(|name| name.strip_prefix("CPU")?.parse().ok())
-        .take(MOST_CPUS)
-        .map(|cpu| (cpu, 0))
-        .collect();
-    for line in lines {
-        let Some((name, rest)) = line.split_once(':') else {
-            continue;
-        };
-        // On ARM, and on old x86, the clocks of the CPUs have numbers too.
-        let is_clock = rest.trim_end().ends_with("timer");
-        if is_clock || name.trim().parse::<u32>().is_err() {
-            continue;
-        }
-        for ((_, total), word) in counts.iter_mut().zip(rest.split_whitespace()) {
-            let Ok(count) = word.parse::<u64>() else {
-                break;
-            };
+    let mut totals: Vec<(usize, u64)> =
+        parse_header(text).into_iter().map(|cpu| (cpu, 0)).collect();
+    for device in parse_devices(text) {
+        for ((_, total), (_, count)) in totals.iter_mut().zip(device.counts) {
             *total = total.saturating_add(count);
         }
     }
-    counts
+    totals
+}
+
+/// The interrupt of a device, or of several that share it.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct DeviceInterrupt {
+    /// Its number, as in `/proc/irq`.
+    pub number: u32,
+    /// Whose it is: `eth0`.
+    pub name: String,
+    /// How often it came since the machine started, CPU by CPU.
+    pub counts: Vec<(usize, u64)>,
+}
+
+/// The devices of `/proc/interrupts`: the rows whose name is a number. The
+/// others are the CPUs' own affairs: their timers, and what they tell each
+/// other.
+pub fn parse_devices(text: &str) -> Vec<DeviceInterrupt> {
+    let cpus = parse_header(text);
+    let row = |line: &str| {
+        let (number, rest) = line.split_once(':')?;
+        let rest = rest.trim_end();
+        // On ARM, and on old x86, the clocks of the CPUs have numbers too.
+        if rest.ends_with("timer") {
+            return None;
+        }
+        let counts = rest.split_whitespace().map_while(|word| word.parse().ok());
+        Some(DeviceInterrupt {
+            number: number.trim().parse().ok()?,
+            // Two spaces are before it, and one at most in it.
+            name: rest
+                .rsplit("  ")
+                .next()
+                .unwrap_or_default()
+                .trim()
+                .to_owned(),
+            counts: cpus.iter().copied().zip(counts).collect(),
+        })
+    };
+    text.lines().skip(1).filter_map(row).collect()
+}
+
+/// The CPUs that `/proc/interrupts` has columns of.
+fn parse_header(text: &str) -> Vec<usize> {
+    let header = text.lines().next().unwrap_or_default();
+    header
+        .split_whitespace()
+        .map_while(|name| name.strip_prefix("CPU")?.parse().ok())
+        .take(MOST_CPUS)
+        .collect()
 }
 
 #[cfg(test)]
@@ -214,6 +251,37 @@ mod tests {
             [(0, 9_484_754), (1, 0), (2, 0), (3, 0)]
         );
         assert_eq!(parse_interrupts(""), []);
+    }
+
+    // Names of chips have spaces, and devices share interrupts.
+    #[test]
+    fn a_device_is_known_by_its_name_and_number() {
+        let text =
+            format!("{PI_4} 51:  7  0  1  2  BRCM STB PCIe MSI 524288 Edge      xhci_hcd, eth1\n");
+        let devices = parse_devices(&text);
+        let names: Vec<_> = devices
+            .iter()
+            .map(|d| (d.number, d.name.as_str()))
+            .collect();
+        assert_eq!(
+            names,
+            [
+                (9, "vgic"),
+                (18, "fe00b880.mailbox"),
+                (40, "eth0"),
+                (51, "xhci_hcd, eth1")
+            ]
+        );
+        assert_eq!(devices[3].counts, [(0, 7), (1, 0), (2, 1), (3, 2)]);
+        let x86 = "           CPU0       CPU1\n 36:          0   15745011 PCI-MSIX-0000:00:02.0   1-edge      virtio1-req.0\n";
+        assert_eq!(
+            parse_devices(x86),
+            [DeviceInterrupt {
+                number: 36,
+                name: "virtio1-req.0".to_owned(),
+                counts: vec![(0, 0), (1, 15_745_011)],
+            }]
+        );
     }
 
     #[test]

@@ -1,0 +1,162 @@
+//! Which devices interrupt which CPU: a loop on that one is held up by each.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+use fcc_timer::realtime::cpus::{Cpus, DeviceInterrupt, parse_devices, parse_list};
+
+use super::board::Board;
+use super::board::not_told;
+use super::machine::Machine;
+use super::{Finding, Grade};
+
+/// A device with less than this part of all interrupts is not worth a word.
+const WORTH_NAMING: u64 = 100;
+/// Devices that are named for each CPU.
+const MOST_NAMED: usize = 4;
+/// Read at each start of the machine; the numbers stay while its devices do.
+const AT_START: &str = "/etc/tmpfiles.d/fccd.conf";
+const BALANCER: &str = "etc/default/irqbalance";
+
+/// A device that interrupts often, and where.
+struct Busy {
+    number: u32,
+    name: String,
+    count: u64,
+}
+
+/// Where the interrupts go.
+pub(super) fn interrupts(machine: &Machine, _: &Board) -> Finding {
+    const ID: &str = "interrupts";
+    const NAME: &str = "Interrupts";
+    let cpus = Cpus::read(machine.root());
+    let counts = &cpus.device_interrupts;
+    let total = counts
+        .iter()
+        .fold(0_u64, |sum, (_, count)| sum.saturating_add(*count));
+    if counts.is_empty() {
+        return not_told(ID, NAME, "the kernel does not say");
+    }
+    if counts.len() == 1 {
+        return Finding::new(ID, NAME, Grade::Ok, "there is one CPU only");
+    }
+    if total == 0 {
+        return Finding::new(ID, NAME, Grade::Ok, "no device has interrupted yet");
+    }
+    let busy = busy_devices(machine, total);
+    let found = words(&busy, total);
+    let on = |cpu: usize| busy.get(&cpu).map_or(&[][..], Vec::as_slice);
+
+    let best = cpus.for_a_loop();
+    if let Some(cpu) = best
+        && on(cpu).is_empty()
+    {
+        return Finding::new(ID, NAME, Grade::Ok, found)
+            .because(format!("each holds a loop up; CPU {cpu} has none of them"))
+            .remedy("fccd's configuration, [realtime]", "cpu = \"auto\"");
+    }
+    // Where to have them, and where the loop: the CPU that has the fewest.
+    let weight = |cpu: &usize| on(*cpu).iter().map(|device| device.count).sum::<u64>();
+    let all = || counts.iter().map(|(cpu, _)| *cpu);
+    let Some(cpu) = best.or_else(|| all().rev().min_by_key(weight)) else {
+        return not_told(ID, NAME, "the kernel does not say");
+    };
+    let others: Vec<usize> = all().filter(|other| *other != cpu).collect();
+    let (kept, ordinary): (Vec<usize>, _) = others
+        .iter()
+        .partition(|other| cpus.isolated.contains(other));
+    let others = list(if ordinary.is_empty() {
+        &kept
+    } else {
+        &ordinary
+    });
+    let mut finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found);
+    if on(cpu).is_empty() {
+        finding = finding.because(format!("each holds a loop up; CPU {cpu} has none now"));
+    } else {
+        finding = finding.because(format!(
+            "each holds a loop up by some 10 µs: move those of CPU {cpu} away (a disk that \
+             refuses has one for each CPU and keeps it)"
+        ));
+    }
+    for device in on(cpu) {
+        let line = format!(
+            "w /proc/irq/{}/smp_affinity_list - - - - {others}",
+            device.number
+        );
+        finding = finding.remedy(format!("{AT_START}, for {}", device.name), line);
+    }
+    if machine.exists(BALANCER) {
+        finding = finding.remedy(
+            format!("/{BALANCER}, or it moves them back"),
+            format!("IRQBALANCE_BANNED_CPULIST={cpu}"),
+        );
+    }
+    finding.remedy("fccd's configuration, [realtime]", format!("cpu = {cpu}"))
+}
+
+/// The devices that interrupt often, by the CPU on which they do now, the
+/// busiest first.
+fn busy_devices(machine: &Machine, total: u64) -> BTreeMap<usize, Vec<Busy>> {
+    let text = machine.text("proc/interrupts").unwrap_or_default();
+    let mut busy: BTreeMap<usize, Vec<Busy>> = BTreeMap::new();
+    for device in parse_devices(&text) {
+        let all = device
+            .counts
+            .iter()
+            .fold(0_u64, |sum, (_, count)| sum.saturating_add(*count));
+        if all < total.div_ceil(WORTH_NAMING) {
+            continue;
+        }
+        for cpu in lands_on(machine, &device) {
+            busy.entry(cpu).or_default().push(Busy {
+                number: device.number,
+                name: device.name.clone(),
+                count: all,
+            });
+        }
+    }
+    for devices in busy.values_mut() {
+        devices.sort_by_key(|device| Reverse(device.count));
+    }
+    busy
+}
+
+/// Where an interrupt comes now: as the kernel says (not every one does), or
+/// else where it came most often.
+fn lands_on(machine: &Machine, device: &DeviceInterrupt) -> Vec<usize> {
+    let file = format!("proc/irq/{}/effective_affinity_list", device.number);
+    let told = machine.text(&file).map(|text| parse_list(&text));
+    match told {
+        Some(cpus) if !cpus.is_empty() => cpus.into_iter().collect(),
+        _ => {
+            let most = device.counts.iter().max_by_key(|(_, count)| *count);
+            most.map(|(cpu, _)| *cpu).into_iter().collect()
+        }
+    }
+}
+
+/// `CPU 0: eth0 98 %, mmc0 2 %; CPU 3: xhci_hcd 1 %`.
+fn words(busy: &BTreeMap<usize, Vec<Busy>>, total: u64) -> String {
+    let of_cpu = |(cpu, devices): (&usize, &Vec<Busy>)| {
+        let mut names: Vec<String> = devices
+            .iter()
+            .take(MOST_NAMED)
+            .map(|device| {
+                let percent = 100.0 * device.count as f64 / total as f64;
+                format!("{} {percent:.0} %", device.name)
+            })
+            .collect();
+        if devices.len() > MOST_NAMED {
+            names.push(format!("{} more", devices.len() - MOST_NAMED));
+        }
+        format!("CPU {cpu}: {}", names.join(", "))
+    };
+    busy.iter().map(of_cpu).collect::<Vec<_>>().join("; ")
+}
+
+/// As the kernel takes it: `0,1,3`.
+fn list(cpus: &[usize]) -> String {
+    let numbers: Vec<String> = cpus.iter().map(ToString::to_string).collect();
+    numbers.join(",")
+}
