@@ -50,7 +50,8 @@ pub trait Timer: Send {
 /// What a wait ended with.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Wake {
-    /// The deadline is near. What it will be, but for the time of waking.
+    /// The deadline is near. What it will be, but for the time of waking, and
+    /// unless the machine is elsewhere meanwhile.
     Rehearsal(Expiry),
     /// The deadline has come.
     Deadline(Expiry),
