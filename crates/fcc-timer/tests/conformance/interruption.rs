@@ -27,9 +27,10 @@ impl<F: Fn()> Drop for OnDrop<F> {
     }
 }
 
-/// How many signals the calling thread handles while `work` runs. Without
-/// `SA_RESTART`, each of them ends a system call with EINTR.
-pub(crate) fn of_this_thread_during(work: impl FnOnce()) -> u64 {
+/// How many signals the calling thread handles while `work` runs, which can ask
+/// how many there were so far. Without `SA_RESTART`, each of them ends a system
+/// call with EINTR.
+pub(crate) fn of_this_thread_during(work: impl FnOnce(&dyn Fn() -> u64)) -> u64 {
     let action = SigAction::new(
         SigHandler::Handler(count),
         SaFlags::empty(),
@@ -50,7 +51,7 @@ pub(crate) fn of_this_thread_during(work: impl FnOnce()) -> u64 {
         });
         // Also when the work panics, or the scope would wait for ever.
         let _stop = OnDrop(|| done.store(true, Ordering::Release));
-        work();
+        work(&|| HANDLED.get() - before);
     });
     HANDLED.get() - before
 }
