@@ -28,7 +28,7 @@ from recordings import RECORD, attachments, in_sequence, only_recording
 from stuck_terminal import StuckTerminal
 
 SUCCESS = 0
-FAILURE = 1
+TAKEN = 12
 
 FAST_HZ = 1_000
 RING_S = 4.2
@@ -196,7 +196,7 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
         engage(simulator, daemon)
         with start(fccd, scratch, write_config(scratch, simulator.port)) as second:
             refused = second.end()
-        assert refused.exit_code == FAILURE
+        assert refused.exit_code == TAKEN
         assert f"another fccd on this machine flies X-Plane at 127.0.0.1:{simulator.port}" in (
             refused.said
         )
