@@ -27,6 +27,9 @@ from fault_flights import ENGAGED, FAILSAFE, Flown, assert_flown_again, assert_r
 from recordings import RECORD, attachments, in_sequence, only_recording
 from stuck_terminal import StuckTerminal
 
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import BEACON_GROUP, Settings
+
 SUCCESS = 0
 TAKEN = 12
 
@@ -211,3 +214,33 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
             assert third.end(signal.SIGTERM).exit_code == SUCCESS
         assert_released(simulator)
     assert only_recording(third_scratch / "recordings")
+
+
+@pytest.mark.parametrize(("first", "second"), [("address", "beacon"), ("beacon", "address")])
+def test_a_beacon_does_not_lead_where_another_daemon_flies(
+    fccd: Path, tmp_path: Path, first: str, second: str
+) -> None:
+    with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
+        address = f"127.0.0.1:{simulator.port}"
+
+        def daemon(way: str) -> DaemonUnderTest:
+            scratch = tmp_path / way
+            scratch.mkdir()
+            config = write_config(scratch, simulator.port)
+            if way == "beacon":
+                config.write_text(config.read_text().replace(address, "beacon"))
+            return start(fccd, scratch, config)
+
+        with daemon(first) as flies:
+            engage(simulator, flies)
+            with daemon(second) as comes:
+                refused = comes.end()
+            assert refused.exit_code == TAKEN
+            assert f"another fccd on this machine flies X-Plane at {address}" in refused.said
+            # It saw the switch on, and has not touched the controls.
+            assert "engaged" not in refused.said
+            assert simulator.progress().overridden
+            assert simulator.releases() == []
+            assert "engaged" in flies.wait_for("heading")
+            assert flies.end(signal.SIGTERM).exit_code == SUCCESS
+        assert_released(simulator)
