@@ -50,6 +50,12 @@ class Ending:
     def events(self) -> list[str]:
         return [event["text"] for event in self.report["events"]]
 
+    def when(self, text: str) -> float:
+        """Return when it first said something, in seconds since the loop's first tick."""
+        return next(
+            float(event["time_s"]) for event in self.report["events"] if text in event["text"]
+        )
+
     @property
     def states(self) -> list[str]:
         """Return the changes of state, without their reasons."""

@@ -13,7 +13,7 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,18 +21,23 @@ import numpy as np
 import pytest
 from daemon_under_test import (
     DaemonUnderTest,
+    Ending,
     assert_released,
     engage,
     start,
     wait_until,
     write_config,
 )
+from fault_flights import ENGAGED, NS
+from recordings import RECORD, in_sequence
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
+TAKEN_UP_S = 3.0
+"""Nominally 0.7 s; machines are busy with other things."""
 WARM = '[restart]\nmode = "warm"\n'
 # Half a minute to each leg: killed early in the first, the aircraft is far from where
 # it is to go, and what is taken up cannot be mistaken for what was captured anew.
@@ -94,24 +99,32 @@ class Cockpit:
         return Aims.of(daemon.wait_for("engaged "))
 
 
+def first_engaged_ns(ending: Ending) -> int:
+    """Return when the loop first woke up engaged, by the machine's monotonic clock."""
+    (path,) = ending.report["recording"]["files"]
+    return next(
+        int(seen.content.woke_ns)
+        for seen in in_sequence(Path(path))
+        if seen.topic == RECORD and seen.content.state.phase == ENGAGED
+    )
+
+
 @pytest.fixture
 def cockpit(fccd: Path, tmp_path: Path) -> Iterator[Cockpit]:
     with StandInProcess(Settings(port=0)) as simulator:
         yield Cockpit(fccd, tmp_path, simulator)
 
 
-def test_a_warm_restart_goes_on_with_what_was_flown(cockpit: Cockpit) -> None:
+def test_a_warm_restart_goes_on_with_what_was_flown(
+    cockpit: Cockpit, record_property: Callable[[str, object], None]
+) -> None:
     simulator = cockpit.simulator
     aims = cockpit.fly_and_kill(WARM)
     killed_at_s = simulator.progress().time_s
+    begun_ns = time.monotonic_ns()
     with cockpit.daemon(WARM) as again:
-        begun_s = time.monotonic()
         again.wait_for("taking it up")
-        said = again.wait_for("the flight was taken up")
-        took_s = time.monotonic() - begun_s
-        assert "into a pattern" in said
-        # Nominally 0.6 s; this says that nobody had to help.
-        assert took_s < 10.0
+        assert "into a pattern" in again.wait_for("the flight was taken up")
         resumed = Aims.of(again.wait_for("engaged "))
         assert resumed.heading_deg == aims.heading_deg
         assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)
@@ -127,6 +140,10 @@ def test_a_warm_restart_goes_on_with_what_was_flown(cockpit: Cockpit) -> None:
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     assert ending.report["failsafes"] == 0
+    took_s = (first_engaged_ns(ending) - begun_ns) * NS
+    record_property("taken_up_after_s", took_s)
+    print(f"taken up {took_s:.3f} s after the process' start")
+    assert 0.0 < took_s < TAKEN_UP_S
 
     truth = simulator.truth()
     time_s, altitude_ft = truth["time_s"], truth["altitude_ft"]

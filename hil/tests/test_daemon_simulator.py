@@ -21,6 +21,12 @@ FAILSAFE = 3
 TOO_OLD = "attitude is missing or too old"
 MAX_AGE_S = 0.25
 """What is older is lost, unless configured."""
+SAID_AFTER_S = 1.5
+"""Silent after half a second, and for another second."""
+ASKED_EVERY_S = 1.0
+"""A simulator that sends nothing is asked to, so often."""
+AGAIN_AFTER_S = 0.25
+"""Between one release and the next, until it shows."""
 PAUSED = 1
 """The plant's state, as the recording calls it."""
 SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
@@ -35,6 +41,7 @@ def assert_lost_when_too_old(flown: Flown, place: int) -> None:
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
+        killed_ns = time.monotonic_ns()
         simulator.kill()
         assert TOO_OLD in daemon.wait_for("engaged -> failsafe")
         daemon.wait_for("sensor X-Plane: nothing arrives")
@@ -43,6 +50,7 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
         assert str(simulator.port) in daemon.wait_for("does not answer")
         assert TOO_OLD in daemon.wait_for("not ready")
         with StandInProcess(Settings(port=simulator.port)) as again:
+            back_ns = time.monotonic_ns()
             daemon.wait_for("works again")
             daemon.wait_for(f"X-Plane at 127.0.0.1:{again.port} answers")
             engage(again, daemon)
@@ -63,6 +71,15 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     ]
     flown = Flown.of(ending, tmp_path / "recordings")
     assert_lost_when_too_old(flown, flown.failsafes[0])
+    # Since the last reading, which is that old at the failsafe.
+    silent_s = ending.when("does not answer") - ending.when("engaged -> failsafe") + MAX_AGE_S
+    assert 1.0 < silent_s < SAID_AFTER_S + AT_ONCE_S
+    recovered_ns = [
+        event.time_ns
+        for event in flown.events
+        if event.WhichOneof("kind") == "sensor_recovered" and event.time_ns > killed_ns
+    ]
+    assert (recovered_ns[0] - back_ns) * NS < ASKED_EVERY_S + AT_ONCE_S
 
 
 def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
@@ -78,6 +95,9 @@ def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
         daemon.wait_for("failsafe -> stopped")
         assert daemon.is_running, "the release was not seen to take effect"
         simulator.set_mode(Mode.RUNNING)
+        running_s = time.monotonic()
+        wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
+        assert time.monotonic() - running_s < AGAIN_AFTER_S + AT_ONCE_S
         ending = daemon.end()
         assert_released(simulator)
     assert ending.exit_code == FAILSAFE

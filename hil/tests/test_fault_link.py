@@ -122,6 +122,9 @@ def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]
     ]
     # A second after it shows.
     assert 0.0 < (faults[0].time_ns - flown.injected_ns) * NS < 1.0 + AT_ONCE_S
+    # And a second later in words, for people.
+    said_s = flown.ending.when("Accept incoming connections")
+    assert 0.0 < said_s - flown.ending.when("actuator X-Plane: ") < 1.0 + AT_ONCE_S
     assert recovered
     assert flown.ending.report["released"] is True
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -23,16 +24,33 @@ from daemon_under_test import (
     wait_until,
     write_config,
 )
-from fault_flights import ENGAGED, FAILSAFE, Flown, assert_flown_again, assert_regular, at_once
+from fault_flights import (
+    AT_ONCE_S,
+    ENGAGED,
+    FAILSAFE,
+    Flown,
+    assert_flown_again,
+    assert_regular,
+    at_once,
+)
 from recordings import RECORD, attachments, in_sequence, only_recording
 from stuck_terminal import StuckTerminal
 
-SUCCESS = 0
-FAILURE = 1
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import BEACON_GROUP, Settings
 
+SUCCESS = 0
+TAKEN = 12
+
+NORMAL_HZ = 40
 FAST_HZ = 1_000
 RING_S = 4.2
 """The loop's ring has room for so much of a flight at 1 kHz."""
+WRITTEN_EVERY_S = 0.7
+"""What has gathered goes to the disk so often."""
+BEACON_PERIOD_S = 1.0
+"""As X-Plane sends it."""
+
 HOLD = '[course]\nkind = "hold"\n'
 EXAMPLE = Path(live.__file__)
 UNTIL_STOPPED = ["--seconds", "3600"]
@@ -151,6 +169,9 @@ def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
     seen = in_sequence(Path(name))
     ticks = [message.content.tick for message in seen if message.topic == RECORD]
     assert len(ticks) == recording["ticks"] > 0
+    # At the next write. What has gathered for it is lost.
+    last_s = (ticks[-1] - ticks[0]) / NORMAL_HZ
+    assert 0.0 <= ending.when("recording stopped") - last_s < WRITTEN_EVERY_S + AT_ONCE_S
 
 
 def test_a_configuration_that_changes_in_flight_changes_nothing(
@@ -194,9 +215,11 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
     scratch.mkdir()
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
+        begun_s = time.monotonic()
         with start(fccd, scratch, write_config(scratch, simulator.port)) as second:
             refused = second.end()
-        assert refused.exit_code == FAILURE
+        assert time.monotonic() - begun_s < AT_ONCE_S
+        assert refused.exit_code == TAKEN
         assert f"another fccd on this machine flies X-Plane at 127.0.0.1:{simulator.port}" in (
             refused.said
         )
@@ -211,3 +234,48 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
             assert third.end(signal.SIGTERM).exit_code == SUCCESS
         assert_released(simulator)
     assert only_recording(third_scratch / "recordings")
+
+
+@pytest.mark.parametrize(("first", "second"), [("address", "beacon"), ("beacon", "address")])
+def test_a_beacon_does_not_lead_where_another_daemon_flies(
+    fccd: Path, tmp_path: Path, first: str, second: str
+) -> None:
+    with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
+        address = f"127.0.0.1:{simulator.port}"
+
+        def daemon(way: str) -> DaemonUnderTest:
+            scratch = tmp_path / way
+            scratch.mkdir()
+            config = write_config(scratch, simulator.port)
+            if way == "beacon":
+                config.write_text(config.read_text().replace(address, "beacon"))
+            return start(fccd, scratch, config)
+
+        with daemon(first) as flies:
+            engage(simulator, flies)
+            begun_s = time.monotonic()
+            with daemon(second) as comes:
+                refused = comes.end()
+            took_s = time.monotonic() - begun_s
+            assert took_s < AT_ONCE_S + (BEACON_PERIOD_S if second == "beacon" else 0.0)
+            assert refused.exit_code == TAKEN
+            assert f"another fccd on this machine flies X-Plane at {address}" in refused.said
+            # It saw the switch on, and has not touched the controls.
+            assert "engaged" not in refused.said
+            assert simulator.progress().overridden
+            assert simulator.releases() == []
+            assert "engaged" in flies.wait_for("heading")
+            assert flies.end(signal.SIGTERM).exit_code == SUCCESS
+        assert_released(simulator)
+
+
+def test_a_local_port_that_another_program_has_is_told_apart(fccd: Path, tmp_path: Path) -> None:
+    """By the exit code: who starts the daemon again for ever would do so in vain."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("0.0.0.0", 0))
+        port = other.getsockname()[1]
+        config = write_config(tmp_path, 49_000, x_plane=f"local_port = {port}")
+        with start(fccd, tmp_path, config) as daemon:
+            refused = daemon.end()
+    assert refused.exit_code == TAKEN
+    assert f"cannot receive on UDP port {port}" in refused.said

@@ -89,6 +89,8 @@ def _calls(group: str) -> set[str]:
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),
         ("Restart", ["on-failure"]),
+        # Usage, real-time refused, taken by another: what would fail again at once.
+        ("RestartPreventExitStatus", ["2 4 12"]),
         ("User", ["fccd"]),
     ],
 )

@@ -31,6 +31,8 @@ pub enum Exit {
     MachineLacks = 10,
     /// The daemon refused an order.
     Refused = 11,
+    /// Another program has what is asked for: the simulator, or the local port.
+    Taken = 12,
 }
 
 /// For `--help`.
@@ -47,7 +49,8 @@ Exit codes:
   8  a recording could not be flown again to its end; nothing else differs
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
- 11  the daemon refused the order";
+ 11  the daemon refused the order
+ 12  another program has the simulator or the local port";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -30,6 +30,16 @@ impl<O> OrderSender<O> {
         Self { ring }
     }
 
+    /// How many orders can be sent now, 0 if the loop is over: for those that
+    /// mean something only together.
+    pub fn room(&self) -> usize {
+        if self.ring.is_abandoned() {
+            0
+        } else {
+            self.ring.slots()
+        }
+    }
+
     /// Sends an order; it is read in one of the next ticks.
     ///
     /// # Errors

@@ -159,8 +159,10 @@ fn an_order_that_finds_no_room_comes_back() {
         orders_capacity: 2,
         ..LoopConfig::default()
     });
+    assert_eq!(bench.link.orders.room(), 2);
     bench.order(Order::Controller(1));
     bench.order(Order::Controller(2));
+    assert_eq!(bench.link.orders.room(), 0);
     assert_eq!(
         bench.link.orders.send(Order::Stop),
         Err(OrdersFull(Order::Stop))
@@ -175,6 +177,7 @@ fn orders_to_a_loop_that_is_gone_come_back() {
     let bench = Bench::new();
     let mut link = bench.link;
     drop(bench.machine);
+    assert_eq!(link.orders.room(), 0);
     assert_eq!(
         link.orders.send(Order::Engage),
         Err(OrdersFull(Order::Engage))

@@ -72,7 +72,8 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let held = match &mut self.held {
             Some(held) => held,
             none => {
-                let simulator = link.simulator().ok_or(ActuatorFault::NotConnected)?;
+                let simulator = link.simulator().filter(|at| link.is_allowed(*at));
+                let simulator = simulator.ok_or(ActuatorFault::NotConnected)?;
                 // Held from here on, before the first datagram leaves: what
                 // was perhaps taken must be given back.
                 link.set_control(Control::Held);

@@ -69,10 +69,17 @@ pub(crate) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }
 
+/// No address has so many bits.
+const ANYWHERE: u64 = u64::MAX;
+/// No address is nought.
+const NOWHERE: u64 = 0;
+
 #[derive(Debug)]
 pub(crate) struct Link {
     /// IPv4 address and port in the low 48 bits; 0 while unknown.
     simulator: AtomicU64,
+    /// The same of where control may be taken, or [`ANYWHERE`].
+    allowed: AtomicU64,
     state: AtomicU8,
     control: AtomicU8,
     unconfirmed: AtomicBool,
@@ -87,6 +94,7 @@ impl Link {
     pub(crate) fn new(simulator: Option<SocketAddrV4>) -> Self {
         Self {
             simulator: AtomicU64::new(simulator.map_or(0, pack)),
+            allowed: AtomicU64::new(ANYWHERE),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
@@ -106,6 +114,17 @@ impl Link {
 
     pub(crate) fn set_simulator(&self, address: SocketAddrV4) {
         self.simulator.store(pack(address), Ordering::Relaxed);
+    }
+
+    /// Whether control may be taken there.
+    pub(crate) fn is_allowed(&self, simulator: SocketAddrV4) -> bool {
+        let allowed = self.allowed.load(Ordering::Acquire);
+        allowed == ANYWHERE || allowed == pack(simulator)
+    }
+
+    pub(crate) fn allow(&self, simulator: Option<SocketAddrV4>) {
+        let allowed = simulator.map_or(NOWHERE, pack);
+        self.allowed.store(allowed, Ordering::Release);
     }
 
     pub(crate) fn state(&self) -> SimulatorState {

@@ -185,7 +185,9 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let mut sent = Ok(());
         if let Some(simulator) = simulator {
             sent = self.ask(now, simulator);
-            sent = sent.and(self.see_to_letting_go(now, simulator));
+            if self.link.is_allowed(simulator) {
+                sent = sent.and(self.see_to_letting_go(now, simulator));
+            }
         }
 
         let silent = state == SimulatorState::Silent && now.since(self.began) > self.silent_after;

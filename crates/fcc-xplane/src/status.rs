@@ -47,6 +47,19 @@ impl XPlaneStatus {
         self.0.simulator()
     }
 
+    /// From now on control is taken nowhere but where it is
+    /// [allowed](Self::allow): for who has to ask first whether another program
+    /// flies there. Until then [`apply`](fcc_core::framework::Actuator::apply)
+    /// says that it is not connected.
+    pub fn ask_first(&self) {
+        self.0.allow(None);
+    }
+
+    /// Control may be taken at this address, and at no other.
+    pub fn allow(&self, simulator: SocketAddrV4) {
+        self.0.allow(Some(simulator));
+    }
+
     /// What the simulator was doing at the last tick.
     pub fn state(&self) -> SimulatorState {
         self.0.state()
@@ -55,6 +68,13 @@ impl XPlaneStatus {
     /// Who has the controls.
     pub fn control(&self) -> Control {
         self.0.control()
+    }
+
+    /// Where the controls are held, or not yet shown to be given back.
+    pub fn held_at(&self) -> Option<SocketAddrV4> {
+        let allowed = |at: &SocketAddrV4| self.0.is_allowed(*at);
+        let held = self.control() != Control::Free;
+        self.simulator().filter(allowed).filter(|_| held)
     }
 
     /// Whether controls have been written for over a second without effect.

@@ -4,6 +4,7 @@
 mod support;
 
 use fcc_core::framework::{Actuator, ActuatorFault};
+use std::net::SocketAddrV4;
 use std::time::Duration;
 
 use fcc_xplane::{Control, Output, Released, Trouble, XPlane};
@@ -42,6 +43,26 @@ fn control_is_taken_written_and_confirmed() {
     bench.simulator.assert_shows(YOKE_ROLL, -0.2);
     bench.simulator.assert_shows(YOKE_HEADING, 0.05);
     bench.simulator.assert_shows(THROTTLE, 0.8);
+}
+
+#[test]
+fn control_is_taken_only_where_it_is_allowed() {
+    let mut bench = Bench::new();
+    bench.status.ask_first();
+    bench.settle();
+    let here = bench.simulator.address();
+    let elsewhere = SocketAddrV4::new(*here.ip(), here.port() ^ 1);
+    assert_eq!(bench.fly(), Err(ActuatorFault::NotConnected));
+    bench.status.allow(elsewhere);
+    assert_eq!(bench.fly(), Err(ActuatorFault::NotConnected));
+    bench.simulator.listen();
+    assert!(bench.simulator.writes.is_empty());
+    assert_eq!(bench.status.held_at(), None);
+    bench.status.allow(here);
+    bench.fly().unwrap();
+    assert_eq!(bench.status.held_at(), Some(here));
+    bench.simulator.listen();
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
 }
 
 #[test]

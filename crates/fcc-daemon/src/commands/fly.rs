@@ -45,7 +45,14 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
 pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, json: bool) -> Exit {
     let assembly = match assemble(config) {
         Ok(assembly) => assembly,
-        Err(error) => return fail(&error.to_string()),
+        Err(error) => {
+            fail(&error.to_string());
+            return if error.is_taken() {
+                Exit::Taken
+            } else {
+                Exit::Failure
+            };
+        }
     };
     let recording = RecordingWish::of(config, as_given);
     match fly_assembly(assembly, &config.tick, plan, recording) {
@@ -53,6 +60,7 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
         Err(error) => {
             let exit = match error {
                 FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeRefused,
+                FlyError::Taken(_) => Exit::Taken,
                 _ => Exit::Failure,
             };
             fail(&error.to_string());

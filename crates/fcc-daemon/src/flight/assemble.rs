@@ -1,5 +1,7 @@
 //! Puts sensors, autopilot and actuators together as a configuration says.
 
+use std::io::ErrorKind;
+
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor};
 use fcc_runtime::LoopConfig;
@@ -44,6 +46,13 @@ pub enum AssemblyError {
     /// The connection to X-Plane could not be opened.
     #[error("X-Plane: {0}")]
     XPlane(#[from] OpenError),
+}
+
+impl AssemblyError {
+    /// Whether another program has the local port.
+    pub(crate) fn is_taken(&self) -> bool {
+        matches!(self, Self::XPlane(OpenError::Bind { source, .. }) if source.kind() == ErrorKind::AddrInUse)
+    }
 }
 
 /// Puts a flight together.

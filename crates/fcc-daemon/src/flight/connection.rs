@@ -68,8 +68,7 @@ impl Connection {
             self.relieve_guard();
         }
         if let Some(guard) = &mut self.guard {
-            let held = self.status.control() != Control::Free;
-            guard.tell(self.status.simulator().filter(|_| held));
+            guard.tell(self.status.held_at());
         }
         let now = self.status.trouble();
         if self.trouble.map(|(trouble, _)| trouble) != now {
@@ -131,8 +130,7 @@ impl Connection {
     /// Sending a release is not enough: an X-Plane that hangs loses it, and
     /// would fly on with its yoke held when it comes back.
     pub(super) fn end(self) -> bool {
-        let held = self.status.control() != Control::Free;
-        let released = match self.status.simulator().filter(|_| held) {
+        let released = match self.status.held_at() {
             None => true,
             Some(simulator) => {
                 let config = XPlaneConfig::from(&self.section);

@@ -1,13 +1,13 @@
 //! Flies an assembly to its end.
 
 use std::io;
+use std::net::SocketAddrV4;
 use std::sync::atomic::Ordering;
 
 use fcc_core::framework::State;
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_telemetry::recording::RecordingPace;
 use fcc_timer::{ManualTimer, Timer, TimerError};
-use fcc_xplane::Simulator;
 
 use super::assemble::Assembly;
 use super::connection::Connection;
@@ -75,7 +75,7 @@ pub enum FlyError {
         "another fccd on this machine flies X-Plane at {0}: end that one first, or fly another \
          X-Plane"
     )]
-    Taken(String),
+    Taken(SocketAddrV4),
     /// There is no watchdog, and a flight without one was not asked for.
     #[error("the watchdog: {0}")]
     Watchdog(#[source] io::Error),
@@ -93,7 +93,7 @@ pub fn fly(
     recording: Option<RecordingWish>,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
-    let _sole = claim(&assembly)?;
+    let mut sole = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
         Pace::RealTime => tick.build_timer()?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
@@ -159,6 +159,7 @@ pub fn fly(
                 watch: &mut watch,
                 recording: recording.as_mut(),
                 tally: Some(&mut tally),
+                sole: sole.as_mut(),
                 plan,
             }
             .follow(connection.as_mut(), watched_by, news);
@@ -182,8 +183,7 @@ pub fn fly(
             let mut recording =
                 wish.and_then(|wish| wish.begin(None, RecordingPace::Lockstep, &mut watch));
             drop(kept);
-            let recorder = recording.as_mut();
-            let report = run_in_lockstep(machine, &mut link, &mut watch, recorder, plan)?;
+            let report = run_in_lockstep(machine, &mut link, &mut watch, recording.as_mut(), plan)?;
             (report, recording, interrupted)
         }
     };
@@ -191,14 +191,29 @@ pub fn fly(
     // The controls were given back before; the disk may take its time now.
     let recording =
         recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
-    let interrupted = interrupted.load(Ordering::Relaxed);
+    // A beacon may have led to where another daemon flies.
+    refuse_if_taken(sole.as_ref().filter(|_| report.released))?;
     let refused = watch.was_refused() && !matches!(plan.length, Length::Open);
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
     let mut outcome = Outcome::new(timer_name, report, events, score, recording);
-    outcome.explain(interrupted, refused);
+    outcome.explain(interrupted.load(Ordering::Relaxed), refused);
     Ok(outcome)
+}
+
+/// Claims the simulator for this process, if it is one and known already.
+fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
+    let x_plane = assembly.x_plane.as_ref();
+    let sole = x_plane.map(|(status, _)| Sole::of(status.clone()));
+    refuse_if_taken(sole.as_ref()).map(|()| sole)
+}
+
+fn refuse_if_taken(sole: Option<&Sole>) -> Result<(), FlyError> {
+    match sole.and_then(Sole::taken) {
+        Some(simulator) => Err(FlyError::Taken(simulator)),
+        None => Ok(()),
+    }
 }
 
 /// Waits until X-Plane shows that it has its controls back, and says in the
@@ -234,6 +249,7 @@ fn run_in_lockstep(
         watch,
         recording,
         tally: None,
+        sole: None,
         plan,
     };
     while machine.step() != State::Stopped {
@@ -242,22 +258,4 @@ fn run_in_lockstep(
     let report = machine.finish();
     follower.drain();
     Ok(report)
-}
-
-/// Claims the simulator for this process, if it is one.
-fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
-    let Some((_, section)) = &assembly.x_plane else {
-        return Ok(None);
-    };
-    match Sole::claim(section.simulator) {
-        Ok(sole) => Ok(Some(sole)),
-        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
-            Err(FlyError::Taken(match section.simulator {
-                Simulator::At(address) => address.to_string(),
-                Simulator::Beacon => "the address of its beacon".to_owned(),
-            }))
-        }
-        // Where there are no such names, nobody is kept from flying.
-        Err(_) => Ok(None),
-    }
 }

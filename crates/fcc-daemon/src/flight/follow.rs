@@ -13,6 +13,7 @@ use super::connection::Connection;
 use super::fly::Plan;
 use super::hang::{HangWatch, Hung};
 use super::recording::Recording;
+use super::sole::Sole;
 use super::tally::Tally;
 use super::watch::Watch;
 
@@ -27,6 +28,8 @@ pub(super) struct Follower<'a> {
     pub(super) recording: Option<&'a mut Recording>,
     /// Only of a loop in real time: one in lockstep gives its own account.
     pub(super) tally: Option<&'a mut Tally>,
+    /// The right to fly what is flown, where somebody else may have it.
+    pub(super) sole: Option<&'a mut Sole>,
     pub(super) plan: Plan,
 }
 
@@ -55,6 +58,12 @@ impl Follower<'_> {
         let mut hung = None;
         while hung.is_none() && !self.link.messages.is_over() {
             self.drain();
+            if let Some(sole) = &mut self.sole {
+                sole.follow();
+                if sole.taken().is_some() {
+                    self.link.stop.stop();
+                }
+            }
             self.watch.service.tell();
             self.watch.live.pass_orders(&mut self.link.orders);
             let said = [

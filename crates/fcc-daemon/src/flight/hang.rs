@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGrants;
-use fcc_xplane::{Control, Released, XPlane, XPlaneConfig, XPlaneStatus};
+use fcc_xplane::{Released, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::Pilot;
 use crate::config::{WatchdogSection, XPlaneSection};
@@ -89,8 +89,7 @@ impl HangWatch {
 
 /// Whether X-Plane has its controls, back or still.
 fn give_back(status: &XPlaneStatus, section: &XPlaneSection) -> bool {
-    let held = status.control() != Control::Free;
-    let Some(simulator) = status.simulator().filter(|_| held) else {
+    let Some(simulator) = status.held_at() else {
         return true;
     };
     let released =

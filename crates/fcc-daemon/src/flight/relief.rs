@@ -7,13 +7,17 @@
 //! take control there connects, and the guard goes.
 //!
 //! The name is an abstract one: no file stays behind, and it reaches as far as
-//! the simulator's address does, which is one network namespace.
+//! the simulator's address does, which is one network namespace. Anybody in
+//! there can connect; a guard goes for who runs as the same user, and for root.
 
 use std::io::{ErrorKind, Read};
 use std::net::SocketAddrV4;
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixListener, UnixStream};
 use std::time::Duration;
+
+use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
+use nix::unistd::{Uid, geteuid};
 
 /// How long a guard may take to go: it looks every 20 ms.
 const GOES_WITHIN: Duration = Duration::from_secs(1);
@@ -44,11 +48,24 @@ impl Post {
 
     /// Whether somebody has come; never waits.
     pub(super) fn is_relieved(&mut self) -> bool {
-        if let Some(Ok((stream, _))) = self.listener.as_ref().map(UnixListener::accept) {
+        if let Some(Ok((stream, _))) = self.listener.as_ref().map(UnixListener::accept)
+            && user(&stream).is_some_and(|user| may_relieve(user, geteuid()))
+        {
             self.relief = Some(stream);
         }
         self.relief.is_some()
     }
+}
+
+/// Who is at the other end, as the kernel says.
+fn user(stream: &UnixStream) -> Option<Uid> {
+    let credentials = getsockopt(stream, PeerCredentials).ok()?;
+    Some(Uid::from_raw(credentials.uid()))
+}
+
+/// Whether `user` may send away a guard that runs as `guard`.
+fn may_relieve(user: Uid, guard: Uid) -> bool {
+    user == guard || user.is_root()
 }
 
 /// Relieves the guard that releases `simulator`, if there is one, and waits for
@@ -76,6 +93,18 @@ mod tests {
 
     /// Nobody listens here, and no other test has this address.
     const SIMULATOR: SocketAddrV4 = SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 9);
+
+    #[test]
+    fn a_guard_goes_for_its_own_user_and_root_alone() {
+        let (ours, theirs) = UnixStream::pair().unwrap();
+        assert_eq!(user(&ours), Some(geteuid()));
+        drop(theirs);
+        let [guard, stranger] = [1_000, 1_001].map(Uid::from_raw);
+        assert!(may_relieve(guard, guard));
+        assert!(may_relieve(Uid::from_raw(0), guard));
+        assert!(!may_relieve(stranger, guard));
+        assert!(!may_relieve(stranger, Uid::from_raw(0)));
+    }
 
     #[test]
     fn a_guard_is_relieved_once_somebody_comes_and_not_before() {

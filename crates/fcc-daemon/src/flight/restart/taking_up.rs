@@ -123,11 +123,13 @@ impl TakingUp {
     }
 
     /// Orders it: engage first, for engaging forgets what was ordered before.
+    /// Without room for both neither is sent, for engaged alone it would fly
+    /// something else; it is tried again.
     pub(super) fn order(&mut self, orders: &mut OrderSender<Command>, resume: Resume) {
-        if orders.send(Order::Engage).is_ok() {
-            // A ring with room for one has room for two: nobody else has sent.
-            let _ = orders.send(Order::Controller(Command::Resume(resume)));
-            self.ordered = Some(resume);
+        let both = [Order::Engage, Order::Controller(Command::Resume(resume))];
+        if orders.room() >= both.len() {
+            let sent = both.into_iter().all(|order| orders.send(order).is_ok());
+            self.ordered = sent.then_some(resume);
         }
     }
 }
@@ -150,4 +152,51 @@ fn taken_up(resume: &Resume, age: Duration) -> String {
         altitude_m * M_FT,
         airspeed_mps * MPS_KT
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::flight::{Autopilot, Surfaces};
+    use fcc_runtime::{LoopConfig, Machine, Parts};
+    use fcc_timer::ManualTimer;
+
+    use super::*;
+    use crate::config::Config;
+
+    #[test]
+    fn both_orders_are_sent_or_neither() {
+        let resume = Resume {
+            targets: Targets {
+                airspeed_mps: 50.0,
+                heading_rad: 1.0,
+                altitude_m: 900.0,
+            },
+            pattern_s: None,
+            surfaces: Surfaces::default(),
+        };
+        let saved = Saved {
+            at: BootInstant::now().unwrap(),
+            config: 0,
+            switch_on: true,
+            take_ups: 0,
+            resume,
+        };
+        for (room, sent) in [(1, 0), (2, 2), (3, 2)] {
+            let config = LoopConfig {
+                orders_capacity: room,
+                ..LoopConfig::default()
+            };
+            let parts = Parts {
+                timer: Box::new(ManualTimer::new(Duration::from_millis(25)).unwrap()),
+                sensors: Vec::new(),
+                controller: Autopilot::new(Config::default().autopilot_config()),
+                actuators: Vec::new(),
+            };
+            let (_machine, mut link) = Machine::new(parts, &config).unwrap();
+            let mut taking_up = TakingUp::new(saved.clone());
+            taking_up.order(&mut link.orders, resume);
+            assert_eq!(room - link.orders.room(), sent);
+            assert_eq!(taking_up.ordered.is_some(), sent == 2);
+        }
+    }
 }
