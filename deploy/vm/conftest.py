@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from guest import Guest, accelerator
+
+from guest import INSTALL_S, Guest, accelerator
 
 FIGURES = pytest.StashKey[list[str]]()
-INSTALL_S = 300.0
 
 
 def pytest_configure(config: pytest.Config) -> None:

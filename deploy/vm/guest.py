@@ -23,6 +23,9 @@ from agent import Agent, AgentError, Done
 HOST = "10.0.2.2"
 """This machine, as the guest sees it."""
 
+INSTALL_S = 300.0
+"""How long a package may take."""
+
 # An emulated machine on a busy one takes minutes.
 _BOOT_S = 300.0
 _COMMAND_S = 120.0

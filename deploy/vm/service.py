@@ -19,12 +19,12 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
-from guest import HOST, Guest
-from recordings import RECORD, in_sequence
-
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
+from recordings import RECORD, in_sequence
+
+from guest import HOST, Guest
 
 CONFIG = "/etc/fccd/fccd.toml"
 RECORDINGS = "/var/lib/fccd/recordings"
@@ -68,7 +68,9 @@ class Service:
 
     def journal(self) -> list[dict[str, Any]]:
         """Return what systemd and the daemon wrote since this was made."""
-        lines = self.guest.sh(f"journalctl --unit fccd --output json --after-cursor '{self._cursor}'")
+        lines = self.guest.sh(
+            f"journalctl --unit fccd --output json --after-cursor '{self._cursor}'"
+        )
         return [json.loads(line) for line in lines.splitlines()]
 
     def configure(self, sections: Mapping[str, Mapping[str, object]]) -> None:
@@ -77,7 +79,7 @@ class Service:
         for section, values in sections.items():
             if section not in document:
                 document[section] = tomlkit.table()
-            document[section].update(values)  # type: ignore[union-attr]
+            document[section].update(values)
         self.guest.agent.write(CONFIG, tomlkit.dumps(document).encode())
 
     def wait_until(self, holds: Callable[[], bool], what: str) -> None:
@@ -131,7 +133,8 @@ def flight(
     guest: Guest, sections: Mapping[str, Mapping[str, object]] | None = None
 ) -> Iterator[tuple[StandInProcess, Service]]:
     """Start a stand-in here and the service there; end both, and leave nothing of it."""
-    with StandInProcess(Settings(port=0)) as simulator:
+    # East, where a heading and another one beside it are nearly the same number.
+    with StandInProcess(Settings(port=0, heading_deg=90.0)) as simulator:
         service = Service(guest)
         kept = guest.agent.read(CONFIG)
         service.configure(UNHURRIED)
@@ -143,4 +146,6 @@ def flight(
         finally:
             guest.try_sh("systemctl disable --now fccd; systemctl reset-failed fccd")
             guest.try_sh(f"rm -rf {RECORDINGS} /var/lib/fccd/*.flight")
-            guest.agent.write(CONFIG, kept)
+            # Unless the package was removed meanwhile.
+            if guest.try_sh("test -d /etc/fccd").exit_code == 0:
+                guest.agent.write(CONFIG, kept)

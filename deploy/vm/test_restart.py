@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+
 from guest import Guest
 from service import DROP_IN, ENGAGED, Service, flight
 
@@ -16,10 +18,12 @@ REALTIME_REFUSED = 4
 # Of systemd's catalogue, sd-messages(3).
 PROCESS_ENDED = "98e322203f7a4ed290d09fe03c09fe15"
 UNIT_FAILED = "d9b373ed55a64feb8242e02dbe79a49c"
+RESTART_SCHEDULED = "5eb03494b6584870a536b337290809b3"
+UNIT_STARTING = "7d4958e842da4a758f6c1cdc7b36dcc5"
 UNIT_STARTED = "39f53479d3a045ac8e11786248231fbf"
 
-# Nominally a third of a second on a machine that is not emulated.
-RESTART_S = 10.0
+# Nominally less than one; an emulated machine takes up to four.
+RESTART_S = 30.0
 
 WARM = {"restart": {"mode": "warm"}}
 COLD = {"restart": {"mode": "cold"}}
@@ -49,10 +53,15 @@ def _wait_for_restart(service: Service, pid: int) -> None:
 
 
 def _assert_restarted_soon(service: Service, figures: list[str], what: str) -> None:
-    ended_s = _when(service, PROCESS_ENDED, -1)
-    took_s = _when(service, UNIT_STARTED, -1) - ended_s
-    figures.append(f"{what}: active again {took_s:.2f} s after the process' end")
-    assert 0.0 < took_s < RESTART_S
+    steps = (PROCESS_ENDED, RESTART_SCHEDULED, UNIT_STARTING, UNIT_STARTED)
+    ended_s, scheduled_s, starting_s, started_s = (_when(service, step, -1) for step in steps)
+    figures.append(
+        f"{what}: active again {started_s - ended_s:.2f} s after the process' end; until the "
+        f"guard had released {scheduled_s - ended_s:.2f} s (0.1 s of it RestartSec), until "
+        f"systemd began {starting_s - scheduled_s:.2f} s, until it was ready "
+        f"{started_s - starting_s:.2f} s"
+    )
+    assert ended_s < scheduled_s <= starting_s < started_s < ended_s + RESTART_S
 
 
 def _setpoints(record: Any) -> tuple[float, float, float]:
@@ -82,8 +91,9 @@ def test_a_flight_that_was_killed_is_taken_up(
     engaged = [record for record in taken_up if record.state.phase == ENGAGED]
     before_s = (engaged[0].woke_ns - taken_up[0].woke_ns) * 1e-9
     figures.append(f"killed: flight taken up {before_s:.2f} s after the new loop's first tick")
-    for record in engaged:
-        assert _setpoints(record) == pytest.approx(_setpoints(killed[-1]), abs=1e-9)
+    # It engages as it always does, and is told in the next tick what was flown.
+    for record in engaged[1:]:
+        assert _setpoints(record) == pytest.approx(_setpoints(killed[-1]), abs=1e-6)
 
 
 def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
@@ -116,7 +126,8 @@ def test_who_gives_no_sign_of_life_is_ended_and_started_again(
         assert _result(service) == "watchdog"
         ended = [e for e in service.journal() if e.get("MESSAGE_ID") == PROCESS_ENDED]
         # How the process ended, as wait(2) told systemd.
-        assert (ended[-1]["EXIT_CODE"], ended[-1]["EXIT_STATUS"]) == ("killed", "ABRT")
+        assert ended[-1]["EXIT_CODE"] == "killed"
+        assert int(ended[-1]["EXIT_STATUS"]) == signal.SIGABRT
         _assert_restarted_soon(service, figures, "stopped, and ended by the watchdog")
         service.wait_until(lambda: not simulator.progress().overridden, "the guard releases")
         # And it flies again, when somebody wants it to.
@@ -166,5 +177,3 @@ def test_what_may_go_better_is_tried_again_for_ever(guest: Guest) -> None:
                 "another process is active",
             )
         assert service.show("NRestarts") == "7"
-
-

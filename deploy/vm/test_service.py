@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 from fault_flights import assert_regular
+from fcc_hil.process import StandInProcess
+
 from guest import Guest
 from service import ENGAGED, PERIOD_NS, Service, flight
-
-from fcc_hil.process import StandInProcess
 
 LOOP_PRIORITY = 80
 WATCHDOG_PRIORITY = 81

@@ -9,12 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from conftest import INSTALL_S
 from fault_flights import assert_regular
-from guest import Guest
-from service import CONFIG, ENGAGED, PERIOD_NS, RECORDINGS, Service, flight
-
 from fcc_hil.process import StandInProcess
+
+from guest import INSTALL_S, Guest
+from service import CONFIG, ENGAGED, PERIOD_NS, RECORDINGS, Service, flight
 
 NEWER = "99.0-1"
 RUNNING = (
@@ -40,8 +39,11 @@ def newer(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     (unit,) = unpacked.glob("**/fccd.service")
     unit.write_text(unit.read_text().replace("Description=", "Description=Newer "))
     path = folder / "fccd.deb"
-    command = ["dpkg-deb", "--root-owner-group", "--build", unpacked, path]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        ["dpkg-deb", "--root-owner-group", "--build", unpacked, path],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     return path
 
 

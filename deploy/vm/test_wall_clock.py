@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 from fault_flights import assert_regular
-from guest import Guest
 from recordings import RECORD, in_sequence
+
+from guest import Guest
 from service import ENGAGED, PERIOD_NS, Service, flight
 
 DAY_S = 86_400
