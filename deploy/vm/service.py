@@ -32,7 +32,7 @@ DROP_IN = "/run/systemd/system/fccd.service.d"
 PERIOD_NS = 25_000_000
 ENGAGED = 1
 """The phase, as a recording calls it."""
-PATIENCE_S = 60.0
+PATIENCE_S = 180.0
 _LOOK_S = 0.1
 
 # A guest whose host is busy stands still at times. That a loop or a reading that is late
