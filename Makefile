@@ -117,7 +117,7 @@ deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TAR
 	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
 	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
 
-test-deb: deb $(STAMPS)/python ## Look into the Debian package
+test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Look into the Debian package (DEB_TARGET=)
 	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy/tests
 
 # A small Debian that is made once. Its tests are in no other goal, for where the
