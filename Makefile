@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: wheels deb test-deb test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
+.PHONY: wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -83,6 +83,7 @@ lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff format --check hil deploy
 	$(PYTHON) -m ruff format --config hil/pyproject.toml --check crates/fcc-py/fcc.pyi
 	cd hil && ../$(PYTHON) -m mypy
+	cd deploy/vm && MYPYPATH=../../hil/tests ../../$(PYTHON) -m mypy --config-file ../../hil/pyproject.toml .
 
 deny: $(STAMPS)/rust
 	@command -v cargo-deny >/dev/null || cargo install --locked --version 0.20.2 cargo-deny
@@ -119,8 +120,18 @@ deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TAR
 	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
 	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
 
-test-deb: deb $(STAMPS)/python ## Look into the Debian package
-	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy
+test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Look into the Debian package (DEB_TARGET=)
+	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy/tests
+
+# A small Debian that is made once. Its tests are in no other goal, for where the
+# processor does not run guests, they take minutes.
+VM_IMAGE := target/vm
+
+test-vm: deb $(VM_IMAGE)/root.img $(STAMPS)/vm $(STAMPS)/python ## Boot a Debian in qemu, install the package there, and fly (8 minutes)
+	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) VM_IMAGE=$(abspath $(VM_IMAGE)) $(PYTHON) -m pytest deploy/vm
+
+$(VM_IMAGE)/root.img: deploy/vm/build-image | $(STAMPS)/vm
+	./deploy/vm/build-image $(VM_IMAGE)
 
 bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what a tick costs: time, instructions, memory, system calls (4 minutes)
 	@test "$$(gungraun-runner --version 2>/dev/null)" = "gungraun-runner $(GUNGRAUN)" || \
@@ -214,6 +225,12 @@ $(STAMPS)/cross: $(STAMPS)/rust
 $(STAMPS)/qemu:
 	@command -v qemu-aarch64 >/dev/null && command -v qemu-arm >/dev/null || \
 	    ./scripts/apt-install qemu-user
+	@mkdir -p $(STAMPS) && touch $@
+
+$(STAMPS)/vm:
+	@command -v qemu-system-x86_64 >/dev/null && command -v mmdebstrap >/dev/null && \
+	    command -v fakeroot >/dev/null && command -v newuidmap >/dev/null || \
+	    ./scripts/apt-install qemu-system-x86 mmdebstrap fakeroot uidmap e2fsprogs
 	@mkdir -p $(STAMPS) && touch $@
 
 # The module `fcc` is built anew whenever its sources changed: cargo knows.

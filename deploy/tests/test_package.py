@@ -1,6 +1,6 @@
 """The Debian package from outside: what it brings, and what its scripts leave alone.
 
-`make test-deb` builds it and gives its path in DEB.
+`make test-deb` builds it and gives its path in DEB; one for a board too, with DEB_TARGET.
 """
 
 from __future__ import annotations
@@ -12,7 +12,13 @@ from pathlib import Path
 
 import pytest
 
-SCRIPTS = ("preinst", "postinst", "prerm", "postrm")
+# Of the ELF header: 1 for 32 bits and 2 for 64, and e_machine (elf(5)).
+MACHINES = {"amd64": (2, 62), "arm64": (2, 183), "armhf": (1, 40)}
+# Runs the program of a board here, on the libraries of Debian's cross compilers.
+RUNNERS = {
+    "arm64": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
+    "armhf": ["qemu-arm", "-L", "/usr/arm-linux-gnueabihf"],
+}
 
 
 @pytest.fixture(scope="session")
@@ -37,6 +43,22 @@ def files(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("files")
     subprocess.run(["dpkg-deb", "--extract", package, folder], check=True)
     return folder
+
+
+@pytest.fixture(scope="session")
+def architecture(package: Path) -> str:
+    """Return what it is for, in Debian's words."""
+    command = ["dpkg-deb", "--field", package, "Architecture"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def test_the_program_is_for_the_machine_that_the_package_names(
+    architecture: str, package: Path, files: Path
+) -> None:
+    header = (files / "usr/bin/fccd").read_bytes()[:20]
+    assert header[:4] == b"\x7fELF"
+    assert (header[4], int.from_bytes(header[18:20], "little")) == MACHINES[architecture]
+    assert package.stem.endswith(f"_{architecture}")
 
 
 def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
@@ -93,10 +115,16 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
     assert meddled == []
 
 
-def test_the_configuration_belongs_to_whoever_changed_it(control: Path, files: Path) -> None:
+def test_the_configuration_belongs_to_whoever_changed_it(
+    architecture: str, control: Path, files: Path
+) -> None:
     assert "/etc/fccd/fccd.toml" in (control / "conffiles").read_text().split()
-    program = files / "usr/bin/fccd"
-    checked = subprocess.run([program, "check", files / "etc/fccd/fccd.toml"], check=False)
+    here = subprocess.run(
+        ["dpkg", "--print-architecture"], capture_output=True, text=True, check=True
+    )
+    runner = [] if here.stdout.strip() == architecture else RUNNERS[architecture]
+    program = [*runner, files / "usr/bin/fccd"]
+    checked = subprocess.run([*program, "check", files / "etc/fccd/fccd.toml"], check=False)
     assert checked.returncode == 0
 
 

@@ -144,6 +144,14 @@ impl Port for UdpPort {
     fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno> {
         match self.socket.send_to(datagram, to) {
             Ok(_) => Ok(()),
+            // Where the network device leaves checksums to the kernel, Linux
+            // before 6.11 refuses all that a socket that cuts sends, even what
+            // is too short to be cut.
+            Err(error) if self.cuts.load(Ordering::Relaxed) && is_about_cutting(&error) => {
+                self.stop_cutting();
+                let sent = self.socket.send_to(datagram, to);
+                sent.map(drop).map_err(|error| errno(&error))
+            }
             Err(error) => Err(errno(&error)),
         }
     }
@@ -216,5 +224,18 @@ mod tests {
         let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
         assert_eq!(received_of_four(|_| {}), four);
         assert_eq!(received_of_four(UdpPort::stop_cutting), four);
+    }
+
+    /// Too long for UDP, refused with the same number as what cannot be cut.
+    #[test]
+    fn what_is_refused_is_tried_again_without_cutting() {
+        let refused = |port: &UdpPort| {
+            let nobody = SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9);
+            let sent = port.send(&[0; 70_000], nobody);
+            assert_eq!(sent, Err(nix::errno::Errno::EMSGSIZE as i32));
+            assert!(!port.cuts.load(Ordering::Relaxed));
+        };
+        let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
+        assert_eq!(received_of_four(refused), four);
     }
 }
