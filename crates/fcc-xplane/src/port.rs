@@ -231,7 +231,7 @@ mod tests {
     fn what_is_refused_is_tried_again_without_cutting() {
         let refused = |port: &UdpPort| {
             let nobody = SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9);
-            let sent = port.send(&[0; 70_000], nobody);
+            let sent = port.send(&vec![0; 70_000], nobody);
             assert_eq!(sent, Err(nix::errno::Errno::EMSGSIZE as i32));
             assert!(!port.cuts.load(Ordering::Relaxed));
         };
