@@ -10,8 +10,8 @@ use fcc_telemetry::FlightMessage;
 
 use super::Pilot;
 use super::connection::Connection;
-use super::fly::Plan;
 use super::hang::{HangWatch, Hung};
+use super::plan::Plan;
 use super::recording::Recording;
 use super::sole::Sole;
 use super::tally::Tally;

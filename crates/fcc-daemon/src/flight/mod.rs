@@ -17,6 +17,7 @@ mod live;
 #[cfg(feature = "live")]
 mod orders;
 mod outcome;
+mod plan;
 mod recording;
 mod relief;
 mod restart;
@@ -29,10 +30,11 @@ mod tap;
 mod watch;
 
 pub use assemble::{Assembly, AssemblyError, assemble};
-pub use fly::{FlyError, Length, Pace, Plan, fly};
+pub use fly::{FlyError, fly};
 pub use guard::{GuardError, stand_guard};
-pub use outcome::{EventEntry, Outcome};
-pub use recording::{RecordingOutcome, RecordingWish, about};
+pub use outcome::{EventEntry, Outcome, RecordingOutcome};
+pub use plan::{Length, Pace, Plan};
+pub use recording::{RecordingWish, about};
 pub use watch::true_sample;
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;

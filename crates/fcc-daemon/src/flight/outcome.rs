@@ -8,7 +8,6 @@ use fcc_timer::RealtimeGrants;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
-use super::recording::RecordingOutcome;
 use crate::exit::Exit;
 
 /// The scheduling of a loop without a thread of its own.
@@ -52,6 +51,22 @@ pub struct EventEntry {
     pub tick: u64,
     /// What it was, in words.
     pub text: String,
+}
+
+/// What of a flight got onto the disk.
+#[derive(Clone, Debug, Serialize)]
+pub struct RecordingOutcome {
+    /// Every file of the recording, in order.
+    pub files: Vec<String>,
+    /// Records written.
+    pub ticks: u64,
+    /// Bytes written.
+    pub bytes: u64,
+    /// Records and events that were dropped: the disk was too slow or full.
+    pub not_recorded: u64,
+    /// Why the flight's end is not recorded, and what of it is lost; none if it
+    /// is.
+    pub stopped: Option<String>,
 }
 
 impl Outcome {

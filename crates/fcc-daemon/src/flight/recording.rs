@@ -8,8 +8,8 @@ use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings
 use fcc_timer::RealtimeGrants;
 use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
-use serde::Serialize;
 
+use super::outcome::RecordingOutcome;
 use super::watch::Watch;
 use crate::config::{Aircraft, Config};
 
@@ -93,22 +93,6 @@ pub(super) struct Recording {
     recorder: Recorder,
     /// When its status was last published.
     told: Instant,
-}
-
-/// What of a flight got onto the disk.
-#[derive(Clone, Debug, Serialize)]
-pub struct RecordingOutcome {
-    /// Every file of the recording, in order.
-    pub files: Vec<String>,
-    /// Records written.
-    pub ticks: u64,
-    /// Bytes written.
-    pub bytes: u64,
-    /// Records and events that were dropped: the disk was too slow or full.
-    pub not_recorded: u64,
-    /// Why the flight's end is not recorded, and what of it is lost; none if it
-    /// is.
-    pub stopped: Option<String>,
 }
 
 /// How often watchers are told how the recorder does.

@@ -10,9 +10,9 @@ use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample,
 
 use super::assemble::Assembly;
 use super::connection::Connection;
-use super::fly::{Length, Plan};
 use super::live::Live;
 use super::outcome::EventEntry;
+use super::plan::{Length, Plan};
 use super::restart::{Restart, RestartWish};
 use super::service::Service;
 use super::status;
