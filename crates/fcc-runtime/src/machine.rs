@@ -115,8 +115,9 @@ impl<C: Controller> Machine<C> {
     /// What the timer says.
     pub fn start(&mut self) -> Result<(), TimerError> {
         self.cpu_at_start_ns = usage::thread_cpu_ns();
+        self.timer.start()?;
         self.pulse.begin();
-        self.timer.start()
+        Ok(())
     }
 
     /// Counts the page faults of the calling thread from here on; without this,

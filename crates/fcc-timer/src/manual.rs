@@ -77,11 +77,13 @@ impl ManualTimer {
 impl Timer for ManualTimer {
     fn start(&mut self) -> Result<(), TimerError> {
         self.deadlines = Some(Deadlines::new(self.now_ns, self.period));
+        self.rehearsed = false;
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
+        self.rehearsed = false;
         let waited_for = deadlines.next();
         self.now_ns = self.now_ns.max(deadlines.due_ns(waited_for));
         for (_, by) in self.late.iter().filter(|(number, _)| *number == waited_for) {
@@ -95,7 +97,6 @@ impl Timer for ManualTimer {
             self.rehearsed = true;
             return self.clone().wait().map(Wake::Rehearsal);
         }
-        self.rehearsed = false;
         self.wait().map(Wake::Deadline)
     }
 

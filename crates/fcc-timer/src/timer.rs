@@ -11,7 +11,8 @@ use std::time::Duration;
 /// nothing missed, and a tick of 3.5 periods makes the next one late and two
 /// missed.
 pub trait Timer: Send {
-    /// Sets the grid of deadlines going, from now. To be called on the thread
+    /// Sets the grid of deadlines going: from now, or where a timer wakes early
+    /// up to 10 ms later, so that the kernel's ticks fall beside its deadlines. To be called on the thread
     /// that will wait; calling it again begins a new grid, with numbers from 1.
     ///
     /// # Errors

@@ -67,8 +67,8 @@ impl Ours {
         loop {
             let wake = timer.wait_or_rehearse()?;
             // The same for a rehearsal, but that nothing is kept.
-            let now_ns = log.stamp().context("the log is full")?;
-            if matches!(wake, Wake::Deadline(_)) && !log.keep(now_ns) {
+            let now_ns = log.stamp();
+            if matches!(wake, Wake::Deadline(_)) && !now_ns.is_some_and(|at| log.keep(at)) {
                 return log.print();
             }
         }

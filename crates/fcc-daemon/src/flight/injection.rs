@@ -139,6 +139,10 @@ impl Controller for Faulty {
         self.autopilot.engage(tick, measurements);
     }
 
+    fn rehearse(&self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.rehearse(tick, measurements);
+    }
+
     fn guide(&mut self, tick: &Tick, measurements: &Measurements) {
         self.autopilot.guide(tick, measurements);
     }

@@ -105,6 +105,12 @@ impl Margin {
         false
     }
 
+    /// Rounded up, so that what changes by a nanosecond does not move an alarm.
+    const fn in_buckets(&self, ns: i64) -> i64 {
+        let bucket_ns = self.bucket_ns.unsigned_abs();
+        (ns.unsigned_abs().div_ceil(bucket_ns) * bucket_ns) as i64
+    }
+
     /// The margin that the wake-ups of the window ask for.
     fn wanted_ns(&self, rehearsal_ns: i64) -> i64 {
         let beyond = self.counts.last().copied().map_or(0, usize::from);
@@ -123,7 +129,7 @@ impl Margin {
         }
         covered_ns
             .saturating_add(self.guard_ns)
-            .saturating_add(rehearsal_ns)
+            .saturating_add(self.in_buckets(rehearsal_ns))
             .clamp(self.shortest_ns, self.longest_ns)
     }
 }

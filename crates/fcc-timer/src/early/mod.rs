@@ -67,7 +67,7 @@ impl Early {
 
     /// The grid of a timer that starts now, waking early or not. Waking early,
     /// it starts up to a tick of the kernel later, where that keeps the kernel's
-    /// ticks out of the margin; to find them takes three of them.
+    /// ticks out of the margin; to find them takes three of them, six at most.
     pub(crate) fn grid(early: Option<&mut Self>, period: Period) -> Deadlines {
         let Some(early) = early else {
             return Deadlines::new(monotonic_ns(), period);
@@ -118,13 +118,16 @@ impl Early {
         let rehearsed = self.awake.take();
         let awake = if let Some(awake) = rehearsed {
             let took_ns = monotonic_ns().saturating_sub(awake.since_ns);
-            self.rehearsal.took(took_ns);
+            let left_ns = due_ns.saturating_sub(awake.since_ns);
+            self.rehearsal.took(took_ns, left_ns);
             awake
         } else {
-            self.wake(deadlines, kernel)?
+            self.wake(may_rehearse, deadlines, kernel)?
         };
+        // The caches of a thread that did not sleep are warm.
         let rehearses = may_rehearse
             && rehearsed.is_none()
+            && awake.kernel_lateness_ns.is_some()
             && self.rehearsal.fits(due_ns.saturating_sub(awake.since_ns));
         let mut served = *deadlines;
         let expiry = spin(&mut served, if rehearses { i64::MIN } else { due_ns });
@@ -148,10 +151,16 @@ impl Early {
     /// Sleeps until the alarm.
     fn wake(
         &mut self,
+        may_rehearse: bool,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
     ) -> Result<Awake, TimerError> {
-        if self.margin.review(self.rehearsal.allowance_ns()) {
+        let rehearsal_ns = if may_rehearse {
+            self.rehearsal.allowance_ns()
+        } else {
+            0
+        };
+        if self.margin.review(rehearsal_ns) {
             deadlines.wake_early(self.margin.ns());
             // A system call, but one in 32 ticks at most, and before the wait:
             // to ask for each alarm by itself would be one in each tick.

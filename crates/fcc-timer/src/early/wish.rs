@@ -13,8 +13,9 @@ const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 /// How much before its deadlines a timer may ask to be woken.
 ///
 /// The margin follows the lateness with which the kernel really wakes the
-/// thread: it is the quantile of the last 2048 wake-ups plus the guard, within
-/// `min` and `max`, and never more than `cpu_cap` periods. It starts at the
+/// thread: it is the quantile of the last 2048 wake-ups plus the guard, and
+/// where the caller rehearses ([`crate::Timer::wait_or_rehearse`]) twice the
+/// time that this takes, within `min` and `max`, and never more than `cpu_cap` periods. It starts at the
 /// most it may be, and stays there until the quantile can be known.
 ///
 /// A quantile, because a margin that follows the latest of all wake-ups would
