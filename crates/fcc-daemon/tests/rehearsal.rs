@@ -4,7 +4,6 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{Measurements, Setpoints, Surfaces};
 use fcc_core::framework::State;
 use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
 use fcc_daemon::flight::assemble;
@@ -14,7 +13,8 @@ use fcc_timer::ManualTimer;
 /// 75 s: standby, engaged, three legs of the pattern in gusts.
 const TICKS: usize = 3_000;
 
-fn fly(timer: ManualTimer) -> Vec<(State, Surfaces, Setpoints, Measurements)> {
+/// State and record after each tick. In words, which tell every bit of a float.
+fn fly(timer: ManualTimer) -> Vec<(State, String)> {
     let config = Config {
         built_in: Some(BuiltInSection {
             gusts: GustsChoice::Moderate,
@@ -34,8 +34,7 @@ fn fly(timer: ManualTimer) -> Vec<(State, Surfaces, Setpoints, Measurements)> {
     (0..TICKS)
         .map(|_| {
             let state = machine.step();
-            let record = machine.record();
-            (state, record.outputs, record.setpoints, record.measurements)
+            (state, format!("{:?}", machine.record()))
         })
         .collect()
 }
@@ -46,7 +45,6 @@ fn a_rehearsed_flight_is_the_same_flight() {
     let plain = fly(timer.clone());
     let rehearsed = fly(timer.rehearsing());
     assert!(plain.iter().any(|(state, ..)| *state == State::Engaged));
-    // Equal numbers are equal bits here, but for zeros of two signs.
     for (tick, (plain, rehearsed)) in plain.iter().zip(&rehearsed).enumerate() {
         assert_eq!(plain, rehearsed, "tick {tick}");
     }
