@@ -184,6 +184,7 @@ def soak(order: Soak, say: Callable[[float], None]) -> Result:
             with Daemon(command(order.fccd, config), folder / "said") as daemon:
                 _await(
                     lambda: simulator.progress().subscriptions > 0,
+                    daemon,
                     partial(_look, daemon),
                     _SUBSCRIBE_S,
                     "does not ask the simulator for anything",
@@ -194,7 +195,7 @@ def soak(order: Soak, say: Callable[[float], None]) -> Result:
                 # it missed and what the machine lost are of the same minutes.
                 with _company(order, cpus, measured) as company:
                     look = partial(_look, daemon, *company)
-                    _engage(simulator, look)
+                    _engage(simulator, daemon, look)
                     watched = _watch(order, loop, look, say)
                     simulator.write(_SWITCH, 0.0)
                     time.sleep(1.0)
@@ -228,20 +229,32 @@ failsafe_after = 0
 """
 
 
-def _engage(simulator: StandInProcess, look: Callable[[], None]) -> None:
+def _engage(simulator: StandInProcess, daemon: Daemon, look: Callable[[], None]) -> None:
     _fly(_SETTLE_S, look)
     simulator.write(_SWITCH, 1.0)
-    _await(lambda: simulator.progress().overridden, look, _ENGAGE_S, "does not take the controls")
+    _await(
+        lambda: simulator.progress().overridden,
+        daemon,
+        look,
+        _ENGAGE_S,
+        "does not take the controls",
+    )
 
 
 def _await(
-    arrived: Callable[[], bool], look: Callable[[], None], patience_s: float, otherwise: str
+    arrived: Callable[[], bool],
+    daemon: Daemon,
+    look: Callable[[], None],
+    patience_s: float,
+    otherwise: str,
 ) -> None:
     deadline_s = time.monotonic() + patience_s
     while not arrived():
         look()
         if time.monotonic() > deadline_s:
-            raise SoakError(f"the daemon {otherwise} within {patience_s:.0f} s")
+            raise SoakError(
+                f"the daemon {otherwise} within {patience_s:.0f} s; it said: {daemon.said}"
+            )
         time.sleep(_LOOK_S)
 
 
