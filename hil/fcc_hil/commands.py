@@ -212,16 +212,23 @@ def _soak(options: argparse.Namespace) -> int:
         result = soak(order, lambda flown_s: bar(round(flown_s), "flying"))
     late, machine = result.lateness_us, result.machine
     rows = {
-        "ticks": f"{result.ticks}, {result.missed} missed",
+        "ticks": f"{result.ticks}, {result.missed} missed, "
+        f"{result.overruns} longer than their budget",
         "late, us": f"{late['p50']:.3f} median, {late['p99']:.3f} p99, "
         f"{late['p99_9']:.1f} p99.9, {late['max']:.0f} max",
         "within 2 %": f"{100.0 * result.within_2_percent:.3f} % of the periods",
-        "page faults": f"{result.page_faults}",
-        "waits": f"{result.voluntary_switches_per_tick:.4f} a tick, the timer's being one; "
+        "page faults": f"{result.page_faults}"
+        + ("" if result.memory_locked else "; the memory was not locked"),
+        "waits": f"{result.voluntary_switches_per_tick:.6f} a tick, the timer's being one; "
         f"displaced {result.involuntary_switches} times",
         "CPU": f"{result.cpu_percent:.2f} % of a core",
         "cyclictest": f"{machine.cycles} ticks, {machine.periods_lost} periods lost, "
-        f"{machine.max_us:.0f} us late at most",
+        f"{machine.max_us:.0f} us late at most"
+        + (
+            ""
+            if result.has_own_cpu
+            else f"; not on the loop's own CPU, which is any of {result.cpus}"
+        ),
     }
     for name, figures in rows.items():
         print(f"{name:12} {figures}")

@@ -8,6 +8,9 @@ late by: a virtual machine that stands still for half a second does so for both.
 That the loop never waited for anything but its timer is read from the kernel: a
 thread that waits for a lock, a file or a socket gives up its CPU, which the kernel
 counts as a voluntary context switch, and so it does once a tick, for the timer.
+
+What works beside is watched like the daemon: a flight "under stress" without any, or
+one that nobody measured, ends at once with the reason.
 """
 
 from __future__ import annotations
@@ -19,8 +22,9 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,11 +38,14 @@ _LOOP_THREAD = "fcc-loop"
 _PRIORITY = 80
 _SUBSCRIBE_S = 15.0
 _SETTLE_S = 3.0
-_ENGAGE_S = 5.0
+_ENGAGE_S = 15.0
 _LOOK_S = 0.25
 _LONGEST_LATENESS_US = 1_000_000
-# Around the flight's ends the thread waits for more than its timer.
+# The window that is watched begins and ends somewhere in a tick, and time is read
+# a moment away from the count.
 _SWITCHES_BESIDE_TICKS = 5
+_CYCLICTEST = "cyclictest"
+_STRESS = "stress-ng"
 
 
 class SoakError(RuntimeError):
@@ -63,6 +70,8 @@ class Machine:
     max_us: float
     periods_lost: int
     """Whole periods that its wake-ups were late by, all together."""
+    longest_periods: int
+    """Whole periods that the latest of its wake-ups was late by."""
 
 
 @dataclass(frozen=True)
@@ -71,28 +80,42 @@ class Result:
 
     ticks: int
     missed: int
+    overruns: int
     lateness_us: dict[str, float]
     within_2_percent: float
     page_faults: int
+    memory_locked: bool
+    watched_ticks: int
+    """Ticks between the two readings of the kernel's counts of switches."""
     voluntary_switches_per_tick: float
     involuntary_switches: int
     cpu_percent: float
     exit_code: int
+    cpus: str
+    """The CPUs that the loop may run on, as the kernel lists them: one if it was granted."""
     machine: Machine
+
+    @property
+    def has_own_cpu(self) -> bool:
+        """Whether the loop was bound to one CPU, so that cyclictest ran on the same."""
+        return self.cpus.isdigit()
 
     def failures(self) -> list[str]:
         """Return what is not as it should be, in words; empty after a good flight."""
         found = []
-        if self.page_faults:
+        if not self.memory_locked:
+            found.append("the memory was not locked: `fccd doctor` says what to allow")
+        elif self.page_faults:
             found.append(f"{self.page_faults} page faults")
-        lost = self.machine.periods_lost
         # Both see the same machine, but not at the same moments: what each of two
-        # counts of rare events may differ by is three times their root.
-        if self.missed > lost + 3.0 * math.sqrt(self.missed + lost):
+        # counts of rare events may differ by is three times their root. One stop of
+        # the machine is one event, however many periods it takes.
+        lost, longest = self.machine.periods_lost, self.machine.longest_periods
+        if self.missed > lost + 3.0 * max(math.sqrt(self.missed + lost), longest):
             found.append(f"{self.missed} ticks missed, where the machine lost {lost}")
-        if self.voluntary_switches_per_tick > 1.0 + _SWITCHES_BESIDE_TICKS / max(self.ticks, 1):
+        if self.voluntary_switches_per_tick > 1.0 + _SWITCHES_BESIDE_TICKS / self.watched_ticks:
             found.append(
-                f"{self.voluntary_switches_per_tick:.4f} waits in a tick: one is for the timer"
+                f"{self.voluntary_switches_per_tick:.6f} waits in a tick: one is for the timer"
             )
         if self.exit_code:
             found.append(f"the daemon ended with exit code {self.exit_code}")
@@ -103,33 +126,86 @@ class Result:
         return {**asdict(self), "failures": self.failures()}
 
 
-def periods_lost(histogram: dict[str, int], period_us: float) -> int:
-    """Return the whole periods in a histogram of lateness, us to how often."""
-    return sum(int(float(late) // period_us) * count for late, count in histogram.items())
+@dataclass(frozen=True)
+class _Watched:
+    """What the kernel counted of the loop's thread within a window."""
+
+    ticks: int
+    waits: int
+    displaced: int
+
+
+class _Beside:
+    """A program that works beside the flight until it is asked to end."""
+
+    def __init__(self, words: list[str], name: str, folder: Path) -> None:
+        self._name = name
+        self._said = folder / f"{name}.said"
+        with self._said.open("wb") as said:
+            self._process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said)
+
+    def look(self) -> None:
+        """Raise SoakError if it has ended by itself."""
+        code = self._process.poll()
+        if code is not None:
+            said = self._said.read_text("utf-8", "replace").strip()
+            raise SoakError(f"{self._name} ended with {code}: {said}")
+
+    def end(self) -> None:
+        # Asked and not killed: it ends its children, and writes what it measured.
+        self._process.terminate()
+        try:
+            self._process.wait(30.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+
+def periods_lost(histogram: dict[str, int], max_us: float, period_us: float) -> int:
+    """Return the whole periods in cyclictest's histogram of lateness, us to how often.
+
+    What was later than the histogram reaches is not in it: of that, `max_us` counts.
+    """
+    lost = sum(int(float(late) // period_us) * count for late, count in histogram.items())
+    return lost + (int(max_us // period_us) if max_us >= _LONGEST_LATENESS_US else 0)
 
 
 def soak(order: Soak, say: Callable[[float], None]) -> Result:
     """Fly; `say` hears how many seconds are flown. Raises SoakError."""
+    for name in (_CYCLICTEST, _STRESS) if order.stress else (_CYCLICTEST,):
+        if shutil.which(name) is None:
+            raise SoakError(f"{name} is not there: use `make soak`, which installs it")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
+        measured = folder / "cyclictest.json"
         with StandInProcess(Settings(port=0)) as simulator:
             config = folder / "fccd.toml"
             config.write_text(_config(order, simulator.port, folder / "recordings"))
             with Daemon(command(order.fccd, config), folder / "said") as daemon:
-                _engage(simulator, daemon)
+                _await(
+                    lambda: simulator.progress().subscriptions > 0,
+                    daemon,
+                    partial(_look, daemon),
+                    _SUBSCRIBE_S,
+                    "does not ask the simulator for anything",
+                )
                 loop = _thread(daemon.pid)
                 cpus = _status(loop)["Cpus_allowed_list"]
-                with _stress(order.stress), _cyclictest(order, cpus, folder) as measured:
-                    _wait(order.seconds, daemon, say)
-                switches = _status(loop)
-                simulator.write(_SWITCH, 0.0)
-                time.sleep(1.0)
-                exit_code = daemon.stop()
+                # From before the controls are taken until the daemon has ended: what
+                # it missed and what the machine lost are of the same minutes.
+                with _company(order, cpus, measured) as company:
+                    look = partial(_look, daemon, *company)
+                    _engage(simulator, daemon, look)
+                    watched = _watch(order, loop, look, say)
+                    simulator.write(_SWITCH, 0.0)
+                    time.sleep(1.0)
+                    look()
+                    exit_code = daemon.stop()
                 report = daemon.report()
                 if report is None:
                     raise SoakError(f"the daemon printed no report; it said: {daemon.said}")
         machine = _machine(measured, 1e6 / order.rate_hz)
-    return _result(report, switches, exit_code, machine)
+    return _result(report, watched, exit_code, cpus, machine)
 
 
 def _config(order: Soak, port: int, recordings: Path) -> str:
@@ -153,31 +229,74 @@ failsafe_after = 0
 """
 
 
-def _engage(simulator: StandInProcess, daemon: Daemon) -> None:
-    _await(lambda: simulator.progress().subscriptions > 0, daemon, _SUBSCRIBE_S, "does not ask")
-    time.sleep(_SETTLE_S)
+def _engage(simulator: StandInProcess, daemon: Daemon, look: Callable[[], None]) -> None:
+    _fly(_SETTLE_S, look)
     simulator.write(_SWITCH, 1.0)
-    _await(lambda: simulator.progress().overridden, daemon, _ENGAGE_S, "does not take the controls")
+    _await(
+        lambda: simulator.progress().overridden,
+        daemon,
+        look,
+        _ENGAGE_S,
+        "does not take the controls",
+    )
 
 
-def _await(arrived: Callable[[], bool], daemon: Daemon, patience_s: float, otherwise: str) -> None:
+def _await(
+    arrived: Callable[[], bool],
+    daemon: Daemon,
+    look: Callable[[], None],
+    patience_s: float,
+    otherwise: str,
+) -> None:
     deadline_s = time.monotonic() + patience_s
     while not arrived():
-        if daemon.exit_code is not None or time.monotonic() > deadline_s:
-            raise SoakError(f"the daemon {otherwise}; it said: {daemon.said}")
+        look()
+        if time.monotonic() > deadline_s:
+            raise SoakError(
+                f"the daemon {otherwise} within {patience_s:.0f} s; it said: {daemon.said}"
+            )
         time.sleep(_LOOK_S)
 
 
-def _wait(seconds: float, daemon: Daemon, say: Callable[[float], None]) -> None:
+def _fly(
+    seconds: float, look: Callable[[], None], say: Callable[[float], None] | None = None
+) -> None:
     began_s = time.monotonic()
     while (flown_s := time.monotonic() - began_s) < seconds:
-        if daemon.exit_code is not None:
-            raise SoakError(
-                f"the daemon ended with exit code {daemon.exit_code} after {flown_s:.0f} s; "
-                f"it said: {daemon.said}"
-            )
-        say(flown_s)
+        look()
+        if say is not None:
+            say(flown_s)
         time.sleep(_LOOK_S)
+
+
+def _look(daemon: Daemon, *company: _Beside) -> None:
+    """Raise SoakError if anything that is to run has ended."""
+    if daemon.exit_code is not None:
+        raise SoakError(f"the daemon ended with {daemon.exit_code}; it said: {daemon.said}")
+    for beside in company:
+        beside.look()
+
+
+def _watch(
+    order: Soak, loop: Path, look: Callable[[], None], say: Callable[[float], None]
+) -> _Watched:
+    """Fly, and count what the loop's thread waited."""
+    # Time is read outside of the counts: a reader that is held up between the two
+    # must not find waits too many.
+    began_s = time.monotonic()
+    before = _status(loop)
+    _fly(order.seconds, look, say)
+    after = _status(loop)
+    seconds = time.monotonic() - began_s
+
+    def counted(name: str) -> int:
+        return int(after[name]) - int(before[name])
+
+    return _Watched(
+        ticks=max(round(seconds * order.rate_hz), 1),
+        waits=counted("voluntary_ctxt_switches"),
+        displaced=counted("nonvoluntary_ctxt_switches"),
+    )
 
 
 def _thread(pid: int) -> Path:
@@ -193,23 +312,10 @@ def _status(task: Path) -> dict[str, str]:
 
 
 @contextmanager
-def _stress(wanted: bool) -> Iterator[None]:
-    if not wanted:
-        yield
-        return
-    # Nice to the simulator and to whoever sits there; to a real-time thread all
-    # are alike.
-    words = "nice -n 19 stress-ng --quiet --timeout 0 --cpu 0 --io 1 --vm 1 --vm-bytes 128M"
-    with _beside(words.split()):
-        yield
-
-
-@contextmanager
-def _cyclictest(order: Soak, cpus: str, folder: Path) -> Iterator[Path]:
-    """Run cyclictest where the loop runs, under it, until the end."""
-    measured = folder / "cyclictest.json"
-    words = [
-        "cyclictest",
+def _company(order: Soak, cpus: str, measured: Path) -> Iterator[list[_Beside]]:
+    """Run cyclictest where the loop runs, under it, and the stress if it is wanted."""
+    cyclictest = [
+        _CYCLICTEST,
         "--mlockall",
         "--quiet",
         "--threads=1",
@@ -219,52 +325,49 @@ def _cyclictest(order: Soak, cpus: str, folder: Path) -> Iterator[Path]:
         f"--histogram={_LONGEST_LATENESS_US}",
         f"--json={measured}",
     ]
-    with _beside(words):
-        yield measured
-
-
-@contextmanager
-def _beside(words: list[str]) -> Iterator[None]:
-    if shutil.which(words[0]) is None:
-        raise SoakError(f"{words[0]} is not there: use `make soak`, which installs it")
-    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        yield
-    finally:
-        # Asked and not killed: it ends its children, and writes what it measured.
-        process.terminate()
-        try:
-            process.wait(30.0)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
+    # Nice to the simulator and to whoever sits there; to a real-time thread all
+    # are alike.
+    stress = f"nice -n 19 {_STRESS} --quiet --timeout 0 --cpu 0 --io 1 --vm 1 --vm-bytes 128M"
+    wanted = [(_CYCLICTEST, cyclictest), *([(_STRESS, stress.split())] if order.stress else [])]
+    with ExitStack() as stack:
+        company = []
+        for name, words in wanted:
+            beside = _Beside(words, name, measured.parent)
+            stack.callback(beside.end)
+            company.append(beside)
+        yield company
 
 
 def _machine(measured: Path, period_us: float) -> Machine:
     try:
         thread = json.loads(measured.read_text())["thread"]["0"]
-    except (OSError, ValueError, KeyError) as error:
-        raise SoakError(f"cyclictest did not measure: {error}") from error
-    return Machine(
-        cycles=thread["cycles"],
-        max_us=thread["max"],
-        periods_lost=periods_lost(thread["histogram"], period_us),
-    )
+        return Machine(
+            cycles=thread["cycles"],
+            max_us=thread["max"],
+            periods_lost=periods_lost(thread["histogram"], thread["max"], period_us),
+            longest_periods=int(thread["max"] // period_us),
+        )
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise SoakError(f"cyclictest did not measure: {error!r}") from error
 
 
 def _result(
-    report: dict[str, Any], switches: dict[str, str], exit_code: int, machine: Machine
+    report: dict[str, Any], watched: _Watched, exit_code: int, cpus: str, machine: Machine
 ) -> Result:
     timing = report["timing"]
     return Result(
         ticks=timing["ticks"],
         missed=timing["missed"],
+        overruns=report["overruns"],
         lateness_us=timing["lateness_us"],
         within_2_percent=timing["period_ms"]["within_2_percent"],
         page_faults=timing["page_faults"],
-        voluntary_switches_per_tick=int(switches["voluntary_ctxt_switches"]) / timing["ticks"],
-        involuntary_switches=int(switches["nonvoluntary_ctxt_switches"]),
+        memory_locked=timing["realtime"]["memory_locked"],
+        watched_ticks=watched.ticks,
+        voluntary_switches_per_tick=watched.waits / watched.ticks,
+        involuntary_switches=watched.displaced,
         cpu_percent=timing["cpu_percent"],
         exit_code=exit_code,
+        cpus=cpus,
         machine=machine,
     )
