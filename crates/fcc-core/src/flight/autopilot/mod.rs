@@ -2,6 +2,7 @@
 
 mod capture;
 mod config;
+mod fitness;
 pub mod flags;
 mod plant_clock;
 mod resume;
@@ -9,7 +10,6 @@ mod scale;
 
 use core::fmt;
 use core::hint::black_box;
-use core::time::Duration;
 
 use libm::cos;
 
@@ -28,10 +28,6 @@ use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
 /// Beyond this bank or pitch the autopilot does not take over, rad.
 const UPSET_RAD: f64 = 1.047;
-
-/// A switch that was read once and is silent for longer than this cannot
-/// switch off any more.
-const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
 /// Navigation, guidance and control as one [`Controller`].
 #[derive(Clone, Debug)]
@@ -108,68 +104,6 @@ impl Autopilot {
         self.altitude.engage(standing.elevator, &estimate, schedule);
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);
-    }
-
-    fn stale(&self, now: Time) -> Flags {
-        self.too_old(&self.accepted, now)
-    }
-
-    /// What stands still while the aircraft moves; on the ground nothing does.
-    fn frozen(&self) -> Flags {
-        if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
-            Flags::NONE
-        } else {
-            flags::frozen(self.frozen.frozen())
-        }
-    }
-
-    fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
-        let max_age = self.config.max_age;
-        Flags::NONE
-            .with(
-                flags::ATTITUDE,
-                !measurements.attitude.is_fresh(now, max_age),
-            )
-            .with(
-                flags::HEADING,
-                !measurements.heading_rad.is_fresh(now, max_age),
-            )
-            .with(
-                flags::BODY_RATES,
-                !measurements.body_rates.is_fresh(now, max_age),
-            )
-            .with(
-                flags::SPECIFIC_FORCE,
-                !measurements.specific_force.is_fresh(now, max_age),
-            )
-            .with(
-                flags::AIRSPEED,
-                !measurements.airspeed_mps.is_fresh(now, max_age),
-            )
-            .with(
-                flags::ALTITUDE,
-                !measurements.altitude_m.is_fresh(now, max_age),
-            )
-    }
-
-    /// What neither engaging nor staying engaged can do with.
-    fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
-        let switch = self.accepted.engage_switch;
-        let stale = self.stale(now);
-        // As they came some are not too old: those were not accepted.
-        let rejected = stale != self.too_old(measurements, now);
-        (stale | self.frozen())
-            .with(flags::REJECTED, rejected)
-            .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
-            .with(flags::PLANT_STALLED, self.clock.is_stalled())
-            .with(
-                flags::ENGAGE_SWITCH,
-                !switch.is_never() && !switch.is_fresh(now, SWITCH_MAX_AGE),
-            )
-    }
-
-    fn plant_is(&self, state: PlantState) -> bool {
-        !self.accepted.plant.is_never() && self.accepted.plant.value.state == state
     }
 }
 

@@ -1,0 +1,75 @@
+//! Whether what the autopilot is told is fit to fly by.
+
+use core::time::Duration;
+
+use super::{Autopilot, flags};
+use crate::flight::{Measurements, PlantState};
+use crate::framework::{Flags, Time};
+
+/// A switch that was read once and is silent for longer than this cannot
+/// switch off any more.
+const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
+
+impl Autopilot {
+    pub(super) fn stale(&self, now: Time) -> Flags {
+        self.too_old(&self.accepted, now)
+    }
+
+    /// What stands still while the aircraft moves; on the ground nothing does.
+    pub(super) fn frozen(&self) -> Flags {
+        if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
+            Flags::NONE
+        } else {
+            flags::frozen(self.frozen.frozen())
+        }
+    }
+
+    fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
+        let max_age = self.config.max_age;
+        Flags::NONE
+            .with(
+                flags::ATTITUDE,
+                !measurements.attitude.is_fresh(now, max_age),
+            )
+            .with(
+                flags::HEADING,
+                !measurements.heading_rad.is_fresh(now, max_age),
+            )
+            .with(
+                flags::BODY_RATES,
+                !measurements.body_rates.is_fresh(now, max_age),
+            )
+            .with(
+                flags::SPECIFIC_FORCE,
+                !measurements.specific_force.is_fresh(now, max_age),
+            )
+            .with(
+                flags::AIRSPEED,
+                !measurements.airspeed_mps.is_fresh(now, max_age),
+            )
+            .with(
+                flags::ALTITUDE,
+                !measurements.altitude_m.is_fresh(now, max_age),
+            )
+    }
+
+    /// What neither engaging nor staying engaged can do with.
+    pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
+        let switch = self.accepted.engage_switch;
+        let stale = self.stale(now);
+        // As they came some are not too old: those were not accepted.
+        let rejected = stale != self.too_old(measurements, now);
+        (stale | self.frozen())
+            .with(flags::REJECTED, rejected)
+            .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
+            .with(flags::PLANT_STALLED, self.clock.is_stalled())
+            .with(
+                flags::ENGAGE_SWITCH,
+                !switch.is_never() && !switch.is_fresh(now, SWITCH_MAX_AGE),
+            )
+    }
+
+    pub(super) fn plant_is(&self, state: PlantState) -> bool {
+        !self.accepted.plant.is_never() && self.accepted.plant.value.state == state
+    }
+}

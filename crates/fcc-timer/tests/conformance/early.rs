@@ -1,0 +1,150 @@
+//! What a timer that wakes early promises beside: its margin, its spin and its
+//! rehearsals.
+
+use std::time::Duration;
+
+use fcc_timer::{EarlyWake, Expiry, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, Wake};
+
+use crate::{PERIOD, PERIOD_NS, Subject, assert_follows, started};
+
+/// A timer that wakes early. The margin is long, so that a tick's work often
+/// ends within it.
+pub(crate) struct Early<T>(T);
+
+const EARLY: EarlyWake = EarlyWake {
+    min: Duration::from_micros(100),
+    max: Duration::from_millis(1),
+    quantile: 0.99,
+    guard: Duration::from_micros(50),
+    cpu_cap: 0.5,
+};
+
+macro_rules! early {
+    ($($timer:ty)*) => {$(
+        impl Subject for Early<$timer> {
+            const GRID_LATER_NS: i64 = PERIOD_NS;
+
+            fn make(period: Duration) -> Result<Self, TimerError> {
+                <$timer>::new(period)?.waking_early(&EARLY).map(Self)
+            }
+        }
+    )*};
+}
+
+early!(TimerFd PosixTimer Nanosleep);
+
+impl<T: Timer> Timer for Early<T> {
+    fn start(&mut self) -> Result<(), TimerError> {
+        self.0.start()
+    }
+
+    fn wait(&mut self) -> Result<Expiry, TimerError> {
+        self.0.wait()
+    }
+
+    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+        self.0.wait_or_rehearse()
+    }
+
+    fn period(&self) -> Duration {
+        self.0.period()
+    }
+
+    fn now_ns(&self) -> i64 {
+        self.0.now_ns()
+    }
+
+    fn name(&self) -> &'static str {
+        self.0.name()
+    }
+}
+
+/// What an early timer says of a wait adds up.
+pub(crate) fn the_margin_and_the_spin_are_told<T: Subject>() {
+    let mut timer = started::<T>();
+    for _ in 0..100 {
+        let expiry = timer.wait().unwrap();
+        assert!(
+            (100_000..=1_000_000).contains(&expiry.early_wake_ns),
+            "{expiry:?}"
+        );
+        assert!(expiry.kernel_lateness_ns >= 0, "{expiry:?}");
+        assert!(expiry.spun_ns <= expiry.early_wake_ns, "{expiry:?}");
+    }
+}
+
+/// A rehearsal tells which deadline comes next; then that comes, or a later one
+/// on a machine that was elsewhere meanwhile, and no other rehearsal before it.
+pub(crate) fn a_rehearsal_is_followed_by_its_deadline<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut rehearsed = 0;
+    let mut before = timer.wait().unwrap();
+    for tick in 0..2_000 {
+        if tick >= 100 && rehearsed > 0 {
+            break;
+        }
+        let mut wake = timer.wait_or_rehearse().unwrap();
+        if let Wake::Rehearsal(expected) = wake {
+            rehearsed += 1;
+            assert!(expected.number > before.number, "{expected:?}");
+            wake = timer.wait_or_rehearse().unwrap();
+            let Wake::Deadline(expiry) = wake else {
+                panic!("two rehearsals of one deadline");
+            };
+            let passed = expiry.number as i64 - expected.number as i64;
+            assert!(passed >= 0, "{expected:?} {expiry:?}");
+            assert_eq!(
+                expiry.scheduled_ns,
+                expected.scheduled_ns + passed * PERIOD_NS
+            );
+        }
+        let (Wake::Deadline(expiry) | Wake::Rehearsal(expiry)) = wake;
+        before = assert_follows(expiry, before, PERIOD_NS);
+    }
+    // On a busy machine some wake-ups leave no time for it.
+    assert!(rehearsed > 0);
+}
+
+/// Who rehearses for longer than there is time misses what passed, as with any
+/// long tick, and who does not ask again gets the deadline by a plain wait.
+pub(crate) fn a_long_rehearsal_is_a_late_tick<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut before = timer.wait().unwrap();
+    // On a busy machine some wake-ups leave no time for one.
+    for _ in 0..2_000 {
+        match timer.wait_or_rehearse().unwrap() {
+            Wake::Deadline(expiry) => before = assert_follows(expiry, before, PERIOD_NS),
+            Wake::Rehearsal(expected) => {
+                timer.work(PERIOD * 5 / 2);
+                let late = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+                assert!(late.missed >= 2, "{late:?}");
+                assert!(late.number >= expected.number + 2, "{late:?}");
+                return;
+            }
+        }
+    }
+    panic!("no rehearsal in 2000 deadlines");
+}
+
+/// A tick that ends between an alarm and its deadline: the alarm has gone by,
+/// the deadline has not.
+pub(crate) fn a_tick_that_ends_within_the_margin_loses_no_deadline<T: Subject>() {
+    let mut timer = started::<T>();
+    let mut before = timer.wait().unwrap();
+    let mut on_time = 0;
+    for _ in 0..25 {
+        let until_ns = before.scheduled_ns + PERIOD_NS - before.early_wake_ns as i64 / 2;
+        while timer.now_ns() < until_ns {
+            timer.work(Duration::from_micros(1));
+        }
+        before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+        on_time += u64::from(before.missed == 0);
+        // Served is the latest deadline: the next one had not come.
+        assert!(before.lateness_ns() < PERIOD_NS, "{before:?}");
+        before = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
+        assert!(before.lateness_ns() < PERIOD_NS, "{before:?}");
+    }
+    // Were the alarm that went by waited for, each round would miss one; a busy
+    // machine makes some rounds miss one, and no machine all.
+    assert!(on_time > 0);
+}
