@@ -4,7 +4,7 @@ use fcc_runtime::SpawnError;
 
 use super::{fail, print_json};
 use crate::cli::{FlyArgs, RecordingArgs};
-use crate::config::{BuiltInSection, Config, CourseSection};
+use crate::config::{BuiltInSection, Config, GuidanceSection};
 use crate::exit::Exit;
 use crate::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
@@ -31,9 +31,9 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
         } else {
             Pace::RealTime
         },
-        length: Length::Engaged(args.seconds.unwrap_or(match config.course {
-            CourseSection::Hold => DEFAULT_HOLD_S,
-            CourseSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
+        length: Length::Engaged(args.seconds.unwrap_or(match config.guidance {
+            GuidanceSection::Hold => DEFAULT_HOLD_S,
+            GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
         quiet: args.quiet,
         announce: true,

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use fcc_core::flight::Course;
+use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_telemetry::recording::{Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
@@ -105,8 +105,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 /// is scored.
 fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.course {
-        Course::TimedPattern(pattern) => Some(pattern),
-        Course::Hold => None,
+    match config.guidance {
+        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
+        GuidanceConfig::Hold => None,
     }
 }

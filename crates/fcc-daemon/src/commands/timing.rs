@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{fail, print_json};
 use crate::cli::TimingArgs;
-use crate::config::{BuiltInSection, Config, CourseSection, EarlyWakeSection, LoopSection};
+use crate::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
 use crate::exit::Exit;
 use crate::flight::{Length, Pace, Plan, assemble, fly};
 
@@ -38,7 +38,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
             timer: args.timer,
             early_wake: early_wake(args),
         },
-        course: CourseSection::Hold,
+        guidance: GuidanceSection::Hold,
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
