@@ -1,7 +1,6 @@
 //! `fccd report FILE`: what a recording tells.
 
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::Path;
 
 use fcc_core::flight::guidance::GuidanceConfig;
@@ -9,10 +8,11 @@ use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_telemetry::recording::{Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
-use super::{fail, print_json, progress};
+use super::{fail, progress};
 use crate::cli::ReportArgs;
 use crate::config::Config;
 use crate::exit::Exit;
+use crate::output;
 
 /// Messages between two looks at how far the file is read.
 const BAR_EVERY: u64 = 4_096;
@@ -20,14 +20,8 @@ const BAR_EVERY: u64 = 4_096;
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Exit {
     match read(args).and_then(|report| write_page(args, &report).map(|()| report)) {
-        Ok(report) if args.json => print_json(&report),
-        Ok(report) => match writeln!(io::stdout(), "{}", report.to_text()) {
-            // Whoever reads the first lines alone has what they wanted.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                fail(&format!("the tables could not be printed: {error}"))
-            }
-            _ => Exit::Success,
-        },
+        Ok(report) if args.json => output::json(&report, Exit::Success),
+        Ok(report) => output::result(report.to_text(), Exit::Success),
         Err(message) => fail(&message),
     }
 }
