@@ -82,7 +82,7 @@ impl TickLog {
         }
         .apply()?;
         for denied in &granted.denied {
-            eprintln!("{refusal}");
+            eprintln!("{denied}");
         }
         Ok(Self {
             log: Ticks {

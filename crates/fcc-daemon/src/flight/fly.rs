@@ -109,10 +109,10 @@ pub fn fly(
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for denied in &handle.granted().denied {
-                watch.remark(refusal.to_string());
+                watch.remark(denied.to_string());
             }
             for denied in watchdog.iter().flat_map(|(_, granted)| &granted.denied) {
-                watch.remark(format!("watchdog: {refusal}"));
+                watch.remark(format!("watchdog: {denied}"));
             }
             let granted = Some(handle.granted());
             let mut recording =

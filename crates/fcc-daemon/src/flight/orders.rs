@@ -23,7 +23,7 @@ struct Waiting {
     /// The tick that read the last of it.
     read_in: Option<u64>,
     /// Why it was refused, if it was.
-    denied: Option<String>,
+    refusal: Option<String>,
 }
 
 impl Orders {
@@ -43,7 +43,7 @@ impl Orders {
             asked,
             unread,
             read_in: None,
-            denied: None,
+            refusal: None,
         });
         None
     }
@@ -68,7 +68,7 @@ impl Orders {
                 for waiting in self.waiting.iter_mut().filter(|w| {
                     w.read_in == Some(event.tick) && w.asked.order == FlightOrder::Engage
                 }) {
-                    waiting.denied = Some(event_words(event, &[], &[]));
+                    waiting.refusal = Some(event_words(event, &[], &[]));
                 }
             }
             _ => {}
@@ -124,7 +124,7 @@ mod tests {
             asked: Asked { id, order },
             unread: order.for_the_loop().into(),
             read_in: None,
-            denied: None,
+            refusal: None,
         });
     }
 

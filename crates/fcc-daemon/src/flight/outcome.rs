@@ -164,18 +164,18 @@ fn realtime(granted: &RealtimeGranted) -> Realtime {
         .to_owned(),
         priority: granted.priority,
         cpu: granted.cpu,
-        cpu_reason: granted.cpu_reason.clone(),
+        cpu_because: granted.cpu_reason.clone(),
         memory_locked: granted.memory_locked,
         stack_prefaulted: granted.stack_prefaulted,
         timer_slack_ns: granted.timer_slack_ns,
         cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
-        refused: grants
-            .refused
+        refused: granted
+            .denied
             .iter()
             .map(|denied| DeniedRequest {
                 request: denied.request.clone(),
-                reason: refusal.reason.clone(),
-                remedy: refusal.remedy.clone(),
+                reason: denied.reason.clone(),
+                remedy: denied.remedy.clone(),
             })
             .collect(),
     }

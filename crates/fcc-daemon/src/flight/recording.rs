@@ -144,7 +144,7 @@ impl RecordingWish {
             policy: granted.policy.to_owned(),
             priority: granted.priority,
             cpu: granted.cpu,
-            cpu_reason: granted.cpu_reason.clone(),
+            cpu_because: granted.cpu_reason.clone(),
             memory_locked: granted.memory_locked,
             stack_prefaulted: granted.stack_prefaulted,
             timer_slack_ns: granted.timer_slack_ns,

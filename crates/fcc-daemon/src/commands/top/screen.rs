@@ -104,7 +104,7 @@ fn head_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
         .into(),
     );
     if info.requests_denied > 0 {
-        spans.push(format!("  {} wishes refused", info.requests_denied).red());
+        spans.push(format!("  {} requests denied", info.requests_denied).red());
     }
     Line::from(spans)
 }
