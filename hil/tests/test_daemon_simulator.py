@@ -230,7 +230,7 @@ def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
         config = tmp_path / "fccd.toml"
         config.write_text(
-            '[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n'
+            '[x-plane]\nsimulator = "beacon"\n[guidance]\nmode = "hold"\n'
             f'[recording]\nfolder = "{tmp_path}/recordings"\n'
         )
         with start(fccd, tmp_path, config) as daemon:
