@@ -1,5 +1,5 @@
 //! Ten thousand ticks of the whole thing - aircraft, navigation, guidance,
-//! control, actuators, record, and a rehearsal before each - do not touch the
+//! control, actuators, record, and a warm-up before each - do not touch the
 //! allocator.
 #![cfg(test)]
 

@@ -1,5 +1,5 @@
-//! A rehearsal leaves no trace: a flight with one before each tick is to the
-//! last bit the flight without.
+//! A warm-up has no effect: a flight with one before each tick is to the last
+//! bit the flight without.
 #![cfg(test)]
 
 use std::time::Duration;
@@ -13,7 +13,8 @@ use fcc_timer::ManualTimer;
 /// 75 s: standby, engaged, three legs of the pattern in gusts.
 const TICKS: usize = 3_000;
 
-/// State and record after each tick. In words, which tell every bit of a float.
+/// State and record after each tick, as text, which distinguishes every bit of a
+/// float.
 fn fly(timer: ManualTimer) -> Vec<(State, String)> {
     let config = Config {
         built_in: Some(BuiltInSection {
@@ -40,12 +41,12 @@ fn fly(timer: ManualTimer) -> Vec<(State, String)> {
 }
 
 #[test]
-fn a_rehearsed_flight_is_the_same_flight() {
+fn a_flight_with_warm_up_is_the_same_flight() {
     let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
     let plain = fly(timer.clone());
-    let rehearsed = fly(timer.with_warm_up());
+    let warmed_up = fly(timer.with_warm_up());
     assert!(plain.iter().any(|(state, ..)| *state == State::Engaged));
-    for (tick, (plain, rehearsed)) in plain.iter().zip(&rehearsed).enumerate() {
-        assert_eq!(plain, rehearsed, "tick {tick}");
+    for (tick, (plain, warmed_up)) in plain.iter().zip(&warmed_up).enumerate() {
+        assert_eq!(plain, warmed_up, "tick {tick}");
     }
 }

@@ -59,6 +59,13 @@ impl<A> Actuators<A> {
         }
     }
 
+    /// Warms every actuator up for this tick, without effect.
+    pub(crate) fn warm_up(&self, tick: &Tick, outputs: &A) {
+        for watched in &self.all {
+            watched.actuator.warm_up(tick, outputs);
+        }
+    }
+
     /// Tells every actuator to give control back. One that fails or panics
     /// does not keep the others from being released.
     ///

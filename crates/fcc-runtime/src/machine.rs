@@ -157,9 +157,19 @@ impl<C: Controller> Machine<C> {
             Wake::Deadline(expiry) => Ok(Some(expiry)),
             Wake::WarmUp(expiry) => {
                 let tick = self.tick_of(&expiry);
-                self.controller.warm_up(&tick, &self.measurements);
+                self.warm_up(&tick);
                 Ok(None)
             }
+        }
+    }
+
+    /// Runs the code of the coming tick without effect, in the tick's order, so
+    /// that it finds its code and data in the caches.
+    fn warm_up(&self, tick: &Tick) {
+        self.sensors.warm_up(tick);
+        self.controller.warm_up(tick, &self.measurements);
+        if self.state.holds_control() {
+            self.actuators.warm_up(tick, &self.record.outputs);
         }
     }
 

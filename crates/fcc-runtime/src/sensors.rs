@@ -43,6 +43,13 @@ impl<M> Sensors<M> {
         }
     }
 
+    /// Warms every sensor up for this tick, without effect.
+    pub(crate) fn warm_up(&self, tick: &Tick) {
+        for watched in &self.all {
+            watched.sensor.warm_up(tick);
+        }
+    }
+
     /// Failed samples since the start.
     pub(crate) const fn faults(&self) -> u64 {
         self.faults

@@ -1,17 +1,19 @@
-//! When the controller rehearses, and with what.
+//! When the loop warms up, in which order, and with what.
 #![cfg(test)]
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use fcc_core::framework::{Controller, Flags, Sensor, SensorFault, State, Tick};
-use fcc_runtime::{LoopConfig, Machine, Parts};
+use fcc_core::framework::{
+    Actuator, ActuatorFault, Controller, Flags, Sensor, SensorFault, State, Tick,
+};
+use fcc_runtime::{LoopConfig, Machine, Order, Parts};
 use fcc_timer::ManualTimer;
 
 /// What was called, in which tick, and with what measured.
 type Calls = Arc<Mutex<Vec<(&'static str, u64, u64)>>>;
 
-struct Counter;
+struct Counter(Calls);
 
 impl Sensor<u64> for Counter {
     fn sample(&mut self, tick: &Tick, into: &mut u64) -> Result<(), SensorFault> {
@@ -19,8 +21,36 @@ impl Sensor<u64> for Counter {
         Ok(())
     }
 
+    fn warm_up(&self, tick: &Tick) {
+        let call = ("warm up sensor", tick.number, 0);
+        self.0.lock().unwrap().push(call);
+    }
+
     fn name(&self) -> &'static str {
         "counter"
+    }
+}
+
+struct Display(Calls);
+
+impl Actuator<u64> for Display {
+    fn apply(&mut self, tick: &Tick, outputs: &u64) -> Result<(), ActuatorFault> {
+        let call = ("apply", tick.number, *outputs);
+        self.0.lock().unwrap().push(call);
+        Ok(())
+    }
+
+    fn warm_up(&self, tick: &Tick, outputs: &u64) {
+        let call = ("warm up actuator", tick.number, *outputs);
+        self.0.lock().unwrap().push(call);
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "display"
     }
 }
 
@@ -44,7 +74,7 @@ impl Controller for Noting {
 
     fn warm_up(&self, tick: &Tick, measured: &u64) {
         assert!((tick.dt_s - 0.01).abs() < 1e-12);
-        self.note("rehearsal", tick, *measured);
+        self.note("warm up", tick, *measured);
     }
 
     fn blockers(&self, _: &Tick, _: &u64) -> Flags {
@@ -76,51 +106,67 @@ impl Controller for Noting {
     }
 }
 
+/// What is called in three ticks, the first of which engages.
 fn calls_of(timer: ManualTimer) -> Vec<(&'static str, u64, u64)> {
     let calls = Calls::default();
     let parts = Parts {
         timer: Box::new(timer),
-        sensors: vec![Box::new(Counter)],
+        sensors: vec![Box::new(Counter(Arc::clone(&calls)))],
         controller: Noting(Arc::clone(&calls)),
-        actuators: Vec::new(),
+        actuators: vec![Box::new(Display(Arc::clone(&calls)))],
     };
-    let (mut machine, link) = Machine::new(parts, &LoopConfig::default()).unwrap();
+    let (mut machine, mut link) = Machine::new(parts, &LoopConfig::default()).unwrap();
     machine.start().unwrap();
+    link.orders.send(Order::Engage).unwrap();
     for _ in 0..3 {
         machine.step();
     }
+    let calls_of_three = calls.lock().unwrap().clone();
     link.stop.stop();
     while machine.step() != State::Stopped {}
     let last = calls.lock().unwrap().len();
     machine.step();
     assert_eq!(calls.lock().unwrap().len(), last, "stopped is stopped");
-    let calls = calls.lock().unwrap();
-    calls[..6.min(last)].to_vec()
+    calls_of_three
 }
 
+/// The actuator only while control is held: not before the tick that engages.
 #[test]
-fn each_tick_is_rehearsed_with_what_was_measured_before() {
+fn each_tick_is_warmed_up_with_what_was_measured_and_sent_before() {
     let timer = ManualTimer::new(Duration::from_millis(10)).unwrap();
     assert_eq!(
         calls_of(timer.with_warm_up()),
         [
-            ("rehearsal", 1, 0),
+            ("warm up sensor", 1, 0),
+            ("warm up", 1, 0),
             ("tick", 1, 101),
-            ("rehearsal", 2, 101),
+            ("apply", 1, 101),
+            ("warm up sensor", 2, 0),
+            ("warm up", 2, 101),
+            ("warm up actuator", 2, 101),
             ("tick", 2, 102),
-            ("rehearsal", 3, 102),
+            ("apply", 2, 102),
+            ("warm up sensor", 3, 0),
+            ("warm up", 3, 102),
+            ("warm up actuator", 3, 102),
             ("tick", 3, 103),
+            ("apply", 3, 103),
         ]
     );
 }
 
 #[test]
-fn a_timer_that_does_not_wake_early_has_nothing_rehearsed() {
+fn a_timer_that_does_not_wake_early_does_not_warm_up() {
     let timer = ManualTimer::new(Duration::from_millis(10)).unwrap();
-    let calls = calls_of(timer);
     assert_eq!(
-        calls[..3],
-        [("tick", 1, 101), ("tick", 2, 102), ("tick", 3, 103)]
+        calls_of(timer),
+        [
+            ("tick", 1, 101),
+            ("apply", 1, 101),
+            ("tick", 2, 102),
+            ("apply", 2, 102),
+            ("tick", 3, 103),
+            ("apply", 3, 103),
+        ]
     );
-    assert!(calls.iter().all(|(what, ..)| *what == "tick"));
 }

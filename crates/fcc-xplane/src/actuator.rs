@@ -1,5 +1,6 @@
 //! X-Plane as an actuator.
 
+use core::hint::black_box;
 use core::sync::atomic::Ordering;
 use core::time::Duration;
 use std::net::SocketAddrV4;
@@ -107,6 +108,19 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             Ok(()) if unconfirmed => Err(ActuatorFault::Unconfirmed),
             Ok(()) => Ok(()),
         }
+    }
+
+    /// Encodes the last outputs into copies of what a tick changes.
+    fn warm_up(&self, tick: &Tick, outputs: &Surfaces) {
+        let Some(held) = &self.held else {
+            return;
+        };
+        self.controls.warm_up(outputs, |datagrams| {
+            self.port.warm_up_send(datagrams, WRITE_BYTES);
+        });
+        let mut confirmation = held.confirmation.clone();
+        confirmation.wrote(tick.woke, yoke_ratios(outputs));
+        black_box(confirmation.is_overdue(tick.woke, &self.link));
     }
 
     fn release(&mut self) -> Result<(), ActuatorFault> {

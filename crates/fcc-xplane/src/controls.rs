@@ -28,6 +28,10 @@ const ROW_THROTTLES: i32 = 25;
 /// after the last there may be nobody left to repeat it.
 pub(crate) const LET_GO_TIMES: usize = 3;
 
+/// Three surfaces and the throttles of eight engines, which is the most that
+/// [`XPlaneConfig::engines`] may be.
+const MOST_WRITES: usize = 11;
+
 type Write = Box<[u8; dref::WRITE_BYTES]>;
 
 /// Made once, so that a tick only changes numbers in them.
@@ -75,6 +79,11 @@ impl Deflections {
             yoke: yoke_ratios(surfaces),
             throttle: ratio(surfaces.throttle, 0.0),
         }
+    }
+
+    /// Elevator, aileron, rudder, then every throttle.
+    fn values(&self) -> impl Iterator<Item = Option<f32>> {
+        self.yoke.into_iter().chain(iter::repeat(self.throttle))
     }
 }
 
@@ -130,6 +139,19 @@ impl Controls {
         self.deflect(Deflections::of(surfaces), &mut send)
     }
 
+    /// Encodes what [`set`](Self::set) would write into a buffer on the stack.
+    pub(crate) fn warm_up(&self, surfaces: &Surfaces, mut send: impl FnMut(&[u8])) {
+        let Way::Dref { writes } = &self.way else {
+            return;
+        };
+        let mut buffer = [[0; dref::WRITE_BYTES]; MOST_WRITES];
+        if let Some(scratch) = buffer.get_mut(..writes.len()) {
+            scratch.copy_from_slice(writes);
+            set_values(scratch, &Deflections::of(surfaces));
+            send(scratch.as_flattened());
+        }
+    }
+
     /// Centres, then releases the overrides, once.
     pub(crate) fn let_go(
         &mut self,
@@ -168,18 +190,10 @@ impl Controls {
         let mut outcome = Ok(());
         match &mut self.way {
             Way::Dref { writes } => {
-                let values = to.yoke.into_iter().chain(iter::repeat(to.throttle));
-                let mut all = true;
-                for (write, value) in writes.iter_mut().zip(values.clone()) {
-                    match value {
-                        Some(value) => dref::set_value(write, value),
-                        None => all = false,
-                    }
-                }
-                if all {
+                if set_values(writes, &to) {
                     return send(writes.as_flattened());
                 }
-                for (write, value) in writes.iter().zip(values) {
+                for (write, value) in writes.iter().zip(to.values()) {
                     if value.is_some() {
                         outcome = outcome.and(send(write.as_slice()));
                     }
@@ -199,6 +213,19 @@ impl Controls {
         }
         outcome
     }
+}
+
+/// Sets the values of elevator, aileron, rudder and throttles; whether there
+/// was one for each.
+fn set_values(writes: &mut [[u8; dref::WRITE_BYTES]], to: &Deflections) -> bool {
+    let mut all = true;
+    for (write, value) in writes.iter_mut().zip(to.values()) {
+        match value {
+            Some(value) => dref::set_value(write, value),
+            None => all = false,
+        }
+    }
+    all
 }
 
 fn write_to(path: &str) -> Result<Write, PathError> {

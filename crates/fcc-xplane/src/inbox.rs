@@ -28,7 +28,7 @@ use crate::specific_force::specific_force;
 use crate::values::{Group, Values};
 
 /// Takes datagrams in and gives measurements out.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Inbox {
     /// The rows to read, if rows are the input.
     rows: Option<DataRows>,

@@ -60,6 +60,7 @@ pub mod protocol;
 mod quantity;
 mod release;
 mod rows;
+mod scratch_port;
 mod sensor;
 mod simulator;
 mod specific_force;

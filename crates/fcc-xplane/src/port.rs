@@ -8,6 +8,7 @@ use nix::sys::socket::{setsockopt, sockopt::UdpGsoSegment};
 use socket2::{Domain, Protocol, Socket, Type};
 
 use crate::protocol::dref;
+use crate::scratch_port::{PEEK_BYTES, ScratchPort};
 
 /// An operating system's error number, 0 if it gave none.
 pub type Errno = i32;
@@ -36,6 +37,14 @@ pub trait Port: Send + Sync {
     fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddrV4) -> Result<(), Errno> {
         send_one_by_one(self, datagrams, size, to)
     }
+
+    /// Loads the code and data of [`receive`](Self::receive) into the caches:
+    /// takes no datagram. Does nothing by default.
+    fn warm_up_receive(&self) {}
+
+    /// Loads the code and data of [`send_each`](Self::send_each) into the
+    /// caches: nothing of it leaves this port. Does nothing by default.
+    fn warm_up_send(&self, _datagrams: &[u8], _size: usize) {}
 }
 
 fn send_one_by_one<P: Port + ?Sized>(
@@ -65,6 +74,8 @@ pub struct UdpPort {
     socket: UdpSocket,
     /// Whether the kernel cuts, as far as is known.
     cuts: AtomicBool,
+    /// For the warm-up; `None` if the system has no other socket to give.
+    scratch: Option<Box<ScratchPort>>,
 }
 
 impl UdpPort {
@@ -73,13 +84,20 @@ impl UdpPort {
     /// # Errors
     /// When the operating system refuses, for one because the port is taken.
     pub fn bind(port: u16) -> io::Result<Self> {
+        let mut bound = Self::bind_to(SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port))?;
+        bound.scratch = ScratchPort::open().ok().map(Box::new);
+        Ok(bound)
+    }
+
+    pub(crate) fn bind_to(address: SocketAddrV4) -> io::Result<Self> {
         let socket = socket()?;
-        socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port).into())?;
+        socket.bind(&address.into())?;
         socket.set_nonblocking(true)?;
         let cuts = setsockopt(&socket, UdpGsoSegment, &(SEGMENT_BYTES as i32)).is_ok();
         Ok(Self {
             socket: socket.into(),
             cuts: AtomicBool::new(cuts),
+            scratch: None,
         })
     }
 
@@ -102,6 +120,7 @@ impl UdpPort {
         Ok(Self {
             socket: socket.into(),
             cuts: AtomicBool::new(false),
+            scratch: None,
         })
     }
 
@@ -166,6 +185,17 @@ impl Port for UdpPort {
             }
         }
         send_one_by_one(self, datagrams, size, to)
+    }
+
+    fn warm_up_receive(&self) {
+        // Looks at the next datagram and leaves it in the queue (`MSG_PEEK`).
+        let _ = self.socket.peek_from(&mut [0; PEEK_BYTES]);
+    }
+
+    fn warm_up_send(&self, datagrams: &[u8], size: usize) {
+        if let Some(scratch) = &self.scratch {
+            scratch.send_to_itself(datagrams, size);
+        }
     }
 }
 

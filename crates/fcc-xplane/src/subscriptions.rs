@@ -10,6 +10,7 @@
 //! X-Plane takes about 100 requests and then wants a pause of 100 ms. There are
 //! fewer than that in all, and they are spread over ticks.
 
+use core::hint::black_box;
 use core::time::Duration;
 
 use fcc_core::framework::Time;
@@ -119,6 +120,15 @@ impl Subscriptions {
     pub(crate) fn missing(&mut self, now: Time, inbox: &Inbox) -> Option<ValueSet> {
         self.absences
             .look(now, inbox.heard(), |expected| arrived(inbox, expected))
+    }
+
+    /// Reads what [`send_due`](Self::send_due) reads.
+    pub(crate) fn warm_up(&self) {
+        black_box(
+            self.list
+                .iter()
+                .any(|subscription| subscription.unanswered == u8::MAX && subscription.anew),
+        );
     }
 
     /// Asks for everything anew, from the next tick on.

@@ -90,6 +90,8 @@ fn ten_thousand_ticks_allocate_nothing() {
             }
             let tick = ticks.next();
             counted += allocations(|| {
+                sensor.warm_up(&tick);
+                actuator.warm_up(&tick, &surfaces);
                 faults += u32::from(sensor.sample(&tick, &mut measurements).is_err());
                 if number % 1_000 < 900 {
                     faults += u32::from(actuator.apply(&tick, &surfaces).is_err());

@@ -22,6 +22,13 @@ pub trait Actuator<A>: Send {
     /// When control may still be held, with the reason.
     fn release(&mut self) -> Result<(), ActuatorFault>;
 
+    /// Loads what the next [`apply`](Self::apply) will run and read into the
+    /// caches, without effect: the plant receives nothing, and what is applied
+    /// later is the same to the last bit with and without it. Called shortly
+    /// before a tick in which the loop will probably hold control, with the
+    /// last outputs; the rules of a tick apply. Does nothing by default.
+    fn warm_up(&self, _tick: &Tick, _outputs: &A) {}
+
     /// What people call this actuator; for events and reports.
     fn name(&self) -> &'static str;
 }

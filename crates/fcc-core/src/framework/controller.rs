@@ -74,9 +74,10 @@ pub trait Controller: Send {
     /// The safest outputs that what is left of the measurements allows.
     fn failsafe(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
 
-    /// Warms what the next tick will run and touch, without effect: its outputs
-    /// are to the last bit what they would have been. Called shortly before a
-    /// tick where there is time; under the rules of a tick.
+    /// Loads what the next tick will run and read into the caches, without
+    /// effect: its outputs are the same to the last bit with and without it.
+    /// Called shortly before a tick if there is time; the rules of a tick
+    /// apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick, _measurements: &Self::Measurements) {}
 
     /// Lets go.

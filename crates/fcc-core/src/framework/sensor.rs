@@ -19,6 +19,12 @@ pub trait Sensor<M>: Send {
     /// record and goes on: what decides about failsafe is the readings' age.
     fn sample(&mut self, tick: &Tick, into: &mut M) -> Result<(), SensorFault>;
 
+    /// Loads what the next [`sample`](Self::sample) will run and read into the
+    /// caches, without effect: every value sampled later is the same to the
+    /// last bit with and without it. Called shortly before a tick if there is
+    /// time; the rules of a tick apply. Does nothing by default.
+    fn warm_up(&self, _tick: &Tick) {}
+
     /// What people call this sensor; for events and reports.
     fn name(&self) -> &'static str;
 }

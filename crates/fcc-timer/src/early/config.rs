@@ -14,7 +14,7 @@ const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 ///
 /// The margin follows the lateness with which the kernel really wakes the
 /// thread: it is the quantile of the last 2048 wake-ups plus the guard, and
-/// where the caller warms_up ([`crate::Timer::wait_or_warm_up`]) twice the
+/// where the caller warms up ([`crate::Timer::wait_or_warm_up`]) twice the
 /// time that this takes, within `min` and `max`, and never more than `cpu_cap` periods. It starts at the
 /// most it may be, and stays there until the quantile can be known.
 ///

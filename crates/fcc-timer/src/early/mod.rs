@@ -94,7 +94,7 @@ impl Early {
         }
     }
 
-    /// Waits for the next deadline, or once before it for a warm_up.
+    /// Waits for the next deadline, or once before it for a warm-up.
     pub(crate) fn wait_or_warm_up(
         &mut self,
         deadlines: &mut Deadlines,
@@ -186,7 +186,7 @@ impl Early {
     }
 }
 
-/// Reads the clock until it is there. One function, so that who warms_up it
+/// Reads the clock until it is there. One function, so that a warm-up
 /// runs the very instructions that come at the deadline.
 ///
 /// Without [`std::hint::spin_loop`]: a hypervisor takes many of these in a row

@@ -205,11 +205,11 @@ impl Controller for Autopilot {
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
-        let mut double = self.clone();
-        double.estimate(tick, measurements);
-        let _ = black_box(double.faults(tick, measurements));
-        double.guide(tick, measurements);
-        black_box(double.control(tick, measurements));
+        let mut scratch = self.clone();
+        scratch.estimate(tick, measurements);
+        let _ = black_box(scratch.faults(tick, measurements));
+        scratch.guide(tick, measurements);
+        black_box(scratch.control(tick, measurements));
     }
 
     fn guide(&mut self, _tick: &Tick, _measurements: &Measurements) {
