@@ -7,6 +7,7 @@
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
 //! | [`doctor`] | says what the machine offers a real-time loop, and what it lacks |
 //! | [`flight`] | makes a loop of a configuration, flies it and watches |
+//! | `output` | prints, and never panics where that fails |
 //! | [`replay`] | flies a recording again and compares |
 //!
 //! The library is for the Python module, which reads the same configuration.
@@ -17,4 +18,5 @@ pub mod config;
 pub mod doctor;
 pub mod exit;
 pub mod flight;
+mod output;
 pub mod replay;

@@ -5,6 +5,7 @@ use crate::cli::RunArgs;
 use crate::config::Config;
 use crate::exit::Exit;
 use crate::flight::{Length, Pace, Plan};
+use crate::output;
 
 /// Flies a configuration until told to stop.
 pub(super) fn run(args: &RunArgs) -> Exit {
@@ -23,7 +24,7 @@ pub(super) fn run(args: &RunArgs) -> Exit {
             conduct(&config, Some(text), plan, args.json)
         }
         Err(error) => {
-            eprintln!("{error}");
+            output::message(error);
             Exit::Usage
         }
     }
