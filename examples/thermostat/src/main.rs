@@ -5,6 +5,8 @@
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
 //! is 33 minutes to the room.
 
+#[cfg(test)]
+mod conformance;
 mod room;
 mod thermostat;
 
