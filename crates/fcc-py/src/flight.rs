@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use fcc_core::flight::{Autopilot, Course, Measurements, Order, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Message, Sensor, State};
-use fcc_daemon::config::{Aircraft, Config};
-use fcc_daemon::flight::true_sample;
+use fcc_flight::config::{Aircraft, Config};
+use fcc_flight::flight::true_sample;
 use fcc_runtime::{Link, LoopReport, Machine, Parts};
 use fcc_sim::{SimConfig, Simulation, TruthHandle};
 use fcc_telemetry::{FlightLog, FlightMessage, FlightScore, Realtime, TimingReport};

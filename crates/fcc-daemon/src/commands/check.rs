@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::print_json;
 use crate::cli::CheckArgs;
-use crate::config::{Aircraft, Config, Problem};
 use crate::exit::Exit;
+use fcc_flight::config::{Aircraft, Config, Problem};
 
 #[derive(Serialize)]
 struct Checked {

@@ -4,9 +4,9 @@ use fcc_runtime::SpawnError;
 
 use super::{fail, print_json};
 use crate::cli::{FlyArgs, RecordingArgs};
-use crate::config::{BuiltInSection, Config, CourseSection};
 use crate::exit::Exit;
-use crate::flight::{
+use fcc_flight::config::{BuiltInSection, Config, CourseSection};
+use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
 };
 

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::{fail, print_json};
 use crate::cli::{OrderArgs, OrderWhat, SetArgs};
-use crate::config::{FOOT_M, KNOT_MPS};
 use crate::exit::Exit;
+use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
 struct Told {

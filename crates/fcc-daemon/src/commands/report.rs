@@ -11,8 +11,8 @@ use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
 use super::{fail, print_json, progress};
 use crate::cli::ReportArgs;
-use crate::config::Config;
 use crate::exit::Exit;
+use fcc_flight::config::Config;
 
 /// Messages between two looks at how far the file is read.
 const BAR_EVERY: u64 = 4_096;

@@ -11,9 +11,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{fail, print_json};
 use crate::cli::TimingArgs;
-use crate::config::{BuiltInSection, Config, CourseSection, EarlyWakeSection, LoopSection};
 use crate::exit::Exit;
-use crate::flight::{Length, Pace, Plan, assemble, fly};
+use fcc_flight::config::{BuiltInSection, Config, CourseSection, EarlyWakeSection, LoopSection};
+use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
 pub(super) fn timing(args: &TimingArgs) -> Exit {

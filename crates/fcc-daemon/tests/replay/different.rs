@@ -3,7 +3,7 @@
 
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
-use fcc_daemon::config::{Config, CourseSection};
+use fcc_flight::config::{Config, CourseSection};
 
 use super::flights::{Happenings, again, fly, records, rough};
 use super::{deviation, flipped};
