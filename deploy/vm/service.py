@@ -40,7 +40,7 @@ _LOOK_S = 0.1
 UNHURRIED: Mapping[str, Mapping[str, object]] = {
     "budget": {"failsafe_after": 0},
     "failsafe": {"sensor_max_age_ms": 2_000},
-    "course": {"kind": "hold"},
+    "guidance": {"mode": "hold"},
 }
 
 

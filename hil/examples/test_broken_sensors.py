@@ -8,7 +8,7 @@ from fcc_hil.sensor_faults import Faults
 
 pytestmark = [
     pytest.mark.aircraft("c172p", wind=(270, 10), turbulence=3, seed=7, noise=True),
-    pytest.mark.autopilot(course="hold"),
+    pytest.mark.autopilot(mode="hold"),
 ]
 
 

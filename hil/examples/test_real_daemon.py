@@ -1,7 +1,7 @@
 """The real daemon in real time: `fccd run` against JSBSim behind X-Plane's protocol.
 
 With `--fccd HOST` it is the daemon on that host, whose configuration has to have the
-course of the mark below.
+guidance of the mark below.
 """
 
 import pytest

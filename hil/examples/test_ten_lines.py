@@ -11,7 +11,7 @@ from fcc_hil.sensor_faults import Faults
 
 
 def test_airspeed_lost_after_the_first_turn(flight: Flight, faults: Faults) -> None:
-    """The daemon's own course holds for 20 s, then turns 90° right and climbs 150 ft."""
+    """The daemon's own pattern holds for 20 s, then turns 90° right and climbs 150 ft."""
     flight.engages(by=3)
     flight.flies(to=20)
     flight.settles(heading, within=2, by=17)

@@ -91,8 +91,8 @@ def _draw_asked(
     except FlightError:
         return
     since_s = time_s[time_s >= engaged_at_s] - engaged_at_s
-    course = flight.course
-    points = [captured if course is None else course.set_points(t, captured) for t in since_s]
+    pattern = flight.pattern
+    points = [captured if pattern is None else pattern.set_points(t, captured) for t in since_s]
     asked = np.array([getattr(point, column) for point in points])
     if column == "heading_deg" and len(asked):
         asked = np.rad2deg(np.unwrap(np.deg2rad(asked)))

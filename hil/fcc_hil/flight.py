@@ -69,10 +69,10 @@ def _positive(name: str, value: object) -> float:
 class Flight:
     """One flight of an aircraft by the autopilot."""
 
-    def __init__(self, rig: Rig, course: TimedPattern | None, seed: int = 1) -> None:
-        """Fly on a rig; `course` is what the autopilot was told to fly, None to hold."""
+    def __init__(self, rig: Rig, pattern: TimedPattern | None, seed: int = 1) -> None:
+        """Fly on a rig; `pattern` is what the autopilot was told to fly, None to hold."""
         self.rig = rig
-        self.course = course
+        self.pattern = pattern
         self.faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
         self._is_prepared = False
         self._engaged_at_s: float | None = None
@@ -317,14 +317,14 @@ class Flight:
         return start_s, end_s
 
     def _leg(self, since_engaged_s: float) -> Leg:
-        course, captured = self.course, self.captured
-        if course is None:
+        pattern, captured = self.pattern, self.captured
+        if pattern is None:
             return Leg(0, 0.0, np.inf, captured, captured)
-        begun = course.legs_begun(since_engaged_s + _TOLERANCE_S)
-        start_s = 0.0 if begun == 0 else course.hold_s + (begun - 1) * course.leg_s
-        points = course.set_points(start_s + _TOLERANCE_S, captured)
-        before = course.set_points(max(0.0, start_s - _ROW_S), captured)
-        return Leg(begun, start_s, course.hold_s + begun * course.leg_s, before, points)
+        begun = pattern.legs_begun(since_engaged_s + _TOLERANCE_S)
+        start_s = 0.0 if begun == 0 else pattern.hold_s + (begun - 1) * pattern.leg_s
+        points = pattern.set_points(start_s + _TOLERANCE_S, captured)
+        before = pattern.set_points(max(0.0, start_s - _ROW_S), captured)
+        return Leg(begun, start_s, pattern.hold_s + begun * pattern.leg_s, before, points)
 
     def _stretch(self, quantity: Quantity, at: float | None, from_s: float, to_s: float) -> Stretch:
         truth = self.rig.truth()
@@ -336,11 +336,11 @@ class Flight:
         if at is not None:
             targets: Samples = np.full(len(values), finite("at", at))
         else:
-            course, captured = self.course, self.captured
+            pattern, captured = self.pattern, self.captured
             points = [
                 captured
-                if course is None
-                else course.set_points(max(0.0, float(t)) + _TOLERANCE_S, captured)
+                if pattern is None
+                else pattern.set_points(max(0.0, float(t)) + _TOLERANCE_S, captured)
                 for t in time_s[shown]
             ]
             targets = np.array([_set_point(quantity, point) for point in points])
@@ -366,7 +366,7 @@ class Flight:
 def _set_point(quantity: Quantity, points: SetPoints) -> float:
     if quantity.name not in _SET_POINTS:
         raise ValueError(
-            f"the course sets no {quantity.name}: give at=..., or ask for one of "
+            f"guidance sets no {quantity.name}: give at=..., or ask for one of "
             f"{', '.join(_SET_POINTS)}"
         )
     value = {

@@ -11,7 +11,7 @@ from .plant import Weather
 from .quantities import finite
 from .standin import Settings
 
-COURSES = ("timed-pattern", "hold")
+MODES = ("timed-pattern", "hold")
 
 _STRONGEST_WIND_KT = 100.0
 _MOST_SEVERE = 7
@@ -73,7 +73,7 @@ def aircraft_mark(
 class AutopilotMark:
     """What an autopilot is told; on another host, what the daemon there is told already."""
 
-    course: TimedPattern | None
+    pattern: TimedPattern | None
     """None to hold what was captured."""
     failsafe_hold_s: float
     """How long failsafe holds the wings level before the controls are released."""
@@ -82,20 +82,20 @@ class AutopilotMark:
 
     def toml(self) -> str:
         """Return it as sections of a configuration file."""
-        course = self.course
-        if course is None:
-            flown = 'kind = "hold"'
+        pattern = self.pattern
+        if pattern is None:
+            flown = 'mode = "hold"'
         else:
             flown = (
-                f'kind = "timed-pattern"\nhold_s = {course.hold_s!r}\nleg_s = {course.leg_s!r}\n'
-                f"turn_deg = {course.turn_deg!r}\nclimb_ft = {course.climb_ft!r}"
+                f'mode = "timed-pattern"\nhold_s = {pattern.hold_s!r}\nleg_s = {pattern.leg_s!r}\n'
+                f"turn_deg = {pattern.turn_deg!r}\nclimb_ft = {pattern.climb_ft!r}"
             )
         failsafe = f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}"
-        return f"[course]\n{flown}\n{failsafe}\n{self.config}\n"
+        return f"[guidance]\n{flown}\n{failsafe}\n{self.config}\n"
 
 
 def autopilot_mark(
-    course: str = "timed-pattern",
+    mode: str = "timed-pattern",
     *,
     hold_s: float = 20.0,
     leg_s: float = 20.0,
@@ -110,8 +110,8 @@ def autopilot_mark(
     `leg_s` and climbs `climb_ft` on every odd leg, coming back on every even one.
     `config` is the text of more sections: gains, limits, the loop's rate.
     """
-    if course not in COURSES:
-        raise ValueError(f"course is {course!r}: choose {' or '.join(COURSES)}")
+    if mode not in MODES:
+        raise ValueError(f"mode is {mode!r}: choose {' or '.join(MODES)}")
     if not isinstance(config, str):
         raise TypeError(f"config is {config!r}: give the text of a configuration's sections")
     pattern = TimedPattern(
@@ -121,7 +121,7 @@ def autopilot_mark(
         climb_ft=_within("climb_ft", climb_ft, -5_000.0, 5_000.0, "ft"),
     )
     return AutopilotMark(
-        course=pattern if course == COURSES[0] else None,
+        pattern=pattern if mode == MODES[0] else None,
         failsafe_hold_s=_within("failsafe_hold_s", failsafe_hold_s, 0.0, 600.0, "s"),
         config=config,
     )

@@ -78,7 +78,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Declare the marks, and check the options before anything flies."""
     for line in (
         "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): what flies",
-        "autopilot(course, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, config): "
+        "autopilot(mode, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, config): "
         "what the autopilot is told",
         "realtime: always in real time",
     ):
@@ -198,7 +198,7 @@ def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
             rig = LockstepRig(settings, plant, machine)
         except FlightError as error:
             pytest.fail(str(error), pytrace=False)
-    flown = Flight(rig, mark.course, settings.seed)
+    flown = Flight(rig, mark.pattern, settings.seed)
     request.node.stash.setdefault(_FLIGHTS, []).append(flown)
     yield flown
     rig.close()

@@ -152,12 +152,12 @@ def write_config(
     port: int,
     x_plane: str = "",
     others: str = "",
-    course: str = 'kind = "hold"',
+    guidance: str = 'mode = "hold"',
 ) -> Path:
     """Write a configuration for the stand-in at `port`, with more lines and sections."""
     path = scratch / "fccd.toml"
     path.write_text(
-        f'[x-plane]\nsimulator = "127.0.0.1:{port}"\n{x_plane}\n[course]\n{course}\n'
+        f'[x-plane]\nsimulator = "127.0.0.1:{port}"\n{x_plane}\n[guidance]\n{guidance}\n'
         f'[recording]\nfolder = "{scratch}/recordings"\n{others}\n'
     )
     return path

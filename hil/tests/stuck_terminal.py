@@ -25,7 +25,7 @@ class StuckTerminal:
     ) -> None:
         scratch.mkdir()
         path = scratch / "fccd.toml"
-        path.write_text(f'[built-in]\nengage_at_s = 1.5\n[course]\nkind = "hold"\n{config}')
+        path.write_text(f'[built-in]\nengage_at_s = 1.5\n[guidance]\nmode = "hold"\n{config}')
         self.recordings = scratch / "recordings"
         words = [fccd, "fly", "--config", path, "--recordings", self.recordings]
         # A pipe with a name, so that the daemon's end is another than ours: ours

@@ -84,8 +84,17 @@ WRONG = {
         "watchdog.hang_after_ms",
         "50 to 60000",
     ),
-    "a leg of a hold": ('[x-plane]\n[course]\nkind = "hold"\nleg_s = 3\n', 2, "course", "leg_s"),
-    "an unknown course": ('[x-plane]\n[course]\nkind = "loop"\n', 3, "course.kind", '"hold"'),
+    "a leg of a hold": ('[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n', 2, "guidance", "leg_s"),
+    "a section by its former name": (
+        '[x-plane]
+[course]
+kind = "hold"
+',
+        2,
+        "course",
+        "is called [guidance], its kind mode",
+    ),
+    "an unknown mode": ('[x-plane]\n[guidance]\nmode = "loop"\n', 3, "guidance.mode", '"hold"'),
     "twice the same": ("[x-plane]\nengines = 1\nengines = 2\n", 3, "x-plane.engines", "keep one"),
     "no TOML": ("[x-plane\n", 1, None, "]"),
 }

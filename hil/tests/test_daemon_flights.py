@@ -36,7 +36,7 @@ def test_a_harsh_network_and_noisy_sensors(fccd: Path, tmp_path: Path) -> None:
     port = free_port()
     pattern = TimedPattern(hold_s=5.0)
     config = write_config(
-        tmp_path, port, course=f'kind = "timed-pattern"\nhold_s = {pattern.hold_s}'
+        tmp_path, port, guidance=f'mode = "timed-pattern"\nhold_s = {pattern.hold_s}'
     )
     settings = Settings(port=port, noise=True, inbound=HARSH, outbound=HARSH)
     flown = fly(Order(command(fccd, config), settings, legs=2, pattern=pattern), print)

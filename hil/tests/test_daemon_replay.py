@@ -21,7 +21,7 @@ SUCCESS = 0
 FAILSAFE = 3
 NOT_REPLAYED = 8
 
-QUICK_PATTERN = 'kind = "timed-pattern"\nhold_s = 2.0\nleg_s = 3.0'
+QUICK_PATTERN = 'mode = "timed-pattern"\nhold_s = 2.0\nleg_s = 3.0'
 
 
 def replay(fccd: Path, *words: str | Path) -> tuple[int, dict[str, Any]]:
@@ -37,7 +37,7 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
     recordings = tmp_path / "recordings"
     with StandInProcess(Settings(port=0)) as simulator:
         config = write_config(
-            tmp_path, simulator.port, others="[failsafe]\nhold_s = 1.0", course=QUICK_PATTERN
+            tmp_path, simulator.port, others="[failsafe]\nhold_s = 1.0", guidance=QUICK_PATTERN
         )
         words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
         words += ["--recordings", recordings]

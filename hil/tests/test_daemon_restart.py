@@ -41,7 +41,7 @@ TAKEN_UP_S = 3.0
 WARM = '[restart]\nmode = "warm"\n'
 # Half a minute to each leg: killed early in the first, the aircraft is far from where
 # it is to go, and what is taken up cannot be mistaken for what was captured anew.
-PATTERN = 'kind = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
+PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
 
 _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
 
@@ -72,20 +72,20 @@ class Cockpit:
         self._daemons = 0
 
     @contextlib.contextmanager
-    def daemon(self, others: str, course: str = PATTERN) -> Iterator[DaemonUnderTest]:
+    def daemon(self, others: str, guidance: str = PATTERN) -> Iterator[DaemonUnderTest]:
         self._daemons += 1
         scratch = self.scratch / f"daemon-{self._daemons}"
         scratch.mkdir()
-        config = write_config(self.scratch, self.simulator.port, others=others, course=course)
+        config = write_config(self.scratch, self.simulator.port, others=others, guidance=guidance)
         with start(self.fccd, scratch, config) as daemon:
             yield daemon
 
-    def fly_and_kill(self, others: str, course: str = PATTERN) -> Aims:
+    def fly_and_kill(self, others: str, guidance: str = PATTERN) -> Aims:
         """Fly into the first turn, and kill; return what was aimed for."""
-        with self.daemon(others, course) as daemon:
+        with self.daemon(others, guidance) as daemon:
             captured = self.engage(daemon)
             aims = captured
-            while course == PATTERN and aims.heading_deg == captured.heading_deg:
+            while guidance == PATTERN and aims.heading_deg == captured.heading_deg:
                 aims = Aims.of(daemon.wait_for("engaged "))
             wait_until(self.state_file.exists, "what is flown is kept")
             # It is kept each second.
@@ -186,7 +186,7 @@ def test_a_damaged_state_file_is_a_cold_restart(cockpit: Cockpit) -> None:
 
 def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill(WARM)
-    with cockpit.daemon(WARM, course='kind = "hold"') as again:
+    with cockpit.daemon(WARM, guidance='mode = "hold"') as again:
         assert "standing by" in again.wait_for("another configuration")
         again.wait_until_ready()
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]

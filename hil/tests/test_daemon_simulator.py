@@ -38,6 +38,18 @@ def assert_lost_when_too_old(flown: Flown, place: int) -> None:
     assert MAX_AGE_S < age_s < MAX_AGE_S + AT_ONCE_S
 
 
+def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_path: Path) -> None:
+    mistyped = "sim/cockpit2/switches/generic_light_switch[0]"
+    with flight(fccd, tmp_path, x_plane=f'engage_switch = "{mistyped}"') as (_, daemon):
+        assert mistyped in daemon.wait_for("answers")
+        words = daemon.wait_for("X-Plane does not send")
+        assert f'x-plane.engage_switch "{mistyped}"' in words
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    said = [text for text in ending.events if "does not send" in text]
+    assert len(said) == 1, said
+
+
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
@@ -218,7 +230,7 @@ def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
         config = tmp_path / "fccd.toml"
         config.write_text(
-            '[x-plane]\nsimulator = "beacon"\n[course]\nkind = "hold"\n'
+            '[x-plane]\nsimulator = "beacon"\n[guidance]\nmode = "hold"\n'
             f'[recording]\nfolder = "{tmp_path}/recordings"\n'
         )
         with start(fccd, tmp_path, config) as daemon:

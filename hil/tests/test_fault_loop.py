@@ -34,7 +34,7 @@ HUNG = 9
 RATE_HZ = 40
 ENGAGED_S = 6.0
 PERIOD_NS = 1_000_000_000 // RATE_HZ
-HOLD = '[course]\nkind = "hold"\n[telemetry]\nenabled = false\n'
+HOLD = '[guidance]\nmode = "hold"\n[telemetry]\nenabled = false\n'
 NEVER_FAILSAFE = "[budget]\nfailsafe_after = 0\n"
 QUICK_WATCHDOG = "[watchdog]\nhang_after_ms = 500\n"
 HANG_AFTER_NS = 500_000_000

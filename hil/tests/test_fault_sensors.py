@@ -41,7 +41,7 @@ FROZEN_S = 2.0
 """The daemon's default: the same for so long, while the aircraft moves, is frozen."""
 
 # A pattern that turns and climbs soon after engaging: what is frozen shows in motion.
-PATTERN = 'kind = "timed-pattern"\nhold_s = 1.0\nleg_s = 20.0'
+PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 20.0'
 PATIENT = f"[failsafe]\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
 FLOWN_THROUGH_S = 3.0
 SHORT_S = 0.1
@@ -194,7 +194,7 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
         StandInProcess(Settings(port=0)) as simulator,
         TamperedLink(simulator.port) as link,
         start(
-            fccd, scratch, write_config(scratch, link.port, others=PATIENT, course=PATTERN)
+            fccd, scratch, write_config(scratch, link.port, others=PATIENT, guidance=PATTERN)
         ) as daemon,
     ):
         flight = Breaking(name, simulator, link, daemon)

@@ -51,7 +51,7 @@ WRITTEN_EVERY_S = 0.7
 BEACON_PERIOD_S = 1.0
 """As X-Plane sends it."""
 
-HOLD = '[course]\nkind = "hold"\n'
+HOLD = '[guidance]\nmode = "hold"\n'
 EXAMPLE = Path(live.__file__)
 UNTIL_STOPPED = ["--seconds", "3600"]
 

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-HOLD = '[course]\nkind = "hold"\n'
+HOLD = '[guidance]\nmode = "hold"\n'
 LEVEL = fcc.BuiltInAircraft().step(None)
 
 numbers = st.one_of(

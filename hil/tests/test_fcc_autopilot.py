@@ -6,7 +6,7 @@ import fcc
 import numpy as np
 import pytest
 
-HOLD = '[course]\nkind = "hold"\n'
+HOLD = '[guidance]\nmode = "hold"\n'
 KNOT_MPS = 1852 / 3600
 FOOT_M = 0.3048
 
@@ -132,7 +132,7 @@ def test_engaging_is_refused_in_words() -> None:
 def test_a_configuration_by_its_keys() -> None:
     config = fcc.Config(HOLD)
     bank = "autopilot.envelope.max_bank_deg"
-    assert config["course.kind"] == "hold"
+    assert config["guidance.mode"] == "hold"
     assert bank in config
     assert {bank, "loop.timer"} <= set(config.keys())
     steep = config.replace({bank: 45, "loop.rate_hz": np.float64(100.0)})
@@ -141,5 +141,5 @@ def test_a_configuration_by_its_keys() -> None:
     assert config[bank] != 45.0
     assert fcc.Config(steep.to_toml()) == steep
     assert steep.to_dict()["autopilot"]["envelope"]["max_bank_deg"] == 45.0
-    pattern = config.replace({"course": {"kind": "timed-pattern", "leg_s": 30.0}})
-    assert pattern["course"]["leg_s"] == 30.0
+    pattern = config.replace({"guidance": {"mode": "timed-pattern", "leg_s": 30.0}})
+    assert pattern["guidance"]["leg_s"] == 30.0

@@ -28,7 +28,7 @@ def instance(request: pytest.FixtureRequest) -> str:
 
 def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnderTest:
     path = scratch / "fccd.toml"
-    path.write_text(f'[built-in]\nengage_at_s = 1.5\n[course]\nkind = "hold"\n{config}')
+    path.write_text(f'[built-in]\nengage_at_s = 1.5\n[guidance]\nmode = "hold"\n{config}')
     words: list[str | Path] = [fccd, "fly", "--config", path, "--instance", instance, "--json"]
     return DaemonUnderTest([*words, "--recordings", scratch, "--seconds", "600"], scratch)
 

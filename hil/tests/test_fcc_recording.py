@@ -62,7 +62,7 @@ def test_what_is_known_of_the_flight(recording: Path) -> None:
     found = fcc.Recording(str(recording))
     assert found.about["rate_hz"] == 40.0
     assert found.about["sensors"] == ["built-in aircraft"]
-    assert found.config["course.kind"] == "timed-pattern"
+    assert found.config["guidance.mode"] == "timed-pattern"
     account = found.account()
     assert account["ticks"] == len(found)
     assert account["state"] == "stopped"

@@ -97,7 +97,7 @@ def test_a_turn_that_piles_up_past_half_a_circle_is_not_reversed() -> None:
 def test_it_takes_over_in_a_turn_and_in_a_climb(roll_deg: float, climb_fpm: float) -> None:
     """It is flown into the manoeuvre by an autopilot of its own, then taken over by a second."""
     plant = Plant("c172p", seed=SEED)
-    first = fcc.Autopilot('[course]\nkind = "hold"\n')
+    first = fcc.Autopilot('[guidance]\nmode = "hold"\n')
     for _ in range(200):
         first.observe(measurements(plant.state()))
         plant.step(3)
@@ -107,7 +107,7 @@ def test_it_takes_over_in_a_turn_and_in_a_climb(roll_deg: float, climb_fpm: floa
         first.order(heading_rad=start.heading_rad + np.copysign(3.0, roll_deg))
     if climb_fpm:
         first.order(altitude_m=start.altitude_m + 300.0)
-    second = fcc.Autopilot('[course]\nkind = "hold"\n')
+    second = fcc.Autopilot('[guidance]\nmode = "hold"\n')
     surfaces = None
     for _ in range(240):
         state = plant.state()
@@ -185,7 +185,7 @@ def test_what_is_asked_wrongly_is_refused_in_words() -> None:
 def test_the_legs_are_those_of_the_pattern() -> None:
     pattern = TimedPattern(hold_s=5.0, leg_s=20.0, turn_deg=-45.0, climb_ft=-100.0)
     config = (
-        '[course]\nkind = "timed-pattern"\n'
+        '[guidance]\nmode = "timed-pattern"\n'
         "hold_s = 5.0\nleg_s = 20.0\nturn_deg = -45.0\nclimb_ft = -100.0\n"
     )
     flown, _ = fly(Scenario(seed=SEED, legs=3, pattern=pattern, config=config))

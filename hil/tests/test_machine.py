@@ -14,7 +14,7 @@ from recordings import EVENT, RECORD, by_index, metadata
 from fcc_hil.lockstep import measurements
 from fcc_hil.plant import Plant
 
-HOLD = '[course]\nkind = "hold"\n'
+HOLD = '[guidance]\nmode = "hold"\n'
 STANDING = (0.6, 0.0, 0.0, 0.0)
 SENSORS = ("attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude")
 

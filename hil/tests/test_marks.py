@@ -25,20 +25,20 @@ def test_an_aircraft_as_it_is_asked_for() -> None:
 
 def test_an_autopilot_as_it_is_asked_for() -> None:
     mark = autopilot_mark(hold_s=5, leg_s=15, turn_deg=-45, climb_ft=0, failsafe_hold_s=2)
-    assert mark.course == TimedPattern(5.0, 15.0, -45.0, 0.0)
-    assert autopilot_mark("hold").course is None
+    assert mark.pattern == TimedPattern(5.0, 15.0, -45.0, 0.0)
+    assert autopilot_mark("hold").pattern is None
 
 
 @given(
-    course=st.sampled_from(["timed-pattern", "hold"]),
+    mode=st.sampled_from(["timed-pattern", "hold"]),
     hold_s=st.floats(0.0, 86_400.0),
     leg_s=st.floats(1.0, 86_400.0),
     turn_deg=st.floats(-179.0, 179.0),
     climb_ft=st.floats(-5_000.0, 5_000.0),
     failsafe_hold_s=st.floats(0.0, 600.0),
 )
-def test_whatever_a_mark_takes_the_daemon_takes(course: str, **others: float) -> None:
-    fcc.Machine(autopilot_mark(course, **others).toml())  # type: ignore[arg-type]
+def test_whatever_a_mark_takes_the_daemon_takes(mode: str, **others: float) -> None:
+    fcc.Machine(autopilot_mark(mode, **others).toml())  # type: ignore[arg-type]
 
 
 BAD: st.SearchStrategy[Any] = st.sampled_from(

@@ -131,7 +131,7 @@ def test_aircraft_and_autopilot_can_be_stepped_by_hand(pytester: pytest.Pytester
         ("aircraft(seed=1.5)", "*seed is 1.5: give a whole number*"),
         ('aircraft(heading=float("nan"))', "*heading is nan: give a finite number*"),
         ("aircraft(gusts=3)", "*mark aircraft: *unexpected keyword argument 'gusts'*"),
-        ('autopilot("loops")', "*course is 'loops': choose timed-pattern or hold*"),
+        ('autopilot("loops")', "*mode is 'loops': choose timed-pattern or hold*"),
         ("autopilot(leg_s=0)", "*leg_s is 0: give 1 to 86400 s*"),
         ('autopilot(config="[autopilot]\\nbank = 3\\n")', "*mark autopilot: *no such key*"),
         ('autopilot(config="[loop]\\nrate_hz = 50\\n")', "*50 Hz does not fit*20, 40, 60 or 120*"),

@@ -19,7 +19,7 @@ from fcc_hil.sensor_faults import SensorFault
 from fcc_hil.truth import COLUMNS, Row, Truth
 
 ENGAGED_AT_S = 1.0
-COURSE = TimedPattern(hold_s=10.0, leg_s=10.0, turn_deg=90.0, climb_ft=100.0)
+PATTERN = TimedPattern(hold_s=10.0, leg_s=10.0, turn_deg=90.0, climb_ft=100.0)
 
 Flown = Callable[[float], float]
 
@@ -74,8 +74,8 @@ class TableRig:
         return tuple(columns[name](since_s) if name in columns else 0.0 for name in COLUMNS)
 
 
-def _flight(*coming: Happening, course: TimedPattern | None = COURSE, **flown: Flown) -> Flight:
-    flight = Flight(TableRig(coming, **flown), course)
+def _flight(*coming: Happening, pattern: TimedPattern | None = PATTERN, **flown: Flown) -> Flight:
+    flight = Flight(TableRig(coming, **flown), pattern)
     flight.engages(by=1.0)
     return flight
 
@@ -129,9 +129,9 @@ def test_short_of_the_set_point_is_no_overshoot() -> None:
 
 
 def test_staying_follows_the_set_points_and_counts_in_the_unit_asked() -> None:
-    flight = _flight(altitude_ft=lambda t: 3_010.0 if t < 10.0 else 3_110.0, course=COURSE)
+    flight = _flight(altitude_ft=lambda t: 3_010.0 if t < 10.0 else 3_110.0, pattern=PATTERN)
     flight.stays(altitude, within=0.1, to=19.9)
-    flight = _flight(altitude_ft=lambda t: 3_000.0 if t < 5.0 else 3_010.0, course=None)
+    flight = _flight(altitude_ft=lambda t: 3_000.0 if t < 5.0 else 3_010.0, pattern=None)
     flight.stays(altitude, within=10.1, to=9)
     flight.stays(altitude("m"), within=3.1, to=9)
     with pytest.raises(RequirementError) as refused:
@@ -203,7 +203,7 @@ def test_controls_that_are_let_go_deflected_are_not_released() -> None:
 
 def test_an_autopilot_that_does_not_engage_in_time() -> None:
     with pytest.raises(RequirementError) as refused:
-        Flight(TableRig(), COURSE).engages(by=0.4)
+        Flight(TableRig(), PATTERN).engages(by=0.4)
     assert str(refused.value).splitlines() == [
         "required: the autopilot engages by 0.4 s",
         "flown:    it engages after 0.50 s",
@@ -212,7 +212,7 @@ def test_an_autopilot_that_does_not_engage_in_time() -> None:
 
 
 def test_what_cannot_be_asked_is_said() -> None:
-    flight = Flight(TableRig(), COURSE)
+    flight = Flight(TableRig(), PATTERN)
     with pytest.raises(FlightError, match="engages"):
         flight.settles(heading, within=1, by=1)
     flight.engages(by=1)

@@ -129,7 +129,7 @@ def test_the_daemon_takes_each_configuration(aircraft: str, fccd: Path, tmp_path
 
 
 def test_a_value_is_set_and_the_rest_is_left() -> None:
-    text = "# why\n[course]\nkind = 'hold' # so\n[autopilot.scale]\npace = 0.5\n"
+    text = "# why\n[guidance]\nmode = 'hold' # so\n[autopilot.scale]\npace = 0.5\n"
     changed = with_values(text, {"autopilot.scale.pace": 0.75, "autopilot.heading.lead_s": 0.3})
     assert "# why" in changed
     assert "# so" in changed
@@ -137,11 +137,11 @@ def test_a_value_is_set_and_the_rest_is_left() -> None:
     assert value_of(changed, "autopilot.heading.lead_s", 1.0) == 0.3
     assert value_of(changed, "autopilot.heading.roll_gain_per_s", 3.1) == 3.1
     fcc.Autopilot(changed)
-    assert pattern_of("[course]\nleg_s = 50\n") == TimedPattern(leg_s=50.0)
-    with pytest.raises(ValueError, match="course"):
-        value_of("[course]\nleg_s = 'long'\n", "course.leg_s", 20.0)
+    assert pattern_of("[guidance]\nleg_s = 50\n") == TimedPattern(leg_s=50.0)
+    with pytest.raises(ValueError, match="guidance"):
+        value_of("[guidance]\nleg_s = 'long'\n", "guidance.leg_s", 20.0)
     with pytest.raises(ValueError, match="configuration"):
-        value_of("[course", "course.leg_s", 20.0)
+        value_of("[guidance", "guidance.leg_s", 20.0)
 
 
 @settings(deadline=None)

@@ -2,9 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use fcc_daemon::cli::Cli;
-
 fn main() -> ExitCode {
-    fcc_daemon::commands::run(Cli::parse()).into()
+    fcc_daemon::commands::run().into()
 }

@@ -18,7 +18,7 @@ use crate::values::{
 /// same for a recorded series of measurements.
 ///
 /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
-/// it; its sections `[course]`, `[autopilot]` and `[failsafe]` matter here.
+/// it; its sections `[guidance]`, `[autopilot]` and `[failsafe]` matter here.
 #[pyclass(name = "Autopilot", module = "fcc")]
 pub(crate) struct PyAutopilot {
     stepped: Stepped,

@@ -4,7 +4,8 @@ use std::ffi::CStr;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::{Autopilot, Course, Measurements, Order, Setpoints, Surfaces};
+use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Message, Sensor, State};
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::true_sample;
@@ -187,9 +188,9 @@ pub(crate) fn fly(
 }
 
 fn default_seconds(config: &Config) -> f64 {
-    match config.autopilot_config().course {
-        Course::Hold => DEFAULT_HOLD_S,
-        Course::TimedPattern(pattern) => pattern.hold_s + DEFAULT_LEGS * pattern.leg_s,
+    match config.autopilot_config().guidance {
+        GuidanceConfig::Hold => DEFAULT_HOLD_S,
+        GuidanceConfig::TimedPattern(pattern) => pattern.hold_s + DEFAULT_LEGS * pattern.leg_s,
     }
 }
 
@@ -346,9 +347,9 @@ impl Log {
             rows: Vec::with_capacity(room),
             truths: Vec::with_capacity(room),
             events: Vec::new(),
-            score: match config.autopilot_config().course {
-                Course::TimedPattern(pattern) => Some(FlightLog::new(pattern)),
-                Course::Hold => None,
+            score: match config.autopilot_config().guidance {
+                GuidanceConfig::TimedPattern(pattern) => Some(FlightLog::new(pattern)),
+                GuidanceConfig::Hold => None,
             },
             engaged: false,
         })

@@ -28,7 +28,7 @@
 //! | `quantity`, `rows`, `units`, `specific_force` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock against ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
-//! | `subscriptions` | what to ask for, and when again |
+//! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
 //! | `controls`, `confirmation`, `letting_go`, `release` | writing, whether it takes effect, giving back |
 //! | `port`, `discovery` | sockets and the beacon |
 //!
@@ -53,6 +53,7 @@ mod discovery;
 mod inbox;
 mod letting_go;
 mod link;
+mod missing;
 mod open;
 mod port;
 pub mod protocol;
@@ -73,6 +74,7 @@ pub use config::{
 };
 pub use discovery::{DiscoverError, Found, discover};
 pub use link::Control;
+pub use missing::Missing;
 pub use open::{OpenError, XPlane};
 pub use port::{Errno, Port, UdpPort};
 pub use release::Released;

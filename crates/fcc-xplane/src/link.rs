@@ -9,6 +9,7 @@ use std::net::{Ipv4Addr, SocketAddrV4};
 
 use fcc_core::framework::Time;
 
+use crate::missing::ValueSet;
 use crate::quantity::Quantity;
 use crate::simulator::SimulatorState;
 
@@ -84,6 +85,8 @@ pub(crate) struct Link {
     control: AtomicU8,
     unconfirmed: AtomicBool,
     version: AtomicU32,
+    /// A [`ValueSet`].
+    missing: AtomicU64,
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
     read_back: [Seen; READ_BACK.len()],
@@ -99,6 +102,7 @@ impl Link {
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
             version: AtomicU32::new(0),
+            missing: AtomicU64::new(0),
             ground: AtomicU8::new(0),
             read_back: [const { Seen::never() }; READ_BACK.len()],
             counters: Counters::default(),
@@ -164,6 +168,14 @@ impl Link {
 
     pub(crate) fn set_unconfirmed(&self, unconfirmed: bool) {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
+    }
+
+    pub(crate) fn missing(&self) -> ValueSet {
+        ValueSet::from_bits(self.missing.load(Ordering::Relaxed))
+    }
+
+    pub(crate) fn set_missing(&self, missing: ValueSet) {
+        self.missing.store(missing.bits(), Ordering::Relaxed);
     }
 
     pub(crate) fn version(&self) -> Option<u32> {

@@ -78,6 +78,20 @@ pub(crate) fn quantities(rows: DataRows, row: &Row, mut found: impl FnMut(Quanti
     }
 }
 
+/// The row in which a quantity comes; `None` if it comes in none. For people,
+/// not for a tick.
+pub(crate) fn row_of(rows: DataRows, quantity: Quantity) -> Option<i32> {
+    (TIMES..=VELOCITY).find(|index| {
+        let row = Row {
+            index: *index,
+            columns: [Some(0.0); 8],
+        };
+        let mut is_there = false;
+        quantities(rows, &row, |found, _| is_there |= found == quantity);
+        is_there
+    })
+}
+
 /// The position in a row, if it is the one that has it.
 pub(crate) fn position(row: &Row) -> Option<Position> {
     let [Some(latitude), Some(longitude), Some(feet), ..] = row.columns else {

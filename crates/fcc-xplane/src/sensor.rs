@@ -7,7 +7,7 @@ use std::sync::Arc;
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
-use crate::config::{Input, XPlaneConfig};
+use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::inbox::Inbox;
 use crate::letting_go::LettingGo;
@@ -40,6 +40,8 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     link: Arc<Link>,
     inbox: Inbox,
     subscriptions: Subscriptions,
+    engage_switch: Arc<str>,
+    rows: Option<DataRows>,
     letting_go: LettingGo,
     datagrams_per_tick: usize,
     silent_after: Duration,
@@ -66,6 +68,8 @@ impl<P: Port> XPlaneSensor<P> {
             link,
             inbox: Inbox::new(rows, config.silent_after),
             subscriptions: Subscriptions::new(config)?,
+            engage_switch: config.engage_switch.as_str().into(),
+            rows,
             letting_go: LettingGo::new(Controls::new(config)?),
             datagrams_per_tick: usize::from(config.datagrams_per_tick),
             silent_after: config.silent_after,
@@ -77,7 +81,8 @@ impl<P: Port> XPlaneSensor<P> {
 
     /// What may be watched from any thread, also once the sensor is in a loop.
     pub fn status(&self) -> XPlaneStatus {
-        XPlaneStatus::new(Arc::clone(&self.link))
+        let engage_switch = Arc::clone(&self.engage_switch);
+        XPlaneStatus::new(Arc::clone(&self.link), engage_switch, self.rows)
     }
 
     /// Follows beacons: takes the first simulator that flies, stays with it
@@ -181,6 +186,9 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let received = self.receive(now, simulator);
         let state = self.inbox.publish(now, into, &self.link);
         self.link.set_state(state);
+        if let Some(missing) = self.subscriptions.missing(now, &self.inbox) {
+            self.link.set_missing(missing);
+        }
 
         let mut sent = Ok(());
         if let Some(simulator) = simulator {

@@ -5,12 +5,19 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use std::net::SocketAddrV4;
 use std::sync::Arc;
 
+use crate::config::DataRows;
 use crate::link::{Control, Link};
+use crate::missing::Missing;
 use crate::simulator::SimulatorState;
 
 /// Watches the connection to X-Plane from any thread, without a lock.
 #[derive(Clone, Debug)]
-pub struct XPlaneStatus(Arc<Link>);
+pub struct XPlaneStatus {
+    link: Arc<Link>,
+    engage_switch: Arc<str>,
+    /// The rows that are read, if rows are the input.
+    rows: Option<DataRows>,
+}
 
 /// What was counted since opening.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -38,13 +45,21 @@ pub struct Counts {
 }
 
 impl XPlaneStatus {
-    pub(crate) const fn new(link: Arc<Link>) -> Self {
-        Self(link)
+    pub(crate) const fn new(
+        link: Arc<Link>,
+        engage_switch: Arc<str>,
+        rows: Option<DataRows>,
+    ) -> Self {
+        Self {
+            link,
+            engage_switch,
+            rows,
+        }
     }
 
     /// Where the simulator is; `None` until a beacon has told.
     pub fn simulator(&self) -> Option<SocketAddrV4> {
-        self.0.simulator()
+        self.link.simulator()
     }
 
     /// From now on control is taken nowhere but where it is
@@ -52,49 +67,49 @@ impl XPlaneStatus {
     /// flies there. Until then [`apply`](fcc_core::framework::Actuator::apply)
     /// says that it is not connected.
     pub fn ask_first(&self) {
-        self.0.allow(None);
+        self.link.allow(None);
     }
 
     /// Control may be taken at this address, and at no other.
     pub fn allow(&self, simulator: SocketAddrV4) {
-        self.0.allow(Some(simulator));
+        self.link.allow(Some(simulator));
     }
 
     /// What the simulator was doing at the last tick.
     pub fn state(&self) -> SimulatorState {
-        self.0.state()
+        self.link.state()
     }
 
     /// Who has the controls.
     pub fn control(&self) -> Control {
-        self.0.control()
+        self.link.control()
     }
 
     /// Where the controls are held, or not yet shown to be given back.
     pub fn held_at(&self) -> Option<SocketAddrV4> {
-        let allowed = |at: &SocketAddrV4| self.0.is_allowed(*at);
+        let allowed = |at: &SocketAddrV4| self.link.is_allowed(*at);
         let held = self.control() != Control::Free;
         self.simulator().filter(allowed).filter(|_| held)
     }
 
     /// Whether controls have been written for over a second without effect.
     pub fn is_unconfirmed(&self) -> bool {
-        self.0.is_unconfirmed()
+        self.link.is_unconfirmed()
     }
 
     /// X-Plane's version, 115501 for 11.55r01, once it has told.
     pub fn version(&self) -> Option<u32> {
-        self.0.version()
+        self.link.version()
     }
 
     /// Whether a wheel is on the ground, once X-Plane has told.
     pub fn on_ground(&self) -> Option<bool> {
-        self.0.on_ground()
+        self.link.on_ground()
     }
 
     /// What was counted since opening.
     pub fn counts(&self) -> Counts {
-        let counters = &self.0.counters;
+        let counters = &self.link.counters;
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Counts {
             received: read(&counters.received),
@@ -108,6 +123,17 @@ impl XPlaneStatus {
             writes: read(&counters.writes),
             refused: read(&counters.refused),
         }
+    }
+
+    /// The dataref that engages, as configured.
+    pub fn engage_switch(&self) -> &str {
+        &self.engage_switch
+    }
+
+    /// What was asked for and does not arrive while other values do: for 4 to 6 s
+    /// if it never came, and longer if it did.
+    pub fn missing(&self) -> Vec<Missing> {
+        Missing::of(self.link.missing(), &self.engage_switch, self.rows)
     }
 
     /// What is wrong with the connection now and what to do about it, for

@@ -16,9 +16,11 @@ use fcc_core::framework::Time;
 
 use crate::config::{Input, XPlaneConfig};
 use crate::inbox::Inbox;
+use crate::missing::{Absences, Expected, ValueSet};
 use crate::port::Errno;
 use crate::protocol::{PathError, rpos, rref};
 use crate::quantity::Quantity;
+use crate::rows::row_of;
 
 /// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
 pub(crate) const REQUESTS_PER_TICK: usize = 8;
@@ -47,11 +49,19 @@ impl Request {
         }
     }
 
-    fn answered(&self, inbox: &Inbox) -> Time {
+    const fn expected(&self) -> Expected {
         match self {
-            Self::Value(quantity, _) => inbox.arrived(*quantity),
-            Self::Position(..) => inbox.position_arrived(),
+            Self::Value(quantity, _) => Expected::Value(*quantity),
+            Self::Position(..) => Expected::Position,
         }
+    }
+}
+
+/// When an expected value last came.
+fn arrived(inbox: &Inbox, expected: Expected) -> Time {
+    match expected {
+        Expected::Value(quantity) => inbox.arrived(quantity),
+        Expected::Position => inbox.position_arrived(),
     }
 }
 
@@ -70,30 +80,45 @@ struct Subscription {
 pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
+    absences: Absences,
 }
 
 impl Subscriptions {
     pub(crate) fn new(config: &XPlaneConfig) -> Result<Self, PathError> {
-        let by_rows = matches!(config.input, Input::Data(_));
+        let rows = match config.input {
+            Input::Rref => None,
+            Input::Data(rows) => Some(rows),
+        };
         let mut list = Vec::new();
+        let mut expected = Vec::new();
         for quantity in Quantity::all() {
+            if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
+                let comes = row_of(rows, quantity).map(|_| Expected::Value(quantity));
+                expected.extend(comes);
+                continue;
+            }
             let Some(path) = quantity.path(&config.engage_switch) else {
                 continue;
             };
-            if by_rows && quantity.comes_in_rows() {
-                continue;
-            }
             let mut request = Box::new([0; rref::REQUEST_BYTES]);
             rref::request(&mut request, config.rate_hz, quantity.index(), &path)?;
             list.push(Subscription::to(Request::Value(quantity, request)));
         }
-        if !by_rows {
+        if rows.is_none() {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
+        expected.extend(list.iter().map(|asked| asked.request.expected()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
+            absences: Absences::new(expected, config.resubscribe),
         })
+    }
+
+    /// What does not arrive though other values do, looked for once a second.
+    pub(crate) fn missing(&mut self, now: Time, inbox: &Inbox) -> Option<ValueSet> {
+        self.absences
+            .look(now, inbox.heard(), |expected| arrived(inbox, expected))
     }
 
     /// Asks for everything anew, from the next tick on.
@@ -119,7 +144,8 @@ impl Subscriptions {
             if budget == 0 {
                 break;
             }
-            let answered = now.since(subscription.request.answered(inbox)) < resubscribe;
+            let came = arrived(inbox, subscription.request.expected());
+            let answered = now.since(came) < resubscribe;
             if answered && !subscription.anew {
                 subscription.unanswered = 0;
                 continue;

@@ -5,9 +5,9 @@ mod support;
 
 use fcc_core::flight::PlantState;
 use fcc_core::framework::SensorFault;
-use fcc_xplane::SimulatorState;
+use fcc_xplane::{DataRows, Input, Missing, RowsVersion, SimulatorState};
 use support::bench::Bench;
-use support::{FLIGHT_TIME, P, PAUSED};
+use support::{FLIGHT_TIME, P, PAUSED, free_port};
 
 #[test]
 fn requests_are_spread_over_ticks() {
@@ -55,6 +55,51 @@ fn a_first_request_that_got_lost_delays_a_second_not_five() {
     }
     assert!(!bench.measurements.attitude.is_never());
     assert!(!bench.measurements.plant.is_never());
+}
+
+#[test]
+fn a_dataref_that_x_plane_does_not_have_is_named_with_its_key() {
+    let mistyped = "sim/cockpit2/switches/generic_light_switch[0]";
+    let mut bench = Bench::with(|config| config.engage_switch = mistyped.into());
+    for _ in 0..120 {
+        let _ = bench.watch();
+        assert_eq!(bench.status.missing(), []);
+    }
+    // Within six seconds of the first contact.
+    for _ in 0..120 {
+        bench.watch().unwrap();
+    }
+    let missing = bench.status.missing();
+    assert_eq!(missing, [Missing::EngageSwitch(mistyped.into())]);
+    let words = missing[0].to_string();
+    assert!(words.contains("x-plane.engage_switch"), "{words}");
+    assert!(words.contains(mistyped), "{words}");
+    // The rest arrives, and so does the switch once a plugin brings it.
+    assert_eq!(bench.status.trouble(), None);
+    bench.simulator.set(mistyped, 0.0);
+    for _ in 0..41 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.missing(), []);
+}
+
+#[test]
+fn rows_that_are_not_switched_on_are_named() {
+    let free = free_port();
+    let mut bench = Bench::with(|config| {
+        config.local_port = free;
+        config.input = Input::Data(DataRows::of(RowsVersion::XPlane12));
+    });
+    // The switch and the overrides come by RREF; no row does.
+    for _ in 0..240 {
+        let _ = bench.watch();
+    }
+    let mut rows = bench.status.missing();
+    rows.sort_by_key(|missing| match missing {
+        Missing::Row(row) => *row,
+        other => panic!("{other}"),
+    });
+    assert_eq!(rows, [1, 3, 4, 16, 17, 18, 20, 21].map(Missing::Row));
 }
 
 #[test]

@@ -55,10 +55,10 @@ def pattern_of(text: str) -> TimedPattern:
     """Return the timed pattern that a configuration asks for."""
     default = TimedPattern()
     return TimedPattern(
-        hold_s=value_of(text, "course.hold_s", default.hold_s),
-        leg_s=value_of(text, "course.leg_s", default.leg_s),
-        turn_deg=value_of(text, "course.turn_deg", default.turn_deg),
-        climb_ft=value_of(text, "course.climb_ft", default.climb_ft),
+        hold_s=value_of(text, "guidance.hold_s", default.hold_s),
+        leg_s=value_of(text, "guidance.leg_s", default.leg_s),
+        turn_deg=value_of(text, "guidance.turn_deg", default.turn_deg),
+        climb_ft=value_of(text, "guidance.climb_ft", default.climb_ft),
     )
 
 

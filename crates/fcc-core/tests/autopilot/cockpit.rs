@@ -2,8 +2,9 @@
 
 use core::time::Duration;
 
+use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{
-    Attitude, Autopilot, AutopilotConfig, BodyRates, Course, Measurements, Plant, PlantState,
+    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, Plant, PlantState,
     SpecificForce, Surfaces, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
@@ -59,9 +60,9 @@ pub(crate) const STANDING: Surfaces = Surfaces {
 };
 
 impl Cockpit {
-    pub(crate) fn new(course: Course) -> Self {
+    pub(crate) fn new(guidance: GuidanceConfig) -> Self {
         let config = AutopilotConfig {
-            course,
+            guidance,
             // What it feels here is the same to the last bit until it is told
             // otherwise.
             frozen_after: Duration::ZERO,
@@ -86,8 +87,8 @@ impl Cockpit {
         cockpit
     }
 
-    pub(crate) fn engaged(course: Course) -> Self {
-        let mut cockpit = Self::new(course);
+    pub(crate) fn engaged(guidance: GuidanceConfig) -> Self {
+        let mut cockpit = Self::new(guidance);
         assert_eq!(cockpit.blockers(), Flags::NONE);
         cockpit
             .autopilot

@@ -1,6 +1,7 @@
 //! What it may not fly by, and what it does then.
 
-use fcc_core::flight::{Autopilot, AutopilotConfig, Course, Order, PlantState, Surfaces, flags};
+use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_core::flight::{Autopilot, AutopilotConfig, Order, PlantState, Surfaces, flags};
 use fcc_core::framework::{Controller, Flags, Switch};
 
 use crate::cockpit::{Cockpit, DT_S, Feel, LEVEL, SENSORS, STANDING};
@@ -8,7 +9,7 @@ use crate::cockpit::{Cockpit, DT_S, Feel, LEVEL, SENSORS, STANDING};
 #[test]
 fn each_silent_sensor_is_its_own_fault_once_it_is_too_old() {
     for sensor in SENSORS {
-        let mut cockpit = Cockpit::engaged(Course::Hold);
+        let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
         cockpit.step();
         cockpit.silent = sensor;
         // 250 ms are allowed.
@@ -23,7 +24,7 @@ fn each_silent_sensor_is_its_own_fault_once_it_is_too_old() {
 
 #[test]
 fn a_switch_that_falls_silent_is_a_fault() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.switch = Some(Switch::On);
     cockpit.step();
     cockpit.switch = None;
@@ -38,7 +39,7 @@ fn a_switch_that_falls_silent_is_a_fault() {
 /// not freeze with the last command standing.
 #[test]
 fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     cockpit.observe();
     cockpit
@@ -62,7 +63,7 @@ fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
 #[test]
 fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30] {
-        let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+        let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
         cockpit.step();
         cockpit.feel = Feel {
             pitch_deg: bad,
@@ -88,7 +89,7 @@ fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
 /// altitude is off, the bank is not where it is asked to be.
 #[test]
 fn a_paused_simulator_leaves_everything_as_it_is() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     cockpit.observe();
     cockpit
@@ -125,7 +126,7 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
 
 #[test]
 fn a_jump_of_the_simulator_is_a_fault() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Jumped);
     cockpit.step();
     assert!(cockpit.faults().contains(flags::PLANT_JUMPED));
@@ -135,7 +136,7 @@ fn a_jump_of_the_simulator_is_a_fault() {
 /// altitude is too old.
 #[test]
 fn a_jump_of_a_sensor_is_its_loss() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     cockpit.feel.altitude_m += 300.0;
     for _ in 0..10 {
@@ -150,7 +151,7 @@ fn a_jump_of_a_sensor_is_its_loss() {
 
 #[test]
 fn failsafe_levels_the_wings_while_the_attitude_is_known() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     for _ in 0..40 {
         cockpit.feel.roll_deg += 0.5;
@@ -169,7 +170,7 @@ fn failsafe_levels_the_wings_while_the_attitude_is_known() {
 
 #[test]
 fn failsafe_without_attitude_keeps_the_trim() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     cockpit.silent = SENSORS.into_iter().fold(Flags::NONE, |all, one| all | one);
     let out = (0..40).fold(Surfaces::default(), |_, _| {
@@ -185,14 +186,14 @@ fn failsafe_without_attitude_keeps_the_trim() {
 
 #[test]
 fn what_blocks_engaging_is_said() {
-    let mut slow = Cockpit::new(Course::Hold);
+    let mut slow = Cockpit::new(GuidanceConfig::Hold);
     slow.feel.airspeed_kt = 40.0;
     for _ in 0..400 {
         slow.observe();
     }
     assert_eq!(slow.blockers(), flags::TOO_SLOW);
 
-    let mut upset = Cockpit::new(Course::Hold);
+    let mut upset = Cockpit::new(GuidanceConfig::Hold);
     upset.feel.roll_deg = 75.0;
     for _ in 0..400 {
         upset.observe();
@@ -206,7 +207,7 @@ fn what_blocks_engaging_is_said() {
 
 #[test]
 fn it_engages_only_after_it_has_watched_for_a_second() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.autopilot = Autopilot::new(*cockpit.autopilot.config());
     for _ in 0..40 {
         cockpit.observe();
@@ -219,7 +220,7 @@ fn it_engages_only_after_it_has_watched_for_a_second() {
 /// Engaged with the nose 12° up; the failsafe does not keep that pitch.
 #[test]
 fn failsafe_flies_level_whatever_the_pitch_was() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.pitch_deg = 12.0;
     for _ in 0..400 {
         cockpit.observe();

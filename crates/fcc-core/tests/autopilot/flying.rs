@@ -1,13 +1,14 @@
 //! What the autopilot flies once it is engaged.
 
-use fcc_core::flight::{AutopilotConfig, Course, Order};
+use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_core::flight::{AutopilotConfig, Order};
 use fcc_core::framework::Controller;
 
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
 
 #[test]
 fn taking_over_in_steady_flight_moves_nothing() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     let first = cockpit.step();
     for (ours, standing) in [
         (first.throttle, STANDING.throttle),
@@ -25,26 +26,26 @@ fn taking_over_in_steady_flight_moves_nothing() {
 
 #[test]
 fn surfaces_act_in_the_directions_of_the_house() {
-    let mut right = Cockpit::engaged(Course::Hold);
+    let mut right = Cockpit::engaged(GuidanceConfig::Hold);
     right
         .autopilot
         .command(&Order::Heading(120.0_f64.to_radians()));
     assert!(right.steps(8).aileron > STANDING.aileron + 0.01);
 
-    let mut up = Cockpit::engaged(Course::Hold);
+    let mut up = Cockpit::engaged(GuidanceConfig::Hold);
     up.autopilot.command(&Order::Altitude(914.4 + 50.0));
     let out = up.steps(8);
     assert!(out.elevator > STANDING.elevator + 0.001);
     assert!(out.throttle > STANDING.throttle + 0.01);
 
-    let mut fast = Cockpit::engaged(Course::Hold);
+    let mut fast = Cockpit::engaged(GuidanceConfig::Hold);
     fast.autopilot.command(&Order::Airspeed(110.0 * KNOT_MPS));
     assert!(fast.steps(8).throttle > STANDING.throttle + 0.01);
 }
 
 #[test]
 fn the_bank_asked_for_ends_at_the_limit() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit
         .autopilot
         .command(&Order::Heading((30.0_f64 - 120.0).to_radians()));
@@ -56,7 +57,7 @@ fn the_bank_asked_for_ends_at_the_limit() {
 /// The aircraft does not turn at all, so that commands pile up past 180°.
 #[test]
 fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
-    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     for second in 0..120 {
         cockpit.steps(40);
         let bank = cockpit.autopilot.setpoints().roll_rad;
@@ -68,7 +69,7 @@ fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
 
 #[test]
 fn too_slow_trades_altitude_for_speed() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.autopilot.command(&Order::Altitude(1_200.0));
     cockpit.feel.airspeed_kt = 55.0; // the floor is 33 m/s, 64 kt
     let out = cockpit.steps(400);
@@ -81,7 +82,7 @@ fn too_slow_trades_altitude_for_speed() {
 /// where it can still descend, instead of climbing for ever.
 #[test]
 fn what_is_captured_is_inside_the_envelope() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.airspeed_kt = 150.0;
     for _ in 0..400 {
         cockpit.observe();
@@ -98,7 +99,7 @@ fn what_is_captured_is_inside_the_envelope() {
 /// throttle never jumps.
 #[test]
 fn the_throttle_is_steady_around_the_floor() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.feel.airspeed_kt = 70.0;
     let mut last = cockpit.steps(400).throttle;
     for n in 0..600 {
@@ -114,7 +115,7 @@ fn the_throttle_is_steady_around_the_floor() {
 /// the right.
 #[test]
 fn a_heading_is_turned_to_from_where_the_nose_points() {
-    let mut cockpit = Cockpit::new(Course::Hold);
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.heading_deg = 0.0;
     for _ in 0..400 {
         cockpit.observe();
@@ -135,7 +136,7 @@ fn a_heading_is_turned_to_from_where_the_nose_points() {
 /// the seconds after says where that was. An altitude that is ordered stays.
 #[test]
 fn the_captured_altitude_is_learnt_and_an_ordered_one_is_kept() {
-    let mut cockpit = Cockpit::engaged(Course::Hold);
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     let captured = cockpit.autopilot.setpoints().altitude_m;
     cockpit.feel.altitude_m += 0.3;

@@ -1,6 +1,7 @@
 //! A flight that was cut off, taken up again.
 
-use fcc_core::flight::{AutopilotConfig, Course, Order, Resume, Surfaces, guidance::Targets};
+use fcc_core::flight::guidance::{GuidanceConfig, Targets};
+use fcc_core::flight::{AutopilotConfig, Order, Resume, Surfaces};
 use fcc_core::framework::Controller;
 
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
@@ -9,7 +10,7 @@ use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
 /// leg 3, which the thesis flies 270° further and 150 ft higher.
 #[test]
 fn a_pattern_is_gone_on_with_where_it_was() {
-    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     cockpit.step();
     let resume = Resume {
         targets: Targets {
@@ -39,7 +40,7 @@ fn a_pattern_is_gone_on_with_where_it_was() {
 
 #[test]
 fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
-    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().course);
+    let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     let flew = Surfaces {
         throttle: 0.8,
         elevator: 0.11,
@@ -90,7 +91,7 @@ fn a_flight_that_cannot_have_been_is_not_taken_up() {
         ..sane
     };
     for resume in [no_altitude, too_much_throttle, a_pattern] {
-        let mut cockpit = Cockpit::engaged(Course::Hold);
+        let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
         cockpit.autopilot.command(&Order::Resume(resume));
         cockpit.step();
         let aims = cockpit.autopilot.setpoints();

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use super::print_json;
 use crate::cli::CheckArgs;
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::config::{Aircraft, Config, Problem};
 
 #[derive(Serialize)]
@@ -27,16 +27,12 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
             Ok(_) => Vec::new(),
             Err(error) => error.problems(),
         };
-        let printed = print_json(&Checked {
+        let checked = Checked {
             file: args.file.display().to_string(),
             ok: checked.is_ok(),
             problems,
-        });
-        return if printed == Exit::Success {
-            exit
-        } else {
-            printed
         };
+        return output::json(&checked, exit);
     }
     match checked {
         Ok(config) => {
@@ -44,14 +40,17 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
                 Aircraft::XPlane(_) => "X-Plane's aircraft",
                 Aircraft::BuiltIn(_) => "the built-in aircraft",
             };
-            println!(
+            let words = format!(
                 "{}: good: flies {aircraft} at {} Hz by {}",
                 args.file.display(),
                 config.tick.rate_hz,
                 config.tick.timer
             );
+            output::result(words, exit)
         }
-        Err(error) => eprintln!("{error}"),
+        Err(error) => {
+            output::message(error);
+            exit
+        }
     }
-    exit
 }

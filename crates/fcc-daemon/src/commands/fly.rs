@@ -2,10 +2,11 @@
 
 use fcc_runtime::SpawnError;
 
-use super::{fail, print_json};
+use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
-use fcc_flight::config::{BuiltInSection, Config, CourseSection};
+use crate::output;
+use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
 };
@@ -20,7 +21,7 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
     let (mut config, as_given) = match configuration(args) {
         Ok(configured) => configured,
         Err(message) => {
-            eprintln!("{message}");
+            output::message(message);
             return Exit::Usage;
         }
     };
@@ -31,9 +32,9 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
         } else {
             Pace::RealTime
         },
-        length: Length::Engaged(args.seconds.unwrap_or(match config.course {
-            CourseSection::Hold => DEFAULT_HOLD_S,
-            CourseSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
+        length: Length::Engaged(args.seconds.unwrap_or(match config.guidance {
+            GuidanceSection::Hold => DEFAULT_HOLD_S,
+            GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
         quiet: args.quiet,
         announce: true,
@@ -71,13 +72,11 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
     if json {
-        let printed = print_json(outcome);
-        if printed != Exit::Success {
-            return printed;
-        }
+        output::json(outcome, outcome.exit);
     } else {
-        println!("{}", outcome.to_text());
+        output::result(outcome.to_text(), outcome.exit);
     }
+    // A flight ends as it was flown, even if that cannot be printed.
     outcome.exit
 }
 

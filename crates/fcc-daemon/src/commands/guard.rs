@@ -7,6 +7,7 @@ use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 
 use super::fail;
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::flight::stand_guard;
 
 /// Waits until the daemon that started this is gone.
@@ -23,20 +24,22 @@ pub(super) fn guard() -> Exit {
     match stand_guard(io::stdin().lock()) {
         Ok(None | Some((_, Released::Gone))) => Exit::Success,
         Ok(Some((simulator, Released::CalledOff))) => {
-            eprintln!(
+            output::message(format!(
                 "fccd guard: the daemon is gone; another has taken X-Plane at {simulator} over"
-            );
+            ));
             Exit::Success
         }
         Ok(Some((simulator, Released::Confirmed))) => {
-            eprintln!("fccd guard: the daemon is gone; X-Plane at {simulator} was released");
+            output::message(format!(
+                "fccd guard: the daemon is gone; X-Plane at {simulator} was released"
+            ));
             Exit::Success
         }
         Ok(Some((simulator, Released::Unconfirmed))) => {
-            eprintln!(
+            output::message(format!(
                 "fccd guard: the daemon is gone, and X-Plane at {simulator} does not show that it \
                  has its controls back: switch off override_joystick and override_throttles there"
-            );
+            ));
             Exit::NotReleased
         }
         Err(error) => fail(&format!("guard: {error}")),

@@ -3,9 +3,10 @@
 use fcc_telemetry::recording::{self, Entry};
 use fcc_telemetry::recordings_table;
 
-use super::{fail, print_json, progress};
+use super::{fail, progress};
 use crate::cli::ListArgs;
 use crate::exit::Exit;
+use crate::output;
 
 /// Lists the recordings in a folder. What is no recording is said and left.
 pub(super) fn list(args: &ListArgs) -> Exit {
@@ -31,15 +32,15 @@ pub(super) fn list(args: &ListArgs) -> Exit {
     }
     bar.finish_and_clear();
     for error in refused {
-        eprintln!("{error}");
+        output::message(error);
     }
     if args.json {
-        return print_json(&entries);
+        return output::json(&entries, Exit::Success);
     }
-    if entries.is_empty() {
-        println!("{}: no recordings", args.folder.display());
+    let text = if entries.is_empty() {
+        format!("{}: no recordings", args.folder.display())
     } else {
-        println!("{}", recordings_table(&entries));
-    }
-    Exit::Success
+        recordings_table(&entries)
+    };
+    output::result(text, Exit::Success)
 }

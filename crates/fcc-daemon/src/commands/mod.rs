@@ -17,18 +17,37 @@ mod timing;
 #[cfg(feature = "live")]
 mod top;
 
+use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
-use std::{fs, io};
 
-use clap::CommandFactory;
-use serde::Serialize;
+use clap::{CommandFactory, Parser};
+use clap_complete::Shell;
 
 use crate::cli::{Cli, Command};
 use crate::exit::Exit;
+use crate::output;
 
-/// Carries out a command.
-pub fn run(cli: Cli) -> Exit {
-    match cli.command {
+/// Carries out what was typed.
+pub fn run() -> Exit {
+    match Cli::try_parse() {
+        Ok(cli) => carry_out(cli.command),
+        // Of what stands on the terminal: an error in what was typed.
+        Err(error) if error.use_stderr() => {
+            let _ = error.print();
+            Exit::Usage
+        }
+        Err(help) => match help.print() {
+            Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                fail(&format!("the help could not be printed: {error}"))
+            }
+            _ => Exit::Success,
+        },
+    }
+}
+
+fn carry_out(command: Command) -> Exit {
+    match command {
         Command::Fly(args) => fly::fly(&args),
         Command::Run(args) => run::run(&args),
         Command::List(args) => list::list(&args),
@@ -43,12 +62,16 @@ pub fn run(cli: Cli) -> Exit {
         Command::Doctor(args) => doctor::doctor(&args),
         Command::Report(args) => report::report(&args),
         Command::Guard => guard::guard(),
-        Command::Completions { shell } => {
-            clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut io::stdout());
-            Exit::Success
-        }
+        Command::Completions { shell } => completions(shell),
         Command::Man { folder } => man(&folder),
     }
+}
+
+fn completions(shell: Shell) -> Exit {
+    // Where it cannot write, `generate` panics.
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut script);
+    output::bytes(&script, Exit::Success)
 }
 
 /// Writes a manual page for the program and for each command.
@@ -61,20 +84,8 @@ fn man(folder: &Path) -> Exit {
     }
 }
 
-/// Prints a result for other tools to read.
-fn print_json<T: Serialize>(value: &T) -> Exit {
-    let mut out = io::stdout().lock();
-    let printed = serde_json::to_writer_pretty(&mut out, value)
-        .map_err(io::Error::from)
-        .and_then(|()| io::Write::write_all(&mut out, b"\n"));
-    match printed {
-        Ok(()) => Exit::Success,
-        Err(error) => fail(&format!("the result could not be printed: {error}")),
-    }
-}
-
 /// Says what went wrong.
 fn fail(message: &str) -> Exit {
-    eprintln!("fccd: {message}");
+    output::message(format!("fccd: {message}"));
     Exit::Failure
 }

@@ -3,9 +3,10 @@
 use fcc_telemetry::live::{Commander, FlightOrder, NewSetpoints, OrderError};
 use serde::Serialize;
 
-use super::{fail, print_json};
+use super::fail;
 use crate::cli::{OrderArgs, OrderWhat, SetArgs};
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
@@ -22,7 +23,7 @@ struct Told {
 pub(super) fn order(args: &OrderArgs) -> Exit {
     let order = FlightOrder::from(&args.what);
     if let Err(words) = order.check() {
-        eprintln!("fccd: {words}");
+        output::message(format!("fccd: {words}"));
         return Exit::Usage;
     }
     let told = Commander::open(&args.instance).and_then(|mut daemon| daemon.order(order));
@@ -32,24 +33,24 @@ pub(super) fn order(args: &OrderArgs) -> Exit {
         Err(_) => Exit::Failure,
     };
     if args.json {
-        let printed = print_json(&Told {
+        let told = Told {
             instance: args.instance.to_string(),
             carried_out: told.is_ok(),
             tick: told.as_ref().ok().copied(),
             why: told.err().map(|error| error.to_string()),
-        });
-        return if printed == Exit::Success {
-            exit
-        } else {
-            printed
         };
-    }
-    match told {
-        Ok(tick) => println!("carried out in tick {tick}"),
-        Err(error) => {
-            fail(&error.to_string());
+        output::json(&told, exit);
+    } else {
+        match told {
+            Ok(tick) => {
+                output::result(format!("carried out in tick {tick}"), exit);
+            }
+            Err(error) => {
+                fail(&error.to_string());
+            }
         }
     }
+    // What was carried out stays so, even if that cannot be printed.
     exit
 }
 

@@ -1,12 +1,14 @@
 //! `fccd recover FILE`.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use fcc_telemetry::recording;
 
-use super::{fail, print_json, progress};
+use super::{fail, progress};
 use crate::cli::RecoverArgs;
 use crate::exit::Exit;
+use crate::output;
 
 /// Makes a whole recording of one that was cut off.
 pub(super) fn recover(args: &RecoverArgs) -> Exit {
@@ -16,21 +18,22 @@ pub(super) fn recover(args: &RecoverArgs) -> Exit {
     bar.finish_and_clear();
     match recovered {
         Err(error) => fail(&error.to_string()),
-        Ok(recovered) if args.json => print_json(&recovered),
+        Ok(recovered) if args.json => output::json(&recovered, Exit::Success),
         Ok(recovered) => {
             let file = recovered.path.display();
             let ticks = recovered.ticks;
-            match recovered.cut {
-                None => println!("{file}: is whole: {ticks} ticks"),
-                Some(cut) => println!("{file}: was {cut}; is whole now: {ticks} ticks"),
-            }
+            let mut text = match recovered.cut {
+                None => format!("{file}: is whole: {ticks} ticks"),
+                Some(cut) => format!("{file}: was {cut}; is whole now: {ticks} ticks"),
+            };
             if let Some(kept) = recovered.kept {
-                println!(
-                    "{}: the file as it was, as there may be more behind the damage",
+                let _ = write!(
+                    text,
+                    "\n{}: the file as it was, as there may be more behind the damage",
                     kept.display()
                 );
             }
-            Exit::Success
+            output::result(text, Exit::Success)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `fccd replay`: a recording flown again.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write as _};
+use std::io::{self, BufWriter};
 use std::path::Path;
 use std::time::Instant;
 
@@ -9,9 +9,10 @@ use fcc_telemetry::{FlightMessage, FlightRecord};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use super::{fail, print_json, progress};
+use super::{fail, progress};
 use crate::cli::ReplayArgs;
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{Chain, ChainMessages, Csv, Deviation, Identity, Replay, Run, run};
 
@@ -57,7 +58,7 @@ pub(super) fn replay(args: &ReplayArgs) -> Exit {
         Some(path) => match Config::load(path) {
             Ok(other) => deviate(&chain, other, args.csv.as_deref()),
             Err(error) => {
-                eprintln!("{error}");
+                output::message(error);
                 return Exit::Usage;
             }
         },
@@ -144,15 +145,10 @@ fn fly(
 impl Flown {
     fn print(&self, json: bool) -> Exit {
         if json {
-            let printed = print_json(self);
-            if printed != Exit::Success {
-                return printed;
-            }
+            output::json(self, self.exit())
         } else {
-            // Whoever reads only the first line still gets the exit code.
-            let _ = writeln!(io::stdout(), "{}", self.to_text());
+            output::result(self.to_text(), self.exit())
         }
-        self.exit()
     }
 
     fn exit(&self) -> Exit {

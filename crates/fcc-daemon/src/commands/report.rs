@@ -1,17 +1,17 @@
 //! `fccd report FILE`: what a recording tells.
 
 use std::fs;
-use std::io::{self, Write as _};
 use std::path::Path;
 
-use fcc_core::flight::Course;
+use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_telemetry::recording::{Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
-use super::{fail, print_json, progress};
+use super::{fail, progress};
 use crate::cli::ReportArgs;
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::config::Config;
 
 /// Messages between two looks at how far the file is read.
@@ -20,14 +20,8 @@ const BAR_EVERY: u64 = 4_096;
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Exit {
     match read(args).and_then(|report| write_page(args, &report).map(|()| report)) {
-        Ok(report) if args.json => print_json(&report),
-        Ok(report) => match writeln!(io::stdout(), "{}", report.to_text()) {
-            // Whoever reads the first lines alone has what they wanted.
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                fail(&format!("the tables could not be printed: {error}"))
-            }
-            _ => Exit::Success,
-        },
+        Ok(report) if args.json => output::json(&report, Exit::Success),
+        Ok(report) => output::result(report.to_text(), Exit::Success),
         Err(message) => fail(&message),
     }
 }
@@ -105,8 +99,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 /// is scored.
 fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.course {
-        Course::TimedPattern(pattern) => Some(pattern),
-        Course::Hold => None,
+    match config.guidance {
+        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
+        GuidanceConfig::Hold => None,
     }
 }

@@ -3,6 +3,7 @@
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::exit::Exit;
+use crate::output;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Length, Pace, Plan};
 
@@ -23,7 +24,7 @@ pub(super) fn run(args: &RunArgs) -> Exit {
             conduct(&config, Some(text), plan, args.json)
         }
         Err(error) => {
-            eprintln!("{error}");
+            output::message(error);
             Exit::Usage
         }
     }

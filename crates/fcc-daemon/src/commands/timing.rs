@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 use fcc_telemetry::{TimingReport, timing_table};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{fail, print_json};
+use super::fail;
 use crate::cli::TimingArgs;
 use crate::exit::Exit;
-use fcc_flight::config::{BuiltInSection, Config, CourseSection, EarlyWakeSection, LoopSection};
+use crate::output;
+use fcc_flight::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
 use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
@@ -25,10 +26,9 @@ pub(super) fn timing(args: &TimingArgs) -> Exit {
         }
     }
     if args.json {
-        return print_json(&reports);
+        return output::json(&reports, Exit::Success);
     }
-    println!("{}", timing_table(&reports));
-    Exit::Success
+    output::result(timing_table(&reports), Exit::Success)
 }
 
 fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
@@ -38,7 +38,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
             timer: args.timer,
             early_wake: early_wake(args),
         },
-        course: CourseSection::Hold,
+        guidance: GuidanceSection::Hold,
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };

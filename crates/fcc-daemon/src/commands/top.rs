@@ -27,9 +27,10 @@ use fcc_telemetry::live::{WatchError, Watcher};
 
 use self::picture::Picture;
 use self::snapshot::Snapshot;
-use super::{fail, print_json};
+use super::fail;
 use crate::cli::TopArgs;
 use crate::exit::Exit;
+use crate::output;
 
 /// A status comes each second.
 const PATIENCE: Duration = Duration::from_millis(1_500);
@@ -42,7 +43,7 @@ pub(super) fn top(args: &TopArgs) -> Exit {
     };
     if args.json {
         return match snapshot(watcher) {
-            Ok(snapshot) => print_json(&snapshot),
+            Ok(snapshot) => output::json(&snapshot, Exit::Success),
             Err(error) => fail(&error.to_string()),
         };
     }

@@ -3,7 +3,7 @@
 
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
-use fcc_flight::config::{Config, CourseSection};
+use fcc_flight::config::{Config, GuidanceSection};
 
 use super::flights::{Happenings, again, fly, records, rough};
 use super::{deviation, flipped};
@@ -134,18 +134,18 @@ fn the_recorded_configuration_does_not_deviate() {
     }
 }
 
-/// A course that turns the other way: after the hold of 20 s its set point is
+/// A pattern that turns the other way: after the hold of 20 s its set point is
 /// 180° from the recorded one (90° right, 90° left), and a second leg later
 /// 360°, which is the same heading.
 #[test]
-fn another_course_deviates_by_what_the_course_says() {
+fn another_pattern_deviates_by_what_the_pattern_says() {
     let mut config = rough();
     let happenings = Happenings {
         steps: 80 + 40 * 39,
         ..Happenings::default()
     };
     let messages = fly(&config, &happenings);
-    let CourseSection::TimedPattern { turn_deg, .. } = &mut config.course else {
+    let GuidanceSection::TimedPattern { turn_deg, .. } = &mut config.guidance else {
         panic!("the default is a pattern");
     };
     assert_eq!(*turn_deg, 90.0);

@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
+use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::navigation::NavigationConfig;
-use fcc_core::flight::{AutopilotConfig, Course, Scale};
+use fcc_core::flight::{AutopilotConfig, Scale};
 use serde::{Deserialize, Serialize};
 
-use super::CourseSection;
+use super::GuidanceSection;
 use super::units::{FOOT_PER_MINUTE_MPS, KNOT_MPS};
 
 /// `[autopilot]`: gains and limits. What is left out is as for a Cessna 172.
@@ -46,11 +47,11 @@ impl Default for AutopilotSection {
 }
 
 impl AutopilotSection {
-    /// The core's configuration: this section, a course, and how old a reading
+    /// The core's configuration: this section, the guidance, and how old a reading
     /// may become.
     pub fn to_core(
         &self,
-        course: &CourseSection,
+        guidance: &GuidanceSection,
         max_age: Duration,
         frozen_after: Duration,
     ) -> AutopilotConfig {
@@ -59,7 +60,7 @@ impl AutopilotSection {
             max_age,
             frozen_after,
             navigation: NavigationConfig::from(&self.navigation),
-            course: Course::from(course),
+            guidance: GuidanceConfig::from(guidance),
             heading: HeadingConfig::from(&self.heading),
             altitude: AltitudeConfig::from(&self.altitude),
             airspeed: AirspeedConfig::from(&self.airspeed),

@@ -8,9 +8,9 @@
 mod autopilot;
 mod budget;
 mod built_in;
-mod course;
 mod cpu;
 mod error;
+mod guidance;
 mod places;
 mod ranges;
 mod recording;
@@ -33,9 +33,9 @@ use serde::{Deserialize, Serialize};
 pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
-pub use course::CourseSection;
 pub use cpu::CpuChoice;
 pub use error::{ConfigError, Problem};
+pub use guidance::GuidanceSection;
 pub use recording::{CompressionChoice, RecordingSection};
 pub use restart::{RestartMode, RestartSection};
 pub use runtime::{
@@ -68,8 +68,8 @@ pub struct Config {
     pub restart: RestartSection,
     /// Who may watch, live.
     pub telemetry: TelemetrySection,
-    /// What is flown.
-    pub course: CourseSection,
+    /// The mode that is flown once engaged.
+    pub guidance: GuidanceSection,
     /// Gains and limits.
     pub autopilot: AutopilotSection,
     /// The aircraft is X-Plane's.
@@ -163,7 +163,7 @@ impl Config {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
             ..self.autopilot.to_core(
-                &self.course,
+                &self.guidance,
                 Duration::from_millis(self.failsafe.sensor_max_age_ms),
                 Duration::from_secs_f64(self.failsafe.sensor_frozen_s),
             )

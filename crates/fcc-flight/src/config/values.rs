@@ -4,6 +4,7 @@
 use toml::Value;
 use toml::map::Entry;
 
+use super::wording::renamed;
 use super::{Config, ConfigError, Problem};
 
 /// What the configuration is called in messages when no file is meant.
@@ -78,7 +79,8 @@ fn put(values: &mut Value, key: &str, value: Value) -> Option<()> {
 }
 
 fn unknown(key: &str) -> ConfigError {
-    invalid(Some(key), "there is no such key".to_owned())
+    let message = renamed(key).unwrap_or_else(|| "there is no such key".to_owned());
+    invalid(Some(key), message)
 }
 
 fn invalid(key: Option<&str>, message: String) -> ConfigError {
@@ -126,11 +128,14 @@ mod tests {
 
     #[test]
     fn a_section_is_changed_as_a_whole() {
-        let hold = toml::from_str("kind = \"hold\"").unwrap();
+        let hold = toml::from_str("mode = \"hold\"").unwrap();
         let changed = plain()
-            .with_values([("course", Value::Table(hold))])
+            .with_values([("guidance", Value::Table(hold))])
             .unwrap();
-        assert_eq!(changed.value("course.kind").unwrap().as_str(), Some("hold"));
+        assert_eq!(
+            changed.value("guidance.mode").unwrap().as_str(),
+            Some("hold")
+        );
     }
 
     #[test]
@@ -146,6 +151,8 @@ mod tests {
             unknown.contains("there is no such key: choose"),
             "{unknown}"
         );
+        let former = words("course.kind", Value::String("hold".to_owned()));
+        assert!(former.contains("[guidance], its kind mode"), "{former}");
         let through = words("loop.rate_hz.x", Value::Float(1.0));
         assert_eq!(through, "config: loop.rate_hz.x: there is no such key");
         let nan = words("loop.rate_hz", Value::Float(f64::NAN));

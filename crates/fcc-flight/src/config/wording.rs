@@ -9,7 +9,8 @@ use super::ranges::range_of;
 pub(super) fn plainly(complaint: &str, key: Option<&str>) -> String {
     let range = key.and_then(range_of);
     let range = range.map(|(least, most)| format!("{least} to {most}"));
-    let plain = None
+    let plain = key
+        .and_then(renamed)
         .or_else(|| unknown_key(complaint))
         .or_else(|| unknown_value(complaint))
         .or_else(|| wrong_type(complaint, range.as_deref()))
@@ -19,6 +20,21 @@ pub(super) fn plainly(complaint: &str, key: Option<&str>) -> String {
         "wanted string or table" => "choose a text in quotes".to_owned(),
         other => other.replace('\n', " "),
     })
+}
+
+/// Keys by their former names, and what they are called now.
+const RENAMED: &[(&str, &str)] = &[(
+    "course",
+    "a course is a ground track: the section is called [guidance], its kind mode",
+)];
+
+/// What a key of a former version is called now.
+pub(super) fn renamed(key: &str) -> Option<String> {
+    let (_, now) = RENAMED.iter().find(|(former, _)| {
+        key.strip_prefix(former)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    })?;
+    Some(format!("is a former name: {now}"))
 }
 
 fn unknown_key(complaint: &str) -> Option<String> {

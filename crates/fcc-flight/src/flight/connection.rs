@@ -2,7 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use fcc_xplane::{Control, Released, SimulatorState, Trouble, XPlane, XPlaneConfig, XPlaneStatus};
+use fcc_xplane::{
+    Control, Missing, Released, SimulatorState, Trouble, XPlane, XPlaneConfig, XPlaneStatus,
+};
 
 use super::guard::Guard;
 use super::relief::relieve;
@@ -28,6 +30,8 @@ pub(super) struct Connection {
     trouble: Option<(Trouble, Instant)>,
     told: Told,
     pace: SimulatorState,
+    /// What was last reported as missing.
+    missing: Vec<Missing>,
     /// When a guard was last looked for.
     relieved: Instant,
 }
@@ -58,6 +62,7 @@ impl Connection {
             trouble: None,
             told: Told::Nothing,
             pace: SimulatorState::Running,
+            missing: Vec::new(),
             relieved: Instant::now(),
         }
     }
@@ -82,7 +87,10 @@ impl Connection {
                     trouble.to_string()
                 })
             }
-            None => self.good_news().or_else(|| self.change_of_pace()),
+            None => self
+                .good_news()
+                .or_else(|| self.change_of_pace())
+                .or_else(|| self.change_of_missing()),
         }
     }
 
@@ -103,7 +111,11 @@ impl Connection {
             // Who no longer writes does not know whether it would work now.
             Told::Trouble(Trouble::Unconfirmed(_)) => (self.status.control() == Control::Held)
                 .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
-            Told::Nothing | Told::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
+            Told::Nothing => Some(format!(
+                "X-Plane at {simulator} answers; what engages is {}",
+                self.status.engage_switch()
+            )),
+            Told::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
         }
     }
 
@@ -122,6 +134,19 @@ impl Connection {
         };
         let before = std::mem::replace(&mut self.pace, now);
         (before != now).then(|| words.to_owned())
+    }
+
+    /// A value that X-Plane does not send though it was asked for, or that it
+    /// sends after all: each is reported once, one at a time.
+    fn change_of_missing(&mut self) -> Option<String> {
+        let now = self.status.missing();
+        if let Some(lost) = now.iter().find(|what| !self.missing.contains(what)) {
+            self.missing.push(lost.clone());
+            return Some(lost.to_string());
+        }
+        let back = self.missing.iter().position(|what| !now.contains(what))?;
+        let what = self.missing.swap_remove(back).what();
+        Some(format!("X-Plane now sends {what}"))
     }
 
     /// The flight is over. Waits until X-Plane shows that control is back, if

@@ -66,7 +66,7 @@ pub fn fly(
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
     };
     let timer_name = timer.name();
-    let course = assembly.autopilot.config().course;
+    let guidance = assembly.autopilot.config().guidance;
     let names = Names::of(&assembly);
     let kept = Kept::from_new_threads().map_err(FlyError::Signals)?;
     // There is nothing to watch where time does not pass.
@@ -75,7 +75,7 @@ pub fn fly(
         Pace::Lockstep => Live::off(),
     };
     let aircraft = names.aircraft();
-    let mut watch = Watch::new(&course, assembly.truth, plan, names.clone(), live);
+    let mut watch = Watch::new(&guidance, assembly.truth, plan, names.clone(), live);
     let mut wish = recording;
     if let Some(wish) = &mut wish {
         let facts = LoopFacts {

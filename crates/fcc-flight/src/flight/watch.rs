@@ -1,7 +1,7 @@
 //! Takes what the loop tells, and keeps what matters later.
 
-use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::flight::{Course, Order};
+use fcc_core::flight::Order;
+use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use fcc_core::framework::{self, EventKind, Message, State};
 use fcc_runtime::OrderSender;
 use fcc_sim::Truth;
@@ -45,9 +45,9 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Watches a flight along a course.
+    /// Watches a flight with this guidance.
     pub(super) fn new(
-        course: &Course,
+        guidance: &GuidanceConfig,
         truth: Option<TruthReceiver>,
         plan: Plan,
         names: Names,
@@ -56,7 +56,7 @@ impl Watch {
         Self {
             names,
             truth,
-            log: pattern(course).map(FlightLog::new),
+            log: pattern(guidance).map(FlightLog::new),
             events: Vec::new(),
             start_ns: None,
             engaged_at_s: None,
@@ -251,10 +251,10 @@ impl Names {
     }
 }
 
-fn pattern(course: &Course) -> Option<TimedPatternConfig> {
-    match course {
-        Course::TimedPattern(pattern) => Some(*pattern),
-        Course::Hold => None,
+fn pattern(guidance: &GuidanceConfig) -> Option<TimedPatternConfig> {
+    match guidance {
+        GuidanceConfig::TimedPattern(pattern) => Some(*pattern),
+        GuidanceConfig::Hold => None,
     }
 }
 

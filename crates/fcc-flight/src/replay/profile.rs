@@ -1,4 +1,4 @@
-//! The course of a value over a flight of unknown length, small enough for a
+//! A value over a flight of unknown length, small enough for a
 //! line of a terminal.
 
 /// Columns of a line at most.

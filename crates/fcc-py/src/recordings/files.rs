@@ -8,7 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
-use fcc_core::flight::Course;
+use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{Chain, Deviation, Identity, Replay, Run, run};
@@ -117,9 +117,9 @@ fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
 /// not be understood, and then nothing is scored.
 fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.course {
-        Course::TimedPattern(pattern) => Some(pattern),
-        Course::Hold => None,
+    match config.guidance {
+        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
+        GuidanceConfig::Hold => None,
     }
 }
 

@@ -38,7 +38,8 @@ impl Daemon {
         let text = format!(
             "[failsafe]\nsensor_frozen_s = 0.0\n\n[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
              [recording]\nfolder = \"{recordings}\"\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
-             [course]\nkind = \"hold\"\n"
+             [guidance]
+mode = \"hold\"\n"
         );
         fs::write(&config, text)?;
         let process = Command::new(fccd)

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use super::Resume;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
-use crate::flight::guidance::TimedPatternConfig;
+use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
 
 /// Everything about the autopilot that is the user's choice.
@@ -22,8 +22,8 @@ pub struct AutopilotConfig {
     pub settling: Duration,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
-    /// What is flown once engaged.
-    pub course: Course,
+    /// The mode that is flown once engaged.
+    pub guidance: GuidanceConfig,
     /// Gains of the heading loop.
     pub heading: HeadingConfig,
     /// Gains of the altitude loop.
@@ -43,22 +43,13 @@ impl Default for AutopilotConfig {
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             navigation: NavigationConfig::default(),
-            course: Course::TimedPattern(TimedPatternConfig::default()),
+            guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),
             altitude: AltitudeConfig::default(),
             airspeed: AirspeedConfig::default(),
             envelope: Envelope::default(),
         }
     }
-}
-
-/// What is flown once engaged.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Course {
-    /// Keep what was captured, until ordered otherwise.
-    Hold,
-    /// The timed pattern of the thesis.
-    TimedPattern(TimedPatternConfig),
 }
 
 /// What may be asked of the autopilot while it is engaged. Each but the last

@@ -14,13 +14,13 @@ use core::hint::black_box;
 use libm::cos;
 
 use capture::Capture;
-pub use config::{AutopilotConfig, Course, Order};
+pub use config::{AutopilotConfig, Order};
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
-use super::guidance::{Targets, TimedPattern};
+use super::guidance::{GuidanceConfig, Targets, TimedPattern};
 use super::navigation::{Estimate, FrozenWatch, Navigation, accept};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
@@ -37,7 +37,7 @@ pub struct Autopilot {
     accepted: Measurements,
     navigation: Navigation,
     frozen: FrozenWatch,
-    course: Option<TimedPattern>,
+    pattern: Option<TimedPattern>,
     targets: Targets,
     capture: Option<Capture>,
     heading: HeadingLoop,
@@ -55,7 +55,7 @@ impl Autopilot {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation),
             frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
-            course: None,
+            pattern: None,
             targets: Targets::default(),
             capture: None,
             heading: HeadingLoop::new(config.heading),
@@ -189,9 +189,9 @@ impl Controller for Autopilot {
         };
         self.navigation.mark_altitude();
         self.capture = Some(Capture::of(estimate.altitude_m));
-        self.course = match self.config.course {
-            Course::Hold => None,
-            Course::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
+        self.pattern = match self.config.guidance {
+            GuidanceConfig::Hold => None,
+            GuidanceConfig::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
         };
         let standing = self
             .accepted
@@ -218,7 +218,7 @@ impl Controller for Autopilot {
             (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
             _ => 0.0,
         };
-        if let Some(pattern) = &mut self.course {
+        if let Some(pattern) = &mut self.pattern {
             pattern.shift_altitude(shift_m);
             self.targets = pattern.step(self.clock.step_s());
         } else {
@@ -304,7 +304,7 @@ impl Controller for Autopilot {
     }
 
     fn disengage(&mut self) {
-        self.course = None;
+        self.pattern = None;
         self.capture = None;
         self.setpoints = Setpoints::default();
     }
@@ -326,7 +326,7 @@ impl Controller for Autopilot {
             _ => {}
         }
         if order.ends_pattern() {
-            self.course = None;
+            self.pattern = None;
         }
     }
 

@@ -5,9 +5,9 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
+use crate::flight::Order;
 use crate::flight::Surfaces;
-use crate::flight::guidance::{Targets, TimedPattern};
-use crate::flight::{Course, Order};
+use crate::flight::guidance::{GuidanceConfig, Targets, TimedPattern};
 
 /// What was flown when a flight was cut off. Ordered right after engaging, it
 /// puts the autopilot where it was.
@@ -61,15 +61,15 @@ impl Autopilot {
         if !resume.is_valid() {
             return;
         }
-        let course = match (resume.pattern_s, self.config.course) {
+        let pattern = match (resume.pattern_s, self.config.guidance) {
             (None, _) => None,
-            (Some(elapsed_s), Course::TimedPattern(config)) => {
+            (Some(elapsed_s), GuidanceConfig::TimedPattern(config)) => {
                 Some(TimedPattern::resume(config, resume.targets, elapsed_s))
             }
             // There is no such pattern here.
-            (Some(_), Course::Hold) => return,
+            (Some(_), GuidanceConfig::Hold) => return,
         };
-        let aimed = course
+        let aimed = pattern
             .as_ref()
             .map_or(resume.targets, TimedPattern::targets);
         let off_rad = self.navigation.estimate().heading_rad - aimed.heading_rad;
@@ -80,8 +80,11 @@ impl Autopilot {
             heading_rad: resume.targets.heading_rad + turns_rad,
             altitude_m: resume.targets.altitude_m,
         };
-        self.course = course.map(|pattern| pattern.captured_at(captured));
-        self.targets = self.course.as_ref().map_or(captured, TimedPattern::targets);
+        self.pattern = pattern.map(|pattern| pattern.captured_at(captured));
+        self.targets = self
+            .pattern
+            .as_ref()
+            .map_or(captured, TimedPattern::targets);
         // What was captured is known as well as it ever will be.
         self.capture = None;
         self.take_over(&resume.surfaces);

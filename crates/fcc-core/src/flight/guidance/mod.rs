@@ -4,6 +4,15 @@ mod pattern;
 
 pub use pattern::{TimedPattern, TimedPatternConfig};
 
+/// The mode that is flown once engaged.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum GuidanceConfig {
+    /// Keep what was captured, until commanded otherwise.
+    Hold,
+    /// The timed pattern of the thesis.
+    TimedPattern(TimedPatternConfig),
+}
+
 /// What guidance asks of control.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]

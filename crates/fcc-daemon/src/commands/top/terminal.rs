@@ -1,15 +1,21 @@
 //! The terminal: keys, redrawing, and leaving it as it was.
 
 use std::io;
+use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use fcc_telemetry::Instance;
 use fcc_telemetry::live::Watcher;
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::event::{self, Event as Input, KeyCode, KeyEventKind, KeyModifiers};
+use ratatui::crossterm::terminal::disable_raw_mode;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
 
 use super::picture::Picture;
 use super::screen;
@@ -19,18 +25,36 @@ use super::screen;
 const REDRAW_EVERY: Duration = Duration::from_millis(67);
 /// How long nothing may come before it is asked whether the daemon is gone.
 const SILENCE: Duration = Duration::from_secs(1);
+/// How long a signal waits for a picture that the terminal does not take.
+const HELD: Duration = Duration::from_secs(1);
 
 /// Shows a flight until somebody presses `q`.
 pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
-    let told_to_end = Arc::new(AtomicBool::new(false));
-    for signal in [SIGTERM, SIGINT, SIGHUP] {
-        signal_hook::flag::register(signal, Arc::clone(&told_to_end))?;
-    }
+    let told_to_end = end_by_signals()?;
     // From here on a panic restores the terminal before it is printed.
     let mut terminal = ratatui::try_init().inspect_err(|_| ratatui::restore())?;
     let shown = show(&mut terminal, instance, watcher, &told_to_end);
     ratatui::try_restore()?;
     shown
+}
+
+/// A flag that a signal sets. A terminal that is held makes the drawing wait
+/// for ever: then the signal ends the program without it.
+fn end_by_signals() -> io::Result<Arc<AtomicBool>> {
+    let told_to_end = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&told_to_end);
+    let mut signals = Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+    thread::Builder::new()
+        .name("fccd-signals".to_owned())
+        .spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                flag.store(true, Ordering::Relaxed);
+                thread::sleep(HELD);
+                let _ = disable_raw_mode();
+                low_level::exit(128 + signal);
+            }
+        })?;
+    Ok(told_to_end)
 }
 
 fn show(
@@ -66,20 +90,77 @@ fn show(
             None => {}
         }
         terminal.draw(|frame| screen::draw(frame, instance, &picture))?;
-        while event::poll(next.saturating_duration_since(Instant::now()))? {
-            match event::read()? {
-                Input::Key(key) if key.kind == KeyEventKind::Press => match key.code {
-                    KeyCode::Char('q') | KeyCode::Esc => return Ok(()),
-                    KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => {
-                        return Ok(());
-                    }
-                    _ => {}
-                },
-                // The new size shows at once.
-                Input::Resize(..) => break,
-                _ => {}
+        while let Some(key) = key_before(next)? {
+            if key == Key::Quit {
+                return Ok(());
+            }
+            if Instant::now() >= next {
+                break;
             }
         }
     }
     Ok(())
+}
+
+/// What was pressed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Key {
+    Quit,
+    Other,
+}
+
+impl Key {
+    /// What a terminal in raw mode sends.
+    fn of(bytes: &[u8]) -> Self {
+        const CTRL_C: u8 = 3;
+        const ESCAPE: u8 = 0x1b;
+        match bytes {
+            // Alone; before others it begins the name of a key.
+            [b'q' | CTRL_C, ..] | [ESCAPE] => Self::Quit,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// The next key, if one comes until then.
+///
+/// # Errors
+/// When the terminal is gone. (Crossterm's own reader would look for keys for
+/// ever there.)
+fn key_before(then: Instant) -> io::Result<Option<Key>> {
+    let input = io::stdin();
+    let mut fds = [PollFd::new(input.as_fd(), PollFlags::POLLIN)];
+    let left = then.saturating_duration_since(Instant::now());
+    // To the next millisecond: less would not wait at all.
+    let timeout =
+        PollTimeout::try_from(left + Duration::from_millis(1)).unwrap_or(PollTimeout::ZERO);
+    match poll(&mut fds, timeout) {
+        // A signal, or nothing.
+        Err(Errno::EINTR) | Ok(0) => return Ok(None),
+        Err(error) => return Err(error.into()),
+        Ok(_) => {}
+    }
+    let mut bytes = [0; 64];
+    match nix::unistd::read(&input, &mut bytes) {
+        Ok(0) => Err(io::Error::other("it is gone")),
+        Ok(length) => Ok(bytes.get(..length).map(Key::of)),
+        Err(Errno::EINTR | Errno::EAGAIN) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bytes as xterm's manual on control sequences gives them.
+    #[test]
+    fn q_escape_and_control_c_quit_and_an_arrow_does_not() {
+        for bytes in [&b"q"[..], b"\x1b", b"\x03"] {
+            assert_eq!(Key::of(bytes), Key::Quit, "{bytes:?}");
+        }
+        for bytes in [&b"\x1b[A"[..], b"x", b"\x1bOq"] {
+            assert_eq!(Key::of(bytes), Key::Other, "{bytes:?}");
+        }
+    }
 }

@@ -36,7 +36,7 @@ pub(super) enum Matter {
 }
 
 impl Flown {
-    /// Follows flights of this course.
+    /// Follows flights of this pattern.
     pub(super) const fn new(configured: Option<TimedPatternConfig>) -> Self {
         Self {
             configured,

@@ -17,8 +17,8 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::guidance::{Targets, TimedPatternConfig};
-use fcc_core::flight::{Course, Order, Resume};
+use fcc_core::flight::guidance::{GuidanceConfig, Targets, TimedPatternConfig};
+use fcc_core::flight::{Order, Resume};
 use fcc_core::framework::{Message, Switch};
 use fcc_runtime::OrderSender;
 use fcc_telemetry::{FlightMessage, FlightRecord};
@@ -67,9 +67,9 @@ impl RestartWish {
             max_age: Duration::from_secs_f64(section.max_age_s),
             path,
             fingerprint: fingerprint(config),
-            pattern: match config.autopilot_config().course {
-                Course::TimedPattern(pattern) => Some(pattern),
-                Course::Hold => None,
+            pattern: match config.autopilot_config().guidance {
+                GuidanceConfig::TimedPattern(pattern) => Some(pattern),
+                GuidanceConfig::Hold => None,
             },
         }
     }
@@ -84,7 +84,7 @@ fn state_directory() -> Option<PathBuf> {
 /// Tells configurations apart that fly differently.
 fn fingerprint(config: &Config) -> u32 {
     let flown = Config {
-        course: config.course,
+        guidance: config.guidance,
         autopilot: config.autopilot.clone(),
         x_plane: config.x_plane.clone(),
         ..Config::default()

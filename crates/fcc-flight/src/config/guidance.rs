@@ -1,7 +1,6 @@
-//! `[course]`: what is flown once engaged.
+//! `[guidance]`: the mode that is flown once engaged.
 
-use fcc_core::flight::Course;
-use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use serde::{Deserialize, Serialize};
 
 use super::units::FOOT_M;
@@ -11,10 +10,10 @@ const LEG_S: f64 = 20.0;
 const TURN_DEG: f64 = 90.0;
 const CLIMB_FT: f64 = 150.0;
 
-/// `[course]`: what is flown once engaged.
+/// `[guidance]`: the mode that is flown once engaged.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
-#[serde(try_from = "Keys", tag = "kind", rename_all = "kebab-case")]
-pub enum CourseSection {
+#[serde(try_from = "Keys", tag = "mode", rename_all = "kebab-case")]
+pub enum GuidanceSection {
     /// Keep what was captured.
     Hold,
     /// The timed pattern of the thesis.
@@ -35,7 +34,7 @@ pub enum CourseSection {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
-    kind: Kind,
+    mode: Mode,
     hold_s: Option<f64>,
     leg_s: Option<f64>,
     turn_deg: Option<f64>,
@@ -44,23 +43,23 @@ struct Keys {
 
 #[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Kind {
+enum Mode {
     Hold,
     TimedPattern,
 }
 
-impl TryFrom<Keys> for CourseSection {
+impl TryFrom<Keys> for GuidanceSection {
     type Error = &'static str;
 
     fn try_from(keys: Keys) -> Result<Self, Self::Error> {
         let patterns = [keys.hold_s, keys.leg_s, keys.turn_deg, keys.climb_ft];
-        match keys.kind {
-            Kind::Hold if patterns.iter().any(Option::is_some) => Err(
+        match keys.mode {
+            Mode::Hold if patterns.iter().any(Option::is_some) => Err(
                 "a hold has no hold_s, leg_s, turn_deg or climb_ft: take them out, or choose \
-                 kind = \"timed-pattern\"",
+                 mode = \"timed-pattern\"",
             ),
-            Kind::Hold => Ok(Self::Hold),
-            Kind::TimedPattern => Ok(Self::TimedPattern {
+            Mode::Hold => Ok(Self::Hold),
+            Mode::TimedPattern => Ok(Self::TimedPattern {
                 hold_s: keys.hold_s.unwrap_or(HOLD_S),
                 leg_s: keys.leg_s.unwrap_or(LEG_S),
                 turn_deg: keys.turn_deg.unwrap_or(TURN_DEG),
@@ -70,7 +69,7 @@ impl TryFrom<Keys> for CourseSection {
     }
 }
 
-impl Default for CourseSection {
+impl Default for GuidanceSection {
     fn default() -> Self {
         Self::TimedPattern {
             hold_s: HOLD_S,
@@ -81,11 +80,11 @@ impl Default for CourseSection {
     }
 }
 
-impl From<&CourseSection> for Course {
-    fn from(section: &CourseSection) -> Self {
+impl From<&GuidanceSection> for GuidanceConfig {
+    fn from(section: &GuidanceSection) -> Self {
         match *section {
-            CourseSection::Hold => Self::Hold,
-            CourseSection::TimedPattern {
+            GuidanceSection::Hold => Self::Hold,
+            GuidanceSection::TimedPattern {
                 hold_s,
                 leg_s,
                 turn_deg,

@@ -1,0 +1,130 @@
+//! `fccd top` on a terminal that is gone, or held.
+
+use std::fs::File;
+use std::os::unix::fs::OpenOptionsExt;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::fcntl::OFlag;
+use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
+use nix::sys::signal::{Signal, kill};
+use nix::sys::termios::{FlowArg, tcflow};
+use nix::unistd::Pid;
+
+use super::fccd;
+
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A terminal, from both ends.
+struct Terminal {
+    ours: PtyMaster,
+    theirs: File,
+}
+
+/// A flight to watch, ended when it is dropped.
+struct Flight(Child);
+
+impl Drop for Flight {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn id(child: &Child) -> Pid {
+    Pid::from_raw(i32::try_from(child.id()).unwrap())
+}
+
+fn ends(child: &mut Child) -> Option<i32> {
+    let begun = Instant::now();
+    while begun.elapsed() < PATIENCE {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status.code();
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    panic!("it does not end");
+}
+
+/// A flight, `fccd top` on a terminal of its own that has drawn something, and
+/// our end of that terminal.
+fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal) {
+    let flight = Flight(
+        fccd(
+            folder,
+            &[
+                "fly",
+                "--no-recording",
+                "--quiet",
+                "--seconds",
+                "600",
+                "--instance",
+                instance,
+            ],
+        )
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap(),
+    );
+    let begun = Instant::now();
+    let snapshot = ["top", "--json", "--instance", instance];
+    while !fccd(folder, &snapshot).output().unwrap().status.success() {
+        assert!(begun.elapsed() < PATIENCE, "nobody flies");
+    }
+    // Closed in every program that is started here, or it would hold its own
+    // terminal open.
+    let ours = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).unwrap();
+    grantpt(&ours).unwrap();
+    unlockpt(&ours).unwrap();
+    let name = ptsname_r(&ours).unwrap();
+    let sized = Command::new("stty")
+        .args(["-F", &name, "rows", "24", "cols", "80"])
+        .status();
+    assert!(sized.unwrap().success());
+    let theirs = File::options()
+        .read(true)
+        .write(true)
+        .custom_flags(OFlag::O_NOCTTY.bits())
+        .open(name)
+        .unwrap();
+    let end = || Stdio::from(theirs.try_clone().unwrap());
+    let top = fccd(folder, &["top", "--instance", instance])
+        .stdin(end())
+        .stdout(end())
+        .stderr(end())
+        .spawn()
+        .unwrap();
+    let mut bytes = [0; 16];
+    nix::unistd::read(&ours, &mut bytes).unwrap();
+    (flight, top, Terminal { ours, theirs })
+}
+
+#[test]
+fn it_ends_with_its_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_flight, mut top, terminal) = watched(folder.path(), "top-gone");
+    drop((terminal.ours, terminal.theirs));
+    assert_eq!(ends(&mut top), Some(1));
+}
+
+#[test]
+fn a_signal_ends_it_in_good_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_flight, mut top, _terminal) = watched(folder.path(), "top-ends");
+    kill(id(&top), Signal::SIGTERM).unwrap();
+    assert_eq!(ends(&mut top), Some(0));
+}
+
+/// It waits for the terminal to take its picture, and cannot end in good order.
+#[test]
+fn a_signal_ends_it_on_a_terminal_that_is_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_flight, mut top, terminal) = watched(folder.path(), "top-held");
+    tcflow(&terminal.theirs, FlowArg::TCOOFF).unwrap();
+    thread::sleep(Duration::from_millis(300));
+    kill(id(&top), Signal::SIGTERM).unwrap();
+    assert_eq!(ends(&mut top), Some(128 + 15));
+}

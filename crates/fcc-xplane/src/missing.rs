@@ -1,0 +1,262 @@
+//! What was asked for and does not arrive while other values do.
+//!
+//! X-Plane does not answer a request for a dataref that it does not have, nor
+//! does it say that a row of Data Output is switched off: a mistyped path, a
+//! plugin that is not loaded and an old version all look like nothing at all.
+//! (A version that answers such a request with 0 cannot be told from a switch
+//! that is off; for that the switch's path is reported at the first contact.)
+
+use core::fmt;
+use core::time::Duration;
+
+use fcc_core::framework::Time;
+
+use crate::config::DataRows;
+use crate::quantity::Quantity;
+use crate::rows::row_of;
+
+/// A value that has not come for so long, while others did, is missing: its
+/// request was repeated each second until then.
+const IN_VAIN: Duration = Duration::from_secs(4);
+/// How often it is looked.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+
+/// A set of values that are read from X-Plane.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(crate) struct ValueSet(u64);
+
+/// The position, which is no [`Quantity`].
+const POSITION: u64 = 1 << Quantity::COUNT;
+const _: () = assert!(Quantity::COUNT < 64);
+
+impl ValueSet {
+    pub(crate) const fn from_bits(bits: u64) -> Self {
+        Self(bits)
+    }
+
+    pub(crate) const fn bits(self) -> u64 {
+        self.0
+    }
+
+    const fn holds(self, bit: u64) -> bool {
+        self.0 & bit != 0
+    }
+}
+
+/// One value that ought to arrive.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Expected {
+    Value(Quantity),
+    Position,
+}
+
+impl Expected {
+    const fn bit(self) -> u64 {
+        match self {
+            Self::Value(quantity) => 1 << (quantity as u8),
+            Self::Position => POSITION,
+        }
+    }
+}
+
+/// Finds out which values are missing.
+#[derive(Debug)]
+pub(crate) struct Absences {
+    expected: Vec<Expected>,
+    resubscribe: Duration,
+    /// Since when the simulator has been sending without a pause; never while
+    /// it is silent.
+    sending_since: Time,
+    looked: Time,
+}
+
+impl Absences {
+    pub(crate) const fn new(expected: Vec<Expected>, resubscribe: Duration) -> Self {
+        Self {
+            expected,
+            resubscribe,
+            sending_since: Time::NEVER,
+            looked: Time::NEVER,
+        }
+    }
+
+    /// What is missing now, once a second; `None` in between. `heard` is when
+    /// anything last came, `arrived` when one value last did.
+    pub(crate) fn look(
+        &mut self,
+        now: Time,
+        heard: Time,
+        arrived: impl Fn(Expected) -> Time,
+    ) -> Option<ValueSet> {
+        if now.since(self.looked) < LOOK_EVERY {
+            return None;
+        }
+        self.looked = now;
+        if now.since(heard) >= LOOK_EVERY {
+            // What a silent simulator lacked, it lacks until it shows otherwise.
+            self.sending_since = Time::NEVER;
+            return None;
+        }
+        if self.sending_since.is_never() {
+            self.sending_since = now;
+        }
+        let missing = self.expected.iter().filter(|expected| {
+            let arrived = arrived(**expected);
+            let patience = if arrived.is_never() {
+                IN_VAIN
+            } else {
+                // It came once: this long nobody has asked for it again.
+                self.resubscribe + IN_VAIN
+            };
+            now.since(arrived.max(self.sending_since)) >= patience
+        });
+        Some(ValueSet(missing.fold(0, |set, value| set | value.bit())))
+    }
+}
+
+/// A value that was asked for and does not arrive, though others do. Its text
+/// says what to do.
+#[derive(Clone, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Missing {
+    /// The dataref of [`engage_switch`](crate::XPlaneConfig::engage_switch).
+    EngageSwitch(String),
+    /// Another dataref.
+    Dataref(String),
+    /// A row of Data Output.
+    Row(i32),
+    /// The position, by RPOS.
+    Position,
+}
+
+impl Missing {
+    /// What a set of values is called: each row once.
+    pub(crate) fn of(set: ValueSet, engage_switch: &str, rows: Option<DataRows>) -> Vec<Self> {
+        let mut missing = Vec::new();
+        for quantity in Quantity::all() {
+            if !set.holds(Expected::Value(quantity).bit()) {
+                continue;
+            }
+            let row = rows.filter(|_| quantity.comes_in_rows());
+            let what = match row.and_then(|rows| row_of(rows, quantity)) {
+                Some(row) => Some(Self::Row(row)),
+                None if quantity == Quantity::EngageSwitch => {
+                    Some(Self::EngageSwitch(engage_switch.to_owned()))
+                }
+                None => quantity.path(engage_switch).map(Self::Dataref),
+            };
+            missing.extend(what.filter(|what| !missing.contains(what)));
+        }
+        if set.holds(POSITION) {
+            missing.push(Self::Position);
+        }
+        missing
+    }
+
+    /// What it is, in a few words.
+    pub fn what(&self) -> String {
+        match self {
+            Self::EngageSwitch(path) => format!("x-plane.engage_switch \"{path}\""),
+            Self::Dataref(path) => format!("the dataref {path}"),
+            Self::Row(row) => format!("row {row} of Data Output"),
+            Self::Position => "the position (RPOS)".to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "X-Plane does not send {}", self.what())?;
+        f.write_str(match self {
+            Self::EngageSwitch(_) => {
+                ", so nobody can engage by it. Check its spelling (X-Plane's own datarefs are \
+                 listed in its Resources/plugins/DataRefs.txt), and that the plugin or aircraft \
+                 that provides it is loaded."
+            }
+            Self::Dataref(_) => ", though it sends others: this version may not have it.",
+            Self::Row(_) => {
+                ", though it sends others: switch the row on in Settings > Data Output, for the \
+                 network, and check that x-plane.data_version is its version."
+            }
+            Self::Position => ", though it sends datarefs: this version may not have it.",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::RowsVersion;
+
+    fn seconds(s: i64) -> Time {
+        Time::from_nanos(1_000_000_000_000 + s * 1_000_000_000)
+    }
+
+    fn absences() -> Absences {
+        let expected = vec![
+            Expected::Value(Quantity::EngageSwitch),
+            Expected::Value(Quantity::Altitude),
+        ];
+        Absences::new(expected, Duration::from_secs(5))
+    }
+
+    /// What is missing, as the last look said.
+    fn after(looks: i64, arrived: impl Fn(i64, Expected) -> Time) -> ValueSet {
+        let mut absences = absences();
+        let mut set = ValueSet::default();
+        for second in 0..=looks {
+            let now = seconds(second);
+            set = absences
+                .look(now, now, |of| arrived(second, of))
+                .unwrap_or(set);
+        }
+        set
+    }
+
+    const SWITCH: Expected = Expected::Value(Quantity::EngageSwitch);
+
+    #[test]
+    fn what_never_comes_is_missing_after_four_seconds() {
+        let never = |second, of| {
+            if of == SWITCH {
+                Time::NEVER
+            } else {
+                seconds(second)
+            }
+        };
+        assert_eq!(after(3, never), ValueSet::default());
+        assert_eq!(after(4, never).bits(), SWITCH.bit());
+    }
+
+    #[test]
+    fn what_came_once_is_asked_for_again_first() {
+        let once = |second, of| seconds(if of == SWITCH { 0 } else { second });
+        assert_eq!(after(8, once), ValueSet::default());
+        assert_eq!(after(9, once).bits(), SWITCH.bit());
+    }
+
+    #[test]
+    fn a_silent_simulator_lacks_nothing_and_begins_anew() {
+        let mut absences = absences();
+        for second in 0..100 {
+            let heard = Time::NEVER;
+            assert_eq!(absences.look(seconds(second), heard, |_| Time::NEVER), None);
+        }
+        for second in 100..104 {
+            let now = seconds(second);
+            let set = absences.look(now, now, |_| Time::NEVER);
+            assert_eq!(set, Some(ValueSet::default()), "{second}");
+        }
+    }
+
+    #[test]
+    fn rows_are_named_once_each_and_by_their_version() {
+        let attitude = [Quantity::Pitch, Quantity::Roll, Quantity::MagneticHeading];
+        let bits = attitude.map(|quantity| Expected::Value(quantity).bit());
+        let set = ValueSet::from_bits(bits.iter().sum());
+        let named = |version| Missing::of(set, "", Some(DataRows::of(version)));
+        assert_eq!(named(RowsVersion::XPlane12), [Missing::Row(17)]);
+        assert_eq!(named(RowsVersion::XPlane9), [Missing::Row(18)]);
+        assert_eq!(Missing::of(set, "", None).len(), 3);
+    }
+}
