@@ -222,7 +222,7 @@ class Info(ctypes.Structure):
         ("process_id", ctypes.c_uint32),
         ("priority", ctypes.c_int32),
         ("memory_locked", ctypes.c_uint32),
-        ("wishes_refused", ctypes.c_uint32),
+        ("requests_denied", ctypes.c_uint32),
         ("started_unix_ns", ctypes.c_int64),
         ("started_ns", ctypes.c_int64),
         ("rate_hz", ctypes.c_double),

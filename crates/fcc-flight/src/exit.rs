@@ -15,7 +15,7 @@ pub enum Exit {
     /// The flight fell into failsafe.
     Failsafe = 3,
     /// A real-time wish was refused and `realtime.strict` is set.
-    RealtimeRefused = 4,
+    RealtimeDenied = 4,
     /// Control may still be held by this program's overrides.
     NotReleased = 5,
     /// A part of the loop panicked; the controls were released.

@@ -64,7 +64,7 @@ fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
         timer: Box::new(
             ManualTimer::new(Duration::from_millis(25))
                 .unwrap()
-                .rehearsing(),
+                .with_warm_up(),
         ),
         sensors: assembly.sensors,
         controller: assembly.autopilot,

@@ -3,14 +3,14 @@
 use fcc_core::framework::{Actuator, ActuatorFault, EventKind, Tick};
 
 use crate::faults::{Change, Health};
-use crate::outbox::Events;
 use crate::panics;
+use crate::telemetry_producer::Events;
 
 struct Watched<A> {
     actuator: Box<dyn Actuator<A>>,
     health: Health<ActuatorFault>,
     /// It was told to release and did not.
-    owes_release: bool,
+    release_pending: bool,
 }
 
 impl<A> Watched<A> {
@@ -42,7 +42,7 @@ impl<A> Actuators<A> {
         let watched = |actuator| Watched {
             actuator,
             health: Health::new(),
-            owes_release: false,
+            release_pending: false,
         };
         Self {
             all: actuators.into_iter().map(watched).collect(),
@@ -70,14 +70,14 @@ impl<A> Actuators<A> {
             match panics::caught(|| watched.actuator.release()) {
                 Ok(result) => {
                     // A release that works says nothing of writes that did not.
-                    if result.is_err() || watched.owes_release {
+                    if result.is_err() || watched.release_pending {
                         watched.note(index, result, tick, events);
                     }
-                    watched.owes_release = result.is_err();
+                    watched.release_pending = result.is_err();
                     self.faults += u64::from(result.is_err());
                 }
                 Err(words) => {
-                    watched.owes_release = true;
+                    watched.release_pending = true;
                     panic = panic.and(Err(words));
                 }
             }
@@ -87,7 +87,7 @@ impl<A> Actuators<A> {
 
     /// Whether no actuator owes a release.
     pub(crate) fn are_released(&self) -> bool {
-        self.all.iter().all(|watched| !watched.owes_release)
+        self.all.iter().all(|watched| !watched.release_pending)
     }
 
     /// Failed writes and releases since the start.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{Actuator, Controller, Sensor, SwitchOff};
-use fcc_timer::{RealtimeWishes, Timer};
+use fcc_timer::{RealtimeRequest, Timer};
 
 use crate::overruns::Budget;
 
@@ -42,7 +42,7 @@ pub struct LoopConfig {
     pub messages_capacity: usize,
     /// What [`Loop::spawn`](crate::Loop::spawn) asks of the kernel for its
     /// thread.
-    pub realtime: RealtimeWishes,
+    pub realtime: RealtimeRequest,
 }
 
 impl Default for LoopConfig {
@@ -55,7 +55,7 @@ impl Default for LoopConfig {
             budget: Budget::default(),
             orders_capacity: 64,
             messages_capacity: 4_096,
-            realtime: RealtimeWishes::default(),
+            realtime: RealtimeRequest::default(),
         }
     }
 }

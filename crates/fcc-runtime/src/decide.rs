@@ -4,17 +4,17 @@ use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tic
 
 use crate::config::AfterFailsafe;
 use crate::machine::Machine;
-use crate::orders::Asked;
+use crate::orders::LoopCommand;
 use crate::report::Ending;
-use crate::switch::Thrown;
+use crate::switch::SwitchEdge;
 
 impl<C: Controller> Machine<C> {
     /// Decides in which state this tick goes on. Letting go is looked at
     /// before taking over, so that of two hands the careful one wins.
-    pub(crate) fn decide(&mut self, tick: &Tick, asked: Asked) {
+    pub(crate) fn decide(&mut self, tick: &Tick, command: LoopCommand) {
         let before = self.state;
         if !before.holds_control() && !self.actuators.are_released() {
-            self.release(tick, Telling::Success);
+            self.release(tick, ReleaseReport::OnSuccess);
         }
         let measurements = &self.measurements;
         if before.holds_control() {
@@ -24,22 +24,22 @@ impl<C: Controller> Machine<C> {
             self.record.blockers = self.controller.blockers(tick, measurements);
         }
         let switch = self.controller.switch(measurements);
-        let thrown = self.switch.watch(switch, tick.woke);
+        let edge = self.switch.watch(switch, tick.woke);
 
         if self.stop.is_set() {
-            self.outbox.events.push(tick, EventKind::ToldToStop);
+            self.telemetry.events.push(tick, EventKind::ToldToStop);
             self.stop_for(Ending::StopFlag, tick);
-        } else if asked == Asked::Stop {
+        } else if command == LoopCommand::Stop {
             self.stop_for(Ending::StopOrder, tick);
         }
-        if thrown == Some(Thrown::Off) {
-            self.put(Input::SwitchedOff, tick);
+        if edge == Some(SwitchEdge::Off) {
+            self.apply_input(Input::SwitchedOff, tick);
             if self.state == State::Stopped {
                 self.end_by(Ending::SwitchedOff);
             }
         }
-        if asked == Asked::Disengage {
-            self.put(Input::Disengage, tick);
+        if command == LoopCommand::Disengage {
+            self.apply_input(Input::Disengage, tick);
         }
         let faults = self.record.faults;
         if self.state == State::Engaged && !faults.is_empty() {
@@ -48,52 +48,52 @@ impl<C: Controller> Machine<C> {
         if self.state == State::Engaged && self.overruns.are_too_many() {
             self.fail(Cause::Overrun, tick);
         }
-        let let_go = before.holds_control() && self.state != before;
+        let lost_control = before.holds_control() && self.state != before;
 
         if matches!(self.state, State::Failsafe(_))
             && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
         {
             self.end_failsafe(tick);
         }
-        if asked == Asked::Engage || thrown == Some(Thrown::On) {
-            self.attempt_to_engage(tick, let_go);
+        if command == LoopCommand::Engage || edge == Some(SwitchEdge::On) {
+            self.attempt_to_engage(tick, lost_control);
         }
     }
 
-    fn attempt_to_engage(&mut self, tick: &Tick, let_go: bool) {
+    fn attempt_to_engage(&mut self, tick: &Tick, lost_control: bool) {
         if matches!(self.state, State::Engaged | State::Stopped) {
             return;
         }
         let blockers = self.record.blockers;
-        if let_go || self.overruns.are_too_many() || !blockers.is_empty() {
+        if lost_control || self.overruns.are_too_many() || !blockers.is_empty() {
             let kind = EventKind::EngageRefused { blockers };
-            self.outbox.events.push(tick, kind);
+            self.telemetry.events.push(tick, kind);
         } else {
-            self.put(Input::Engage, tick);
+            self.apply_input(Input::Engage, tick);
         }
     }
 
     /// Falls into failsafe.
     pub(crate) fn fail(&mut self, cause: Cause, tick: &Tick) {
-        self.put(Input::Fault(cause), tick);
+        self.apply_input(Input::Fault(cause), tick);
     }
 
     /// Leaves failsafe: its time is up, or there is nothing safe to send.
     pub(crate) fn end_failsafe(&mut self, tick: &Tick) {
         match self.after_failsafe {
-            AfterFailsafe::Standby => self.put(Input::FailsafeOver, tick),
+            AfterFailsafe::Standby => self.apply_input(Input::FailsafeOver, tick),
             AfterFailsafe::Stop => self.stop_for(Ending::FailsafeOver, tick),
         }
     }
 
     fn stop_for(&mut self, ending: Ending, tick: &Tick) {
         self.end_by(ending);
-        self.put(Input::Stop, tick);
+        self.apply_input(Input::Stop, tick);
     }
 
     /// Puts an input into the transition table, and does what the change of
     /// state asks for.
-    fn put(&mut self, input: Input, tick: &Tick) {
+    fn apply_input(&mut self, input: Input, tick: &Tick) {
         let from = self.state;
         let to = from.after(input, self.switch_off);
         if to == from {
@@ -111,7 +111,7 @@ impl<C: Controller> Machine<C> {
                 self.last_failsafe = Some(cause);
             }
             State::Standby | State::Stopped => {
-                self.release(tick, Telling::All);
+                self.release(tick, ReleaseReport::Always);
                 if from.holds_control() {
                     self.controller.disengage();
                 }
@@ -121,16 +121,16 @@ impl<C: Controller> Machine<C> {
 
     /// Ends the loop from outside a tick's decisions. Asks nothing of the
     /// controller: it may be the part that panicked.
-    pub(crate) fn leave(&mut self, ending: Ending) {
+    pub(crate) fn stop_with(&mut self, ending: Ending) {
         let at = self.record.tick;
         match ending {
-            Ending::Panicked(_) => self.outbox.events.push(&at, EventKind::Panicked),
-            Ending::TimerFailed(_) => self.outbox.events.push(&at, EventKind::TimerFailed),
+            Ending::Panicked(_) => self.telemetry.events.push(&at, EventKind::Panicked),
+            Ending::TimerFailed(_) => self.telemetry.events.push(&at, EventKind::TimerFailed),
             _ => {}
         }
         self.end_by(ending);
         self.enter(self.state.after(Input::Stop, self.switch_off), &at);
-        self.release(&at, Telling::All);
+        self.release(&at, ReleaseReport::Always);
     }
 
     /// Keeps the first reason to end, but a panic on the way out says more.
@@ -151,20 +151,20 @@ impl<C: Controller> Machine<C> {
                 from: self.state,
                 to,
             };
-            self.outbox.events.push(at, kind);
+            self.telemetry.events.push(at, kind);
             self.state = to;
         }
     }
 
     /// Tells every actuator to give control back.
-    pub(crate) fn release(&mut self, at: &Tick, telling: Telling) {
-        let panic = self.actuators.release(at, &mut self.outbox.events).err();
+    pub(crate) fn release(&mut self, at: &Tick, report: ReleaseReport) {
+        let panic = self.actuators.release(at, &mut self.telemetry.events).err();
         let ok = self.actuators.are_released();
-        if ok || telling == Telling::All {
-            self.outbox.events.push(at, EventKind::Released { ok });
+        if ok || report == ReleaseReport::Always {
+            self.telemetry.events.push(at, EventKind::Released { ok });
         }
         if let Some(words) = panic {
-            self.outbox.events.push(at, EventKind::Panicked);
+            self.telemetry.events.push(at, EventKind::Panicked);
             self.end_by(Ending::Panicked(words));
             self.enter(State::Stopped, at);
         }
@@ -173,8 +173,8 @@ impl<C: Controller> Machine<C> {
 
 /// Which outcome of a release is told.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Telling {
-    All,
+pub(crate) enum ReleaseReport {
+    Always,
     /// Of asking again each tick until it works: that it failed was told.
-    Success,
+    OnSuccess,
 }

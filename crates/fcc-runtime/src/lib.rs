@@ -97,18 +97,18 @@ mod actuators;
 mod config;
 mod decide;
 mod faults;
+mod heartbeat;
 mod link;
 mod machine;
 mod orders;
-mod outbox;
 mod overruns;
 mod panics;
-mod pulse;
 mod report;
 mod run;
 mod sensors;
 mod stopwatch;
 mod switch;
+mod telemetry_producer;
 mod watchdog;
 
 // The words a loop is spoken with, so that its users need no other crate.
@@ -117,10 +117,10 @@ pub use fcc_core::framework::{
 };
 
 pub use config::{AfterFailsafe, LoopConfig, Parts};
+pub use heartbeat::{Heartbeat, HeartbeatReading};
 pub use link::{Link, MessageReceiver, OrderSender, OrdersFull, StopHandle};
 pub use machine::Machine;
 pub use overruns::Budget;
-pub use pulse::{Felt, Pulse};
 pub use report::{Ending, LoopReport};
 pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};
 pub use watchdog::{Hang, WatchdogConfig, watch};

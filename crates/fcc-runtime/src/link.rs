@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use fcc_core::framework::{Controller, MessageOf, Order};
 use rtrb::{Consumer, Producer};
 
-use crate::pulse::Pulse;
+use crate::heartbeat::Heartbeat;
 
 /// How the world outside speaks with a loop.
 pub struct Link<C: Controller> {
@@ -17,7 +17,7 @@ pub struct Link<C: Controller> {
     /// The stop flag.
     pub stop: StopHandle,
     /// Whether it makes progress.
-    pub pulse: Pulse,
+    pub heartbeat: Heartbeat,
 }
 
 /// Sends orders to a loop; never waits.

@@ -10,17 +10,17 @@ use rtrb::{Consumer, RingBuffer};
 
 use crate::actuators::Actuators;
 use crate::config::{AfterFailsafe, LoopConfig, Parts};
-use crate::decide::Telling;
+use crate::decide::ReleaseReport;
+use crate::heartbeat::Heartbeat;
 use crate::link::{Link, MessageReceiver, OrderSender, StopHandle};
 use crate::orders;
-use crate::outbox::{EVENT_SLOTS, Outbox};
 use crate::overruns::Overruns;
 use crate::panics;
-use crate::pulse::Pulse;
 use crate::report::{Ending, LoopReport};
 use crate::sensors::Sensors;
 use crate::stopwatch::Stopwatch;
 use crate::switch::EngageSwitch;
+use crate::telemetry_producer::{EVENT_SLOTS, TelemetryProducer};
 
 /// The loop without its thread.
 ///
@@ -40,9 +40,9 @@ pub struct Machine<C: Controller> {
     pub(crate) after_failsafe: AfterFailsafe,
 
     pub(crate) orders: Consumer<Order<C::Order>>,
-    pub(crate) outbox: Outbox<C>,
+    pub(crate) telemetry: TelemetryProducer<C>,
     pub(crate) stop: StopHandle,
-    pulse: Pulse,
+    heartbeat: Heartbeat,
 
     pub(crate) state: State,
     pub(crate) switch: EngageSwitch,
@@ -71,12 +71,12 @@ impl<C: Controller> Machine<C> {
         let (messages, messages_out) =
             RingBuffer::new(config.messages_capacity.max(1).saturating_add(EVENT_SLOTS));
         let stop = StopHandle::default();
-        let pulse = Pulse::default();
+        let heartbeat = Heartbeat::default();
         let link = Link {
             orders: OrderSender::new(orders_in),
             messages: MessageReceiver::new(messages_out),
             stop: stop.clone(),
-            pulse: pulse.clone(),
+            heartbeat: heartbeat.clone(),
         };
         let period = parts.timer.period();
         let machine = Self {
@@ -89,9 +89,9 @@ impl<C: Controller> Machine<C> {
             failsafe_hold: config.failsafe_hold,
             after_failsafe: config.after_failsafe,
             orders,
-            outbox: Outbox::new(messages),
+            telemetry: TelemetryProducer::new(messages),
             stop,
-            pulse,
+            heartbeat,
             state: State::Standby,
             switch: EngageSwitch::new(config.switch_max_age),
             measurements: C::Measurements::default(),
@@ -116,7 +116,7 @@ impl<C: Controller> Machine<C> {
     pub fn start(&mut self) -> Result<(), TimerError> {
         self.cpu_at_start_ns = usage::thread_cpu_ns();
         self.timer.start()?;
-        self.pulse.begin();
+        self.heartbeat.begin();
         Ok(())
     }
 
@@ -142,9 +142,9 @@ impl<C: Controller> Machine<C> {
             match panics::caught(|| self.wait()) {
                 Ok(Ok(Some(expiry))) => return self.tick(expiry),
                 Ok(Ok(None)) => continue,
-                Ok(Err(TimerError::Ended)) => self.leave(Ending::TimerEnded),
-                Ok(Err(error)) => self.leave(Ending::TimerFailed(error)),
-                Err(words) => self.leave(Ending::Panicked(words)),
+                Ok(Err(TimerError::Ended)) => self.stop_with(Ending::TimerEnded),
+                Ok(Err(error)) => self.stop_with(Ending::TimerFailed(error)),
+                Err(words) => self.stop_with(Ending::Panicked(words)),
             }
             return self.state;
         }
@@ -153,11 +153,11 @@ impl<C: Controller> Machine<C> {
     /// Waits for the deadline, or comes back before it: a timer that wakes
     /// early leaves time to rehearse.
     fn wait(&mut self) -> Result<Option<Expiry>, TimerError> {
-        match self.timer.wait_or_rehearse()? {
+        match self.timer.wait_or_warm_up()? {
             Wake::Deadline(expiry) => Ok(Some(expiry)),
-            Wake::Rehearsal(expiry) => {
+            Wake::WarmUp(expiry) => {
                 let tick = self.tick_of(&expiry);
-                self.controller.rehearse(&tick, &self.measurements);
+                self.controller.warm_up(&tick, &self.measurements);
                 Ok(None)
             }
         }
@@ -192,52 +192,52 @@ impl<C: Controller> Machine<C> {
         if self.state == State::Stopped {
             return self.state;
         }
-        self.pulse.beat();
+        self.heartbeat.beat();
         let tick = self.tick_of(&expiry);
         self.record = Record::new(tick, self.state);
-        self.overruns.begin(&tick, &mut self.outbox.events);
-        if let Err(words) = panics::caught(|| self.turn(&tick)) {
-            self.leave(Ending::Panicked(words));
+        self.overruns.begin(&tick, &mut self.telemetry.events);
+        if let Err(words) = panics::caught(|| self.run_stages(&tick)) {
+            self.stop_with(Ending::Panicked(words));
         }
         if let Some(stages) = recorded {
             self.record.stages = stages;
         }
         self.overruns
-            .end(&tick, &self.record.stages, &mut self.outbox.events);
+            .end(&tick, &self.record.stages, &mut self.telemetry.events);
         self.ticks += 1;
         self.timing.record(&expiry);
         self.record.early_wake_ns = expiry.early_wake_ns;
-        self.tell();
+        self.send_record();
         self.state
     }
 
     /// One turn, in one direction: all that happens between the wake-up and
     /// the last actuator write.
-    fn turn(&mut self, tick: &Tick) {
-        let asked = orders::read(
+    fn run_stages(&mut self, tick: &Tick) {
+        let command = orders::read(
             &mut self.orders,
             &mut self.controller,
             tick,
-            &mut self.outbox.events,
+            &mut self.telemetry.events,
         );
 
         let mut stopwatch = Stopwatch::start(&*self.timer);
         self.sensors
-            .sample(tick, &mut self.measurements, &mut self.outbox.events);
+            .sample(tick, &mut self.measurements, &mut self.telemetry.events);
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);
         self.record.stages.navigation_ns = stopwatch.lap(&*self.timer);
 
-        self.decide(tick, asked);
+        self.decide(tick, command);
 
         stopwatch.lap(&*self.timer);
-        if let Some(outputs) = self.steer(tick, &mut stopwatch) {
+        if let Some(outputs) = self.compute_outputs(tick, &mut stopwatch) {
             self.record.stages.control_ns = stopwatch.lap(&*self.timer);
             self.record.outputs = outputs;
             self.record.sent = true;
             self.actuators
-                .apply(tick, &outputs, &mut self.outbox.events);
+                .apply(tick, &outputs, &mut self.telemetry.events);
             self.record.stages.actuators_ns = stopwatch.lap(&*self.timer);
         } else {
             stopwatch.lap(&*self.timer);
@@ -248,7 +248,7 @@ impl<C: Controller> Machine<C> {
 
     /// Works out the outputs for the present state; those that are not valid
     /// never get out of here.
-    fn steer(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
+    fn compute_outputs(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
         if self.state == State::Engaged {
             self.controller.guide(tick, &self.measurements);
             self.record.stages.guidance_ns = stopwatch.lap(&*self.timer);
@@ -270,17 +270,17 @@ impl<C: Controller> Machine<C> {
     }
 
     /// Completes this tick's record and sends it off with the tick's events.
-    fn tell(&mut self) {
+    fn send_record(&mut self) {
         self.record.state = self.state.into();
         self.record.measurements = self.measurements;
         self.record.sensor_faults = self.sensors.faults();
         self.record.actuator_faults = self.actuators.faults();
-        self.record.records_dropped = self.outbox.records_dropped();
+        self.record.records_dropped = self.telemetry.records_dropped();
         self.record.overruns = self.overruns.total();
         // A system call of 0.2 µs, here where nothing waits for it: each tick,
         // so that a fault is found beside what happened in its tick.
         self.record.page_faults = self.page_faults().unwrap_or(0);
-        self.outbox.send(&self.record);
+        self.telemetry.send(&self.record);
     }
 
     /// The present state.
@@ -314,23 +314,23 @@ impl<C: Controller> Machine<C> {
             sensor_faults: self.sensors.faults(),
             actuator_faults: self.actuators.faults(),
             overruns: self.overruns.total(),
-            records_dropped: self.outbox.records_dropped(),
-            events_dropped: self.outbox.events_dropped(),
+            records_dropped: self.telemetry.records_dropped(),
+            events_dropped: self.telemetry.events_dropped(),
             cpu_time: Duration::from_nanos(u64::try_from(cpu_ns).unwrap_or(0)),
             page_faults,
-            grants: None,
+            granted: None,
         }
     }
 
     fn close(&mut self) {
         let at = self.record.tick;
         if self.state != State::Stopped {
-            self.leave(Ending::Finished);
+            self.stop_with(Ending::Finished);
         } else if !self.actuators.are_released() {
-            self.release(&at, Telling::Success);
+            self.release(&at, ReleaseReport::OnSuccess);
         }
-        self.outbox.close(&at);
-        self.pulse.end();
+        self.telemetry.close(&at);
+        self.heartbeat.end();
     }
 }
 

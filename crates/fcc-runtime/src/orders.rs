@@ -3,7 +3,7 @@
 use fcc_core::framework::{Controller, EventKind, Order, Tick};
 use rtrb::Consumer;
 
-use crate::outbox::Events;
+use crate::telemetry_producer::Events;
 
 /// Orders read in one tick at most: enough for hands and for a ground station,
 /// and a bound to what a flood of them can cost.
@@ -11,8 +11,8 @@ const ORDERS_PER_TICK: usize = 16;
 
 /// What a tick's orders ask of the loop itself.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Asked {
-    Nothing,
+pub(crate) enum LoopCommand {
+    None,
     Engage,
     Disengage,
     Stop,
@@ -28,7 +28,7 @@ pub(crate) fn read<C: Controller>(
     controller: &mut C,
     tick: &Tick,
     events: &mut Events<C::Order>,
-) -> Asked {
+) -> LoopCommand {
     for _ in 0..ORDERS_PER_TICK {
         let Ok(order) = ring.pop() else {
             break;
@@ -38,10 +38,10 @@ pub(crate) fn read<C: Controller>(
         events.push(tick, EventKind::Ordered(order));
         match order {
             Order::Controller(order) => controller.command(&order),
-            Order::Engage => return Asked::Engage,
-            Order::Disengage => return Asked::Disengage,
-            Order::Stop => return Asked::Stop,
+            Order::Engage => return LoopCommand::Engage,
+            Order::Disengage => return LoopCommand::Disengage,
+            Order::Stop => return LoopCommand::Stop,
         }
     }
-    Asked::Nothing
+    LoopCommand::None
 }

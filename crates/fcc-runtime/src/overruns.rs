@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use fcc_core::framework::{EventKind, Stage, StageTimes, Tick, Time};
 
-use crate::outbox::Events;
+use crate::telemetry_producer::Events;
 
 /// How long a tick and its stages may take, and how often they may take longer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use fcc_core::framework::Cause;
-use fcc_timer::{RealtimeGrants, TimerError, TimingSummary};
+use fcc_timer::{RealtimeGranted, TimerError, TimingSummary};
 
 /// The account of a loop that is over.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub struct LoopReport {
     pub page_faults: Option<u64>,
     /// What the kernel granted the loop's thread; `None` if it had none of its
     /// own.
-    pub grants: Option<RealtimeGrants>,
+    pub granted: Option<RealtimeGranted>,
 }
 
 /// Why a loop ended.

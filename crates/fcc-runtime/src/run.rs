@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 use std::{io, panic};
 
 use fcc_core::framework::{Controller, State};
-use fcc_timer::{RealtimeGrants, RealtimeRefused, RealtimeWishes, TimerError};
+use fcc_timer::{RealtimeDenied, RealtimeGranted, RealtimeRequest, TimerError};
 
 use crate::config::{LoopConfig, Parts};
 use crate::link::{Link, StopHandle};
@@ -24,7 +24,7 @@ pub const THREAD_NAME: &str = "fcc-loop";
 /// as ever.
 pub struct Loop<C: Controller> {
     machine: Machine<C>,
-    realtime: RealtimeWishes,
+    realtime: RealtimeRequest,
     stop: StopHandle,
 }
 
@@ -44,11 +44,11 @@ impl<C: Controller> Loop<C> {
     }
 
     /// Runs in this thread until the loop stops or its timer ends. The thread
-    /// stays as it is: it is yours, and so are its real-time wishes.
+    /// stays as it is: it is yours, and so are its real-time request.
     pub fn run_here(mut self) -> LoopReport {
         panics::keep_quiet();
         if let Err(error) = self.machine.start() {
-            self.machine.leave(Ending::TimerFailed(error));
+            self.machine.stop_with(Ending::TimerFailed(error));
         }
         run(self.machine)
     }
@@ -71,8 +71,8 @@ impl<C: Controller> Loop<C> {
             .spawn(move || self.run_there(&started))
             .map_err(SpawnError::Thread)?;
         match start.recv() {
-            Ok(Ok(grants)) => Ok(LoopHandle {
-                grants,
+            Ok(Ok(granted)) => Ok(LoopHandle {
+                granted,
                 stop,
                 thread: Some(thread),
             }),
@@ -88,24 +88,24 @@ impl<C: Controller> Loop<C> {
             .realtime
             .apply()
             .map_err(SpawnError::Realtime)
-            .and_then(|grants| {
+            .and_then(|granted| {
                 self.machine.start().map_err(SpawnError::Timer)?;
-                Ok(grants)
+                Ok(granted)
             });
-        let grants = ready.as_ref().ok().cloned();
+        let granted = ready.as_ref().ok().cloned();
         // The receiver waits in `spawn`.
         let _ = started.send(ready);
-        if grants.is_none() {
+        if granted.is_none() {
             return self.machine.finish();
         }
         LoopReport {
-            grants,
+            granted,
             ..run(self.machine)
         }
     }
 }
 
-type Started = Result<RealtimeGrants, SpawnError>;
+type Started = Result<RealtimeGranted, SpawnError>;
 
 fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
     machine.count_page_faults();
@@ -119,15 +119,15 @@ fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
 /// waits for it, one period at most: nobody is left in control unwatched.
 #[derive(Debug)]
 pub struct LoopHandle {
-    grants: RealtimeGrants,
+    granted: RealtimeGranted,
     stop: StopHandle,
     thread: Option<JoinHandle<LoopReport>>,
 }
 
 impl LoopHandle {
     /// What the kernel granted the loop's thread.
-    pub const fn grants(&self) -> &RealtimeGrants {
-        &self.grants
+    pub const fn granted(&self) -> &RealtimeGranted {
+        &self.granted
     }
 
     /// Whether the loop is over.
@@ -183,7 +183,7 @@ pub enum SpawnError {
     Thread(#[source] io::Error),
     /// A real-time wish that must be granted was refused.
     #[error(transparent)]
-    Realtime(RealtimeRefused),
+    Realtime(RealtimeDenied),
     /// The timer did not start.
     #[error("the loop's timer did not start: {0}")]
     Timer(#[source] TimerError),

@@ -3,7 +3,7 @@
 use fcc_core::framework::{EventKind, Sensor, SensorFault, Tick};
 
 use crate::faults::{Change, Health};
-use crate::outbox::Events;
+use crate::telemetry_producer::Events;
 
 struct Watched<M> {
     sensor: Box<dyn Sensor<M>>,

@@ -6,7 +6,7 @@ use fcc_core::framework::{Reading, Switch, Time};
 
 /// What a hand did to the engage switch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Thrown {
+pub(crate) enum SwitchEdge {
     On,
     Off,
 }
@@ -34,7 +34,7 @@ impl EngageSwitch {
     }
 
     /// Takes this tick's reading; a stale one is no reading.
-    pub(crate) fn watch(&mut self, reading: Reading<Switch>, now: Time) -> Option<Thrown> {
+    pub(crate) fn watch(&mut self, reading: Reading<Switch>, now: Time) -> Option<SwitchEdge> {
         let Some(position) = reading.fresh(now, self.max_age) else {
             self.off_seen_since_silence = false;
             return None;
@@ -43,11 +43,10 @@ impl EngageSwitch {
         match position {
             Switch::Off => {
                 self.off_seen_since_silence = true;
-                (before == Some(Switch::On)).then_some(Thrown::Off)
+                (before == Some(Switch::On)).then_some(SwitchEdge::Off)
             }
-            Switch::On => {
-                (before == Some(Switch::Off) && self.off_seen_since_silence).then_some(Thrown::On)
-            }
+            Switch::On => (before == Some(Switch::Off) && self.off_seen_since_silence)
+                .then_some(SwitchEdge::On),
         }
     }
 }
@@ -58,7 +57,7 @@ mod tests {
 
     /// One reading per second, each fresh for 1.5 s; `None` is a second in
     /// which nothing came.
-    fn watched<const N: usize>(positions: [Option<Switch>; N]) -> [Option<Thrown>; N] {
+    fn watched<const N: usize>(positions: [Option<Switch>; N]) -> [Option<SwitchEdge>; N] {
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut reading = Reading::new(Switch::Off, Time::NEVER);
         let mut second = 0;
@@ -81,10 +80,10 @@ mod tests {
             watched([OFF, ON, ON, OFF, ON]),
             [
                 None,
-                Some(Thrown::On),
+                Some(SwitchEdge::On),
                 None,
-                Some(Thrown::Off),
-                Some(Thrown::On)
+                Some(SwitchEdge::Off),
+                Some(SwitchEdge::On)
             ]
         );
     }
@@ -96,7 +95,7 @@ mod tests {
 
     #[test]
     fn one_missing_reading_is_no_silence() {
-        assert_eq!(watched([OFF, None, ON]), [None, None, Some(Thrown::On)]);
+        assert_eq!(watched([OFF, None, ON]), [None, None, Some(SwitchEdge::On)]);
     }
 
     #[test]
@@ -104,7 +103,14 @@ mod tests {
         assert_eq!(watched([OFF, None, None, ON]), [None; 4]);
         assert_eq!(
             watched([OFF, None, None, ON, OFF, ON]),
-            [None, None, None, None, Some(Thrown::Off), Some(Thrown::On)]
+            [
+                None,
+                None,
+                None,
+                None,
+                Some(SwitchEdge::Off),
+                Some(SwitchEdge::On)
+            ]
         );
     }
 
@@ -112,7 +118,14 @@ mod tests {
     fn an_off_counts_through_a_silence() {
         assert_eq!(
             watched([OFF, ON, None, None, None, OFF]),
-            [None, Some(Thrown::On), None, None, None, Some(Thrown::Off)]
+            [
+                None,
+                Some(SwitchEdge::On),
+                None,
+                None,
+                None,
+                Some(SwitchEdge::Off)
+            ]
         );
     }
 }

@@ -1,64 +1,15 @@
 //! Ten thousand ticks and not one call of the allocator, shown by counting
 //! them.
-#![allow(unsafe_code, reason = "an allocator is unsafe to write")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "as in any test")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::time::Duration;
 
+use fcc_conformance::allocator_calls;
 use fcc_core::framework::{
     Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, State, Switch, Tick,
 };
 use fcc_runtime::{Link, LoopConfig, Machine, Order, Parts};
 use fcc_timer::ManualTimer;
-
-/// Counts this thread's calls while told to; other tests have their own.
-struct Counting;
-
-thread_local! {
-    static WATCHED: Cell<bool> = const { Cell::new(false) };
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-fn count() {
-    if WATCHED.get() {
-        CALLS.set(CALLS.get() + 1);
-    }
-}
-
-// SAFETY: every call goes to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: the caller's promise is passed on.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, ptr: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: as above.
-        unsafe { System.dealloc(ptr, layout) }
-    }
-
-    unsafe fn realloc(&self, ptr: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.realloc(ptr, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
-/// Calls of the allocator during `work`.
-fn allocator_calls<T>(work: impl FnOnce() -> T) -> (T, u64) {
-    CALLS.set(0);
-    WATCHED.set(true);
-    let result = work();
-    WATCHED.set(false);
-    (result, CALLS.get())
-}
 
 /// A plant that goes through everything by the tick's number alone.
 struct Plant;
@@ -210,12 +161,6 @@ fn machine(
     let (mut machine, link) = Machine::new(parts, &config).unwrap();
     machine.start().unwrap();
     (machine, link)
-}
-
-#[test]
-fn the_counter_counts() {
-    let ((), calls) = allocator_calls(|| drop(std::hint::black_box(Box::new(1_u64))));
-    assert_eq!(calls, 2);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::time::Duration;
 use bench::{Puppet, Stage, parts};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_runtime::{Ending, Link, Loop, LoopConfig, LoopHandle, Message, Order, Parts, SpawnError};
-use fcc_timer::{CpuWish, EarlyWake, RealtimeWishes, Strictness, TimerKind};
+use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, TimerKind};
 
 /// 500 Hz.
 const PERIOD: Duration = Duration::from_millis(2);
@@ -51,7 +51,7 @@ fn orders_in_and_records_out() {
     let report = handle.join();
     assert!(matches!(report.ending, Ending::StopOrder));
     assert!(report.released);
-    assert!(report.grants.is_some());
+    assert!(report.granted.is_some());
     assert_eq!(report.timer, "timerfd");
     assert_eq!(stage.log().held, [false, false]);
     assert_eq!(report.timing.ticks, report.ticks);
@@ -104,11 +104,11 @@ fn a_panic_in_its_thread_is_in_the_report() {
 fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
     let stage = Stage::default();
     let config = LoopConfig {
-        realtime: RealtimeWishes {
+        realtime: RealtimeRequest {
             // No machine has this many.
-            cpu: Some(CpuWish::Number(1_000_000)),
+            cpu: Some(CpuRequest::Number(1_000_000)),
             strictness: Strictness::Strict,
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         },
         ..LoopConfig::default()
     };
@@ -136,7 +136,7 @@ fn here_it_runs_until_the_timer_ends() {
     let report = this.run_here();
     end.join().unwrap();
     assert!(matches!(report.ending, Ending::TimerEnded));
-    assert!(report.grants.is_none());
+    assert!(report.granted.is_none());
     assert_eq!(stage.log().held, [false, false]);
 }
 

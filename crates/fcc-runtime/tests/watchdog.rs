@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use bench::{Stage, parts};
 use fcc_core::framework::{Sensor, SensorFault, Tick};
-use fcc_runtime::{Felt, Loop, LoopConfig, Parts, WatchdogConfig, watch};
+use fcc_runtime::{HeartbeatReading, Loop, LoopConfig, Parts, WatchdogConfig, watch};
 use fcc_timer::TimerKind;
 
 /// Long after a healthy machine would have told.
@@ -39,7 +39,7 @@ fn config(hang_after_ms: u64) -> WatchdogConfig {
 
 #[test]
 fn a_sensor_that_blocks_is_a_hang() {
-    let (let_go, blocked) = mpsc::channel();
+    let (lost_control, blocked) = mpsc::channel();
     let parts = Parts {
         timer: TimerKind::Timerfd.build(Duration::from_millis(5)).unwrap(),
         sensors: vec![Box::new(Blocking(blocked))],
@@ -47,20 +47,20 @@ fn a_sensor_that_blocks_is_a_hang() {
     };
     let (flight_loop, link) = Loop::new(parts, &LoopConfig::default()).unwrap();
     let (seen, hangs) = mpsc::channel();
-    watch(link.pulse.clone(), &config(200), move |hang| {
+    watch(link.heartbeat.clone(), &config(200), move |hang| {
         seen.send(hang).unwrap();
     })
     .unwrap();
     let handle = flight_loop.spawn().unwrap();
     let hang = hangs.recv_timeout(PATIENCE).unwrap();
     assert!(hang.silent >= Duration::from_millis(200));
-    assert!(matches!(link.pulse.feel(), Felt::Beat(_)));
+    assert!(matches!(link.heartbeat.read(), HeartbeatReading::Beat(_)));
     // Who watches may leave it alone: it ends when it can.
     link.stop.stop();
     handle.abandon();
-    drop(let_go);
+    drop(lost_control);
     let begun = std::time::Instant::now();
-    while link.pulse.feel() != Felt::Over {
+    while link.heartbeat.read() != HeartbeatReading::Ended {
         assert!(begun.elapsed() < PATIENCE);
         thread::sleep(Duration::from_millis(2));
     }
@@ -73,16 +73,16 @@ fn a_loop_that_is_over_is_not_watched_any_more() {
         ..parts(&Stage::default())
     };
     let (flight_loop, link) = Loop::new(parts, &LoopConfig::default()).unwrap();
-    assert_eq!(link.pulse.feel(), Felt::Nothing);
+    assert_eq!(link.heartbeat.read(), HeartbeatReading::NotStarted);
     let (seen, hangs) = mpsc::channel();
-    watch(link.pulse.clone(), &config(2_000), move |hang| {
+    watch(link.heartbeat.clone(), &config(2_000), move |hang| {
         let _ = seen.send(hang);
     })
     .unwrap();
     let handle = flight_loop.spawn().unwrap();
     handle.stop();
     handle.join();
-    assert_eq!(link.pulse.feel(), Felt::Over);
+    assert_eq!(link.heartbeat.read(), HeartbeatReading::Ended);
     // The watchdog drops its sender as it leaves, and has sent nothing.
     assert_eq!(
         hangs.recv_timeout(PATIENCE),

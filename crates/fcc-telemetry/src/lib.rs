@@ -23,4 +23,4 @@ pub use layout::{FIELDS, Field, FieldKind, RECORD_BYTES, RecordWords, words_of};
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, recordings_table, timing_table};
-pub use timing::{Lateness, Period, Realtime, RefusedWish, TimingReport};
+pub use timing::{DeniedRequest, Lateness, Period, Realtime, TimingReport};

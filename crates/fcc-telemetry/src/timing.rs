@@ -156,23 +156,23 @@ pub struct Realtime {
     /// How long CPUs may take to wake, if that was granted.
     pub cpu_dma_latency_us: Option<u32>,
     /// Wishes that were not granted.
-    pub refused: Vec<RefusedWish>,
+    pub refused: Vec<DeniedRequest>,
 }
 
 /// A wish that was not granted.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
-pub struct RefusedWish {
+pub struct DeniedRequest {
     /// What was asked for.
-    pub wish: String,
+    pub request: String,
     /// Why it was refused.
     pub reason: String,
     /// What would help.
     pub remedy: String,
 }
 
-impl fmt::Display for RefusedWish {
+impl fmt::Display for DeniedRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.wish)?;
+        f.write_str(&self.request)?;
         if !self.reason.is_empty() {
             write!(f, " ({})", self.reason)?;
         }

@@ -160,7 +160,7 @@ fn info() {
         process_id: "u32", "the daemon's process";
         priority: "i32", "of the loop's thread under SCHED_FIFO, else 0";
         memory_locked: "u32", "1 if the daemon's memory is locked";
-        wishes_refused: "u32", "real-time wishes that the kernel refused";
+        requests_denied: "u32", "real-time wishes that the kernel refused";
         started_unix_ns: "i64", "when publishing began, since 1970, UTC";
         started_ns: "i64", "the same instant on the loop's clock";
         rate_hz: "f64", "nominal";

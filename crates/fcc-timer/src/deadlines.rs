@@ -118,7 +118,7 @@ pub(crate) fn timespec(ns: i64) -> nix::sys::time::TimeSpec {
 }
 
 /// Makes an error of the system's answer to `call`.
-pub(crate) fn refused(call: &'static str) -> impl FnOnce(Errno) -> TimerError {
+pub(crate) fn os_error(call: &'static str) -> impl FnOnce(Errno) -> TimerError {
     move |errno| TimerError::Os {
         call,
         source: io::Error::from(errno),

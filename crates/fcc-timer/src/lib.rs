@@ -45,7 +45,9 @@ pub use kind::{TimerKind, UnknownTimer};
 pub use manual::ManualTimer;
 pub use nanosleep::Nanosleep;
 pub use posix::PosixTimer;
-pub use realtime::{CpuWish, RealtimeGrants, RealtimeRefused, RealtimeWishes, Refusal, Strictness};
+pub use realtime::{
+    CpuRequest, DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, Strictness,
+};
 pub use stats::{TimingStats, TimingSummary};
 pub use timer::{Expiry, Timer, TimerError, Wake};
 pub use timerfd::TimerFd;

@@ -33,8 +33,8 @@ pub struct ManualTimer {
     now_ns: i64,
     deadlines: Option<Deadlines>,
     late: Vec<(u64, Duration)>,
-    rehearses: bool,
-    rehearsed: bool,
+    warms_up: bool,
+    warmed_up: bool,
 }
 
 impl ManualTimer {
@@ -48,8 +48,8 @@ impl ManualTimer {
             now_ns: 0,
             deadlines: None,
             late: Vec::new(),
-            rehearses: false,
-            rehearsed: false,
+            warms_up: false,
+            warmed_up: false,
         })
     }
 
@@ -63,8 +63,8 @@ impl ManualTimer {
 
     /// Has each wait rehearse, as a timer does that wakes early in good time.
     #[must_use]
-    pub const fn rehearsing(mut self) -> Self {
-        self.rehearses = true;
+    pub const fn with_warm_up(mut self) -> Self {
+        self.warms_up = true;
         self
     }
 
@@ -77,13 +77,13 @@ impl ManualTimer {
 impl Timer for ManualTimer {
     fn start(&mut self) -> Result<(), TimerError> {
         self.deadlines = Some(Deadlines::new(self.now_ns, self.period));
-        self.rehearsed = false;
+        self.warmed_up = false;
         Ok(())
     }
 
     fn wait(&mut self) -> Result<Expiry, TimerError> {
         let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
-        self.rehearsed = false;
+        self.warmed_up = false;
         let waited_for = deadlines.next();
         self.now_ns = self.now_ns.max(deadlines.due_ns(waited_for));
         for (_, by) in self.late.iter().filter(|(number, _)| *number == waited_for) {
@@ -92,10 +92,10 @@ impl Timer for ManualTimer {
         Ok(deadlines.woken_uncounted(self.now_ns))
     }
 
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
-        if self.rehearses && !self.rehearsed {
-            self.rehearsed = true;
-            return self.clone().wait().map(Wake::Rehearsal);
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
+        if self.warms_up && !self.warmed_up {
+            self.warmed_up = true;
+            return self.clone().wait().map(Wake::WarmUp);
         }
         self.wait().map(Wake::Deadline)
     }

@@ -4,7 +4,7 @@ use nix::errno::Errno;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_nanosleep};
 use std::time::Duration;
 
-use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
+use crate::deadlines::{Deadlines, Period, monotonic_ns, os_error, timespec};
 use crate::early::{Alarm, Early};
 use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
@@ -66,9 +66,9 @@ impl Timer for Nanosleep {
         }
     }
 
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
         match (&mut self.early, &mut self.deadlines) {
-            (Some(early), Some(deadlines)) => early.wait_or_rehearse(deadlines, &mut Sleep),
+            (Some(early), Some(deadlines)) => early.wait_or_warm_up(deadlines, &mut Sleep),
             _ => self.wait().map(Wake::Deadline),
         }
     }
@@ -107,7 +107,7 @@ impl Alarm for Sleep {
             ) {
                 Ok(_) => return Ok(()),
                 Err(Errno::EINTR) => {}
-                Err(errno) => return Err(refused("clock_nanosleep")(errno)),
+                Err(errno) => return Err(os_error("clock_nanosleep")(errno)),
             }
         }
     }

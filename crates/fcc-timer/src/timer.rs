@@ -29,12 +29,12 @@ pub trait Timer: Send {
 
     /// Waits like [`wait`](Self::wait), but a timer that wakes early and has
     /// time left may come back once before the deadline, with
-    /// [`Wake::Rehearsal`]: do what warms the caches for the tick and changes
+    /// [`Wake::WarmUp`]: do what warms the caches for the tick and changes
     /// nothing, and call again.
     ///
     /// # Errors
     /// Those of `wait`.
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
         self.wait().map(Wake::Deadline)
     }
 
@@ -53,7 +53,7 @@ pub trait Timer: Send {
 pub enum Wake {
     /// The deadline is near. What it will be, but for the time of waking, and
     /// unless the machine is elsewhere meanwhile.
-    Rehearsal(Expiry),
+    WarmUp(Expiry),
     /// The deadline has come.
     Deadline(Expiry),
 }

@@ -7,7 +7,7 @@ use nix::sys::timerfd::{
 use nix::unistd::read;
 use std::time::Duration;
 
-use crate::deadlines::{Deadlines, Period, monotonic_ns, refused, timespec};
+use crate::deadlines::{Deadlines, Period, monotonic_ns, os_error, timespec};
 use crate::early::{Alarm, Early};
 use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
@@ -33,7 +33,7 @@ impl TimerFd {
     pub fn new(period: Duration) -> Result<Self, TimerError> {
         let period = Period::new(period)?;
         let descriptor = Descriptor::new(ClockId::CLOCK_MONOTONIC, TimerFlags::TFD_CLOEXEC)
-            .map_err(refused("timerfd_create"))?;
+            .map_err(os_error("timerfd_create"))?;
         Ok(Self {
             period,
             file: File { descriptor, period },
@@ -69,9 +69,9 @@ impl Timer for TimerFd {
         Ok(deadlines.woken(passed, monotonic_ns()))
     }
 
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
         match (&mut self.early, &mut self.deadlines) {
-            (Some(early), Some(deadlines)) => early.wait_or_rehearse(deadlines, &mut self.file),
+            (Some(early), Some(deadlines)) => early.wait_or_warm_up(deadlines, &mut self.file),
             _ => self.wait().map(Wake::Deadline),
         }
     }
@@ -104,7 +104,7 @@ impl File {
             match read(&self.descriptor, &mut count) {
                 Ok(_) => return Ok(u64::from_ne_bytes(count)),
                 Err(Errno::EINTR) => {}
-                Err(errno) => return Err(refused("read of a timerfd")(errno)),
+                Err(errno) => return Err(os_error("read of a timerfd")(errno)),
             }
         }
     }
@@ -117,7 +117,7 @@ impl Alarm for File {
                 Expiration::IntervalDelayed(timespec(alarm_ns), timespec(self.period.ns())),
                 TimerSetTimeFlags::TFD_TIMER_ABSTIME,
             )
-            .map_err(refused("timerfd_settime"))
+            .map_err(os_error("timerfd_settime"))
     }
 
     fn sleep_until(&mut self, _: i64) -> Result<(), TimerError> {

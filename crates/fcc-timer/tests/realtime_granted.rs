@@ -7,11 +7,11 @@ use std::sync::mpsc;
 use std::thread;
 
 use fcc_timer::usage::page_faults;
-use fcc_timer::{CpuWish, RealtimeGrants, RealtimeWishes};
+use fcc_timer::{CpuRequest, RealtimeGranted, RealtimeRequest};
 
 /// What the calling thread has.
-fn present() -> RealtimeGrants {
-    RealtimeWishes::default().apply().unwrap()
+fn present() -> RealtimeGranted {
+    RealtimeRequest::default().apply().unwrap()
 }
 
 /// The policy as `proc_pid_stat(5)` has it, field 41, and not by the code's way: 1 is
@@ -35,16 +35,16 @@ fn only_the_calling_thread_becomes_real_time() {
         (present().policy, policy_in_proc())
     });
     thread::spawn(move || {
-        let wishes = RealtimeWishes {
+        let request = RealtimeRequest {
             priority: Some(10),
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         };
-        let grants = wishes.apply().unwrap();
-        if grants.refused.is_empty() {
-            assert_eq!((grants.policy, grants.priority), ("SCHED_FIFO", 10));
+        let granted = request.apply().unwrap();
+        if granted.denied.is_empty() {
+            assert_eq!((granted.policy, granted.priority), ("SCHED_FIFO", 10));
             assert_eq!(policy_in_proc(), 1);
         } else {
-            assert_eq!((grants.policy, grants.priority), ("SCHED_OTHER", 0));
+            assert_eq!((granted.policy, granted.priority), ("SCHED_OTHER", 0));
             assert_eq!(policy_in_proc(), 0);
         }
         // One that was there, and one that this thread makes.
@@ -69,13 +69,13 @@ fn the_thread_stays_on_the_cpu_it_asked_for() {
             .unwrap()
             .parse()
             .unwrap();
-        let wishes = RealtimeWishes {
-            cpu: Some(CpuWish::Number(cpu)),
-            ..RealtimeWishes::default()
+        let request = RealtimeRequest {
+            cpu: Some(CpuRequest::Number(cpu)),
+            ..RealtimeRequest::default()
         };
-        let grants = wishes.apply().unwrap();
-        assert_eq!(grants.cpu, Some(cpu));
-        assert_eq!(grants.refused, []);
+        let granted = request.apply().unwrap();
+        assert_eq!(granted.cpu, Some(cpu));
+        assert_eq!(granted.denied, []);
         assert_eq!(nix::sched::sched_getcpu(), Ok(cpu));
     })
     .join()
@@ -86,16 +86,16 @@ fn the_thread_stays_on_the_cpu_it_asked_for() {
 #[test]
 fn the_best_cpu_is_chosen_with_a_reason() {
     thread::spawn(|| {
-        let wishes = RealtimeWishes {
-            cpu: Some(CpuWish::Auto),
-            ..RealtimeWishes::default()
+        let request = RealtimeRequest {
+            cpu: Some(CpuRequest::Auto),
+            ..RealtimeRequest::default()
         };
-        let grants = wishes.apply().unwrap();
-        assert_eq!(grants.refused, []);
-        assert!(!grants.cpu_because.is_empty());
-        match grants.cpu {
+        let granted = request.apply().unwrap();
+        assert_eq!(granted.denied, []);
+        assert!(!granted.cpu_reason.is_empty());
+        match granted.cpu {
             Some(cpu) => assert_eq!(nix::sched::sched_getcpu(), Ok(cpu)),
-            None => assert!(grants.cpu_because.starts_with("not bound: ")),
+            None => assert!(granted.cpu_reason.starts_with("not bound: ")),
         }
     })
     .join()
@@ -106,18 +106,18 @@ fn the_best_cpu_is_chosen_with_a_reason() {
 #[test]
 fn cpus_are_kept_from_deep_sleep_as_long_as_the_grants_live() {
     let device = "/dev/cpu_dma_latency";
-    let wishes = RealtimeWishes {
+    let request = RealtimeRequest {
         cpu_dma_latency_us: Some(12),
-        ..RealtimeWishes::default()
+        ..RealtimeRequest::default()
     };
-    let grants = wishes.apply().unwrap();
-    let Some(limit) = &grants.cpu_latency else {
+    let granted = request.apply().unwrap();
+    let Some(limit) = &granted.cpu_latency else {
         // A machine without the device, or without the right to it, says so.
-        let [refusal] = grants.refused.as_slice() else {
-            panic!("{:?}", grants.refused);
+        let [denied] = granted.denied.as_slice() else {
+            panic!("{:?}", granted.denied);
         };
-        assert_eq!(refusal.wish, "CPUs awake within 12 µs");
-        assert!(refusal.reason.contains(device), "{refusal}");
+        assert_eq!(denied.request, "CPUs awake within 12 µs");
+        assert!(denied.reason.contains(device), "{denied}");
         return;
     };
     assert!(limit.us() <= 12);
@@ -131,11 +131,11 @@ fn the_timer_slack_is_the_threads_own() {
     // The kernel's default, prctl(2).
     assert_eq!(present().timer_slack_ns, Some(50_000));
     thread::spawn(|| {
-        let wishes = RealtimeWishes {
+        let request = RealtimeRequest {
             timer_slack_ns: Some(1),
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         };
-        assert_eq!(wishes.apply().unwrap().timer_slack_ns, Some(1));
+        assert_eq!(request.apply().unwrap().timer_slack_ns, Some(1));
     })
     .join()
     .unwrap();
@@ -163,12 +163,12 @@ fn a_prefaulted_stack_faults_no_more() {
     thread::Builder::new()
         .stack_size(4 * BYTES)
         .spawn(|| {
-            let wishes = RealtimeWishes {
+            let request = RealtimeRequest {
                 stack_prefault_bytes: BYTES,
-                ..RealtimeWishes::default()
+                ..RealtimeRequest::default()
             };
-            let grants = wishes.apply().unwrap();
-            assert!(grants.stack_prefaulted, "{:?}", grants.refused);
+            let granted = request.apply().unwrap();
+            assert!(granted.stack_prefaulted, "{:?}", granted.denied);
             let before = page_faults();
             assert_eq!(use_stack(1), 32);
             assert_eq!(page_faults(), before);

@@ -3,17 +3,17 @@
 
 use std::fs;
 
-use fcc_timer::RealtimeWishes;
+use fcc_timer::RealtimeRequest;
 
 #[test]
 fn locked_memory_is_there_when_reported() {
-    let wishes = RealtimeWishes {
+    let request = RealtimeRequest {
         lock_memory: true,
-        ..RealtimeWishes::default()
+        ..RealtimeRequest::default()
     };
-    let grants = wishes.apply().unwrap();
-    assert_eq!(grants.memory_locked, grants.refused.is_empty());
-    if grants.memory_locked {
+    let granted = request.apply().unwrap();
+    assert_eq!(granted.memory_locked, granted.denied.is_empty());
+    if granted.memory_locked {
         // What is mapped later is locked as it is touched: no page of it
         // before, all of it after (`Locked` of `proc_pid_smaps(5)`).
         let mut later = vec![0_u8; 16 << 20];

@@ -6,7 +6,7 @@
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use std::thread;
 
-use fcc_timer::{CpuWish, RealtimeWishes, Strictness};
+use fcc_timer::{CpuRequest, RealtimeRequest, Strictness};
 
 const ALLOWED_BYTES: rlim_t = 64 << 10;
 
@@ -36,24 +36,24 @@ fn give_up_capabilities() {
 #[test]
 fn a_refusal_says_what_why_and_what_to_do() {
     without_rights(|| {
-        let wishes = RealtimeWishes {
+        let request = RealtimeRequest {
             priority: Some(80),
             lock_memory: true,
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         };
-        let grants = wishes.apply().unwrap();
-        assert_eq!((grants.policy, grants.priority), ("SCHED_OTHER", 0));
-        assert!(!grants.memory_locked);
-        let [memory, scheduling] = grants.refused.as_slice() else {
-            panic!("{:?}", grants.refused);
+        let granted = request.apply().unwrap();
+        assert_eq!((granted.policy, granted.priority), ("SCHED_OTHER", 0));
+        assert!(!granted.memory_locked);
+        let [memory, scheduling] = granted.denied.as_slice() else {
+            panic!("{:?}", granted.denied);
         };
 
-        assert_eq!(scheduling.wish, "SCHED_FIFO priority 80");
+        assert_eq!(scheduling.request, "SCHED_FIFO priority 80");
         assert_eq!(scheduling.reason, "EPERM");
         assert!(scheduling.remedy.contains("LimitRTPRIO=80"));
         assert!(scheduling.remedy.contains("setcap cap_sys_nice+ep"));
 
-        assert_eq!(memory.wish, "locked memory");
+        assert_eq!(memory.request, "locked memory");
         assert!(memory.reason.contains("64 KiB"), "{}", memory.reason);
         assert!(memory.remedy.contains("LimitMEMLOCK=infinity"));
     });
@@ -62,11 +62,11 @@ fn a_refusal_says_what_why_and_what_to_do() {
 #[test]
 fn memory_that_may_not_be_locked_can_still_be_had() {
     without_rights(|| {
-        let wishes = RealtimeWishes {
+        let request = RealtimeRequest {
             lock_memory: true,
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         };
-        assert_eq!(wishes.apply().unwrap().refused.len(), 1);
+        assert_eq!(request.apply().unwrap().denied.len(), 1);
         let far_beyond_the_limit = vec![1_u8; 64 << 20];
         assert_eq!(std::hint::black_box(far_beyond_the_limit)[1 << 20], 1);
         thread::spawn(|| ()).join().unwrap();
@@ -76,17 +76,17 @@ fn memory_that_may_not_be_locked_can_still_be_had() {
 #[test]
 fn strictly_a_refusal_is_an_error_that_tells_everything() {
     without_rights(|| {
-        let wishes = RealtimeWishes {
+        let request = RealtimeRequest {
             priority: Some(80),
             lock_memory: true,
             timer_slack_ns: Some(1000),
             strictness: Strictness::Strict,
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         };
-        let error = wishes.apply().unwrap_err();
-        assert_eq!(error.grants.refused.len(), 2);
+        let error = request.apply().unwrap_err();
+        assert_eq!(error.granted.denied.len(), 2);
         // What needs no right is granted all the same.
-        assert_eq!(error.grants.timer_slack_ns, Some(1000));
+        assert_eq!(error.granted.timer_slack_ns, Some(1000));
         let message = error.to_string();
         assert!(
             message.contains("SCHED_FIFO priority 80 refused (EPERM): "),
@@ -98,42 +98,42 @@ fn strictly_a_refusal_is_an_error_that_tells_everything() {
 
 #[test]
 fn what_cannot_be_is_refused_to_everybody() {
-    let refused = |wishes: RealtimeWishes| {
-        let grants = thread::spawn(move || wishes.apply().unwrap())
+    let refused = |request: RealtimeRequest| {
+        let granted = thread::spawn(move || request.apply().unwrap())
             .join()
             .unwrap();
-        let [refusal] = grants.refused.as_slice() else {
-            panic!("{:?}", grants.refused);
+        let [denied] = granted.denied.as_slice() else {
+            panic!("{:?}", granted.denied);
         };
-        (grants.clone(), refusal.clone())
+        (granted.clone(), denied.clone())
     };
 
     for priority in [0, 100] {
-        let (grants, refusal) = refused(RealtimeWishes {
+        let (granted, denied) = refused(RealtimeRequest {
             priority: Some(priority),
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         });
-        assert_eq!(grants.policy, "SCHED_OTHER");
-        assert!(refusal.remedy.contains("1 to 99"));
+        assert_eq!(granted.policy, "SCHED_OTHER");
+        assert!(denied.remedy.contains("1 to 99"));
     }
 
-    let (grants, refusal) = refused(RealtimeWishes {
-        cpu: Some(CpuWish::Number(100_000)),
-        ..RealtimeWishes::default()
+    let (granted, denied) = refused(RealtimeRequest {
+        cpu: Some(CpuRequest::Number(100_000)),
+        ..RealtimeRequest::default()
     });
-    assert_eq!(refusal.wish, "CPU 100000");
-    assert!(grants.cpu.is_none_or(|cpu| cpu != 100_000));
+    assert_eq!(denied.request, "CPU 100000");
+    assert!(granted.cpu.is_none_or(|cpu| cpu != 100_000));
 
-    let (grants, refusal) = refused(RealtimeWishes {
+    let (granted, denied) = refused(RealtimeRequest {
         stack_prefault_bytes: 1 << 30,
-        ..RealtimeWishes::default()
+        ..RealtimeRequest::default()
     });
-    assert!(!grants.stack_prefaulted);
-    assert!(refusal.remedy.contains("larger"), "{refusal}");
+    assert!(!granted.stack_prefaulted);
+    assert!(denied.remedy.contains("larger"), "{denied}");
 
-    let (grants, _) = refused(RealtimeWishes {
+    let (granted, _) = refused(RealtimeRequest {
         timer_slack_ns: Some(0),
-        ..RealtimeWishes::default()
+        ..RealtimeRequest::default()
     });
-    assert_eq!(grants.timer_slack_ns, Some(50_000));
+    assert_eq!(granted.timer_slack_ns, Some(50_000));
 }

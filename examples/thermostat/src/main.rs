@@ -5,6 +5,8 @@
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
 //! is 33 minutes to the room.
 
+#[cfg(test)]
+mod conformance;
 mod room;
 mod thermostat;
 
@@ -13,7 +15,7 @@ use std::thread;
 use std::time::Duration;
 
 use fcc_runtime::{Loop, LoopConfig, LoopReport, Message, Order, Parts};
-use fcc_timer::{RealtimeWishes, Timer, TimerKind};
+use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
 use thermostat::Thermostat;
@@ -54,16 +56,16 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
 fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let config = LoopConfig {
-        realtime: RealtimeWishes {
+        realtime: RealtimeRequest {
             priority: Some(50),
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         },
         ..LoopConfig::default()
     };
     let (this, mut link) = Loop::new(parts, &config)?;
     let handle = this.spawn()?;
-    for refusal in &handle.grants().refused {
-        println!("goes on without: {refusal}");
+    for denied in &handle.granted().denied {
+        println!("goes on without: {denied}");
     }
     link.orders.send(Order::Engage)?;
     for second in 1..=seconds {

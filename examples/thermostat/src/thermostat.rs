@@ -7,7 +7,7 @@ use fcc_core::framework::{Controller, Flags, Reading, Tick};
 
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
 
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Measured {
     pub(crate) room_c: Reading<f64>,
 }

@@ -3,22 +3,22 @@
 use std::{fs, thread};
 
 use anyhow::anyhow;
-use fcc_timer::{CpuWish, RealtimeWishes};
+use fcc_timer::{CpuRequest, RealtimeRequest};
 
 /// The CPU that everybody is bound to, and why: the one that `fccd` would
 /// choose for its loop, an isolated one or one that stays off the interrupts;
 /// the last where none is better than the others.
 pub(crate) fn quiet_cpu() -> anyhow::Result<(usize, String)> {
-    let auto = RealtimeWishes {
-        cpu: Some(CpuWish::Auto),
-        ..RealtimeWishes::default()
+    let auto = RealtimeRequest {
+        cpu: Some(CpuRequest::Auto),
+        ..RealtimeRequest::default()
     };
     // In a thread of its own: whoever chooses is bound to what it chose.
-    let grants = thread::spawn(move || auto.apply())
+    let granted = thread::spawn(move || auto.apply())
         .join()
         .map_err(|_| anyhow!("choosing a CPU panicked"))??;
     let last = thread::available_parallelism()?.get() - 1;
-    Ok((grants.cpu.unwrap_or(last), grants.cpu_because))
+    Ok((granted.cpu.unwrap_or(last), granted.cpu_reason))
 }
 
 /// Kernel, processors and clock source in words.

@@ -65,7 +65,7 @@ impl Ours {
         log.set_origin(first.scheduled_ns - period.as_nanos() as i64);
         log.tick();
         loop {
-            let wake = timer.wait_or_rehearse()?;
+            let wake = timer.wait_or_warm_up()?;
             // The same for a rehearsal, but that nothing is kept.
             let now_ns = log.stamp();
             if matches!(wake, Wake::Deadline(_)) && !now_ns.is_some_and(|at| log.keep(at)) {

@@ -8,7 +8,7 @@
 use std::io::Write as _;
 use std::time::Duration;
 
-use fcc_timer::{RealtimeWishes, usage};
+use fcc_timer::{RealtimeRequest, usage};
 use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_gettime};
 use serde::{Deserialize, Serialize};
@@ -75,19 +75,19 @@ impl TickLog {
         // A peer that ticks too often shall fill the log and end, not grow it.
         let room = (f64::from(run.rate) * run.seconds * 2.0) as usize + 1_000;
         let ticks_ns = vec![0; room];
-        let grants = RealtimeWishes {
+        let granted = RealtimeRequest {
             lock_memory: true,
             timer_slack_ns: Some(1),
-            ..RealtimeWishes::default()
+            ..RealtimeRequest::default()
         }
         .apply()?;
-        for refusal in &grants.refused {
-            eprintln!("{refusal}");
+        for denied in &granted.denied {
+            eprintln!("{denied}");
         }
         Ok(Self {
             log: Ticks {
-                policy: grants.policy.to_owned(),
-                priority: grants.priority,
+                policy: granted.policy.to_owned(),
+                priority: granted.priority,
                 ticks_ns,
                 ..Ticks::default()
             },

@@ -77,7 +77,7 @@ pub trait Controller: Send {
     /// Warms what the next tick will run and touch, without effect: its outputs
     /// are to the last bit what they would have been. Called shortly before a
     /// tick where there is time; under the rules of a tick.
-    fn rehearse(&self, _tick: &Tick, _measurements: &Self::Measurements) {}
+    fn warm_up(&self, _tick: &Tick, _measurements: &Self::Measurements) {}
 
     /// Lets go.
     fn disengage(&mut self) {}

@@ -60,7 +60,7 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
-                FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeRefused,
+                FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeDenied,
                 FlyError::Taken(_) => Exit::Taken,
                 _ => Exit::Failure,
             };

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use fcc_timer::CpuWish;
+use fcc_timer::CpuRequest;
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -21,7 +21,7 @@ pub enum CpuChoice {
     Number(usize),
 }
 
-impl From<CpuChoice> for CpuWish {
+impl From<CpuChoice> for CpuRequest {
     fn from(choice: CpuChoice) -> Self {
         match choice {
             CpuChoice::Auto => Self::Auto,

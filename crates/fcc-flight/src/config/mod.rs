@@ -27,7 +27,7 @@ use std::time::Duration;
 
 use fcc_core::flight::AutopilotConfig;
 use fcc_runtime::{Budget, LoopConfig};
-use fcc_timer::RealtimeWishes;
+use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
 pub use autopilot::AutopilotSection;
@@ -177,7 +177,7 @@ impl Config {
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
             budget: Budget::from(&self.budget),
-            realtime: RealtimeWishes::from(&self.realtime),
+            realtime: RealtimeRequest::from(&self.realtime),
             ..LoopConfig::default()
         }
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use fcc_core::framework::SwitchOff;
 use fcc_runtime::AfterFailsafe;
-use fcc_timer::{CpuWish, EarlyWake, RealtimeWishes, Strictness, Timer, TimerError, TimerKind};
+use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
 use super::CpuChoice;
@@ -135,11 +135,11 @@ impl Default for RealtimeSection {
     }
 }
 
-impl From<&RealtimeSection> for RealtimeWishes {
+impl From<&RealtimeSection> for RealtimeRequest {
     fn from(section: &RealtimeSection) -> Self {
         Self {
             priority: (section.priority > 0).then_some(section.priority),
-            cpu: section.cpu.map(CpuWish::from),
+            cpu: section.cpu.map(CpuRequest::from),
             cpu_dma_latency_us: section.cpu_dma_latency_us,
             lock_memory: section.lock_memory,
             stack_prefault_bytes: section.stack_prefault_kib as usize * 1_024,

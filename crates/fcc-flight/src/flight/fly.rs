@@ -101,24 +101,24 @@ pub fn fly(
         Pace::RealTime => {
             let (flight_loop, mut link) = Loop::new(parts, &assembly.loop_config)?;
             let interrupted = signals::stop_by(&link.stop).map_err(FlyError::Signals)?;
-            let wishes = &assembly.loop_config.realtime;
+            let request = &assembly.loop_config.realtime;
             let watchdog =
-                HangWatch::start(&assembly.watchdog, period, wishes.priority, &link, held_at)
+                HangWatch::start(&assembly.watchdog, period, request.priority, &link, held_at)
                     .map_err(FlyError::Watchdog)?;
             let mut tally = Tally::new(period)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
-            for refusal in &handle.grants().refused {
-                watch.remark(refusal.to_string());
+            for denied in &handle.granted().denied {
+                watch.remark(denied.to_string());
             }
-            for refusal in watchdog.iter().flat_map(|(_, grants)| &grants.refused) {
-                watch.remark(format!("watchdog: {refusal}"));
+            for denied in watchdog.iter().flat_map(|(_, granted)| &granted.denied) {
+                watch.remark(format!("watchdog: {denied}"));
             }
-            let grants = Some(handle.grants());
+            let granted = Some(handle.granted());
             let mut recording =
-                wish.and_then(|wish| wish.begin(grants, RecordingPace::RealTime, &mut watch));
+                wish.and_then(|wish| wish.begin(granted, RecordingPace::RealTime, &mut watch));
             drop(kept);
-            watch.live.describe(tick, handle.grants(), &aircraft);
+            watch.live.describe(tick, handle.granted(), &aircraft);
             let news = watch.begin_restart(assembly.restart);
             let watched_by = watchdog.as_ref().map(|(watchdog, _)| watchdog);
             let hung = Follower {
@@ -134,12 +134,12 @@ pub fn fly(
             let report = match hung {
                 None => handle.join(),
                 Some(hung) => {
-                    let grants = handle.grants().clone();
+                    let granted = handle.granted().clone();
                     handle.abandon();
                     // Not dismissed, the guard gives the controls back once
                     // more: a loop that wakes up now may yet take them.
                     connection = None;
-                    tally.report(hung, timer_name, grants)
+                    tally.report(hung, timer_name, granted)
                 }
             };
             (report, recording, interrupted)

@@ -13,7 +13,7 @@ use std::thread;
 use std::time::Duration;
 
 use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
-use fcc_timer::RealtimeGrants;
+use fcc_timer::RealtimeGranted;
 use fcc_xplane::{Released, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::Pilot;
@@ -52,7 +52,7 @@ impl HangWatch {
         loop_priority: Option<u8>,
         link: &Link<Pilot>,
         at: Option<(XPlaneStatus, XPlaneSection)>,
-    ) -> io::Result<Option<(Self, RealtimeGrants)>> {
+    ) -> io::Result<Option<(Self, RealtimeGranted)>> {
         if !section.enabled {
             return Ok(None);
         }
@@ -62,7 +62,7 @@ impl HangWatch {
         };
         let stop = link.stop.clone();
         let (tell, told) = mpsc::channel();
-        let grants = watch(link.pulse.clone(), &config, move |Hang { silent }| {
+        let granted = watch(link.heartbeat.clone(), &config, move |Hang { silent }| {
             // Should it wake up once more, it lets go by itself.
             stop.stop();
             let released = at.is_none_or(|(status, section)| give_back(&status, &section));
@@ -78,7 +78,7 @@ impl HangWatch {
             // a thread that hangs, and has had its time.
             signal_hook::low_level::exit(i32::from(exit as u8));
         })?;
-        Ok(Some((Self { told }, grants)))
+        Ok(Some((Self { told }, granted)))
     }
 
     /// The hang, once the controls were given back.

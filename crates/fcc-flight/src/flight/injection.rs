@@ -139,8 +139,8 @@ impl Controller for Faulty {
         self.autopilot.engage(tick, measurements);
     }
 
-    fn rehearse(&self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.rehearse(tick, measurements);
+    fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.warm_up(tick, measurements);
     }
 
     fn guide(&mut self, tick: &Tick, measurements: &Measurements) {

@@ -4,7 +4,7 @@ use fcc_core::flight::Order as Command;
 use fcc_runtime::OrderSender;
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
-use fcc_timer::RealtimeGrants;
+use fcc_timer::RealtimeGranted;
 
 use super::orders::Orders;
 use crate::config::{LoopSection, TelemetrySection};
@@ -48,20 +48,25 @@ impl Live {
     }
 
     /// Says who flies: from here on it can be watched.
-    pub(super) fn describe(&mut self, tick: &LoopSection, grants: &RealtimeGrants, aircraft: &str) {
+    pub(super) fn describe(
+        &mut self,
+        tick: &LoopSection,
+        granted: &RealtimeGranted,
+        aircraft: &str,
+    ) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };
-        let refusals: Vec<_> = grants.refused.iter().map(ToString::to_string).collect();
+        let refusals: Vec<_> = granted.denied.iter().map(ToString::to_string).collect();
         publisher.describe(Info {
             rate_hz: tick.rate_hz,
             timer: Text::new(tick.timer.name()),
             software: Text::new(env!("CARGO_PKG_VERSION")),
             commit: Text::new(env!("FCCD_GIT_HASH")),
-            policy: Text::new(grants.policy),
-            priority: grants.priority,
-            memory_locked: grants.memory_locked.into(),
-            wishes_refused: refusals.len() as u32,
+            policy: Text::new(granted.policy),
+            priority: granted.priority,
+            memory_locked: granted.memory_locked.into(),
+            requests_denied: refusals.len() as u32,
             refusals: Text::new(&refusals.join("\n")),
             aircraft: Text::new(aircraft),
             ..Info::of_this_process()

@@ -5,7 +5,7 @@ use fcc_core::flight::Order as Command;
 use fcc_runtime::OrderSender;
 use fcc_telemetry::recording::RecorderStatus;
 use fcc_telemetry::{FlightEvent, FlightRecord};
-use fcc_timer::RealtimeGrants;
+use fcc_timer::RealtimeGranted;
 
 use crate::config::{LoopSection, TelemetrySection};
 
@@ -20,7 +20,7 @@ impl Live {
     pub(super) const fn start(_: &TelemetrySection) -> Self {
         Self
     }
-    pub(super) const fn describe(&mut self, _: &LoopSection, _: &RealtimeGrants, _: &str) {}
+    pub(super) const fn describe(&mut self, _: &LoopSection, _: &RealtimeGranted, _: &str) {}
     pub(super) const fn record(&mut self, _: &FlightRecord) {}
     pub(super) const fn event(&mut self, _: &FlightEvent, _: &str) {}
     pub(super) const fn remark(&mut self, _: u64, _: i64, _: &str) {}

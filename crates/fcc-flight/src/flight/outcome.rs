@@ -3,8 +3,10 @@
 use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{FlightScore, Realtime, RefusedWish, TimingReport, flight_table, timing_table};
-use fcc_timer::RealtimeGrants;
+use fcc_telemetry::{
+    DeniedRequest, FlightScore, Realtime, TimingReport, flight_table, timing_table,
+};
+use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
@@ -91,7 +93,7 @@ impl Outcome {
                 ..TimingReport::new(
                     timer,
                     &report.timing,
-                    realtime(&report.grants.unwrap_or_default()),
+                    realtime(&report.granted.unwrap_or_default()),
                 )
             }
             .with_cpu_time(report.cpu_time.as_secs_f64())
@@ -152,28 +154,28 @@ impl Outcome {
 }
 
 /// What the kernel granted, as other tools read it.
-fn realtime(grants: &RealtimeGrants) -> Realtime {
+fn realtime(granted: &RealtimeGranted) -> Realtime {
     Realtime {
-        policy: if grants.policy.is_empty() {
+        policy: if granted.policy.is_empty() {
             NOT_ASKED
         } else {
-            grants.policy
+            granted.policy
         }
         .to_owned(),
-        priority: grants.priority,
-        cpu: grants.cpu,
-        cpu_because: grants.cpu_because.clone(),
-        memory_locked: grants.memory_locked,
-        stack_prefaulted: grants.stack_prefaulted,
-        timer_slack_ns: grants.timer_slack_ns,
-        cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
-        refused: grants
-            .refused
+        priority: granted.priority,
+        cpu: granted.cpu,
+        cpu_because: granted.cpu_reason.clone(),
+        memory_locked: granted.memory_locked,
+        stack_prefaulted: granted.stack_prefaulted,
+        timer_slack_ns: granted.timer_slack_ns,
+        cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
+        refused: granted
+            .denied
             .iter()
-            .map(|refusal| RefusedWish {
-                wish: refusal.wish.clone(),
-                reason: refusal.reason.clone(),
-                remedy: refusal.remedy.clone(),
+            .map(|denied| DeniedRequest {
+                request: denied.request.clone(),
+                reason: denied.reason.clone(),
+                remedy: denied.remedy.clone(),
             })
             .collect(),
     }

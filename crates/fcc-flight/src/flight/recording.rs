@@ -5,7 +5,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
-use fcc_timer::RealtimeGrants;
+use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
 
@@ -136,20 +136,20 @@ impl RecordingWish {
     /// Begins to record; without a recorder the flight goes on, and says so.
     pub(super) fn begin(
         self,
-        grants: Option<&RealtimeGrants>,
+        granted: Option<&RealtimeGranted>,
         pace: fcc_telemetry::recording::RecordingPace,
         watch: &mut Watch,
     ) -> Option<Recording> {
-        let realtime = grants.map_or_else(Realtime::default, |grants| Realtime {
-            policy: grants.policy.to_owned(),
-            priority: grants.priority,
-            cpu: grants.cpu,
-            cpu_because: grants.cpu_because.clone(),
-            memory_locked: grants.memory_locked,
-            stack_prefaulted: grants.stack_prefaulted,
-            timer_slack_ns: grants.timer_slack_ns,
-            cpu_dma_latency_us: grants.cpu_latency.as_ref().map(LatencyLimit::us),
-            refused: grants.refused.iter().map(ToString::to_string).collect(),
+        let realtime = granted.map_or_else(Realtime::default, |granted| Realtime {
+            policy: granted.policy.to_owned(),
+            priority: granted.priority,
+            cpu: granted.cpu,
+            cpu_because: granted.cpu_reason.clone(),
+            memory_locked: granted.memory_locked,
+            stack_prefaulted: granted.stack_prefaulted,
+            timer_slack_ns: granted.timer_slack_ns,
+            cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
+            refused: granted.denied.iter().map(ToString::to_string).collect(),
         });
         let about = About {
             realtime,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use fcc_core::framework::{Cause, EventKind, Message, State};
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{FlightMessage, FlightRecord};
-use fcc_timer::{Expiry, RealtimeGrants, TimerError, TimingStats};
+use fcc_timer::{Expiry, RealtimeGranted, TimerError, TimingStats};
 
 use super::hang::Hung;
 
@@ -73,7 +73,7 @@ impl Tally {
         &self,
         hung: Hung,
         timer: &'static str,
-        grants: RealtimeGrants,
+        granted: RealtimeGranted,
     ) -> LoopReport {
         LoopReport {
             ending: Ending::Hung,
@@ -90,7 +90,7 @@ impl Tally {
             events_dropped: 0,
             cpu_time: Duration::ZERO,
             page_faults: Some(self.last.page_faults),
-            grants: Some(grants),
+            granted: Some(granted),
         }
     }
 }

@@ -28,7 +28,7 @@ pub struct Info {
     /// 1 if all of the daemon's memory is locked, else 0.
     pub memory_locked: u32,
     /// How many real-time wishes the kernel refused.
-    pub wishes_refused: u32,
+    pub requests_denied: u32,
     /// When the daemon began to publish, ns since 1970, UTC.
     pub started_unix_ns: i64,
     /// The same instant on the loop's clock, ns: the difference turns the times
@@ -61,7 +61,7 @@ impl Default for Info {
             process_id: 0,
             priority: 0,
             memory_locked: 0,
-            wishes_refused: 0,
+            requests_denied: 0,
             started_unix_ns: 0,
             started_ns: 0,
             rate_hz: 0.0,

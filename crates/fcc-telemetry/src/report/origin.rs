@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::recording::{About, Recording};
-use crate::{Realtime, RefusedWish};
+use crate::{DeniedRequest, Realtime};
 
 /// Where a flight comes from: what its recording says of it beside the ticks.
 /// A text that is empty is not known.
@@ -76,10 +76,10 @@ impl Origin {
 }
 
 /// A recording keeps no more than the words.
-fn in_words(refused: &str) -> RefusedWish {
-    RefusedWish {
-        wish: refused.to_owned(),
-        ..RefusedWish::default()
+fn in_words(refused: &str) -> DeniedRequest {
+    DeniedRequest {
+        request: refused.to_owned(),
+        ..DeniedRequest::default()
     }
 }
 

@@ -37,15 +37,15 @@ pub(super) struct Margin {
 }
 
 impl Margin {
-    pub(super) fn new(wish: &EarlyWake, period_ns: i64) -> Self {
+    pub(super) fn new(config: &EarlyWake, period_ns: i64) -> Self {
         let ns = |time: std::time::Duration| time.as_nanos() as i64;
-        let affordable_ns = (wish.cpu_cap * period_ns as f64) as i64;
-        let longest_ns = ns(wish.max).min(affordable_ns);
+        let affordable_ns = (config.cpu_cap * period_ns as f64) as i64;
+        let longest_ns = ns(config.max).min(affordable_ns);
         Self {
-            shortest_ns: ns(wish.min).min(longest_ns),
+            shortest_ns: ns(config.min).min(longest_ns),
             longest_ns,
-            guard_ns: ns(wish.guard),
-            spared: 1.0 - wish.quantile,
+            guard_ns: ns(config.guard),
+            spared: 1.0 - config.quantile,
             bucket_ns: longest_ns.unsigned_abs().div_ceil(BUCKETS as u64).max(1) as i64,
             window: vec![0; WINDOW].into(),
             next: 0,
@@ -85,7 +85,7 @@ impl Margin {
 
     /// To be called once a tick; whether the margin is another now. It has to
     /// hold what is done between wake-up and spin, too.
-    pub(super) fn review(&mut self, rehearsal_ns: i64) -> bool {
+    pub(super) fn review(&mut self, warm_up_ns: i64) -> bool {
         self.review_in = self.review_in.saturating_sub(1);
         if self.review_in > 0 {
             return false;
@@ -96,7 +96,7 @@ impl Margin {
         if self.spared * (self.seen as f64) < 1.0 && self.seen < WINDOW {
             return false;
         }
-        let wanted_ns = self.wanted_ns(rehearsal_ns);
+        let wanted_ns = self.wanted_ns(warm_up_ns);
         let saved_ns = self.now_ns.saturating_sub(wanted_ns);
         if saved_ns < 0 || saved_ns > self.now_ns / WORTH_SAVING {
             self.now_ns = wanted_ns;
@@ -112,7 +112,7 @@ impl Margin {
     }
 
     /// The margin that the wake-ups of the window ask for.
-    fn wanted_ns(&self, rehearsal_ns: i64) -> i64 {
+    fn wanted_ns(&self, warm_up_ns: i64) -> i64 {
         let beyond = self.counts.last().copied().map_or(0, usize::from);
         if 2 * beyond >= self.seen {
             return self.longest_ns;
@@ -129,7 +129,7 @@ impl Margin {
         }
         covered_ns
             .saturating_add(self.guard_ns)
-            .saturating_add(self.in_buckets(rehearsal_ns))
+            .saturating_add(self.in_buckets(warm_up_ns))
             .clamp(self.shortest_ns, self.longest_ns)
     }
 }
@@ -217,13 +217,13 @@ mod tests {
 
     #[test]
     fn covers_the_share_of_wake_ups_that_it_was_asked_for() {
-        let wish = EarlyWake {
+        let config = EarlyWake {
             quantile: 0.9,
             guard: Duration::ZERO,
             min: Duration::ZERO,
             ..EarlyWake::default()
         };
-        let mut margin = Margin::new(&wish, PERIOD_NS);
+        let mut margin = Margin::new(&config, PERIOD_NS);
         // 0 to 199 µs, each as often as the others: nine tenths are below 180.
         ticks(&mut margin, (0..2000).map(|n| (n * 7) % 200));
         assert!(

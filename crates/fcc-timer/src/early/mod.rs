@@ -9,21 +9,21 @@
 //! How long is enough is measured ([`margin`]); what it may cost is bounded
 //! ([`EarlyWake`]). The grid is laid where no tick of the kernel comes between
 //! alarm and deadline ([`kernel_tick`]), and what is left of the margin warms
-//! the caches for the tick ([`rehearsal`]). The three timers of the kernel share
-//! all of this: each is an [`Alarm`], and [`Early::wait_or_rehearse`] is their
+//! the caches for the tick ([`warm_up`]). The three timers of the kernel share
+//! all of this: each is an [`Alarm`], and [`Early::wait_or_warm_up`] is their
 //! common way to a deadline.
 
+mod config;
 mod kernel_tick;
 mod margin;
-mod rehearsal;
-mod wish;
+mod warm_up;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::{Expiry, TimerError, Wake};
+pub use config::EarlyWake;
 use kernel_tick::KernelTick;
 use margin::Margin;
-use rehearsal::Rehearsal;
-pub use wish::EarlyWake;
+use warm_up::WarmUp;
 
 /// A timer's own way to be woken by the kernel.
 pub(crate) trait Alarm {
@@ -40,7 +40,7 @@ pub(crate) trait Alarm {
 #[derive(Debug)]
 pub(crate) struct Early {
     margin: Margin,
-    rehearsal: Rehearsal,
+    warm_up: WarmUp,
     /// The wake-up, while the deadline is rehearsed.
     awake: Option<Awake>,
 }
@@ -56,11 +56,11 @@ struct Awake {
 impl Early {
     /// # Errors
     /// When a value is out of its range.
-    pub(crate) fn new(wish: &EarlyWake, period: Period) -> Result<Self, TimerError> {
-        wish.check()?;
+    pub(crate) fn new(config: &EarlyWake, period: Period) -> Result<Self, TimerError> {
+        config.check()?;
         Ok(Self {
-            margin: Margin::new(wish, period.ns()),
-            rehearsal: Rehearsal::new(),
+            margin: Margin::new(config, period.ns()),
+            warm_up: WarmUp::new(),
             awake: None,
         })
     }
@@ -90,12 +90,12 @@ impl Early {
         kernel: &mut impl Alarm,
     ) -> Result<Expiry, TimerError> {
         match self.wait_or(false, deadlines, kernel)? {
-            Wake::Rehearsal(expiry) | Wake::Deadline(expiry) => Ok(expiry),
+            Wake::WarmUp(expiry) | Wake::Deadline(expiry) => Ok(expiry),
         }
     }
 
-    /// Waits for the next deadline, or once before it for a rehearsal.
-    pub(crate) fn wait_or_rehearse(
+    /// Waits for the next deadline, or once before it for a warm_up.
+    pub(crate) fn wait_or_warm_up(
         &mut self,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
@@ -110,27 +110,27 @@ impl Early {
     /// will: so these are rehearsed, too.
     fn wait_or(
         &mut self,
-        may_rehearse: bool,
+        may_warm_up: bool,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
     ) -> Result<Wake, TimerError> {
         let due_ns = deadlines.due_ns(deadlines.next());
-        let rehearsed = self.awake.take();
-        let awake = if let Some(awake) = rehearsed {
+        let warmed = self.awake.take();
+        let awake = if let Some(awake) = warmed {
             let took_ns = monotonic_ns().saturating_sub(awake.since_ns);
             let left_ns = due_ns.saturating_sub(awake.since_ns);
-            self.rehearsal.took(took_ns, left_ns);
+            self.warm_up.took(took_ns, left_ns);
             awake
         } else {
-            self.wake(may_rehearse, deadlines, kernel)?
+            self.wake(may_warm_up, deadlines, kernel)?
         };
         // The caches of a thread that did not sleep are warm.
-        let rehearses = may_rehearse
-            && rehearsed.is_none()
+        let warms_up = may_warm_up
+            && warmed.is_none()
             && awake.kernel_lateness_ns.is_some()
-            && self.rehearsal.fits(due_ns.saturating_sub(awake.since_ns));
+            && self.warm_up.fits(due_ns.saturating_sub(awake.since_ns));
         let mut served = *deadlines;
-        let expiry = spin(&mut served, if rehearses { i64::MIN } else { due_ns });
+        let expiry = spin(&mut served, if warms_up { i64::MIN } else { due_ns });
         let expiry = Expiry {
             early_wake_ns: self.margin.ns().unsigned_abs(),
             // Beyond the deadline it is not the spin that takes the time.
@@ -140,9 +140,9 @@ impl Early {
                 .unwrap_or(expiry.kernel_lateness_ns),
             ..expiry
         };
-        if rehearses {
+        if warms_up {
             self.awake = Some(awake);
-            return Ok(Wake::Rehearsal(expiry));
+            return Ok(Wake::WarmUp(expiry));
         }
         *deadlines = served;
         Ok(Wake::Deadline(expiry))
@@ -151,16 +151,16 @@ impl Early {
     /// Sleeps until the alarm.
     fn wake(
         &mut self,
-        may_rehearse: bool,
+        may_warm_up: bool,
         deadlines: &mut Deadlines,
         kernel: &mut impl Alarm,
     ) -> Result<Awake, TimerError> {
-        let rehearsal_ns = if may_rehearse {
-            self.rehearsal.allowance_ns()
+        let warm_up_ns = if may_warm_up {
+            self.warm_up.allowance_ns()
         } else {
             0
         };
-        if self.margin.review(rehearsal_ns) {
+        if self.margin.review(warm_up_ns) {
             deadlines.wake_early(self.margin.ns());
             // A system call, but one in 32 ticks at most, and before the wait:
             // to ask for each alarm by itself would be one in each tick.
@@ -186,7 +186,7 @@ impl Early {
     }
 }
 
-/// Reads the clock until it is there. One function, so that who rehearses it
+/// Reads the clock until it is there. One function, so that who warms_up it
 /// runs the very instructions that come at the deadline.
 ///
 /// Without [`std::hint::spin_loop`]: a hypervisor takes many of these in a row

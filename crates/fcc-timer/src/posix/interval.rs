@@ -9,7 +9,7 @@ use std::ptr;
 
 use super::signal::TimerSignal;
 use crate::TimerError;
-use crate::deadlines::{refused, timespec};
+use crate::deadlines::{os_error, timespec};
 
 /// A timer of the kernel that sends a signal to the thread that made it.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ impl IntervalTimer {
         // SAFETY: both pointers are to live values of the types called for.
         let answer =
             unsafe { libc::timer_create(libc::CLOCK_MONOTONIC, &raw mut event, &raw mut timer) };
-        Errno::result(answer).map_err(refused("timer_create"))?;
+        Errno::result(answer).map_err(os_error("timer_create"))?;
         Ok(Self(timer))
     }
 
@@ -51,7 +51,7 @@ impl IntervalTimer {
                 ptr::null_mut(),
             )
         };
-        Errno::result(answer).map_err(refused("timer_settime"))?;
+        Errno::result(answer).map_err(os_error("timer_settime"))?;
         Ok(())
     }
 
@@ -59,7 +59,7 @@ impl IntervalTimer {
     pub(super) fn overruns(&self) -> Result<u64, TimerError> {
         // SAFETY: the timer is this value's own until dropped.
         let count = unsafe { libc::timer_getoverrun(self.0) };
-        u64::try_from(count).map_err(|_| refused("timer_getoverrun")(Errno::last()))
+        u64::try_from(count).map_err(|_| os_error("timer_getoverrun")(Errno::last()))
     }
 }
 

@@ -100,11 +100,11 @@ impl Timer for PosixTimer {
         Ok(running.deadlines.woken(passed, woke_ns))
     }
 
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
         match (&mut self.early, &mut self.running) {
             (Some(early), Some(running)) => {
                 running.check_thread()?;
-                early.wait_or_rehearse(&mut running.deadlines, &mut running.signals)
+                early.wait_or_warm_up(&mut running.deadlines, &mut running.signals)
             }
             _ => self.wait().map(Wake::Deadline),
         }

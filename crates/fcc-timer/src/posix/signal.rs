@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread::{self, ThreadId};
 
 use crate::TimerError;
-use crate::deadlines::refused;
+use crate::deadlines::os_error;
 
 /// Which signals belong to a timer now, bit `n - 1` for signal `n`.
 static TAKEN: AtomicU64 = AtomicU64::new(0);
@@ -61,7 +61,7 @@ impl TimerSignal {
             match Errno::result(answer) {
                 Ok(_) => {}
                 Err(Errno::EINTR) => continue,
-                Err(errno) => return Err(refused("sigwaitinfo")(errno)),
+                Err(errno) => return Err(os_error("sigwaitinfo")(errno)),
             }
             // SAFETY: plain data, zeroed above and filled in by the call.
             let info = unsafe { info.assume_init() };
@@ -142,7 +142,7 @@ fn change_mask(how: libc::c_int, signal: libc::c_int) -> Result<bool, TimerError
     // SAFETY: both sets are live.
     let errno = unsafe { libc::pthread_sigmask(how, &raw const changed, &raw mut before) };
     if errno != 0 {
-        return Err(refused("pthread_sigmask")(Errno::from_raw(errno)));
+        return Err(os_error("pthread_sigmask")(Errno::from_raw(errno)));
     }
     // SAFETY: the set is live, and the signal one that a set can hold.
     Ok(unsafe { libc::sigismember(&raw const before, signal) } == 0)

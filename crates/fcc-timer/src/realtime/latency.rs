@@ -10,7 +10,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::sync::Arc;
 
-use super::Refusal;
+use super::DeniedRequest;
 
 const DEVICE: &str = "/dev/cpu_dma_latency";
 
@@ -38,9 +38,9 @@ impl PartialEq for LatencyLimit {
 impl Eq for LatencyLimit {}
 
 /// Asks that no CPU takes longer than `wished_us` to wake.
-pub(super) fn limit(wished_us: u32) -> Result<LatencyLimit, Refusal> {
-    ask(wished_us).map_err(|error| Refusal {
-        wish: format!("CPUs awake within {wished_us} µs"),
+pub(super) fn limit(wished_us: u32) -> Result<LatencyLimit, DeniedRequest> {
+    ask(wished_us).map_err(|error| DeniedRequest {
+        request: format!("CPUs awake within {wished_us} µs"),
         reason: match error.raw_os_error() {
             Some(number) => format!("{DEVICE}: {:?}", Errno::from_raw(number)),
             None => format!("{DEVICE}: {error}"),

@@ -5,7 +5,7 @@ use nix::sys::mman::{MlockAllFlags, mlockall, munlockall};
 use nix::sys::resource::{Resource, getrlimit};
 use std::fs;
 
-use super::Refusal;
+use super::DeniedRequest;
 
 /// The calling thread's own: capabilities are a thread's.
 const STATUS: &str = "/proc/thread-self/status";
@@ -16,16 +16,16 @@ const CAP_IPC_LOCK: u32 = 14;
 
 /// Locks what the process has mapped, fetched, and what it maps later, as it
 /// is touched.
-pub(super) fn lock() -> Result<(), Refusal> {
-    let refusal = |reason: String| Refusal {
-        wish: "locked memory".to_owned(),
+pub(super) fn lock() -> Result<(), DeniedRequest> {
+    let denied = |reason: String| DeniedRequest {
+        request: "locked memory".to_owned(),
         reason,
         remedy: "give the service LimitMEMLOCK=infinity (a shell: ulimit -l unlimited), \
                  or the program the right to: setcap cap_ipc_lock+ep"
             .to_owned(),
     };
     if let Some(limit_bytes) = limit() {
-        return Err(refusal(format!(
+        return Err(denied(format!(
             "RLIMIT_MEMLOCK is {} KiB, where later allocations would fail",
             limit_bytes / 1024
         )));
@@ -38,12 +38,12 @@ pub(super) fn lock() -> Result<(), Refusal> {
         .map_err(|errno: Errno| {
             // Half locked helps nobody. Unlocking needs no right and cannot fail.
             let _ = munlockall();
-            refusal(format!("{errno:?}"))
+            denied(format!("{errno:?}"))
         })?;
     if is_locked() {
         Ok(())
     } else {
-        Err(refusal(
+        Err(denied(
             "the kernel reads back less locked than used memory".to_owned(),
         ))
     }

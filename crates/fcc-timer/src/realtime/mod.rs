@@ -1,17 +1,17 @@
 //! What a real-time thread asks of the kernel, and what it gets.
 //!
-//! [`RealtimeWishes::apply`] is called once, by the loop's own thread, after
+//! [`RealtimeRequest::apply`] is called once, by the loop's own thread, after
 //! everything the loop needs has been allocated and before its timer starts.
-//! Every wish is granted or refused by itself; the [`RealtimeGrants`] are read
+//! Every wish is granted or refused by itself; the [`RealtimeGranted`] are read
 //! back from the kernel, so that a report shows what is and not what was asked.
 //!
 //! Scheduling, CPU and timer slack are set for the calling thread alone, and
 //! threads it makes later go back to `SCHED_OTHER` (they do inherit the CPU).
 //! Locked memory is the process' affair and there is no other way: see
-//! [`RealtimeWishes::lock_memory`].
+//! [`RealtimeRequest::lock_memory`].
 
 pub mod cpus;
-mod grants;
+mod granted;
 mod latency;
 mod memory;
 mod scheduling;
@@ -21,34 +21,34 @@ mod stack;
 use std::path::Path;
 
 use cpus::Cpus;
-pub use grants::{RealtimeGrants, RealtimeRefused, Refusal};
+pub use granted::{DeniedRequest, RealtimeDenied, RealtimeGranted};
 pub use latency::LatencyLimit;
 pub use scheduling::{take_priority_from, this_thread};
 
 /// What a thread would like to have.
 ///
 /// ```
-/// use fcc_timer::RealtimeWishes;
+/// use fcc_timer::RealtimeRequest;
 ///
-/// let wishes = RealtimeWishes {
+/// let request = RealtimeRequest {
 ///     priority: Some(80),
 ///     timer_slack_ns: Some(1),
-///     ..RealtimeWishes::default()
+///     ..RealtimeRequest::default()
 /// };
-/// let grants = wishes.apply()?;
-/// println!("{} {}", grants.policy, grants.priority);
-/// for refusal in &grants.refused {
-///     eprintln!("{refusal}");
+/// let granted = request.apply()?;
+/// println!("{} {}", granted.policy, granted.priority);
+/// for denied in &granted.denied {
+///     eprintln!("{denied}");
 /// }
-/// # Ok::<(), fcc_timer::RealtimeRefused>(())
+/// # Ok::<(), fcc_timer::RealtimeDenied>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct RealtimeWishes {
+pub struct RealtimeRequest {
     /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
     /// threads are at 50.
     pub priority: Option<u8>,
     /// To run on one CPU only.
-    pub cpu: Option<CpuWish>,
+    pub cpu: Option<CpuRequest>,
     /// To have no page of the process swapped out or dropped. What is mapped
     /// now is fetched and stays; what is mapped later stays from when it is
     /// first touched, so that a thread's stack or a large file mapped by
@@ -67,18 +67,18 @@ pub struct RealtimeWishes {
     /// under `SCHED_FIFO` have none.
     pub timer_slack_ns: Option<u64>,
     /// How long a CPU may take to wake from its sleep, µs, 2 147 483 647 at
-    /// most; 0 keeps all CPUs from sleeping. In force as long as the grants.
+    /// most; 0 keeps all CPUs from sleeping. In force as long as the granted.
     pub cpu_dma_latency_us: Option<u32>,
-    /// What a refusal means.
+    /// What a denied means.
     pub strictness: Strictness,
 }
 
 /// Which CPU.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum CpuWish {
+pub enum CpuRequest {
     /// The best there is: an isolated one, or else one that stays off the
     /// interrupts. Where none is better than the others, the thread is not
-    /// bound; that is no refusal.
+    /// bound; that is no denied.
     Auto,
     /// This one, counted from 0.
     Number(usize),
@@ -87,14 +87,14 @@ pub enum CpuWish {
 /// What a refused wish means.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Strictness {
-    /// It is reported among the grants.
+    /// It is reported among the granted.
     #[default]
     Warn,
     /// It is an error.
     Strict,
 }
 
-impl RealtimeWishes {
+impl RealtimeRequest {
     /// Asks for each wish and reads back what the calling thread has now.
     /// Without any wish it only reads. Allocates and reads files: not for use
     /// in a tick.
@@ -102,59 +102,59 @@ impl RealtimeWishes {
     /// # Errors
     /// When anything was refused under [`Strictness::Strict`]. What was
     /// granted stays granted.
-    pub fn apply(&self) -> Result<RealtimeGrants, RealtimeRefused> {
-        let mut refused = Vec::new();
+    pub fn apply(&self) -> Result<RealtimeGranted, RealtimeDenied> {
+        let mut denied = Vec::new();
         // The slack before the scheduling: a thread under SCHED_FIFO has none,
         // but shall have the one asked for should it ever leave it. The
         // scheduling last: fetching memory takes long, and others may run.
         if let Some(slack_ns) = self.timer_slack_ns {
-            refused.extend(slack::set(slack_ns).err());
+            denied.extend(slack::set(slack_ns).err());
         }
-        let mut cpu_because = String::new();
+        let mut cpu_reason = String::new();
         match self.cpu {
-            Some(CpuWish::Number(cpu)) => match scheduling::pin_to(cpu) {
-                Ok(()) => "it was asked for".clone_into(&mut cpu_because),
-                Err(refusal) => refused.push(refusal),
+            Some(CpuRequest::Number(cpu)) => match scheduling::pin_to(cpu) {
+                Ok(()) => "it was asked for".clone_into(&mut cpu_reason),
+                Err(request) => denied.push(request),
             },
-            Some(CpuWish::Auto) => cpu_because = bind_to_best(),
+            Some(CpuRequest::Auto) => cpu_reason = bind_to_best(),
             None => {}
         }
         let mut cpu_latency = None;
         if let Some(wished_us) = self.cpu_dma_latency_us {
             match latency::limit(wished_us) {
                 Ok(limit) => cpu_latency = Some(limit),
-                Err(refusal) => refused.push(refusal),
+                Err(request) => denied.push(request),
             }
         }
         if self.lock_memory {
-            refused.extend(memory::lock().err());
+            denied.extend(memory::lock().err());
         }
         let mut stack_prefaulted = false;
         if self.stack_prefault_bytes > 0 {
             match stack::prefault(self.stack_prefault_bytes) {
                 Ok(()) => stack_prefaulted = true,
-                Err(refusal) => refused.push(refusal),
+                Err(request) => denied.push(request),
             }
         }
         if let Some(priority) = self.priority {
-            refused.extend(scheduling::become_fifo(priority).err());
+            denied.extend(scheduling::become_fifo(priority).err());
         }
 
-        let grants = RealtimeGrants {
+        let granted = RealtimeGranted {
             policy: scheduling::policy(),
             priority: scheduling::static_priority(),
             cpu: scheduling::only_cpu(),
-            cpu_because,
+            cpu_reason,
             cpu_latency,
             memory_locked: memory::is_locked(),
             stack_prefaulted,
             timer_slack_ns: slack::get(),
-            refused,
+            denied,
         };
-        if self.strictness == Strictness::Strict && !grants.refused.is_empty() {
-            return Err(RealtimeRefused { grants });
+        if self.strictness == Strictness::Strict && !granted.denied.is_empty() {
+            return Err(RealtimeDenied { granted });
         }
-        Ok(grants)
+        Ok(granted)
     }
 }
 
@@ -166,7 +166,7 @@ fn bind_to_best() -> String {
     match choice {
         Ok(choice) => match scheduling::pin_to(choice.cpu) {
             Ok(()) => choice.because,
-            Err(refusal) => format!("not bound: {refusal}"),
+            Err(denied) => format!("not bound: {denied}"),
         },
         Err(why) => format!("not bound: {why}"),
     }

@@ -9,18 +9,18 @@ use nix::errno::Errno;
 use nix::sched::{CpuSet, sched_getaffinity, sched_setaffinity};
 use nix::unistd::Pid;
 
-use super::Refusal;
+use super::DeniedRequest;
 
 /// The thread id that means the calling thread.
 const THIS_THREAD: libc::pid_t = 0;
 
 /// Puts the calling thread under `SCHED_FIFO`. Threads and processes it makes
 /// do not inherit that.
-pub(super) fn become_fifo(priority: u8) -> Result<(), Refusal> {
-    let wish = format!("SCHED_FIFO priority {priority}");
+pub(super) fn become_fifo(priority: u8) -> Result<(), DeniedRequest> {
+    let request = format!("SCHED_FIFO priority {priority}");
     if !(1..=99).contains(&priority) {
-        return Err(Refusal {
-            wish,
+        return Err(DeniedRequest {
+            request,
             reason: "EINVAL".to_owned(),
             remedy: "choose a priority from 1 to 99".to_owned(),
         });
@@ -41,13 +41,13 @@ pub(super) fn become_fifo(priority: u8) -> Result<(), Refusal> {
          or the program the right to: setcap cap_sys_nice+ep"
     );
     Errno::result(answer)
-        .map_err(|errno| Refusal::by_kernel(wish.clone(), errno, remedy.clone()))?;
+        .map_err(|errno| DeniedRequest::by_kernel(request.clone(), errno, remedy.clone()))?;
     if policy() == "SCHED_FIFO" && static_priority() == i32::from(priority) {
         Ok(())
     } else {
         let reason = format!("reads back as {} {}", policy(), static_priority());
-        Err(Refusal {
-            wish,
+        Err(DeniedRequest {
+            request,
             reason,
             remedy,
         })
@@ -109,7 +109,7 @@ pub(super) fn static_priority() -> i32 {
 }
 
 /// Keeps the calling thread on one CPU.
-pub(super) fn pin_to(cpu: usize) -> Result<(), Refusal> {
+pub(super) fn pin_to(cpu: usize) -> Result<(), DeniedRequest> {
     let allowed = allowed_cpus();
     let mut wished = CpuSet::new();
     wished
@@ -117,7 +117,7 @@ pub(super) fn pin_to(cpu: usize) -> Result<(), Refusal> {
         .and_then(|()| sched_setaffinity(Pid::from_raw(THIS_THREAD), &wished))
         .map_err(|errno| {
             let allowed: Vec<String> = allowed.iter().map(ToString::to_string).collect();
-            Refusal::by_kernel(
+            DeniedRequest::by_kernel(
                 format!("CPU {cpu}"),
                 errno,
                 format!(

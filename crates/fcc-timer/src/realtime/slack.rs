@@ -2,24 +2,24 @@
 
 use nix::sys::prctl;
 
-use super::Refusal;
+use super::DeniedRequest;
 
 /// Sets the timer slack of the calling thread, ns.
-pub(super) fn set(slack_ns: u64) -> Result<(), Refusal> {
-    let refusal = |reason: String| Refusal {
-        wish: format!("timer slack of {slack_ns} ns"),
+pub(super) fn set(slack_ns: u64) -> Result<(), DeniedRequest> {
+    let denied = |reason: String| DeniedRequest {
+        request: format!("timer slack of {slack_ns} ns"),
         reason,
         remedy: "choose 1 ns or more, and no more than a second".to_owned(),
     };
     // The kernel takes 0 for its own default of 50 µs.
     if slack_ns == 0 {
-        return Err(refusal("0 means the kernel's default".to_owned()));
+        return Err(denied("0 means the kernel's default".to_owned()));
     }
     prctl::set_timerslack(slack_ns as libc::c_ulong)
-        .map_err(|errno| refusal(format!("{errno:?}")))?;
+        .map_err(|errno| denied(format!("{errno:?}")))?;
     match get() {
         Some(granted_ns) if granted_ns <= slack_ns => Ok(()),
-        granted => Err(refusal(format!("reads back as {granted:?}"))),
+        granted => Err(denied(format!("reads back as {granted:?}"))),
     }
 }
 

@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::mem::MaybeUninit;
 use std::ptr;
 
-use super::Refusal;
+use super::DeniedRequest;
 use crate::usage::page_faults;
 
 /// The smallest page of any machine that Linux runs on.
@@ -19,14 +19,14 @@ const PAGE_BYTES: usize = 4096;
 const RESERVE_BYTES: usize = 64 * 1024;
 
 /// Touches this many bytes of the calling thread's stack.
-pub(super) fn prefault(bytes: usize) -> Result<(), Refusal> {
-    let refusal = |reason: String, remedy: String| Refusal {
-        wish: format!("{} KiB of stack in memory", bytes / 1024),
+pub(super) fn prefault(bytes: usize) -> Result<(), DeniedRequest> {
+    let denied = |reason: String, remedy: String| DeniedRequest {
+        request: format!("{} KiB of stack in memory", bytes / 1024),
         reason,
         remedy,
     };
     let left = left_over().map_err(|errno| {
-        refusal(
+        denied(
             format!("the size of the stack is not known: {errno:?}"),
             "do not ask for it".to_owned(),
         )
@@ -36,7 +36,7 @@ pub(super) fn prefault(bytes: usize) -> Result<(), Refusal> {
         .saturating_add(bytes / 4)
         .saturating_add(RESERVE_BYTES);
     if needed > left {
-        return Err(refusal(
+        return Err(denied(
             format!("the thread has {} KiB left", left / 1024),
             format!(
                 "ask for less, or give the thread a stack {} KiB larger",
@@ -53,7 +53,7 @@ pub(super) fn prefault(bytes: usize) -> Result<(), Refusal> {
     if faults == 0 {
         Ok(())
     } else {
-        Err(refusal(
+        Err(denied(
             format!("{faults} pages were gone again at once"),
             "lock the memory too, or free some".to_owned(),
         ))

@@ -42,8 +42,8 @@ impl<T: Timer> Timer for Early<T> {
         self.0.wait()
     }
 
-    fn wait_or_rehearse(&mut self) -> Result<Wake, TimerError> {
-        self.0.wait_or_rehearse()
+    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
+        self.0.wait_or_warm_up()
     }
 
     fn period(&self) -> Duration {
@@ -83,11 +83,11 @@ pub(crate) fn a_rehearsal_is_followed_by_its_deadline<T: Subject>() {
         if tick >= 100 && rehearsed > 0 {
             break;
         }
-        let mut wake = timer.wait_or_rehearse().unwrap();
-        if let Wake::Rehearsal(expected) = wake {
+        let mut wake = timer.wait_or_warm_up().unwrap();
+        if let Wake::WarmUp(expected) = wake {
             rehearsed += 1;
             assert!(expected.number > before.number, "{expected:?}");
-            wake = timer.wait_or_rehearse().unwrap();
+            wake = timer.wait_or_warm_up().unwrap();
             let Wake::Deadline(expiry) = wake else {
                 panic!("two rehearsals of one deadline");
             };
@@ -98,7 +98,7 @@ pub(crate) fn a_rehearsal_is_followed_by_its_deadline<T: Subject>() {
                 expected.scheduled_ns + passed * PERIOD_NS
             );
         }
-        let (Wake::Deadline(expiry) | Wake::Rehearsal(expiry)) = wake;
+        let (Wake::Deadline(expiry) | Wake::WarmUp(expiry)) = wake;
         before = assert_follows(expiry, before, PERIOD_NS);
     }
     // On a busy machine some wake-ups leave no time for it.
@@ -112,9 +112,9 @@ pub(crate) fn a_long_rehearsal_is_a_late_tick<T: Subject>() {
     let mut before = timer.wait().unwrap();
     // On a busy machine some wake-ups leave no time for one.
     for _ in 0..2_000 {
-        match timer.wait_or_rehearse().unwrap() {
+        match timer.wait_or_warm_up().unwrap() {
             Wake::Deadline(expiry) => before = assert_follows(expiry, before, PERIOD_NS),
-            Wake::Rehearsal(expected) => {
+            Wake::WarmUp(expected) => {
                 timer.work(PERIOD * 5 / 2);
                 let late = assert_follows(timer.wait().unwrap(), before, PERIOD_NS);
                 assert!(late.missed >= 2, "{late:?}");

@@ -5,7 +5,6 @@
 //! something happened soon enough.
 #![cfg(test)]
 
-mod allocations;
 mod early;
 mod interruption;
 
@@ -16,6 +15,7 @@ use early::{
     Early, a_long_rehearsal_is_a_late_tick, a_rehearsal_is_followed_by_its_deadline,
     a_tick_that_ends_within_the_margin_loses_no_deadline, the_margin_and_the_spin_are_told,
 };
+use fcc_conformance::allocator_calls;
 use fcc_timer::{
     Expiry, ManualTimer, Nanosleep, PosixTimer, Timer, TimerError, TimerFd, TimingStats,
 };
@@ -163,7 +163,7 @@ fn bad_periods_are_refused<T: Subject>() {
 fn waiting_and_recording_allocate_nothing<T: Subject>() {
     let mut timer = started::<T>();
     let mut stats = TimingStats::new(PERIOD).unwrap();
-    let allocations = allocations::during(|| {
+    let ((), calls) = allocator_calls(|| {
         for _ in 0..10 {
             let expiry = timer.wait().unwrap();
             stats.record(&expiry);
@@ -172,7 +172,7 @@ fn waiting_and_recording_allocate_nothing<T: Subject>() {
         timer.work(PERIOD * 7 / 2);
         stats.record(&timer.wait().unwrap());
     });
-    assert_eq!(allocations, 0);
+    assert_eq!(calls, 0);
     assert_eq!(stats.summary().ticks, 11);
 }
 

@@ -249,6 +249,56 @@ impl FakeXPlane {
     }
 }
 
+impl FakeXPlane {
+    /// Sends the rows of X-Plane 12's Data Output that are flown by, one
+    /// datagram, to a port of this machine.
+    pub fn send_rows(&self, port: u16) {
+        let of = |name: &str| self.value(&format!("{P}{name}"));
+        let [longitude, latitude, elevation_m] = self.position.map(|degrees| degrees as f32);
+        let altitude_ft = self.value("sim/cockpit2/gauges/indicators/altitude_ft_pilot");
+        let rows: [(i32, &[f32]); 8] = [
+            (1, &[0.0, 0.0, self.value(FLIGHT_TIME)]),
+            (3, &[of("indicated_airspeed")]),
+            (4, &[0.0, 0.0, 0.0, 0.0, 1.0, 0.1, 0.0]),
+            (16, &[1.0, -2.0, 3.0]),
+            (17, &[of("theta"), of("phi"), of("psi"), of("mag_psi")]),
+            (18, &[of("alpha")]),
+            (
+                20,
+                &[
+                    latitude,
+                    longitude,
+                    elevation_m / 0.3048,
+                    900.0,
+                    0.0,
+                    altitude_ft,
+                ],
+            ),
+            (
+                21,
+                &[
+                    0.0,
+                    0.0,
+                    0.0,
+                    of("local_vx"),
+                    of("local_vy"),
+                    of("local_vz"),
+                ],
+            ),
+        ];
+        let mut datagram = b"DATA*".to_vec();
+        for (number, columns) in rows {
+            datagram.extend(number.to_le_bytes());
+            for column in 0..8 {
+                let value = columns.get(column).copied().unwrap_or(-999.0);
+                datagram.extend(value.to_le_bytes());
+            }
+        }
+        let to = SocketAddrV4::new([127, 0, 0, 1].into(), port);
+        self.socket.send_to(&datagram, to).unwrap();
+    }
+}
+
 /// Up to the NUL, after which there may only be more of them.
 fn text(field: &[u8]) -> String {
     let end = field.iter().position(|byte| *byte == 0).expect("no NUL");

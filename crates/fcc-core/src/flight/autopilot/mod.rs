@@ -204,7 +204,7 @@ impl Controller for Autopilot {
         self.take_over(&standing);
     }
 
-    fn rehearse(&self, tick: &Tick, measurements: &Measurements) {
+    fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
         let mut double = self.clone();
         double.estimate(tick, measurements);
         let _ = black_box(double.faults(tick, measurements));

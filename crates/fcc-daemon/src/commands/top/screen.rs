@@ -103,8 +103,8 @@ fn head_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
         )
         .into(),
     );
-    if info.wishes_refused > 0 {
-        spans.push(format!("  {} wishes refused", info.wishes_refused).red());
+    if info.requests_denied > 0 {
+        spans.push(format!("  {} requests denied", info.requests_denied).red());
     }
     Line::from(spans)
 }

@@ -43,7 +43,7 @@ fn fly(timer: ManualTimer) -> Vec<(State, String)> {
 fn a_rehearsed_flight_is_the_same_flight() {
     let timer = ManualTimer::new(Duration::from_millis(25)).unwrap();
     let plain = fly(timer.clone());
-    let rehearsed = fly(timer.rehearsing());
+    let rehearsed = fly(timer.with_warm_up());
     assert!(plain.iter().any(|(state, ..)| *state == State::Engaged));
     for (tick, (plain, rehearsed)) in plain.iter().zip(&rehearsed).enumerate() {
         assert_eq!(plain, rehearsed, "tick {tick}");

@@ -14,7 +14,7 @@ const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 ///
 /// The margin follows the lateness with which the kernel really wakes the
 /// thread: it is the quantile of the last 2048 wake-ups plus the guard, and
-/// where the caller rehearses ([`crate::Timer::wait_or_rehearse`]) twice the
+/// where the caller warms_up ([`crate::Timer::wait_or_warm_up`]) twice the
 /// time that this takes, within `min` and `max`, and never more than `cpu_cap` periods. It starts at the
 /// most it may be, and stays there until the quantile can be known.
 ///
@@ -93,54 +93,54 @@ mod tests {
 
     #[test]
     fn what_makes_no_sense_is_refused_with_the_range() {
-        let wish = EarlyWake::default();
+        let config = EarlyWake::default();
         for (bad, name) in [
             (
                 EarlyWake {
                     max: Duration::from_millis(11),
-                    ..wish
+                    ..config
                 },
                 "max",
             ),
             (
                 EarlyWake {
                     min: Duration::from_micros(251),
-                    ..wish
+                    ..config
                 },
                 "min",
             ),
             (
                 EarlyWake {
                     quantile: 1.0,
-                    ..wish
+                    ..config
                 },
                 "quantile",
             ),
             (
                 EarlyWake {
                     quantile: f64::NAN,
-                    ..wish
+                    ..config
                 },
                 "quantile",
             ),
             (
                 EarlyWake {
                     guard: Duration::MAX,
-                    ..wish
+                    ..config
                 },
                 "guard",
             ),
             (
                 EarlyWake {
                     cpu_cap: 0.51,
-                    ..wish
+                    ..config
                 },
                 "cpu_cap",
             ),
             (
                 EarlyWake {
                     cpu_cap: f64::NAN,
-                    ..wish
+                    ..config
                 },
                 "cpu_cap",
             ),
@@ -148,6 +148,6 @@ mod tests {
             let message = bad.check().unwrap_err().to_string();
             assert!(message.contains(&format!("{name}: choose ")), "{message}");
         }
-        assert!(wish.check().is_ok());
+        assert!(config.check().is_ok());
     }
 }

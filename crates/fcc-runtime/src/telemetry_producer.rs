@@ -61,14 +61,14 @@ impl<O> Events<O> {
 }
 
 /// The loop's end of the ring of messages.
-pub(crate) struct Outbox<C: Controller> {
+pub(crate) struct TelemetryProducer<C: Controller> {
     ring: Producer<MessageOf<C>>,
     pub(crate) events: Events<C::Order>,
     lost: Gap,
     dropped: u64,
 }
 
-impl<C: Controller> Outbox<C> {
+impl<C: Controller> TelemetryProducer<C> {
     pub(crate) fn new(ring: Producer<MessageOf<C>>) -> Self {
         Self {
             ring,
@@ -85,7 +85,7 @@ impl<C: Controller> Outbox<C> {
         let needed = 1 + usize::from(self.lost.count > 0);
         if self.ring.slots() >= EVENT_SLOTS + needed {
             self.send_gap(&record.tick);
-            self.put(Message::Tick(*record));
+            self.push(Message::Tick(*record));
         } else {
             self.lost.widen(record.tick.number);
             self.dropped += 1;
@@ -113,33 +113,33 @@ impl<C: Controller> Outbox<C> {
     fn send_events(&mut self, tick: &Tick) {
         while let Some(event) = self.events.waiting.front() {
             let event = *event;
-            if !self.put(Message::Event(event)) {
+            if !self.push(Message::Event(event)) {
                 return;
             }
             self.events.waiting.pop_front();
         }
         let Gap { count, first, last } = self.events.lost;
-        if count > 0 && self.tell(tick, EventKind::EventsDropped { count, first, last }) {
+        if count > 0 && self.send_event(tick, EventKind::EventsDropped { count, first, last }) {
             self.events.lost = Gap::default();
         }
     }
 
     fn send_gap(&mut self, tick: &Tick) {
         let Gap { count, first, last } = self.lost;
-        if count > 0 && self.tell(tick, EventKind::RecordsDropped { count, first, last }) {
+        if count > 0 && self.send_event(tick, EventKind::RecordsDropped { count, first, last }) {
             self.lost = Gap::default();
         }
     }
 
-    fn tell(&mut self, tick: &Tick, kind: EventKind<C::Order>) -> bool {
-        self.put(Message::Event(Event {
+    fn send_event(&mut self, tick: &Tick, kind: EventKind<C::Order>) -> bool {
+        self.push(Message::Event(Event {
             tick: tick.number,
             time: tick.woke,
             kind,
         }))
     }
 
-    fn put(&mut self, message: MessageOf<C>) -> bool {
+    fn push(&mut self, message: MessageOf<C>) -> bool {
         self.ring.push(message).is_ok()
     }
 }

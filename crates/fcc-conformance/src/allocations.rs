@@ -1,11 +1,13 @@
-//! Counts what a thread allocates. Other tests run in other threads meanwhile.
-#![allow(unsafe_code)]
+//! Counts how often a thread calls the allocator.
+#![allow(unsafe_code, reason = "an allocator is unsafe by nature")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    static COUNT: Cell<u64> = const { Cell::new(0) };
+    // Const and without a destructor, so that counting does not allocate; by
+    // thread, because the test harness has threads of its own.
+    static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
 struct Counting;
@@ -14,7 +16,7 @@ struct Counting;
 static ALLOCATOR: Counting = Counting;
 
 fn count() {
-    COUNT.set(COUNT.get() + 1);
+    CALLS.set(CALLS.get() + 1);
 }
 
 // SAFETY: every call is handed on to the system's allocator as it came.
@@ -44,14 +46,15 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// How often the calling thread uses the allocator while `work` runs.
-pub(crate) fn during(work: impl FnOnce()) -> u64 {
-    let before = COUNT.get();
-    work();
-    COUNT.get() - before
-}
-
-#[test]
-fn an_allocation_is_counted() {
-    assert_eq!(during(|| drop(std::hint::black_box(Box::new(1)))), 2);
+/// What `work` gives, and how often the calling thread allocated, reallocated
+/// or freed meanwhile.
+///
+/// ```
+/// let ((), calls) = fcc_conformance::allocator_calls(|| drop(std::hint::black_box(Box::new(1))));
+/// assert_eq!(calls, 2);
+/// ```
+pub fn allocator_calls<T>(work: impl FnOnce() -> T) -> (T, u64) {
+    let before = CALLS.get();
+    let result = work();
+    (result, CALLS.get() - before)
 }

@@ -42,7 +42,7 @@ impl Controller for Noting {
         self.note("tick", tick, *measured);
     }
 
-    fn rehearse(&self, tick: &Tick, measured: &u64) {
+    fn warm_up(&self, tick: &Tick, measured: &u64) {
         assert!((tick.dt_s - 0.01).abs() < 1e-12);
         self.note("rehearsal", tick, *measured);
     }
@@ -102,7 +102,7 @@ fn calls_of(timer: ManualTimer) -> Vec<(&'static str, u64, u64)> {
 fn each_tick_is_rehearsed_with_what_was_measured_before() {
     let timer = ManualTimer::new(Duration::from_millis(10)).unwrap();
     assert_eq!(
-        calls_of(timer.rehearsing()),
+        calls_of(timer.with_warm_up()),
         [
             ("rehearsal", 1, 0),
             ("tick", 1, 101),

@@ -7,7 +7,7 @@ use super::LatencyLimit;
 
 /// What a thread has, as read back from the kernel.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct RealtimeGrants {
+pub struct RealtimeGranted {
     /// `SCHED_FIFO`, `SCHED_OTHER` or another of the kernel's policies.
     pub policy: &'static str,
     /// Priority under `SCHED_FIFO`, 1..=99; 0 under `SCHED_OTHER`.
@@ -15,7 +15,7 @@ pub struct RealtimeGrants {
     /// The CPU, if the thread may run on one only.
     pub cpu: Option<usize>,
     /// Why this CPU, or why none; empty if none was asked for.
-    pub cpu_because: String,
+    pub cpu_reason: String,
     /// How long CPUs may take to wake, if that was asked for and granted.
     pub cpu_latency: Option<LatencyLimit>,
     /// Whether all memory of the process that is in use is locked.
@@ -26,56 +26,56 @@ pub struct RealtimeGrants {
     /// How late the kernel may make a sleep of the thread, ns.
     pub timer_slack_ns: Option<u64>,
     /// The wishes that were refused.
-    pub refused: Vec<Refusal>,
+    pub denied: Vec<DeniedRequest>,
 }
 
 /// A wish that was refused.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Refusal {
+pub struct DeniedRequest {
     /// What was asked for: `SCHED_FIFO priority 80`.
-    pub wish: String,
+    pub request: String,
     /// What the kernel said, or why it was not asked: `EPERM`.
     pub reason: String,
     /// What to do about it.
     pub remedy: String,
 }
 
-impl Refusal {
-    /// A refusal by the kernel.
-    pub(super) fn by_kernel(wish: String, errno: Errno, remedy: String) -> Self {
+impl DeniedRequest {
+    /// A denied by the kernel.
+    pub(super) fn by_kernel(request: String, errno: Errno, remedy: String) -> Self {
         Self {
-            wish,
+            request,
             reason: format!("{errno:?}"),
             remedy,
         }
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for DeniedRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
             "{} refused ({}): {}",
-            self.wish, self.reason, self.remedy
+            self.request, self.reason, self.remedy
         )
     }
 }
 
 /// Something was refused that was asked for strictly.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct RealtimeRefused {
-    /// What the thread has now; never without a refusal.
-    pub grants: RealtimeGrants,
+pub struct RealtimeDenied {
+    /// What the thread has now; never without a denied.
+    pub granted: RealtimeGranted,
 }
 
-impl fmt::Display for RealtimeRefused {
+impl fmt::Display for RealtimeDenied {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, refusal) in self.grants.refused.iter().enumerate() {
+        for (index, denied) in self.granted.denied.iter().enumerate() {
             let separator = if index == 0 { "" } else { "; " };
-            write!(f, "{separator}{refusal}")?;
+            write!(f, "{separator}{denied}")?;
         }
         Ok(())
     }
 }
 
-impl std::error::Error for RealtimeRefused {}
+impl std::error::Error for RealtimeDenied {}

@@ -8,9 +8,9 @@ use fcc_timer::realtime;
 const NOT_BEGUN: u64 = 0;
 const OVER: u64 = u64::MAX;
 
-/// The loop's pulse: one plain store a tick, which any thread may feel.
+/// The loop's heartbeat: one plain store a tick, which any thread may feel.
 #[derive(Clone, Debug, Default)]
-pub struct Pulse(Arc<Beats>);
+pub struct Heartbeat(Arc<Beats>);
 
 #[derive(Debug)]
 struct Beats {
@@ -28,24 +28,24 @@ impl Default for Beats {
     }
 }
 
-/// What a pulse feels like.
+/// What a heartbeat feels like.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Felt {
+pub enum HeartbeatReading {
     /// The loop has not begun.
-    Nothing,
+    NotStarted,
     /// It runs; the number goes up with every tick.
     Beat(u64),
     /// The loop is over.
-    Over,
+    Ended,
 }
 
-impl Pulse {
+impl Heartbeat {
     /// How it feels now.
-    pub fn feel(&self) -> Felt {
+    pub fn read(&self) -> HeartbeatReading {
         match self.0.count.load(Ordering::Relaxed) {
-            NOT_BEGUN => Felt::Nothing,
-            OVER => Felt::Over,
-            count => Felt::Beat(count),
+            NOT_BEGUN => HeartbeatReading::NotStarted,
+            OVER => HeartbeatReading::Ended,
+            count => HeartbeatReading::Beat(count),
         }
     }
 

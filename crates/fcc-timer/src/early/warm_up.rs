@@ -19,14 +19,14 @@ const LONGEST_REST: u32 = 65_536;
 
 /// How long rehearsals took.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rehearsal {
+pub(super) struct WarmUp {
     longest_ns: i64,
     /// Ticks for which none is tried.
     resting: u32,
     next_rest: u32,
 }
 
-impl Rehearsal {
+impl WarmUp {
     pub(super) const fn new() -> Self {
         Self {
             longest_ns: FIRST_GUESS_NS,
@@ -80,23 +80,23 @@ mod tests {
 
     #[test]
     fn the_longest_counts_at_once_and_fades() {
-        let mut rehearsal = Rehearsal::new();
+        let mut warm_up = WarmUp::new();
         for _ in 0..40 {
-            rehearsal.took(8_000, LEFT_NS);
+            warm_up.took(8_000, LEFT_NS);
         }
-        assert_eq!(rehearsal.allowance_ns(), 16_000);
-        rehearsal.took(80_000, LEFT_NS);
-        assert_eq!(rehearsal.allowance_ns(), 160_000);
-        rehearsal.took(8_000, LEFT_NS);
-        assert_eq!(rehearsal.allowance_ns(), 140_000);
+        assert_eq!(warm_up.allowance_ns(), 16_000);
+        warm_up.took(80_000, LEFT_NS);
+        assert_eq!(warm_up.allowance_ns(), 160_000);
+        warm_up.took(8_000, LEFT_NS);
+        assert_eq!(warm_up.allowance_ns(), 140_000);
     }
 
     #[test]
     fn one_that_found_no_time_is_tried_again() {
-        let mut rehearsal = Rehearsal::new();
-        rehearsal.took(150_000, LEFT_NS);
+        let mut warm_up = WarmUp::new();
+        warm_up.took(150_000, LEFT_NS);
         let mut skipped = 0;
-        while !rehearsal.fits(150_000) {
+        while !warm_up.fits(150_000) {
             skipped += 1;
         }
         // 300 µs fade to 150: ln(300 / 150) / -ln(1 - 1 / 64).
@@ -105,12 +105,12 @@ mod tests {
 
     #[test]
     fn one_that_never_fits_makes_ten_ticks_of_a_hundred_thousand_late() {
-        let mut rehearsal = Rehearsal::new();
+        let mut warm_up = WarmUp::new();
         let mut late = 0;
         for _ in 0..100_000 {
-            if rehearsal.fits(LEFT_NS) {
+            if warm_up.fits(LEFT_NS) {
                 late += 1;
-                rehearsal.took(300_000, LEFT_NS);
+                warm_up.took(300_000, LEFT_NS);
             }
         }
         // After 128 ticks, 256, 512, ...: nine rests are 65,000.
@@ -119,16 +119,16 @@ mod tests {
 
     #[test]
     fn a_machine_that_stood_still_once_costs_a_few_seconds_of_rehearsals() {
-        let mut rehearsal = Rehearsal::new();
-        rehearsal.took(520_000_000, LEFT_NS);
-        assert_eq!(rehearsal.allowance_ns(), 0);
+        let mut warm_up = WarmUp::new();
+        warm_up.took(520_000_000, LEFT_NS);
+        assert_eq!(warm_up.allowance_ns(), 0);
         let mut without = 0;
-        while !rehearsal.fits(LEFT_NS) {
+        while !warm_up.fits(LEFT_NS) {
             without += 1;
         }
         assert!((128..128 + 64).contains(&without), "{without}");
-        rehearsal.took(8_000, LEFT_NS);
-        rehearsal.took(520_000_000, LEFT_NS);
-        assert!((0..128).all(|_| !rehearsal.fits(LEFT_NS)));
+        warm_up.took(8_000, LEFT_NS);
+        warm_up.took(520_000_000, LEFT_NS);
+        assert!((0..128).all(|_| !warm_up.fits(LEFT_NS)));
     }
 }

@@ -1,0 +1,301 @@
+//! What [`Actuator`] promises. Each promise is one function, and panics where
+//! it is broken.
+
+use core::fmt::Debug;
+use std::thread;
+
+use fcc_core::framework::{Actuator, ActuatorFault, Tick};
+
+use crate::{Ticks, allocator_calls, waiting, waits};
+
+/// An actuator on a bench: as a loop gets it, beside the plant that it moves.
+pub trait ActuatorBench: Sized + Send {
+    /// What the loop puts out.
+    type Outputs: Copy + Debug;
+
+    /// An actuator that holds nothing, and its plant, which is there.
+    fn new() -> Self;
+
+    /// The actuator.
+    fn actuator(&mut self) -> &mut dyn Actuator<Self::Outputs>;
+
+    /// Outputs that the loop may send: others for each number, and none that
+    /// are those of a plant at rest.
+    fn outputs(number: u32) -> Self::Outputs;
+
+    /// The plant lives until this tick; a sensor that belongs to the actuator
+    /// is sampled. Not counted: it may allocate and wait.
+    fn live(&mut self, _tick: &Tick) {}
+
+    /// Whether the plant, by all that it was sent, is held by the actuator.
+    fn is_held(&mut self) -> bool;
+
+    /// Whether the plant does as these outputs say.
+    fn follows(&mut self, outputs: &Self::Outputs) -> bool;
+
+    /// How many messages the plant got so far; 0 where there are none.
+    fn messages(&mut self) -> u64 {
+        0
+    }
+}
+
+/// A plant that can be unplugged, switched off or cut off, and keeps what it
+/// was last told.
+pub trait VanishingPlant: ActuatorBench {
+    /// Ticks of driving a plant that is away that are no fault yet.
+    const PATIENCE: usize;
+
+    /// Ticks until a plant that is back does as it is told.
+    const BACK_AFTER: usize;
+
+    /// From now on nothing reaches the plant.
+    fn vanish(&mut self);
+
+    /// The plant is there again, and still as it was last told to be.
+    fn come_back(&mut self);
+}
+
+/// A bench and its clock.
+struct Run<B: ActuatorBench> {
+    bench: B,
+    ticks: Ticks,
+    number: u32,
+}
+
+impl<B: ActuatorBench> Run<B> {
+    /// One whose plant has lived a while.
+    fn new() -> Self {
+        let mut run = Self {
+            bench: B::new(),
+            ticks: Ticks::default(),
+            number: 0,
+        };
+        run.live(20);
+        run
+    }
+
+    /// One whose actuator has control.
+    fn holding() -> Self {
+        let mut run = Self::new();
+        for _ in 0..20 {
+            run.assert_applies();
+        }
+        assert!(run.bench.is_held());
+        run
+    }
+
+    fn live(&mut self, ticks: usize) {
+        for _ in 0..ticks {
+            let tick = self.ticks.next_tick();
+            self.bench.live(&tick);
+        }
+    }
+
+    /// A tick in which other outputs than before are applied.
+    fn apply(&mut self) -> (Result<(), ActuatorFault>, B::Outputs) {
+        let tick = self.ticks.next_tick();
+        self.bench.live(&tick);
+        self.number += 1;
+        let outputs = B::outputs(self.number);
+        (self.bench.actuator().apply(&tick, &outputs), outputs)
+    }
+
+    fn assert_applies(&mut self) {
+        let (applied, outputs) = self.apply();
+        assert_eq!(applied, Ok(()));
+        assert!(self.bench.follows(&outputs), "does not do as {outputs:?}");
+    }
+
+    fn release(&mut self) -> Result<(), ActuatorFault> {
+        self.bench.actuator().release()
+    }
+
+    /// Now, and after the plant has lived a while.
+    fn assert_released(&mut self) {
+        assert!(!self.bench.is_held(), "is still held");
+        self.live(40);
+        assert!(!self.bench.is_held(), "is held again");
+    }
+
+    /// What `count` counts: a release, then applies, two releases, and that
+    /// again.
+    fn total(&mut self, count: Count<B>) -> u64 {
+        let mut total = 0;
+        for number in 0..120 {
+            let tick = self.ticks.next_tick();
+            self.bench.live(&tick);
+            let outputs = B::outputs(number);
+            total += count(&mut self.bench, &mut |actuator| {
+                let _ = if matches!(number % 40, 0 | 38 | 39) {
+                    actuator.release()
+                } else {
+                    actuator.apply(&tick, &outputs)
+                };
+            });
+        }
+        total
+    }
+}
+
+/// What the actuator does in a call that is counted.
+type Call<'a, B> = &'a mut dyn FnMut(&mut dyn Actuator<<B as ActuatorBench>::Outputs>);
+type Count<B> = fn(&mut B, Call<'_, B>) -> u64;
+
+fn waited<B: ActuatorBench>(bench: &mut B, call: Call<'_, B>) -> u64 {
+    let actuator = bench.actuator();
+    waits(|| call(actuator)).1
+}
+
+fn allocated<B: ActuatorBench>(bench: &mut B, call: Call<'_, B>) -> u64 {
+    let actuator = bench.actuator();
+    allocator_calls(|| call(actuator)).1
+}
+
+/// Control is free until the first apply, and taken by it; each apply is done
+/// at once.
+pub fn the_first_apply_takes_control_and_each_is_followed<B: ActuatorBench>() {
+    let mut run = Run::<B>::new();
+    assert!(!run.bench.is_held(), "held before the first apply");
+    for _ in 0..100 {
+        run.assert_applies();
+        assert!(run.bench.is_held());
+    }
+}
+
+/// A release gives control back for good.
+pub fn release_gives_control_back<B: ActuatorBench>() {
+    let mut run = Run::<B>::holding();
+    assert_eq!(run.release(), Ok(()));
+    run.assert_released();
+}
+
+/// The second of two releases works, and the plant hears nothing of it.
+pub fn a_second_release_does_nothing<B: ActuatorBench>() {
+    let mut run = Run::<B>::holding();
+    assert_eq!(run.release(), Ok(()));
+    for _ in 0..2 {
+        let before = run.bench.messages();
+        assert_eq!(run.release(), Ok(()));
+        assert_eq!(run.bench.messages(), before);
+        run.assert_released();
+    }
+}
+
+/// A release of what was never taken works, and the plant hears nothing of it.
+pub fn a_release_before_any_apply_does_nothing<B: ActuatorBench>() {
+    let mut run = Run::<B>::new();
+    let before = run.bench.messages();
+    assert_eq!(run.release(), Ok(()));
+    assert_eq!(run.bench.messages(), before);
+    run.assert_released();
+}
+
+/// A release is no end: the next apply takes control anew. Also right after
+/// it, while the plant has not yet shown that it is free.
+pub fn an_apply_after_a_release_takes_control_again<B: ActuatorBench>() {
+    let mut run = Run::<B>::holding();
+    for pause in [0, 1, 40] {
+        assert_eq!(run.release(), Ok(()));
+        run.live(pause);
+        for _ in 0..40 {
+            run.assert_applies();
+            assert!(run.bench.is_held());
+        }
+    }
+    assert_eq!(run.release(), Ok(()));
+    run.assert_released();
+}
+
+/// No apply and no release waits.
+pub fn applying_and_releasing_never_wait<B: ActuatorBench>() {
+    waiting::assert_never_waits(|| Run::<B>::new().total(waited));
+}
+
+/// No apply and no release calls the allocator.
+pub fn applying_and_releasing_allocate_nothing<B: ActuatorBench>() {
+    assert_eq!(Run::<B>::new().total(allocated), 0);
+}
+
+/// An actuator made here and driven there, as the loop's is.
+pub fn an_actuator_runs_in_a_thread_it_was_not_made_in<B: ActuatorBench>() {
+    let mut run = Run::<B>::new();
+    let there = thread::scope(|scope| {
+        let driven = scope.spawn(|| {
+            run.assert_applies();
+            assert_eq!(run.release(), Ok(()));
+        });
+        driven.join()
+    });
+    assert!(there.is_ok());
+    run.assert_released();
+}
+
+/// An actuator has one name, on one line.
+pub fn its_name_stays<B: ActuatorBench>() {
+    let mut run = Run::<B>::new();
+    let name = run.bench.actuator().name();
+    assert!(!name.trim().is_empty() && !name.contains('\n'), "{name:?}");
+    run.assert_applies();
+    assert_eq!(run.bench.actuator().name(), name);
+}
+
+/// Driving a plant that is away is a fault after [`VanishingPlant::PATIENCE`]
+/// ticks; once it is back, it does as it is told again. As often as it likes.
+pub fn a_plant_that_vanished_is_a_fault_until_it_is_back<B: VanishingPlant>() {
+    let mut run = Run::<B>::holding();
+    for _ in 0..3 {
+        run.bench.vanish();
+        for _ in 0..B::PATIENCE {
+            let _ = run.apply().0;
+        }
+        for _ in 0..20 {
+            assert!(run.apply().0.is_err(), "a plant that is away is no fault");
+        }
+        run.bench.come_back();
+        for _ in 0..B::BACK_AFTER {
+            let _ = run.apply().0;
+        }
+        for _ in 0..20 {
+            run.assert_applies();
+        }
+        assert!(run.bench.is_held());
+    }
+}
+
+/// A release that did not reach the plant says so, and works once called
+/// again, or is repeated by the adapter's own means: either way control is
+/// given back after the plant's return.
+pub fn a_release_that_a_vanished_plant_missed_is_made_up_for<B: VanishingPlant>() {
+    for releases_while_away in [0, 1, 2] {
+        let mut run = Run::<B>::holding();
+        run.bench.vanish();
+        let mut owed = true;
+        for _ in 0..releases_while_away {
+            owed = run.release().is_err();
+            run.live(10);
+        }
+        run.bench.come_back();
+        if owed {
+            assert_eq!(run.release(), Ok(()));
+        }
+        run.live(B::BACK_AFTER);
+        run.assert_released();
+        // And nothing is left over that would keep it from being taken.
+        for _ in 0..20 {
+            run.assert_applies();
+        }
+    }
+}
+
+/// The same for a plant that is away and comes back.
+pub fn driving_what_vanished_never_waits_nor_allocates<B: VanishingPlant>() {
+    let scenario = |count: Count<B>| {
+        let mut run = Run::<B>::holding();
+        run.bench.vanish();
+        let away = run.total(count);
+        run.bench.come_back();
+        away + run.total(count)
+    };
+    assert_eq!(scenario(allocated), 0);
+    waiting::assert_never_waits(|| scenario(waited));
+}

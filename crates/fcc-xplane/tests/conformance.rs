@@ -1,0 +1,228 @@
+//! X-Plane's sensor and actuator keep what the traits promise, by both of its
+//! ways in and both of its ways out, against a minimal X-Plane on a loopback
+//! socket.
+#![cfg(test)]
+
+mod support;
+
+use fcc_conformance::{
+    ActuatorBench, SensorBench, VanishingPlant, VanishingSource, actuator_conformance,
+    flight_times, sensor_conformance,
+};
+use fcc_core::flight::{Measurements, Surfaces};
+use fcc_core::framework::{Actuator, Sensor, Tick, Time};
+use fcc_xplane::{
+    DataRows, Input, Output, RowsVersion, XPlane, XPlaneActuator, XPlaneConfig, XPlaneSensor,
+};
+use support::{
+    FLIGHT_TIME, FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING,
+    YOKE_PITCH, YOKE_ROLL, free_port,
+};
+
+/// A simulator, and both ends of a connection to it.
+struct Plane {
+    simulator: FakeXPlane,
+    sensor: XPlaneSensor,
+    actuator: XPlaneActuator,
+    measured: Measurements,
+    /// Where the rows of Data Output go, if they are the input.
+    rows_to: Option<u16>,
+    /// Nothing gets through, in either direction.
+    cut_off: bool,
+}
+
+impl Plane {
+    fn with(input: Way, output: Output) -> Self {
+        let simulator = FakeXPlane::new();
+        let mut config = XPlaneConfig {
+            output,
+            ..simulator.config()
+        };
+        let mut rows_to = None;
+        if let Way::Rows(version) = input {
+            let port = free_port();
+            config.local_port = port;
+            config.input = Input::Data(DataRows::of(version));
+            rows_to = Some(port);
+        }
+        let (sensor, actuator) = XPlane::open(&config).unwrap();
+        Self {
+            simulator,
+            sensor,
+            actuator,
+            measured: Measurements::default(),
+            rows_to,
+            cut_off: false,
+        }
+    }
+
+    /// The simulator hears what came, and sends a frame.
+    fn frame(&mut self) {
+        if self.cut_off {
+            self.lose();
+            return;
+        }
+        self.simulator.live(0.025);
+        if let Some(port) = self.rows_to {
+            self.simulator.send_rows(port);
+        }
+    }
+
+    /// What was sent gets lost on its way.
+    fn lose(&mut self) {
+        let mut buffer = [0; 2_048];
+        while self.simulator.socket.recv_from(&mut buffer).is_ok() {}
+    }
+}
+
+/// How measurements come.
+#[derive(Clone, Copy)]
+enum Way {
+    Values,
+    Rows(RowsVersion),
+}
+
+trait Case: Send {
+    const INPUT: Way;
+    const OUTPUT: Output;
+}
+
+struct Rref;
+
+impl Case for Rref {
+    const INPUT: Way = Way::Values;
+    const OUTPUT: Output = Output::Dref;
+}
+
+struct Rows;
+
+impl Case for Rows {
+    const INPUT: Way = Way::Rows(RowsVersion::XPlane12);
+    const OUTPUT: Output = Output::Data;
+}
+
+struct Bench<C: Case>(Plane, core::marker::PhantomData<C>);
+
+impl<C: Case> Bench<C> {
+    fn of_case() -> Self {
+        Self(Plane::with(C::INPUT, C::OUTPUT), core::marker::PhantomData)
+    }
+}
+
+impl<C: Case> SensorBench for Bench<C> {
+    type Measurements = Measurements;
+    /// Four ticks of eight requests each.
+    const CONNECTED_AFTER: usize = 8;
+
+    fn new() -> Self {
+        Self::of_case()
+    }
+
+    fn sensor(&mut self) -> &mut dyn Sensor<Measurements> {
+        &mut self.0.sensor
+    }
+
+    fn provide(&mut self) {
+        self.0.frame();
+    }
+
+    fn taken(measured: &Measurements) -> Vec<Time> {
+        flight_times(measured)
+    }
+}
+
+/// Killed, and started again: it knows nobody any more, and another flight.
+impl<C: Case> VanishingSource for Bench<C> {
+    /// Half a second, by default.
+    const PATIENCE: usize = 20;
+    /// Everything is asked for again every five seconds, by default.
+    const BACK_AFTER: usize = 210;
+
+    fn vanish(&mut self) {
+        self.0.cut_off = true;
+        self.0.simulator.restart();
+    }
+
+    fn come_back(&mut self) {
+        self.0.lose();
+        self.0.cut_off = false;
+        self.0.simulator.set(FLIGHT_TIME, 0.0);
+    }
+}
+
+impl<C: Case> ActuatorBench for Bench<C> {
+    type Outputs = Surfaces;
+
+    fn new() -> Self {
+        Self::of_case()
+    }
+
+    fn actuator(&mut self) -> &mut dyn Actuator<Surfaces> {
+        &mut self.0.actuator
+    }
+
+    fn outputs(number: u32) -> Surfaces {
+        let step = f64::from(number % 16) * 0.03125 + 0.03125;
+        Surfaces {
+            throttle: step,
+            elevator: -step,
+            aileron: step,
+            rudder: -step,
+        }
+    }
+
+    fn live(&mut self, tick: &Tick) {
+        self.0.frame();
+        let _ = self.0.sensor.sample(tick, &mut self.0.measured);
+    }
+
+    fn is_held(&mut self) -> bool {
+        let simulator = &mut self.0.simulator;
+        simulator.listen();
+        [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES]
+            .iter()
+            .any(|path| simulator.value(path) >= 0.5)
+    }
+
+    fn follows(&mut self, outputs: &Surfaces) -> bool {
+        let simulator = &mut self.0.simulator;
+        simulator.listen();
+        [
+            (YOKE_PITCH, outputs.elevator),
+            (YOKE_ROLL, outputs.aileron),
+            (YOKE_HEADING, outputs.rudder),
+            (THROTTLE, outputs.throttle),
+        ]
+        .iter()
+        .all(|(path, written)| f64::from(simulator.value(path)) == *written)
+    }
+
+    fn messages(&mut self) -> u64 {
+        self.0.simulator.listen();
+        self.0.simulator.writes.len() as u64
+    }
+}
+
+/// A cable that is pulled: the simulator flies on as it was last told.
+impl<C: Case> VanishingPlant for Bench<C> {
+    /// A second until what is written counts as without effect, and what was
+    /// read back before.
+    const PATIENCE: usize = 61;
+    /// Half a second until what comes back agrees, and a sensor that asks
+    /// again every five.
+    const BACK_AFTER: usize = 210;
+
+    fn vanish(&mut self) {
+        self.0.cut_off = true;
+    }
+
+    fn come_back(&mut self) {
+        self.0.lose();
+        self.0.cut_off = false;
+    }
+}
+
+sensor_conformance!(rref: Bench<Rref>, vanishes);
+sensor_conformance!(rows: Bench<Rows>, vanishes);
+actuator_conformance!(dref: Bench<Rref>, vanishes);
+actuator_conformance!(data: Bench<Rows>, vanishes);
