@@ -20,7 +20,7 @@ pub use resume::Resume;
 pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
-use super::guidance::{GuidanceConfig, Targets, TimedPattern};
+use super::guidance::{ActiveMode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenWatch, Navigation, accept};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
@@ -37,7 +37,7 @@ pub struct Autopilot {
     accepted: Measurements,
     navigation: Navigation,
     frozen: FrozenWatch,
-    pattern: Option<TimedPattern>,
+    guidance: ActiveMode,
     targets: Targets,
     capture: Option<Capture>,
     heading: HeadingLoop,
@@ -55,7 +55,7 @@ impl Autopilot {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation),
             frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
-            pattern: None,
+            guidance: ActiveMode::None,
             targets: Targets::default(),
             capture: None,
             heading: HeadingLoop::new(config.heading),
@@ -92,6 +92,14 @@ impl Autopilot {
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
+        }
+    }
+
+    /// Enters the mode that the table of changes gives, with what is aimed for.
+    fn change_mode(&mut self, input: ModeInput) {
+        let config = &self.config.guidance;
+        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
+            self.guidance = ActiveMode::enter(mode, config, self.targets);
         }
     }
 
@@ -189,10 +197,7 @@ impl Controller for Autopilot {
         };
         self.navigation.mark_altitude();
         self.capture = Some(Capture::of(estimate.altitude_m));
-        self.pattern = match self.config.guidance {
-            GuidanceConfig::Hold => None,
-            GuidanceConfig::TimedPattern(config) => Some(TimedPattern::begin(config, self.targets)),
-        };
+        self.change_mode(ModeInput::Engage);
         let standing = self
             .accepted
             .surfaces
@@ -218,12 +223,12 @@ impl Controller for Autopilot {
             (Some(capture), Some(altitude_m)) => capture.shift_m(altitude_m),
             _ => 0.0,
         };
-        if let Some(pattern) = &mut self.pattern {
-            pattern.shift_altitude(shift_m);
-            self.targets = pattern.step(self.clock.step_s());
-        } else {
-            self.targets.altitude_m += shift_m;
+        self.guidance.shift_altitude(shift_m);
+        if let Some(targets) = self.guidance.targets() {
+            self.targets = targets;
         }
+        self.guidance
+            .advance(self.navigation.estimate(), self.clock.step_s());
     }
 
     fn control(&mut self, _tick: &Tick, _measurements: &Measurements) -> Surfaces {
@@ -304,30 +309,30 @@ impl Controller for Autopilot {
     }
 
     fn disengage(&mut self) {
-        self.pattern = None;
+        self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.setpoints = Setpoints::default();
     }
 
     fn command(&mut self, order: &Order) {
+        let mut targets = self.targets;
         match *order {
             Order::Airspeed(mps) if mps.is_finite() => {
-                self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
+                targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
             }
             Order::Heading(rad) if rad.is_finite() => {
                 let now_rad = self.navigation.estimate().heading_rad;
-                self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
+                targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
             Order::Altitude(m) if m.is_finite() => {
-                self.targets.altitude_m = m;
+                targets.altitude_m = m;
                 self.capture = None;
             }
-            Order::Resume(ref resume) => self.resume(resume),
-            _ => {}
+            Order::Resume(ref resume) => return self.resume(resume),
+            _ => return,
         }
-        if order.ends_pattern() {
-            self.pattern = None;
-        }
+        self.targets = targets;
+        self.change_mode(ModeInput::SetPoint);
     }
 
     fn setpoints(&self) -> Setpoints {

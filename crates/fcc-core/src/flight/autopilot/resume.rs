@@ -7,7 +7,7 @@ use libm::round;
 use super::Autopilot;
 use crate::flight::Order;
 use crate::flight::Surfaces;
-use crate::flight::guidance::{GuidanceConfig, Targets, TimedPattern};
+use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Progress, Targets};
 
 /// What was flown when a flight was cut off. Ordered right after engaging, it
 /// puts the autopilot where it was.
@@ -25,19 +25,18 @@ pub struct Resume {
 }
 
 impl Resume {
-    fn is_valid(&self) -> bool {
-        let Targets {
-            airspeed_mps,
-            heading_rad,
-            altitude_m,
-        } = self.targets;
-        [airspeed_mps, heading_rad, altitude_m]
-            .iter()
-            .all(|target| target.is_finite())
-            && self
-                .pattern_s
-                .is_none_or(|elapsed_s| elapsed_s.is_finite() && elapsed_s >= 0.0)
-            && self.surfaces.is_valid()
+    /// How far guidance had come.
+    fn progress(&self) -> Progress {
+        let mode = match self.pattern_s {
+            Some(_) => Mode::TimedPattern,
+            None => Mode::Hold,
+        };
+        Progress {
+            mode,
+            elapsed_s: self.pattern_s.unwrap_or(0.0),
+            captured: self.targets,
+            ..Progress::default()
+        }
     }
 }
 
@@ -58,33 +57,23 @@ impl Autopilot {
     /// aircraft has turned about: the heading that is aimed for now is taken
     /// within half a turn of where the nose points.
     pub(super) fn resume(&mut self, resume: &Resume) {
-        if !resume.is_valid() {
+        let (config, mut progress) = (&self.config.guidance, resume.progress());
+        if !progress.is_valid() || !resume.surfaces.is_valid() {
             return;
         }
-        let pattern = match (resume.pattern_s, self.config.guidance) {
-            (None, _) => None,
-            (Some(elapsed_s), GuidanceConfig::TimedPattern(config)) => {
-                Some(TimedPattern::resume(config, resume.targets, elapsed_s))
-            }
-            // There is no such pattern here.
-            (Some(_), GuidanceConfig::Hold) => return,
+        let input = ModeInput::Resume(progress.mode);
+        if self.guidance.mode().after(input, config.mode()).is_none() {
+            return;
+        }
+        let Some(aimed) = ActiveMode::resume(config, &progress).targets() else {
+            return;
         };
-        let aimed = pattern
-            .as_ref()
-            .map_or(resume.targets, TimedPattern::targets);
         let off_rad = self.navigation.estimate().heading_rad - aimed.heading_rad;
-        let turns_rad = round(off_rad / TAU) * TAU;
-        let airspeed_mps = resume.targets.airspeed_mps;
-        let captured = Targets {
-            airspeed_mps: self.config.envelope.allowed_airspeed(airspeed_mps),
-            heading_rad: resume.targets.heading_rad + turns_rad,
-            altitude_m: resume.targets.altitude_m,
-        };
-        self.pattern = pattern.map(|pattern| pattern.captured_at(captured));
-        self.targets = self
-            .pattern
-            .as_ref()
-            .map_or(captured, TimedPattern::targets);
+        progress.captured.heading_rad += round(off_rad / TAU) * TAU;
+        let airspeed_mps = progress.captured.airspeed_mps;
+        progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
+        self.guidance = ActiveMode::resume(config, &progress);
+        self.targets = self.guidance.targets().unwrap_or(aimed);
         // What was captured is known as well as it ever will be.
         self.capture = None;
         self.take_over(&resume.surfaces);

@@ -1,17 +1,26 @@
 //! Guidance: where to go next.
+//!
+//! A [mode](Mode) is one way to go on: keep what was captured, fly a pattern.
+//! Each is a [`Guidance`]; [`ActiveMode`] holds the one that is flown, and
+//! [`Mode::after`] is the one table of how modes change. What a mode has done
+//! so far is its [`Progress`], which stands in the record of every tick, so
+//! that nobody has to work it out from events.
 
+mod active;
+#[cfg(test)]
+mod conformance;
+mod hold;
+mod mode;
 mod pattern;
+mod progress;
 
+use super::navigation::Estimate;
+
+pub use active::{ActiveMode, GuidanceConfig};
+pub use hold::Hold;
+pub use mode::{Mode, ModeInput};
 pub use pattern::{TimedPattern, TimedPatternConfig};
-
-/// The mode that is flown once engaged.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum GuidanceConfig {
-    /// Keep what was captured, until commanded otherwise.
-    Hold,
-    /// The timed pattern of the thesis.
-    TimedPattern(TimedPatternConfig),
-}
+pub use progress::Progress;
 
 /// What guidance asks of control.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -25,4 +34,52 @@ pub struct Targets {
     pub heading_rad: f64,
     /// Barometric altitude, m.
     pub altitude_m: f64,
+}
+
+impl Targets {
+    /// Whether every one is a finite number.
+    pub const fn is_finite(&self) -> bool {
+        self.airspeed_mps.is_finite() && self.heading_rad.is_finite() && self.altitude_m.is_finite()
+    }
+}
+
+/// A mode of guidance: targets for control, tick by tick.
+///
+/// Under the rules of a tick: a pure function of what it holds and is handed,
+/// without heap, clock or panic. Every mode runs the conformance suite beside
+/// this trait, which shows what is said here.
+pub trait Guidance: Copy {
+    /// What of this mode is the user's choice.
+    type Config: Copy;
+
+    /// Which mode this is.
+    const MODE: Mode;
+
+    /// Goes on with a mode that was flown this far; `progress.mode` is not
+    /// looked at. From here on it gives, to the last bit, what the one that
+    /// the progress is of gives.
+    fn resume(config: Self::Config, progress: &Progress) -> Self;
+
+    /// Begins now, with what the aircraft flies: what is measured at
+    /// engagement, what was aimed for at a change of mode.
+    fn enter(config: Self::Config, captured: Targets) -> Self {
+        let progress = Progress {
+            captured,
+            ..Progress::default()
+        };
+        Self::resume(config, &progress)
+    }
+
+    /// The targets now; no time passes.
+    fn targets(&self) -> Targets;
+
+    /// `dt_s` seconds of the plant's time pass, with the aircraft as
+    /// estimated; 0 while the plant is paused, which changes nothing.
+    fn advance(&mut self, estimate: &Estimate, dt_s: f64);
+
+    /// How far it has come.
+    fn progress(&self) -> Progress;
+
+    /// The altitude that was captured turned out to be this much higher, m.
+    fn shift_altitude(&mut self, by_m: f64);
 }

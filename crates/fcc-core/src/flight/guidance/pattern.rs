@@ -2,7 +2,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use super::Targets;
+use super::{Guidance, Mode, Progress, Targets};
+use crate::flight::navigation::Estimate;
 
 /// The timed pattern: hold, then legs that turn by a fixed angle and go up and
 /// back down in turn (thesis, section 6.3).
@@ -31,7 +32,7 @@ impl Default for TimedPatternConfig {
 }
 
 /// The pattern in flight.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TimedPattern {
     config: TimedPatternConfig,
     captured: Targets,
@@ -42,30 +43,6 @@ pub struct TimedPattern {
 const ROUNDING_S: f64 = 1e-6;
 
 impl TimedPattern {
-    /// Begins now, from what was captured.
-    pub const fn begin(config: TimedPatternConfig, captured: Targets) -> Self {
-        Self {
-            config,
-            captured,
-            elapsed_s: 0.0,
-        }
-    }
-
-    /// Goes on with one that has been flown for `elapsed_s` seconds.
-    pub const fn resume(config: TimedPatternConfig, captured: Targets, elapsed_s: f64) -> Self {
-        Self {
-            config,
-            captured,
-            elapsed_s,
-        }
-    }
-
-    /// The same pattern from another start.
-    #[must_use]
-    pub const fn captured_at(self, captured: Targets) -> Self {
-        Self { captured, ..self }
-    }
-
     /// Which leg is flown: 0 while holding, then 1, 2, ...
     pub fn leg(&self) -> u32 {
         let into_legs = self.elapsed_s + ROUNDING_S - self.config.hold_s;
@@ -73,24 +50,25 @@ impl TimedPattern {
             0
         } else {
             // Saturates after 4 billion legs.
-            (into_legs / self.config.leg_s) as u32 + 1
+            ((into_legs / self.config.leg_s) as u32).saturating_add(1)
+        }
+    }
+}
+
+impl Guidance for TimedPattern {
+    type Config = TimedPatternConfig;
+
+    const MODE: Mode = Mode::TimedPattern;
+
+    fn resume(config: TimedPatternConfig, progress: &Progress) -> Self {
+        Self {
+            config,
+            captured: progress.captured,
+            elapsed_s: progress.elapsed_s,
         }
     }
 
-    /// The captured altitude turned out to be this much higher, m.
-    pub fn shift_altitude(&mut self, by_m: f64) {
-        self.captured.altitude_m += by_m;
-    }
-
-    /// The targets now; then `dt_s` seconds pass.
-    pub fn step(&mut self, dt_s: f64) -> Targets {
-        let targets = self.targets();
-        self.elapsed_s += dt_s;
-        targets
-    }
-
-    /// The targets now.
-    pub fn targets(&self) -> Targets {
+    fn targets(&self) -> Targets {
         let leg = self.leg();
         Targets {
             airspeed_mps: self.captured.airspeed_mps,
@@ -102,6 +80,23 @@ impl TimedPattern {
                     0.0
                 },
         }
+    }
+
+    fn advance(&mut self, _estimate: &Estimate, dt_s: f64) {
+        self.elapsed_s += dt_s;
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            mode: Self::MODE,
+            item: self.leg(),
+            elapsed_s: self.elapsed_s,
+            captured: self.captured,
+        }
+    }
+
+    fn shift_altitude(&mut self, by_m: f64) {
+        self.captured.altitude_m += by_m;
     }
 }
 
@@ -126,10 +121,11 @@ mod tests {
             heading_rad: 1.0,
             altitude_m: 914.4,
         };
-        let mut pattern = TimedPattern::begin(TimedPatternConfig::default(), captured);
+        let mut pattern = TimedPattern::enter(TimedPatternConfig::default(), captured);
         for n in 0..4_000 {
             let t = f64::from(n) * 0.025;
-            let targets = pattern.step(0.025);
+            let targets = pattern.targets();
+            pattern.advance(&Estimate::default(), 0.025);
             let (_, turn_deg, climb_ft) = THESIS
                 .into_iter()
                 .rfind(|(from, ..)| t >= *from - 1e-9)

@@ -1,6 +1,6 @@
 //! What is flown, worked out from what the loop tells.
 
-use fcc_core::flight::guidance::{Targets, TimedPattern, TimedPatternConfig};
+use fcc_core::flight::guidance::{Guidance, Progress, Targets, TimedPattern, TimedPatternConfig};
 use fcc_core::flight::{Order as Command, Resume};
 use fcc_core::framework::{EventKind, Message, Order, State};
 use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
@@ -119,8 +119,13 @@ impl Flown {
 impl Place {
     /// What the pattern captured, if `aimed` is what it aims for now.
     fn captured_by(&mut self, config: TimedPatternConfig, aimed: Targets) -> Targets {
-        let from_nought =
-            |elapsed_s: f64| TimedPattern::resume(config, Targets::default(), elapsed_s);
+        let from_nought = |elapsed_s: f64| {
+            let progress = Progress {
+                elapsed_s,
+                ..Progress::default()
+            };
+            TimedPattern::resume(config, &progress)
+        };
         let is_near = from_nought((self.elapsed_s - NEAR_S).max(0.0)).leg()
             != from_nought(self.elapsed_s + NEAR_S).leg();
         if let Some(captured) = self.captured

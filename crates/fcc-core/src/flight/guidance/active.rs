@@ -1,0 +1,96 @@
+//! The mode that is flown, in a place of its own without heap.
+
+use super::{Guidance, Hold, Mode, Progress, Targets, TimedPattern, TimedPatternConfig};
+use crate::flight::navigation::Estimate;
+
+/// The mode that is flown once engaged.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum GuidanceConfig {
+    /// Keep what was captured, until commanded otherwise.
+    Hold,
+    /// The timed pattern of the thesis.
+    TimedPattern(TimedPatternConfig),
+}
+
+impl GuidanceConfig {
+    /// Which mode it is.
+    pub const fn mode(&self) -> Mode {
+        match self {
+            Self::Hold => Mode::Hold,
+            Self::TimedPattern(_) => Mode::TimedPattern,
+        }
+    }
+}
+
+/// The mode that is flown. A further mode is a further variant, in this file
+/// and in [`Mode`].
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub enum ActiveMode {
+    /// Nothing is flown.
+    #[default]
+    None,
+    /// What was captured is kept.
+    Hold(Hold),
+    /// The timed pattern.
+    TimedPattern(TimedPattern),
+}
+
+/// The same of whichever mode is flown, or what there is without one.
+macro_rules! of_mode {
+    ($active:expr, $mode:ident => $of:expr, none => $none:expr) => {
+        match $active {
+            ActiveMode::None => $none,
+            ActiveMode::Hold($mode) => $of,
+            ActiveMode::TimedPattern($mode) => $of,
+        }
+    };
+}
+
+impl ActiveMode {
+    /// Goes on with the mode of a progress. Nothing is flown if it is a mode
+    /// that is not configured.
+    pub fn resume(config: &GuidanceConfig, progress: &Progress) -> Self {
+        match (progress.mode, config) {
+            (Mode::Hold, _) => Self::Hold(Hold::resume((), progress)),
+            (Mode::TimedPattern, GuidanceConfig::TimedPattern(config)) => {
+                Self::TimedPattern(TimedPattern::resume(*config, progress))
+            }
+            (Mode::None, _) | (Mode::TimedPattern, GuidanceConfig::Hold) => Self::None,
+        }
+    }
+
+    /// Begins a mode now, with what was captured.
+    pub fn enter(mode: Mode, config: &GuidanceConfig, captured: Targets) -> Self {
+        let progress = Progress {
+            mode,
+            captured,
+            ..Progress::default()
+        };
+        Self::resume(config, &progress)
+    }
+
+    /// Which mode it is.
+    pub fn mode(&self) -> Mode {
+        self.progress().mode
+    }
+
+    /// The targets now; none where nothing is flown.
+    pub fn targets(&self) -> Option<Targets> {
+        of_mode!(self, mode => Some(mode.targets()), none => None)
+    }
+
+    /// See [`Guidance::advance`].
+    pub fn advance(&mut self, estimate: &Estimate, dt_s: f64) {
+        of_mode!(self, mode => mode.advance(estimate, dt_s), none => {});
+    }
+
+    /// How far it has come.
+    pub fn progress(&self) -> Progress {
+        of_mode!(self, mode => mode.progress(), none => Progress::default())
+    }
+
+    /// See [`Guidance::shift_altitude`].
+    pub fn shift_altitude(&mut self, by_m: f64) {
+        of_mode!(self, mode => mode.shift_altitude(by_m), none => {});
+    }
+}

@@ -1,0 +1,28 @@
+//! How far a mode has come.
+
+use super::{Mode, Targets};
+
+/// How far a mode has come: what an observer needs to know of it, and all that
+/// is needed to go on with it elsewhere.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[repr(C)]
+pub struct Progress {
+    /// Which mode.
+    pub mode: Mode,
+    /// Which part of it is flown: of a pattern, the leg.
+    pub item: u32,
+    /// For how long it has been flown, s of the plant's time.
+    pub elapsed_s: f64,
+    /// What it captured when it was entered.
+    pub captured: Targets,
+}
+
+impl Progress {
+    /// Whether a flight can have come this far: a mode, and finite numbers.
+    pub fn is_valid(&self) -> bool {
+        self.mode != Mode::None
+            && self.captured.is_finite()
+            && self.elapsed_s.is_finite()
+            && self.elapsed_s >= 0.0
+    }
+}
