@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
+use fcc_flight::config::{CpuChoice, GustsChoice};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
-use crate::config::{CpuChoice, GustsChoice};
 use crate::exit::EXIT_CODES;
 
 /// A real-time flight control computer in software.
@@ -78,7 +79,7 @@ pub struct FlyArgs {
     #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Strength of the gusts
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = gusts())]
     pub gusts: Option<GustsChoice>,
     /// What watchers call this flight, instead of what the configuration says
     #[arg(long, value_name = "NAME")]
@@ -297,6 +298,15 @@ pub struct ReportArgs {
     /// Print all statistics as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
+    PossibleValuesParser::new(GustsChoice::ALL.map(|(name, _)| name)).try_map(|given| {
+        GustsChoice::ALL
+            .into_iter()
+            .find_map(|(name, choice)| (name == given).then_some(choice))
+            .ok_or("no such strength")
+    })
 }
 
 fn positive_seconds(text: &str) -> Result<f64, String> {

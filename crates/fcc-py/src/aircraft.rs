@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Sensor, Switch, Tick, Time};
-use fcc_daemon::config::Aircraft;
+use fcc_flight::config::Aircraft;
 use fcc_sim::{SimConfig, Simulation};
 use pyo3::prelude::*;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_daemon::config::{Config, ConfigError};
+use fcc_flight::config::{Config, ConfigError};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};

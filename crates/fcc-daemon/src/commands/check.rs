@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use crate::cli::CheckArgs;
-use crate::config::{Aircraft, Config, Problem};
 use crate::exit::Exit;
 use crate::output;
+use fcc_flight::config::{Aircraft, Config, Problem};
 
 #[derive(Serialize)]
 struct Checked {

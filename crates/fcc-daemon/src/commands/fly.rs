@@ -4,12 +4,12 @@ use fcc_runtime::SpawnError;
 
 use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
-use crate::config::{BuiltInSection, Config, GuidanceSection};
 use crate::exit::Exit;
-use crate::flight::{
+use crate::output;
+use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
+use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
 };
-use crate::output;
 
 /// The legs that a flight has if nobody says how long it is to be.
 const DEFAULT_LEGS: f64 = 8.0;

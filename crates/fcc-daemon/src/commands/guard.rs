@@ -7,8 +7,8 @@ use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 
 use super::fail;
 use crate::exit::Exit;
-use crate::flight::stand_guard;
 use crate::output;
+use fcc_flight::flight::stand_guard;
 
 /// Waits until the daemon that started this is gone.
 pub(super) fn guard() -> Exit {

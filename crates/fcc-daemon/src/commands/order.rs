@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::fail;
 use crate::cli::{OrderArgs, OrderWhat, SetArgs};
-use crate::config::{FOOT_M, KNOT_MPS};
 use crate::exit::Exit;
 use crate::output;
+use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
 struct Told {

@@ -11,10 +11,10 @@ use serde::Serialize;
 
 use super::{fail, progress};
 use crate::cli::ReplayArgs;
-use crate::config::Config;
 use crate::exit::Exit;
 use crate::output;
-use crate::replay::{Chain, ChainMessages, Csv, Deviation, Identity, Replay, Run, run};
+use fcc_flight::config::Config;
+use fcc_flight::replay::{Chain, ChainMessages, Csv, Deviation, Identity, Replay, Run, run};
 
 /// What came of it.
 #[derive(Serialize)]

@@ -10,9 +10,9 @@ use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
 use super::{fail, progress};
 use crate::cli::ReportArgs;
-use crate::config::Config;
 use crate::exit::Exit;
 use crate::output;
+use fcc_flight::config::Config;
 
 /// Messages between two looks at how far the file is read.
 const BAR_EVERY: u64 = 4_096;

@@ -2,10 +2,10 @@
 
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
-use crate::config::Config;
 use crate::exit::Exit;
-use crate::flight::{Length, Pace, Plan};
 use crate::output;
+use fcc_flight::config::Config;
+use fcc_flight::flight::{Length, Pace, Plan};
 
 /// Flies a configuration until told to stop.
 pub(super) fn run(args: &RunArgs) -> Exit {

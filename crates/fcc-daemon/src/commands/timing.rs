@@ -11,10 +11,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::fail;
 use crate::cli::TimingArgs;
-use crate::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
 use crate::exit::Exit;
-use crate::flight::{Length, Pace, Plan, assemble, fly};
 use crate::output;
+use fcc_flight::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
+use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
 pub(super) fn timing(args: &TimingArgs) -> Exit {

@@ -3,7 +3,7 @@
 
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
-use fcc_daemon::config::{Config, GuidanceSection};
+use fcc_flight::config::{Config, GuidanceSection};
 
 use super::flights::{Happenings, again, fly, records, rough};
 use super::{deviation, flipped};

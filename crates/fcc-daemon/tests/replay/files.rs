@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use fcc_core::flight::Order as Command;
 use fcc_core::framework::Order;
-use fcc_daemon::config::Config;
+use fcc_flight::config::Config;
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
 use serde_json::Value;

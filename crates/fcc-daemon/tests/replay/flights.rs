@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use fcc_core::flight::{Measurements, Order as Command};
 use fcc_core::framework::{Message, Order, Sensor, SensorFault, State, Tick};
-use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
-use fcc_daemon::flight::assemble;
-use fcc_daemon::replay::{Identity, Replay, Run, run};
+use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
+use fcc_flight::flight::assemble;
+use fcc_flight::replay::{Identity, Replay, Run, run};
 use fcc_runtime::{Machine, Parts};
 use fcc_telemetry::{FlightMessage, FlightRecord};
 use fcc_timer::ManualTimer;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use fcc_core::flight::Order as Command;
 use fcc_core::framework::Order;
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
-use fcc_daemon::config::{Config, Then};
+use fcc_flight::config::{Config, Then};
 
 use super::assert_identical;
 use super::flights::{Happenings, again, fly, records, rough};

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::Order as Command;
 use fcc_core::framework::{EventKind, Message, Order, Reading, Time};
-use fcc_daemon::config::Then;
+use fcc_flight::config::Then;
 use fcc_telemetry::FlightMessage;
 
 use super::flights::{Happenings, again, fly, records, rough};

@@ -9,8 +9,8 @@ mod identical;
 mod incomplete;
 
 use fcc_core::framework::State;
-use fcc_daemon::config::Config;
-use fcc_daemon::replay::{Deviation, Replay, run};
+use fcc_flight::config::Config;
+use fcc_flight::replay::{Deviation, Replay, run};
 use fcc_telemetry::FlightMessage;
 
 use flights::{again, records};

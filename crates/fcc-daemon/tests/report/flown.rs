@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
-use fcc_daemon::config::{BuiltInSection, Config};
-use fcc_daemon::flight::assemble;
+use fcc_flight::config::{BuiltInSection, Config};
+use fcc_flight::flight::assemble;
 use fcc_runtime::{Machine, Parts};
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Realtime, Recorder, RecorderSettings, RecordingPace};

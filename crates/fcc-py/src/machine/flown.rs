@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_core::framework::Message;
-use fcc_daemon::config::Config;
-use fcc_daemon::flight::about;
+use fcc_flight::config::Config;
+use fcc_flight::flight::about;
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
 use pyo3::exceptions::PyOSError;

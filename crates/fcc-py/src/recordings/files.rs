@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_daemon::config::Config;
-use fcc_daemon::replay::{Chain, Deviation, Identity, Replay, Run, run};
+use fcc_flight::config::Config;
+use fcc_flight::replay::{Chain, Deviation, Identity, Replay, Run, run};
 use fcc_telemetry::recording::{self, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 use pyo3::prelude::*;

@@ -82,7 +82,7 @@ impl PyRecording {
     #[getter]
     fn config(&self) -> PyResult<PyConfig> {
         let name = format!("{}: config.toml", self.recording.path().display());
-        fcc_daemon::config::Config::parse(&self.recording.about().config, &name)
+        fcc_flight::config::Config::parse(&self.recording.about().config, &name)
             .map(|config| PyConfig { config })
             .map_err(|error| refused(&error))
     }

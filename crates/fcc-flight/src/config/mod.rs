@@ -42,7 +42,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
-pub(crate) use units::{FOOT_M, KNOT_MPS};
+pub use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.

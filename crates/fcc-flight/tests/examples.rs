@@ -2,7 +2,7 @@
 //! taken away, they are the defaults.
 #![cfg(test)]
 
-use fcc_daemon::config::{BudgetSection, BuiltInSection, Config, CpuChoice, XPlaneSection};
+use fcc_flight::config::{BudgetSection, BuiltInSection, Config, CpuChoice, XPlaneSection};
 
 const BUILT_IN: &str = include_str!("../../../config/built-in.toml");
 const X_PLANE: &str = include_str!("../../../config/x-plane.toml");

@@ -1,6 +1,5 @@
 //! `[built-in]`: the aircraft is the built-in one.
 
-use clap::ValueEnum;
 use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, Wind};
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +32,7 @@ pub struct BuiltInSection {
 }
 
 /// How strong the gusts are (MIL-F-8785C).
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GustsChoice {
     /// Still air.
@@ -45,6 +44,16 @@ pub enum GustsChoice {
     Moderate,
     /// Severe.
     Severe,
+}
+
+impl GustsChoice {
+    /// Every choice, by the name that a configuration gives it.
+    pub const ALL: [(&str, Self); 4] = [
+        ("none", Self::None),
+        ("light", Self::Light),
+        ("moderate", Self::Moderate),
+        ("severe", Self::Severe),
+    ];
 }
 
 impl Default for BuiltInSection {

@@ -5,8 +5,8 @@
 use std::time::Duration;
 
 use fcc_core::framework::State;
-use fcc_daemon::config::{BuiltInSection, Config, GustsChoice};
-use fcc_daemon::flight::assemble;
+use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
+use fcc_flight::flight::assemble;
 use fcc_runtime::{Machine, Parts};
 use fcc_timer::ManualTimer;
 

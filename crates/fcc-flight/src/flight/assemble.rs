@@ -50,7 +50,7 @@ pub enum AssemblyError {
 
 impl AssemblyError {
     /// Whether another program has the local port.
-    pub(crate) fn is_taken(&self) -> bool {
+    pub fn is_taken(&self) -> bool {
         matches!(self, Self::XPlane(OpenError::Bind { source, .. }) if source.kind() == ErrorKind::AddrInUse)
     }
 }
