@@ -182,7 +182,7 @@ class Record(ctypes.Structure):
         ("page_faults", ctypes.c_uint64),
         ("early_wake_ns", ctypes.c_uint64),
         ("state", State),
-        ("blockers", ctypes.c_uint32),
+        ("engage_inhibits", ctypes.c_uint32),
         ("faults", ctypes.c_uint32),
         ("sent", ctypes.c_uint8),
     )

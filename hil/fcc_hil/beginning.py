@@ -104,8 +104,8 @@ def _fly(
         plant.step(STEPS_PER_ROW)
     start = plant.state()
     pilot.engage(see(start), throttle=plant.controls.throttle)
-    # Any order ends the pattern.
-    pilot.order(
+    # Any command ends the pattern.
+    pilot.command(
         heading_rad=start.heading_rad + way.turn_rad,
         altitude_m=start.altitude_m + way.climb_ft * FT_TO_M,
         airspeed_mps=plant.aircraft.airspeed_kt * way.airspeed_ratio * KT_TO_MPS,

@@ -89,7 +89,7 @@ class _Orders:
         self.running = False
 
 
-def wish_for_real_time() -> str:
+def request_real_time() -> str:
     """Ask for a real-time priority; return what was granted."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
@@ -107,7 +107,7 @@ def _serve(settings: Settings, pipe: Connection) -> None:
         pipe.send(error)
         return
     pipe.send(simulator.port)
-    orders = _Orders(simulator, wish_for_real_time())
+    orders = _Orders(simulator, request_real_time())
 
     def each_frame() -> bool:
         try:

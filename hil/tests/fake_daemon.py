@@ -1,7 +1,7 @@
 """A flight control computer of a hundred lines, to try the stand-in and `fly` with.
 
 It speaks the protocol from the layouts alone and shares no code with the package. It
-holds what it captured: wings level, heading, altitude; good enough to see that orders
+holds what it captured: wings level, heading, altitude; good enough to see that commands
 reach the aircraft and values come back.
 
     python fake_daemon.py PORT [--exit-after S | --never-engage | --keep-overrides | --mute]

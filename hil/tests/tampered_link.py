@@ -14,7 +14,7 @@ import struct
 from collections.abc import Mapping
 from multiprocessing.connection import Connection
 
-from fcc_hil.process import wish_for_real_time
+from fcc_hil.process import request_real_time
 
 _LARGEST_DATAGRAM = 65_536
 _TAG_BYTES = 5
@@ -96,7 +96,7 @@ class _Link:
 def _serve(simulator_port: int, pipe: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     link = _Link(simulator_port, pipe)
-    wish_for_real_time()
+    request_real_time()
     pipe.send(link.port)
     link.run()
 

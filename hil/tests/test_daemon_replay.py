@@ -15,7 +15,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Mode, Settings
 
 OUTPUTS_PER_TICK = 15
-"""4 surfaces, 6 set points, step, state, blockers, faults, whether sent."""
+"""4 surfaces, 6 set points, step, state, engage_inhibits, faults, whether sent."""
 
 SUCCESS = 0
 FAILSAFE = 3

@@ -106,11 +106,11 @@ TWO: dict[str, Callable[..., Any]] = {
     "Autopilot.observe_series": lambda a, b: engaged().observe_series(a, b),
     "Autopilot.fly": lambda a, b: engaged().fly(a, b),
     "Autopilot.failsafe": lambda a, b: engaged().failsafe(a, b),
-    "Autopilot.order": lambda a, b: engaged().order(airspeed_mps=a, heading_rad=b),
+    "Autopilot.command": lambda a, b: engaged().command(airspeed_mps=a, heading_rad=b),
     "Fleet.engage": lambda a, b: fcc.Fleet([HOLD]).engage(a, b),
     "Fleet.observe": lambda a, b: fcc.Fleet([HOLD]).observe(a, b),
     "Fleet.step": lambda a, b: fcc.Fleet([HOLD]).step(a, b),
-    "Machine.order": lambda a, b: fcc.Machine().order(altitude_m=a, heading_rad=b),
+    "Machine.command": lambda a, b: fcc.Machine().command(altitude_m=a, heading_rad=b),
     "BuiltInAircraft.step": lambda a, b: fcc.BuiltInAircraft().step(a, b),
     "Surfaces": lambda a, b: fcc.Surfaces(throttle=a, elevator=b),
     "Config.replace": lambda a, b: fcc.Config().replace({a: b}),
@@ -184,7 +184,7 @@ def test_ranges_are_said() -> None:
         (lambda: fcc.Timer(0.0)): "period_s is 0: choose 0.00001 to 3600",
         (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
         (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 0 to 1",
-        (lambda: engaged().order(altitude_m=9e9)): "altitude_m is 9000000000: choose",
+        (lambda: engaged().command(altitude_m=9e9)): "altitude_m is 9000000000: choose",
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
@@ -235,7 +235,7 @@ def test_a_file_that_cannot_be_read_is_said(tmp_path: Path) -> None:
 
 
 def test_every_exception_is_an_error_of_the_module() -> None:
-    for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Order", "Timer"):
+    for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Command", "Timer"):
         assert issubclass(getattr(fcc, f"{name}Error"), fcc.Error)
     assert fcc.Error.__module__ == "fcc"
 

@@ -74,7 +74,7 @@ def test_the_loop_engages_by_its_switch_and_holds_what_it_found() -> None:
 def test_orders_turn_it() -> None:
     loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
     flown(5.0, loop, aircraft)
-    loop.order(heading_rad=1.0, altitude_m=930.0)
+    loop.command(heading_rad=1.0, altitude_m=930.0)
     flown(60.0, loop, aircraft)
     assert loop.estimate.heading_rad == pytest.approx(1.0, abs=np.radians(2.0))
     assert aircraft.truth.altitude_m == pytest.approx(930.0, abs=6.0)
@@ -125,7 +125,7 @@ def test_engaging_is_refused_in_words() -> None:
     loop.engage()
     loop.step(None)
     assert loop.state == "standby"
-    assert "attitude is missing or too old" in loop.blockers
+    assert "attitude is missing or too old" in loop.engage_inhibits
     assert any(event.kind == "engage-refused" for event in loop.events())
 
 

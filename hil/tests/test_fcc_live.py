@@ -1,4 +1,4 @@
-"""A running daemon, watched from Python and given orders."""
+"""A running daemon, watched from Python and given commands."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnd
     return DaemonUnderTest([*words, "--recordings", scratch, "--seconds", "600"], scratch)
 
 
-def order(fccd: Path, instance: str, *words: str) -> subprocess.CompletedProcess[str]:
+def command(fccd: Path, instance: str, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [fccd, "order", *words, "--instance", instance],
+        [fccd, "command", *words, "--instance", instance],
         capture_output=True,
         text=True,
         check=False,
@@ -92,26 +92,26 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
 
         wait_until(lambda: aims() == pytest.approx((1.0, 950.0)), "the set points are the new ones")
         assert commander.disengage() > tick
-        with pytest.raises(fcc.OrderError, match="set points are taken while engaged"):
+        with pytest.raises(fcc.CommandError, match="set points are taken while engaged"):
             commander.set(airspeed_mps=50.0)
         engaged = commander.engage()
         assert engaged > tick
-        told = daemon.wait_for("ordered: heading 57.3°")
+        told = daemon.wait_for("command: heading 57.3°")
         assert told
         # The word on the command line is the same order.
-        assert order(fccd, instance, "set", "--heading-deg", "90").returncode == 0
-        printed = order(fccd, instance, "disengage", "--json")
+        assert command(fccd, instance, "set", "--heading-deg", "90").returncode == 0
+        printed = command(fccd, instance, "disengage", "--json")
         assert json.loads(printed.stdout)["carried_out"] is True
-        refused = order(fccd, instance, "set", "--airspeed-kt", "100")
+        refused = command(fccd, instance, "set", "--airspeed-kt", "100")
         assert refused.returncode == REFUSED
         assert "set points are taken while engaged" in refused.stderr
-        wrong = order(fccd, instance, "set", "--airspeed-kt", "-3")
+        wrong = command(fccd, instance, "set", "--airspeed-kt", "-3")
         assert wrong.returncode == USAGE
         assert "airspeed is" in wrong.stderr
-        assert order(fccd, instance, "set").returncode == USAGE
+        assert command(fccd, instance, "set").returncode == USAGE
         commander.stop()
         ending = daemon.end()
-    assert ending.report["ending"] == "ordered to stop"
+    assert ending.report["ending"] == "stopped by command"
     assert ending.exit_code == 0
     with pytest.raises(fcc.TelemetryError, match="no fccd named"):
         commander.engage()
@@ -120,9 +120,9 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
 def test_a_daemon_that_takes_no_orders_says_so(fccd: Path, tmp_path: Path, instance: str) -> None:
     with fly(fccd, tmp_path, instance, "[telemetry]\norders = false\n") as daemon:
         daemon.wait_for("standby -> engaged")
-        with pytest.raises(fcc.TelemetryError, match="takes no orders"):
+        with pytest.raises(fcc.TelemetryError, match="takes no commands"):
             fcc.Commander(instance)
-        assert order(fccd, instance, "engage").returncode == FAILURE
+        assert command(fccd, instance, "engage").returncode == FAILURE
         assert fcc.Watcher(instance).is_alive
 
 
@@ -132,7 +132,7 @@ def test_without_a_daemon_all_say_so(fccd: Path, instance: str) -> None:
             connect(instance)
         with pytest.raises(ValueError, match="is no name for an instance"):
             connect("left/wing")
-    refused = order(fccd, instance, "stop")
+    refused = command(fccd, instance, "stop")
     assert refused.returncode == FAILURE
     assert f"no fccd named '{instance}'" in refused.stderr
 
@@ -147,7 +147,7 @@ def test_an_engagement_that_is_refused_says_what_blocks_it(
     with DaemonUnderTest([*words, "--recordings", tmp_path], tmp_path) as daemon:
         daemon.wait_for("no aircraft yet")
         commander = fcc.Commander(instance)
-        with pytest.raises(fcc.OrderError, match="attitude is missing or too old"):
+        with pytest.raises(fcc.CommandError, match="attitude is missing or too old"):
             commander.engage()
         commander.stop()
-        assert daemon.end().report["ending"] == "ordered to stop"
+        assert daemon.end().report["ending"] == "stopped by command"

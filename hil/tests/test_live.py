@@ -77,7 +77,7 @@ def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> N
     measured = newest.measurements
     assert live.STATES[newest.state.phase] == "engaged"
     assert newest.sent == 1
-    assert newest.blockers == 0
+    assert newest.engage_inhibits == 0
     assert measured.engage_switch.value == 1
     # It holds what it began with: noisy sensors, still air.
     assert measured.altitude_m.value == pytest.approx(ALTITUDE_M, abs=15.0)

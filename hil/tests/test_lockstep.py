@@ -104,9 +104,9 @@ def test_it_takes_over_in_a_turn_and_in_a_climb(roll_deg: float, climb_fpm: floa
     first.engage(measurements(plant.state()), throttle=plant.controls.throttle)
     start = plant.state()
     if roll_deg:
-        first.order(heading_rad=start.heading_rad + np.copysign(3.0, roll_deg))
+        first.command(heading_rad=start.heading_rad + np.copysign(3.0, roll_deg))
     if climb_fpm:
-        first.order(altitude_m=start.altitude_m + 300.0)
+        first.command(altitude_m=start.altitude_m + 300.0)
     second = fcc.Autopilot('[guidance]\nmode = "hold"\n')
     surfaces = None
     for _ in range(240):

@@ -40,7 +40,7 @@ def test_it_engages_by_the_switch_and_gives_back_by_it(level: fcc.Measurements) 
     machine = fcc.Machine(HOLD)
     assert (machine.state, machine.tick, machine.time_s) == ("standby", 0, 0.0)
     _watch(machine, level, 2.0)
-    assert (machine.state, machine.tick, machine.blockers) == ("standby", 80, [])
+    assert (machine.state, machine.tick, machine.engage_inhibits) == ("standby", 80, [])
     assert machine.time_s == pytest.approx(2.0)
     surfaces = machine.step(level, standing=STANDING, switch=True)
     assert surfaces is not None
@@ -56,8 +56,8 @@ def test_what_blocks_engaging_is_said(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     machine.engage()
     assert machine.step(level) is None
-    assert _texts(machine) == ["ordered: engage", "not engaged: navigation is settling"]
-    assert machine.blockers == ["navigation is settling"]
+    assert _texts(machine) == ["command: engage", "not engaged: navigation is settling"]
+    assert machine.engage_inhibits == ["navigation is settling"]
 
 
 @pytest.mark.parametrize("sensor", SENSORS)
@@ -99,7 +99,7 @@ def test_orders_move_the_set_points(level: fcc.Measurements) -> None:
     _watch(machine, level, 2.0)
     machine.engage()
     machine.step(level, standing=STANDING)
-    machine.order(heading_rad=1.0, altitude_m=1_000.0, airspeed_mps=50.0)
+    machine.command(heading_rad=1.0, altitude_m=1_000.0, airspeed_mps=50.0)
     machine.step(level)
     aims = machine.setpoints
     assert (aims.heading_rad, aims.altitude_m, aims.airspeed_mps) == (1.0, 1_000.0, 50.0)
@@ -138,7 +138,7 @@ def test_a_folder_that_cannot_be_written_to_is_an_error(level: fcc.Measurements)
 @given(value=bad_numbers, name=st.sampled_from(["airspeed_mps", "heading_rad", "altitude_m"]))
 def test_orders_that_are_no_numbers_are_refused(value: float, name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} is .*finite"):
-        fcc.Machine(HOLD).order(**{name: value})
+        fcc.Machine(HOLD).command(**{name: value})
 
 
 @given(

@@ -72,7 +72,7 @@ def test_ten_minutes_are_recorded_tick_by_tick(fccd: Path, tmp_path: Path) -> No
     assert is_in_log_time_order(messages)
     assert [seen.data for seen in in_sequence(path)] == [seen.data for seen in messages]
     kinds = [seen.content.WhichOneof("kind") for seen in messages if seen.topic == EVENT]
-    assert kinds == ["state_changed", "told_to_stop", "state_changed", "released"]
+    assert kinds == ["state_changed", "stop_requested", "state_changed", "released"]
     # A record is a flight's: where the aircraft was told to be, it is.
     last = [seen.content for seen in messages if seen.topic == RECORD][-2]
     flies_at_mps = last.measurements.airspeed_mps.value

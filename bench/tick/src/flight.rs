@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig};
 use fcc_core::framework::State;
-use fcc_runtime::{Link, LoopConfig, Machine, Order, Parts};
+use fcc_runtime::{Link, LoopCommand, LoopConfig, Machine, Parts};
 use fcc_timer::{Expiry, ManualTimer, Timer, TimerError};
 use fcc_xplane::XPlane;
 use nix::time::{ClockId, clock_gettime};
@@ -54,8 +54,8 @@ impl Flight {
             flight.frame();
             flight.tick();
         }
-        let sent = flight.link.orders.send(Order::Engage);
-        assert!(sent.is_ok(), "the order finds no room");
+        let sent = flight.link.commands.send(LoopCommand::Engage);
+        assert!(sent.is_ok(), "the command finds no room");
         for _ in 0..TICKS_TO_SETTLE {
             flight.frame();
             flight.tick();

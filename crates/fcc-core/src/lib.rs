@@ -2,7 +2,7 @@
 //! inside a tick, and nothing else.
 //!
 //! No I/O, no clock, no heap: a tick is a pure function of the loop's state,
-//! the measurements, the orders and the tick's time, so a recording of those
+//! the measurements, the commands and the tick's time, so a recording of those
 //! replays to the last bit on any machine. Transcendental functions come from
 //! `libm` for the same reason: the platform's own differ in the last digit.
 //!

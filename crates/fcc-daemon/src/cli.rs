@@ -17,12 +17,12 @@ use crate::exit::EXIT_CODES;
 pub struct Cli {
     /// What to do.
     #[command(subcommand)]
-    pub command: Command,
+    pub command: Action,
 }
 
 /// What `fccd` can do.
 #[derive(Subcommand, Debug)]
-pub enum Command {
+pub enum Action {
     /// Fly the built-in aircraft through the timed pattern
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until told to stop
@@ -38,9 +38,9 @@ pub enum Command {
     /// Watch a flight on this machine, live
     #[cfg(feature = "live")]
     Top(TopArgs),
-    /// Give a daemon on this machine an order
+    /// Give a daemon on this machine a command
     #[cfg(feature = "live")]
-    Order(OrderArgs),
+    Command(CommandArgs),
     /// Check a configuration file
     Check(CheckArgs),
     /// Say what this machine offers a real-time loop, and what it lacks
@@ -217,13 +217,13 @@ pub struct TopArgs {
     pub json: bool,
 }
 
-/// `fccd order`.
+/// `fccd command`.
 #[cfg(feature = "live")]
 #[derive(Args, Debug)]
-pub struct OrderArgs {
+pub struct CommandArgs {
     /// What to do
     #[command(subcommand)]
-    pub what: OrderWhat,
+    pub what: CommandChoice,
     /// Which daemon: the name that it was given by --instance, or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
     pub instance: Instance,
@@ -235,7 +235,7 @@ pub struct OrderArgs {
 /// What may be ordered.
 #[cfg(feature = "live")]
 #[derive(Subcommand, Debug)]
-pub enum OrderWhat {
+pub enum CommandChoice {
     /// Take over as things are
     Engage,
     /// Give the controls back
@@ -246,7 +246,7 @@ pub enum OrderWhat {
     Set(SetArgs),
 }
 
-/// `fccd order set`.
+/// `fccd command set`.
 #[cfg(feature = "live")]
 #[derive(Args, Debug)]
 #[group(required = true, multiple = true)]
@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn the_thesis_experiment_is_the_default() {
         let cli = Cli::parse_from(["fccd", "timing"]);
-        let Command::Timing(args) = cli.command else {
+        let Action::Timing(args) = cli.command else {
             panic!("not timing");
         };
         assert_eq!(args.rates, [40.0, 50.0, 100.0]);

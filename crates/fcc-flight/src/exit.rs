@@ -29,7 +29,7 @@ pub enum Exit {
     Hung = 9,
     /// The machine lacks something that a real-time loop needs.
     MachineLacks = 10,
-    /// The daemon refused an order.
+    /// The daemon refused a command.
     Refused = 11,
     /// Another program has what is asked for: the simulator, or the local port.
     Taken = 12,
@@ -49,7 +49,7 @@ Exit codes:
   8  a recording could not be flown again to its end; nothing else differs
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
- 11  the daemon refused the order
+ 11  the daemon refused the command
  12  another program has the simulator or the local port";
 
 impl From<Exit> for ExitCode {

@@ -1,6 +1,6 @@
 //! The autopilot, stepped by hand.
 
-use fcc_core::flight::{Order, Surfaces};
+use fcc_core::flight::{AutopilotCommand, Surfaces};
 use fcc_core::framework::Controller;
 use numpy::{PyArray2, ToPyArray};
 use pyo3::prelude::*;
@@ -127,18 +127,18 @@ impl PyAutopilot {
         self.stepped.disengage();
     }
 
-    /// Orders another airspeed (m/s), heading (rad) or altitude (m); ends a
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
     /// pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
-    fn order(
+    fn command(
         &mut self,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
         self.stepped.must_be_engaged()?;
-        let orders = checked_orders(airspeed_mps, heading_rad, altitude_m)?;
-        self.stepped.order(orders);
+        let commands = checked_commands(airspeed_mps, heading_rad, altitude_m)?;
+        self.stepped.command(commands);
         Ok(())
     }
 
@@ -162,8 +162,8 @@ impl PyAutopilot {
 
     /// Why it may not engage now, in words; empty if it may.
     #[getter]
-    fn blockers(&self) -> Vec<&'static str> {
-        names(self.stepped.blockers())
+    fn engage_inhibits(&self) -> Vec<&'static str> {
+        names(self.stepped.engage_inhibits())
     }
 
     /// What makes flying on unsafe now, in words; empty if nothing does.
@@ -198,19 +198,19 @@ pub(crate) fn matrix<const N: usize>(
     rows.into_flattened().to_pyarray(py).reshape([count, N])
 }
 
-/// Orders for the controller: airspeed in m/s, 5 to 340; heading in rad, any
+/// Commands for the controller: airspeed in m/s, 5 to 340; heading in rad, any
 /// number of turns; altitude in m, -500 to 20,000.
-pub(crate) fn checked_orders(
+pub(crate) fn checked_commands(
     airspeed_mps: Option<f64>,
     heading_rad: Option<f64>,
     altitude_m: Option<f64>,
-) -> PyResult<Vec<Order>> {
+) -> PyResult<Vec<AutopilotCommand>> {
     let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, 5.0, 340.0);
     let altitude = |m| within("altitude_m", finite("altitude_m", m)?, -500.0, 20_000.0);
     [
-        airspeed_mps.map(|mps| airspeed(mps).map(Order::Airspeed)),
-        heading_rad.map(|rad| finite("heading_rad", rad).map(Order::Heading)),
-        altitude_m.map(|m| altitude(m).map(Order::Altitude)),
+        airspeed_mps.map(|mps| airspeed(mps).map(AutopilotCommand::Airspeed)),
+        heading_rad.map(|rad| finite("heading_rad", rad).map(AutopilotCommand::Heading)),
+        altitude_m.map(|m| altitude(m).map(AutopilotCommand::Altitude)),
     ]
     .into_iter()
     .flatten()

@@ -124,12 +124,12 @@ pub(crate) static TELEMETRY: Exception = Exception::new(
     "A daemon that cannot be watched: it does not run, is of another version or has ended.",
 );
 
-/// An order that was not carried out.
+/// A command that was not carried out.
 pub(crate) static ORDER: Exception = Exception::new(
-    "OrderError",
+    "CommandError",
     Some(&ERROR),
     Also::Exception,
-    "An order that a daemon refused, with its reason, or did not answer.",
+    "A command that a daemon refused, with its reason, or did not answer.",
 );
 
 /// A timer that fails.

@@ -52,8 +52,8 @@ pub(crate) fn seconds(time: Time) -> f64 {
 fn kind_of(event: &FlightEvent) -> &'static str {
     match event.kind {
         EventKind::StateChanged { .. } => "state-changed",
-        EventKind::Ordered(_) => "ordered",
-        EventKind::ToldToStop => "told-to-stop",
+        EventKind::CommandReceived(_) => "ordered",
+        EventKind::StopRequested => "told-to-stop",
         EventKind::EngageRefused { .. } => "engage-refused",
         EventKind::SensorFault { .. } => "sensor-fault",
         EventKind::SensorRecovered { .. } => "sensor-recovered",

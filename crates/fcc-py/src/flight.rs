@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Message, Sensor, State};
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::true_sample;
@@ -18,10 +18,10 @@ use pyo3::exceptions::{PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arguments::within;
+use crate::callbacks::{CallbackController, CallbackSensor, Raised};
 use crate::config::configuration;
 use crate::errors;
 use crate::events::PyEvent;
-use crate::guests::{GuestController, GuestSensor, Raised};
 use crate::json;
 use crate::structured::{self, RecordRow, TruthRecord};
 
@@ -153,7 +153,7 @@ pub(crate) fn fly(
     let mut sensors: Vec<Box<dyn Sensor<Measurements>>> = vec![Box::new(simulation.sensor)];
     if let Some(call) = sensor {
         let raised = raised.clone();
-        sensors.push(Box::new(GuestSensor { call, raised }));
+        sensors.push(Box::new(CallbackSensor { call, raised }));
     }
     let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
     let log = Log::new(&config, &sensors, simulation.truth, ticks, keep)?;
@@ -174,7 +174,7 @@ pub(crate) fn fly(
             let parts = Parts {
                 timer,
                 sensors,
-                controller: GuestController {
+                controller: CallbackController {
                     autopilot,
                     call,
                     raised: raised.clone(),
@@ -206,7 +206,7 @@ where
             Measurements = Measurements,
             Setpoints = Setpoints,
             Outputs = Surfaces,
-            Order = Order,
+            Command = AutopilotCommand,
         >,
 {
     let refused = |error: TimerError| errors::TIMER.say(error);
@@ -232,7 +232,7 @@ where
             Measurements = Measurements,
             Setpoints = Setpoints,
             Outputs = Surfaces,
-            Order = Order,
+            Command = AutopilotCommand,
         >,
 {
     let began = Instant::now();

@@ -11,7 +11,7 @@
 //! | `blocks`, `formulas` | the core's blocks and formulas |
 //! | `timers` | the kernel's timers |
 //! | `recordings` | recordings as numpy arrays; list, recover, report, replay |
-//! | `live` | a running daemon, watched and given orders |
+//! | `live` | a running daemon, watched and given commands |
 //! | `values`, `structured`, `events`, `errors`, `arguments`, `json` | what they all speak with |
 //!
 //! Nothing here computes anything of its own: each call hands on to the crate
@@ -21,13 +21,13 @@ mod aircraft;
 mod arguments;
 mod autopilot;
 mod blocks;
+mod callbacks;
 mod config;
 mod errors;
 mod events;
 mod fleet;
 mod flight;
 mod formulas;
-mod guests;
 mod json;
 #[cfg(feature = "live")]
 mod live;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, AutopilotConfig, Measurements, Order, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, Measurements, Surfaces};
 use fcc_core::framework::{Controller, Flags, Tick, Time};
 use pyo3::prelude::*;
 
@@ -43,9 +43,12 @@ impl Stepped {
         standing: Surfaces,
     ) -> Result<(), String> {
         self.take(measured, dt_s, standing);
-        let blockers = self.blockers();
-        if !blockers.is_empty() {
-            return Err(format!("not engaged: {}", names(blockers).join(", ")));
+        let engage_inhibits = self.engage_inhibits();
+        if !engage_inhibits.is_empty() {
+            return Err(format!(
+                "not engaged: {}",
+                names(engage_inhibits).join(", ")
+            ));
         }
         self.autopilot.engage(&self.tick, &self.taken);
         self.engaged = true;
@@ -82,14 +85,14 @@ impl Stepped {
         Err(errors::ENGAGE.say("the autopilot is not engaged: call engage() first"))
     }
 
-    pub(crate) fn order(&mut self, orders: impl IntoIterator<Item = Order>) {
-        for order in orders {
-            self.autopilot.command(&order);
+    pub(crate) fn command(&mut self, commands: impl IntoIterator<Item = AutopilotCommand>) {
+        for command in commands {
+            self.autopilot.command(&command);
         }
     }
 
-    pub(crate) fn blockers(&self) -> Flags {
-        self.autopilot.blockers(&self.tick, &self.taken)
+    pub(crate) fn engage_inhibits(&self) -> Flags {
+        self.autopilot.engage_inhibits(&self.tick, &self.taken)
     }
 
     pub(crate) fn faults(&self) -> Flags {

@@ -35,8 +35,8 @@ pub struct LoopConfig {
     /// How long ticks may take. A period, and no budget for single stages, by
     /// default.
     pub budget: Budget,
-    /// How many orders may wait to be read; at least 1. 64 by default.
-    pub orders_capacity: usize,
+    /// How many commands may wait to be read; at least 1. 64 by default.
+    pub commands_capacity: usize,
     /// How many ticks' records may wait to be fetched; at least 1. 4,096 by
     /// default: 102 s at 40 Hz. Events have slots of their own beside these.
     pub messages_capacity: usize,
@@ -53,7 +53,7 @@ impl Default for LoopConfig {
             failsafe_hold: Duration::from_secs(10),
             after_failsafe: AfterFailsafe::Standby,
             budget: Budget::default(),
-            orders_capacity: 64,
+            commands_capacity: 64,
             messages_capacity: 4_096,
             realtime: RealtimeRequest::default(),
         }

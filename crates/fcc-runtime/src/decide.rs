@@ -2,16 +2,16 @@
 
 use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tick};
 
+use crate::commands::StateRequest;
 use crate::config::AfterFailsafe;
 use crate::machine::Machine;
-use crate::orders::LoopCommand;
 use crate::report::Ending;
 use crate::switch::SwitchEdge;
 
 impl<C: Controller> Machine<C> {
     /// Decides in which state this tick goes on. Letting go is looked at
     /// before taking over, so that of two hands the careful one wins.
-    pub(crate) fn decide(&mut self, tick: &Tick, command: LoopCommand) {
+    pub(crate) fn decide(&mut self, tick: &Tick, command: StateRequest) {
         let before = self.state;
         if !before.holds_control() && !self.actuators.are_released() {
             self.release(tick, ReleaseReport::OnSuccess);
@@ -21,15 +21,15 @@ impl<C: Controller> Machine<C> {
             self.record.faults = self.controller.faults(tick, measurements);
         }
         if before != State::Engaged {
-            self.record.blockers = self.controller.blockers(tick, measurements);
+            self.record.engage_inhibits = self.controller.engage_inhibits(tick, measurements);
         }
         let switch = self.controller.switch(measurements);
         let edge = self.switch.watch(switch, tick.woke);
 
         if self.stop.is_set() {
-            self.telemetry.events.push(tick, EventKind::ToldToStop);
+            self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
-        } else if command == LoopCommand::Stop {
+        } else if command == StateRequest::Stop {
             self.stop_for(Ending::StopOrder, tick);
         }
         if edge == Some(SwitchEdge::Off) {
@@ -38,7 +38,7 @@ impl<C: Controller> Machine<C> {
                 self.end_by(Ending::SwitchedOff);
             }
         }
-        if command == LoopCommand::Disengage {
+        if command == StateRequest::Disengage {
             self.apply_input(Input::Disengage, tick);
         }
         let faults = self.record.faults;
@@ -55,7 +55,7 @@ impl<C: Controller> Machine<C> {
         {
             self.end_failsafe(tick);
         }
-        if command == LoopCommand::Engage || edge == Some(SwitchEdge::On) {
+        if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
             self.attempt_to_engage(tick, lost_control);
         }
     }
@@ -64,9 +64,9 @@ impl<C: Controller> Machine<C> {
         if matches!(self.state, State::Engaged | State::Stopped) {
             return;
         }
-        let blockers = self.record.blockers;
-        if lost_control || self.overruns.are_too_many() || !blockers.is_empty() {
-            let kind = EventKind::EngageRefused { blockers };
+        let engage_inhibits = self.record.engage_inhibits;
+        if lost_control || self.overruns.are_too_many() || !engage_inhibits.is_empty() {
+            let kind = EventKind::EngageRefused { engage_inhibits };
             self.telemetry.events.push(tick, kind);
         } else {
             self.apply_input(Input::Engage, tick);
@@ -102,7 +102,7 @@ impl<C: Controller> Machine<C> {
         self.enter(to, tick);
         match to {
             State::Engaged => {
-                self.record.blockers = Flags::NONE;
+                self.record.engage_inhibits = Flags::NONE;
                 self.controller.engage(tick, &self.measurements);
             }
             State::Failsafe(cause) => {

@@ -4,16 +4,16 @@
 //! a thread of its own. Once a tick, in one thread and in one direction:
 //!
 //! ```text
-//! timer ─► orders ─► sensors ─► estimate ─► decide ─► guide ─► control ─► actuators ─► record
+//! timer ─► commands ─► sensors ─► estimate ─► decide ─► guide ─► control ─► actuators ─► record
 //! ```
 //!
 //! What the loop promises, whatever it runs:
 //!
 //! - Between the wake-up and the last actuator write it allocates nothing,
-//!   takes no lock and waits for nobody. Orders come in and messages go out by
+//!   takes no lock and waits for nobody. Commands come in and messages go out by
 //!   one lock-free ring each; a full ring drops and counts.
 //! - The actuators are released on every way out: let go, switched off, the
-//!   failsafe's end, an order to stop, the stop flag, a timer that fails, a
+//!   failsafe's end, a command to stop, the stop flag, a timer that fails, a
 //!   panic in a part, the loop being dropped.
 //! - A tick that overruns its [`Budget`] is counted and told of, and the phase
 //!   is kept; as many in a row as configured lead to failsafe. A loop that
@@ -29,7 +29,7 @@
 //! use std::time::Duration;
 //!
 //! use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, State, Tick};
-//! use fcc_runtime::{LoopConfig, Machine, Order, Parts};
+//! use fcc_runtime::{LoopConfig, Machine, LoopCommand, Parts};
 //! use fcc_timer::ManualTimer;
 //!
 //! /// A level that rises by 1 m/s.
@@ -53,14 +53,14 @@
 //!     type Measurements = Reading<f64>;
 //!     type Setpoints = ();
 //!     type Outputs = f64;
-//!     type Order = ();
+//!     type Command = ();
 //!
 //!     fn estimate(&mut self, _: &Tick, _: &Reading<f64>) {}
-//!     fn blockers(&self, _: &Tick, level: &Reading<f64>) -> Flags {
+//!     fn engage_inhibits(&self, _: &Tick, level: &Reading<f64>) -> Flags {
 //!         Flags::NONE.with(Flags::bit(0), level.is_never())
 //!     }
 //!     fn faults(&self, tick: &Tick, level: &Reading<f64>) -> Flags {
-//!         self.blockers(tick, level)
+//!         self.engage_inhibits(tick, level)
 //!     }
 //!     fn flag_name(_: u32) -> &'static str {
 //!         "no level"
@@ -86,7 +86,7 @@
 //! };
 //! let (mut machine, mut link) = Machine::new(parts, &LoopConfig::default())?;
 //! machine.start()?;
-//! link.orders.send(Order::Engage)?;
+//! link.commands.send(LoopCommand::Engage)?;
 //! assert_eq!(machine.step(), State::Engaged);
 //! assert_eq!(machine.record().outputs, 0.05);
 //! assert!(machine.finish().released);
@@ -94,13 +94,13 @@
 //! ```
 
 mod actuators;
+mod commands;
 mod config;
 mod decide;
 mod faults;
 mod heartbeat;
 mod link;
 mod machine;
-mod orders;
 mod overruns;
 mod panics;
 mod report;
@@ -113,12 +113,13 @@ mod watchdog;
 
 // The words a loop is spoken with, so that its users need no other crate.
 pub use fcc_core::framework::{
-    Event, EventKind, EventOf, EventWords, Message, MessageOf, Order, Record, RecordOf, StageTimes,
+    Event, EventKind, EventOf, EventWords, LoopCommand, Message, MessageOf, Record, RecordOf,
+    StageTimes,
 };
 
 pub use config::{AfterFailsafe, LoopConfig, Parts};
 pub use heartbeat::{Heartbeat, HeartbeatReading};
-pub use link::{Link, MessageReceiver, OrderSender, OrdersFull, StopHandle};
+pub use link::{CommandSender, CommandsFull, Link, MessageReceiver, StopHandle};
 pub use machine::Machine;
 pub use overruns::Budget;
 pub use report::{Ending, LoopReport};

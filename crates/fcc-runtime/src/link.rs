@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use fcc_core::framework::{Controller, MessageOf, Order};
+use fcc_core::framework::{Controller, LoopCommand, MessageOf};
 use rtrb::{Consumer, Producer};
 
 use crate::heartbeat::Heartbeat;
 
 /// How the world outside speaks with a loop.
 pub struct Link<C: Controller> {
-    /// Orders in.
-    pub orders: OrderSender<C::Order>,
+    /// Commands in.
+    pub commands: CommandSender<C::Command>,
     /// Records and events out.
     pub messages: MessageReceiver<C>,
     /// The stop flag.
@@ -20,17 +20,17 @@ pub struct Link<C: Controller> {
     pub heartbeat: Heartbeat,
 }
 
-/// Sends orders to a loop; never waits.
-pub struct OrderSender<O> {
-    ring: Producer<Order<O>>,
+/// Sends commands to a loop; never waits.
+pub struct CommandSender<O> {
+    ring: Producer<LoopCommand<O>>,
 }
 
-impl<O> OrderSender<O> {
-    pub(crate) const fn new(ring: Producer<Order<O>>) -> Self {
+impl<O> CommandSender<O> {
+    pub(crate) const fn new(ring: Producer<LoopCommand<O>>) -> Self {
         Self { ring }
     }
 
-    /// How many orders can be sent now, 0 if the loop is over: for those that
+    /// How many commands can be sent now, 0 if the loop is over: for those that
     /// mean something only together.
     pub fn room(&self) -> usize {
         if self.ring.is_abandoned() {
@@ -40,24 +40,26 @@ impl<O> OrderSender<O> {
         }
     }
 
-    /// Sends an order; it is read in one of the next ticks.
+    /// Sends a command; it is read in one of the next ticks.
     ///
     /// # Errors
-    /// The order itself, if the loop has not read the ones before, or is over.
-    pub fn send(&mut self, order: Order<O>) -> Result<(), OrdersFull<O>> {
+    /// The command itself, if the loop has not read the ones before, or is over.
+    pub fn send(&mut self, command: LoopCommand<O>) -> Result<(), CommandsFull<O>> {
         if self.ring.is_abandoned() {
-            return Err(OrdersFull(order));
+            return Err(CommandsFull(command));
         }
         self.ring
-            .push(order)
-            .map_err(|rtrb::PushError::Full(order)| OrdersFull(order))
+            .push(command)
+            .map_err(|rtrb::PushError::Full(command)| CommandsFull(command))
     }
 }
 
-/// An order that could not be sent: the ring is full, or the loop is over.
+/// A command that could not be sent: the ring is full, or the loop is over.
 #[derive(thiserror::Error, Clone, Copy, PartialEq, Eq, Debug)]
-#[error("the loop takes no more orders now: it is over, or many wait; send again in the next tick")]
-pub struct OrdersFull<O>(pub Order<O>);
+#[error(
+    "the loop takes no more commands now: it is over, or many wait; send again in the next tick"
+)]
+pub struct CommandsFull<O>(pub LoopCommand<O>);
 
 /// Fetches what a loop tells of itself; never waits.
 pub struct MessageReceiver<C: Controller> {

@@ -3,17 +3,17 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Cause, Controller, Order, Record, RecordOf, StageTimes, State, SwitchOff, Tick, Time,
+    Cause, Controller, LoopCommand, Record, RecordOf, StageTimes, State, SwitchOff, Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
 
 use crate::actuators::Actuators;
+use crate::commands;
 use crate::config::{AfterFailsafe, LoopConfig, Parts};
 use crate::decide::ReleaseReport;
 use crate::heartbeat::Heartbeat;
-use crate::link::{Link, MessageReceiver, OrderSender, StopHandle};
-use crate::orders;
+use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
 use crate::panics;
 use crate::report::{Ending, LoopReport};
@@ -39,7 +39,7 @@ pub struct Machine<C: Controller> {
     pub(crate) failsafe_hold: Duration,
     pub(crate) after_failsafe: AfterFailsafe,
 
-    pub(crate) orders: Consumer<Order<C::Order>>,
+    pub(crate) commands: Consumer<LoopCommand<C::Command>>,
     pub(crate) telemetry: TelemetryProducer<C>,
     pub(crate) stop: StopHandle,
     heartbeat: Heartbeat,
@@ -67,13 +67,13 @@ impl<C: Controller> Machine<C> {
     /// # Errors
     /// When the timer's period cannot be kept statistics of.
     pub fn new(parts: Parts<C>, config: &LoopConfig) -> Result<(Self, Link<C>), TimerError> {
-        let (orders_in, orders) = RingBuffer::new(config.orders_capacity.max(1));
+        let (commands_in, commands) = RingBuffer::new(config.commands_capacity.max(1));
         let (messages, messages_out) =
             RingBuffer::new(config.messages_capacity.max(1).saturating_add(EVENT_SLOTS));
         let stop = StopHandle::default();
         let heartbeat = Heartbeat::default();
         let link = Link {
-            orders: OrderSender::new(orders_in),
+            commands: CommandSender::new(commands_in),
             messages: MessageReceiver::new(messages_out),
             stop: stop.clone(),
             heartbeat: heartbeat.clone(),
@@ -88,7 +88,7 @@ impl<C: Controller> Machine<C> {
             switch_off: config.switch_off,
             failsafe_hold: config.failsafe_hold,
             after_failsafe: config.after_failsafe,
-            orders,
+            commands,
             telemetry: TelemetryProducer::new(messages),
             stop,
             heartbeat,
@@ -163,7 +163,7 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    /// Runs the code of the coming tick without effect, in the tick's order, so
+    /// Runs the code of the coming tick without effect, in the tick's command, so
     /// that it finds its code and data in the caches.
     fn warm_up(&self, tick: &Tick) {
         self.sensors.warm_up(tick);
@@ -224,8 +224,8 @@ impl<C: Controller> Machine<C> {
     /// One turn, in one direction: all that happens between the wake-up and
     /// the last actuator write.
     fn run_stages(&mut self, tick: &Tick) {
-        let command = orders::read(
-            &mut self.orders,
+        let command = commands::read(
+            &mut self.commands,
             &mut self.controller,
             tick,
             &mut self.telemetry.events,

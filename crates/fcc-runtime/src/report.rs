@@ -47,7 +47,7 @@ pub struct LoopReport {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Ending {
-    /// [`Order::Stop`](crate::Order::Stop) came.
+    /// [`LoopCommand::Stop`](crate::LoopCommand::Stop) came.
     StopOrder,
     /// The stop flag was set: [`StopHandle`](crate::StopHandle).
     StopFlag,
@@ -71,7 +71,7 @@ pub enum Ending {
 impl fmt::Display for Ending {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::StopOrder => f.write_str("ordered to stop"),
+            Self::StopOrder => f.write_str("stopped by command"),
             Self::StopFlag => f.write_str("told to stop"),
             Self::SwitchedOff => f.write_str("switched off"),
             Self::FailsafeOver => f.write_str("failsafe was over"),

@@ -63,7 +63,7 @@ impl<O> Events<O> {
 /// The loop's end of the ring of messages.
 pub(crate) struct TelemetryProducer<C: Controller> {
     ring: Producer<MessageOf<C>>,
-    pub(crate) events: Events<C::Order>,
+    pub(crate) events: Events<C::Command>,
     lost: Gap,
     dropped: u64,
 }
@@ -131,7 +131,7 @@ impl<C: Controller> TelemetryProducer<C> {
         }
     }
 
-    fn send_event(&mut self, tick: &Tick, kind: EventKind<C::Order>) -> bool {
+    fn send_event(&mut self, tick: &Tick, kind: EventKind<C::Command>) -> bool {
         self.push(Message::Event(Event {
             tick: tick.number,
             time: tick.woke,

@@ -8,7 +8,7 @@ use fcc_conformance::allocator_calls;
 use fcc_core::framework::{
     Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, State, Switch, Tick,
 };
-use fcc_runtime::{Link, LoopConfig, Machine, Order, Parts};
+use fcc_runtime::{Link, LoopCommand, LoopConfig, Machine, Parts};
 use fcc_timer::ManualTimer;
 
 /// A plant that goes through everything by the tick's number alone.
@@ -19,7 +19,7 @@ struct Measured {
     value: [f64; 16],
     switch: Reading<Switch>,
     faults: Flags,
-    blockers: Flags,
+    engage_inhibits: Flags,
 }
 
 /// Whether tick `number` lies in the first part of a cycle.
@@ -38,7 +38,7 @@ impl Sensor<Measured> for Plant {
         };
         into.switch = Reading::new(position, tick.woke);
         into.faults = Flags::NONE.with(Flags::bit(3), within(n, 1, 170));
-        into.blockers = Flags::NONE.with(Flags::bit(4), within(n, 60, 500));
+        into.engage_inhibits = Flags::NONE.with(Flags::bit(4), within(n, 60, 500));
         if within(n, 3, 70) {
             return Err(SensorFault::Io { errno: 5 });
         }
@@ -90,14 +90,14 @@ impl Controller for Copying {
     type Measurements = Measured;
     type Setpoints = [f64; 6];
     type Outputs = [f64; 4];
-    type Order = u64;
+    type Command = u64;
 
     fn estimate(&mut self, tick: &Tick, _: &Measured) {
         self.number = tick.number;
     }
 
-    fn blockers(&self, _: &Tick, measured: &Measured) -> Flags {
-        measured.blockers
+    fn engage_inhibits(&self, _: &Tick, measured: &Measured) -> Flags {
+        measured.engage_inhibits
     }
 
     fn faults(&self, _: &Tick, measured: &Measured) -> Flags {
@@ -121,8 +121,8 @@ impl Controller for Copying {
         [0.0; 4]
     }
 
-    fn command(&mut self, order: &u64) {
-        self.number = *order;
+    fn command(&mut self, command: &u64) {
+        self.number = *command;
     }
 
     fn setpoints(&self) -> [f64; 6] {
@@ -166,7 +166,7 @@ fn machine(
 #[test]
 fn ten_thousand_engaged_ticks_do_not_allocate() {
     let (mut machine, mut link) = machine(Box::new(Steady), u64::MAX, 4_096);
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     let (engaged, calls) = allocator_calls(|| {
         (0..10_000)
             .filter(|_| {
@@ -180,7 +180,7 @@ fn ten_thousand_engaged_ticks_do_not_allocate() {
     assert_eq!(calls, 0);
 }
 
-/// Switch on and off, refusals, faults, failsafe, invalid outputs, orders, and
+/// Switch on and off, refusals, faults, failsafe, invalid outputs, commands, and
 /// a ring that overflows because nobody fetches.
 #[test]
 fn nothing_that_happens_allocates() {
@@ -188,12 +188,12 @@ fn nothing_that_happens_allocates() {
     let mut seen = [0_u32; 3];
     let mut calls = 0;
     for n in 0..10_000 {
-        let order = if within(n, 1, 230) {
-            Order::Engage
+        let command = if within(n, 1, 230) {
+            LoopCommand::Engage
         } else {
-            Order::Controller(n)
+            LoopCommand::Controller(n)
         };
-        link.orders.send(order).unwrap();
+        link.commands.send(command).unwrap();
         let (state, during) = allocator_calls(|| machine.step());
         calls += during;
         match state {

@@ -6,7 +6,7 @@ mod bench;
 use bench::{Bench, EventKind, RELEASED, TimerEnd, change};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_core::framework::{ActuatorFault, Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, Ending, LoopConfig, LoopReport, Order};
+use fcc_runtime::{AfterFailsafe, Ending, LoopCommand, LoopConfig, LoopReport};
 
 fn engaged() -> Bench {
     Bench::engaged(&LoopConfig::default())
@@ -24,7 +24,7 @@ fn released(bench: Bench) -> LoopReport {
 #[test]
 fn an_order_to_stop() {
     let mut bench = engaged();
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(bench.events(), [change(Engaged, Stopped), RELEASED]);
     let report = released(bench);
@@ -39,7 +39,7 @@ fn the_stop_flag() {
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(
         bench.events(),
-        [EventKind::ToldToStop, change(Engaged, Stopped), RELEASED]
+        [EventKind::StopRequested, change(Engaged, Stopped), RELEASED]
     );
     assert!(matches!(released(bench).ending, Ending::StopFlag));
 }
@@ -125,7 +125,7 @@ fn a_panic_in_any_part() {
         "setpoints",
     ] {
         let mut bench = engaged();
-        bench.order(Order::Controller(1));
+        bench.command(LoopCommand::Controller(1));
         assert_eq!(bench.tick(|s| s.panic_in = Some(call)), Stopped, "{call}");
         assert_eq!(bench.stage.log().held, [false, false], "{call}");
         let number = bench.machine.record().tick.number;
@@ -141,11 +141,14 @@ fn a_panic_in_any_part() {
 #[test]
 fn a_panic_in_standby_failsafe_and_on_the_way_out() {
     let mut bench = Bench::new();
-    assert_eq!(bench.tick(|s| s.panic_in = Some("blockers")), Stopped);
+    assert_eq!(
+        bench.tick(|s| s.panic_in = Some("engage_inhibits")),
+        Stopped
+    );
     assert!(matches!(released(bench).ending, Ending::Panicked(_)));
 
     let mut bench = Bench::new();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|s| s.panic_in = Some("engage")), Stopped);
     assert!(matches!(released(bench).ending, Ending::Panicked(_)));
 
@@ -158,7 +161,7 @@ fn a_panic_in_standby_failsafe_and_on_the_way_out() {
     assert!(matches!(released(bench).ending, Ending::Panicked(_)));
 
     let mut bench = engaged();
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     assert_eq!(bench.tick(|s| s.panic_in = Some("disengage")), Stopped);
     assert!(matches!(released(bench).ending, Ending::Panicked(_)));
 }
@@ -166,7 +169,7 @@ fn a_panic_in_standby_failsafe_and_on_the_way_out() {
 #[test]
 fn a_panic_after_an_order_to_stop_is_not_hidden_by_it() {
     let mut bench = engaged();
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|s| s.panic_in = Some("disengage")), Stopped);
     assert!(matches!(released(bench).ending, Ending::Panicked(_)));
 }
@@ -202,7 +205,7 @@ fn a_panic_is_told_and_leaves_a_record() {
 #[test]
 fn a_panic_in_a_release() {
     let mut bench = engaged();
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     assert_eq!(bench.tick(|s| s.panic_in = Some("release")), Stopped);
     assert_eq!(bench.stage.log().held, [true, false]);
     assert_eq!(
@@ -222,7 +225,7 @@ fn a_panic_in_a_release() {
 #[test]
 fn a_release_that_fails_is_asked_for_again_until_it_works() {
     let mut bench = engaged();
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     let fault = ActuatorFault::Io { errno: 101 };
     assert_eq!(bench.tick(|s| s.release = Err(fault)), Standby);
     for _ in 0..3 {
@@ -251,7 +254,7 @@ fn a_release_that_fails_is_asked_for_again_until_it_works() {
 #[test]
 fn a_release_that_fails_to_the_end_is_in_the_report() {
     let mut bench = engaged();
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     bench.tick(|s| s.release = Err(ActuatorFault::NotConnected));
     assert!(!bench.machine.finish().released);
 }
@@ -288,10 +291,10 @@ fn a_machine_dropped_by_a_panic_around_it() {
 #[test]
 fn nothing_happens_after_the_end() {
     let mut bench = engaged();
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     bench.tick(|_| {});
     bench.stage.forget();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(bench.machine.tick(bench::expiry(9)), Stopped);
     assert!(bench.stage.log().calls.is_empty());

@@ -6,7 +6,7 @@ mod bench;
 use bench::{Bench, EventKind, change, happened};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_core::framework::{ActuatorFault, Flags, SensorFault, Switch};
-use fcc_runtime::{LoopConfig, Message, Order, OrdersFull, StageTimes};
+use fcc_runtime::{CommandsFull, LoopCommand, LoopConfig, Message, StageTimes};
 
 fn small(messages_capacity: usize) -> LoopConfig {
     LoopConfig {
@@ -19,7 +19,7 @@ fn small(messages_capacity: usize) -> LoopConfig {
 #[expect(clippy::float_cmp, reason = "what is handed on is the very same value")]
 fn every_tick_has_one_record() {
     let mut bench = Bench::new();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     for _ in 0..20 {
         bench.tick(|_| {});
     }
@@ -47,8 +47,8 @@ fn every_stage_is_timed_by_itself() {
     };
     assert_eq!(bench.machine.record().stages, engaged);
 
-    // An order to the controller is part of the whole and of no stage.
-    bench.order(Order::Controller(1));
+    // A command to the controller is part of the whole and of no stage.
+    bench.command(LoopCommand::Controller(1));
     bench.tick(|_| {});
     let total_ns = 63_000;
     assert_eq!(
@@ -68,7 +68,7 @@ fn every_stage_is_timed_by_itself() {
     assert_eq!(bench.machine.record().stages, failsafe);
 
     // Let go: the release and the controller's disengagement.
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     bench.tick(|_| {});
     let standby = StageTimes {
         sensors_ns: 1_000,
@@ -82,15 +82,15 @@ fn every_stage_is_timed_by_itself() {
 #[test]
 fn orders_take_effect_in_their_sequence() {
     let mut bench = Bench::new();
-    for order in [
-        Order::Controller(1),
-        Order::Engage,
-        Order::Controller(2),
-        Order::Disengage,
-        Order::Engage,
-        Order::Stop,
+    for command in [
+        LoopCommand::Controller(1),
+        LoopCommand::Engage,
+        LoopCommand::Controller(2),
+        LoopCommand::Disengage,
+        LoopCommand::Engage,
+        LoopCommand::Stop,
     ] {
-        bench.order(order);
+        bench.command(command);
     }
     assert_eq!(bench.tick(|_| {}), Engaged);
     assert_eq!(bench.stage.log().ordered, [1]);
@@ -100,18 +100,18 @@ fn orders_take_effect_in_their_sequence() {
     assert_eq!(bench.tick(|_| {}), Stopped);
 }
 
-/// With these and its measurements a recording is flown again: each order once,
+/// With these and its measurements a recording is flown again: each command once,
 /// in the tick that read it, before what it led to.
 #[test]
 fn every_order_is_told_in_the_tick_that_read_it() {
     let mut bench = Bench::new();
-    for order in [
-        Order::Controller(7),
-        Order::Engage,
-        Order::Controller(8),
-        Order::Stop,
+    for command in [
+        LoopCommand::Controller(7),
+        LoopCommand::Engage,
+        LoopCommand::Controller(8),
+        LoopCommand::Stop,
     ] {
-        bench.order(order);
+        bench.command(command);
     }
     bench.tick(|_| {});
     bench.tick(|_| {});
@@ -126,11 +126,11 @@ fn every_order_is_told_in_the_tick_that_read_it() {
     assert_eq!(
         told,
         [
-            (1, EventKind::Ordered(Order::Controller(7))),
-            (1, EventKind::Ordered(Order::Engage)),
+            (1, EventKind::CommandReceived(LoopCommand::Controller(7))),
+            (1, EventKind::CommandReceived(LoopCommand::Engage)),
             (1, change(Standby, Engaged)),
-            (2, EventKind::Ordered(Order::Controller(8))),
-            (2, EventKind::Ordered(Order::Stop)),
+            (2, EventKind::CommandReceived(LoopCommand::Controller(8))),
+            (2, EventKind::CommandReceived(LoopCommand::Stop)),
             (2, change(Engaged, Stopped)),
             (2, bench::RELEASED),
         ]
@@ -141,7 +141,7 @@ fn every_order_is_told_in_the_tick_that_read_it() {
 fn a_flood_of_orders_is_read_in_portions() {
     let mut bench = Bench::new();
     for n in 0..40 {
-        bench.order(Order::Controller(n));
+        bench.command(LoopCommand::Controller(n));
     }
     let read: Vec<usize> = (0..4)
         .map(|_| {
@@ -156,19 +156,19 @@ fn a_flood_of_orders_is_read_in_portions() {
 #[test]
 fn an_order_that_finds_no_room_comes_back() {
     let mut bench = Bench::with(&LoopConfig {
-        orders_capacity: 2,
+        commands_capacity: 2,
         ..LoopConfig::default()
     });
-    assert_eq!(bench.link.orders.room(), 2);
-    bench.order(Order::Controller(1));
-    bench.order(Order::Controller(2));
-    assert_eq!(bench.link.orders.room(), 0);
+    assert_eq!(bench.link.commands.room(), 2);
+    bench.command(LoopCommand::Controller(1));
+    bench.command(LoopCommand::Controller(2));
+    assert_eq!(bench.link.commands.room(), 0);
     assert_eq!(
-        bench.link.orders.send(Order::Stop),
-        Err(OrdersFull(Order::Stop))
+        bench.link.commands.send(LoopCommand::Stop),
+        Err(CommandsFull(LoopCommand::Stop))
     );
     bench.tick(|_| {});
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|_| {}), Stopped);
 }
 
@@ -177,10 +177,10 @@ fn orders_to_a_loop_that_is_gone_come_back() {
     let bench = Bench::new();
     let mut link = bench.link;
     drop(bench.machine);
-    assert_eq!(link.orders.room(), 0);
+    assert_eq!(link.commands.room(), 0);
     assert_eq!(
-        link.orders.send(Order::Engage),
-        Err(OrdersFull(Order::Engage))
+        link.commands.send(LoopCommand::Engage),
+        Err(CommandsFull(LoopCommand::Engage))
     );
 }
 
@@ -246,9 +246,9 @@ fn events_get_through_a_ring_full_of_records() {
     for _ in 0..1_000 {
         bench.tick(|_| {});
     }
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     bench.tick(|_| {});
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     bench.tick(|_| {});
     let Bench {
         machine, mut link, ..
@@ -375,9 +375,9 @@ fn faults_are_told_when_they_change_and_counted_each_time() {
 #[test]
 fn events_read_as_words() {
     let words = |kind: EventKind| kind.words::<bench::Puppet>().to_string();
-    let blockers = Flags::bit(0) | Flags::bit(1);
+    let engage_inhibits = Flags::bit(0) | Flags::bit(1);
     assert_eq!(
-        words(EventKind::EngageRefused { blockers }),
+        words(EventKind::EngageRefused { engage_inhibits }),
         "not engaged: nobody home, too cold"
     );
     let cause = fcc_core::framework::Cause::Faults(Flags::bit(1));

@@ -8,7 +8,7 @@ use std::time::Duration;
 use bench::{Bench, EventKind, PERIOD, RELEASED, change, expiry};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby};
 use fcc_core::framework::{Cause, Flags, Stage, StageTimes, State};
-use fcc_runtime::{Budget, LoopConfig, Order};
+use fcc_runtime::{Budget, LoopCommand, LoopConfig};
 use fcc_timer::Expiry;
 
 const MS: u64 = 1_000_000;
@@ -190,13 +190,13 @@ fn a_loop_that_overruns_does_not_take_over() {
     for number in 1..=2 {
         assert_eq!(tick(&mut bench, number, 30), Standby);
     }
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(tick(&mut bench, 3, 1), Standby);
     let refused = EventKind::EngageRefused {
-        blockers: Flags::NONE,
+        engage_inhibits: Flags::NONE,
     };
     assert!(bench.events().contains(&refused));
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(tick(&mut bench, 4, 1), Engaged);
 }
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 use bench::{Bench, EventKind, PERIOD, RELEASED, change};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
 use fcc_core::framework::{Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, LoopConfig, Order};
+use fcc_runtime::{AfterFailsafe, LoopCommand, LoopConfig};
 
 const LOST: Flags = Flags::bit(1);
 const SENSORS_LOST: Cause = Cause::Faults(LOST);
@@ -20,8 +20,8 @@ fn config() -> LoopConfig {
     }
 }
 
-fn refused(blockers: Flags) -> EventKind {
-    EventKind::EngageRefused { blockers }
+fn refused(engage_inhibits: Flags) -> EventKind {
+    EventKind::EngageRefused { engage_inhibits }
 }
 
 #[test]
@@ -42,8 +42,8 @@ fn standby_watches_and_touches_nothing() {
 #[test]
 fn a_tick_goes_in_one_direction() {
     let mut bench = Bench::new();
-    bench.order(Order::Controller(7));
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Controller(7));
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|_| {}), Engaged);
     assert_eq!(
         bench.stage.log().calls,
@@ -65,7 +65,7 @@ fn a_tick_goes_in_one_direction() {
 fn an_order_to_disengage_releases() {
     let mut bench = Bench::engaged(&config());
     assert_eq!(bench.stage.log().held, [true, true]);
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     assert_eq!(bench.tick(|_| {}), Standby);
     assert_eq!(
         bench.stage.log().calls,
@@ -78,13 +78,13 @@ fn an_order_to_disengage_releases() {
 #[test]
 fn a_blocked_order_is_one_refused_attempt() {
     let mut bench = Bench::new();
-    bench.order(Order::Engage);
-    assert_eq!(bench.tick(|s| s.blockers = LOST), Standby);
-    assert_eq!(bench.machine.record().blockers, LOST);
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|s| s.engage_inhibits = LOST), Standby);
+    assert_eq!(bench.machine.record().engage_inhibits, LOST);
     // The obstacle gone, nothing happens until somebody asks again.
-    assert_eq!(bench.tick(|s| s.blockers = Flags::NONE), Standby);
+    assert_eq!(bench.tick(|s| s.engage_inhibits = Flags::NONE), Standby);
     assert_eq!(bench.events(), [refused(LOST)]);
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|_| {}), Engaged);
 }
 
@@ -108,9 +108,9 @@ fn a_blocked_switch_must_be_thrown_again() {
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.tick(|s| {
         s.switch = Some(Switch::On);
-        s.blockers = LOST;
+        s.engage_inhibits = LOST;
     });
-    assert_eq!(bench.tick(|s| s.blockers = Flags::NONE), Standby);
+    assert_eq!(bench.tick(|s| s.engage_inhibits = Flags::NONE), Standby);
     assert_eq!(bench.events(), [refused(LOST)]);
     bench.tick(|s| s.switch = Some(Switch::Off));
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Engaged);
@@ -145,7 +145,7 @@ fn a_stale_switch_does_not_disengage() {
 fn a_switch_that_is_off_does_not_undo_an_order() {
     let mut bench = Bench::with(&config());
     bench.tick(|s| s.switch = Some(Switch::Off));
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     for _ in 0..10 {
         assert_eq!(bench.tick(|_| {}), Engaged);
     }
@@ -169,7 +169,7 @@ fn letting_go_wins_over_taking_over() {
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.tick(|s| s.switch = Some(Switch::On));
     bench.events();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
     assert_eq!(
         bench.events(),
@@ -235,19 +235,19 @@ fn failsafe_can_be_left_by_every_hand() {
         bench
     };
     let mut bench = failing();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|_| {}), Engaged);
 
     let mut bench = failing();
-    bench.order(Order::Engage);
+    bench.command(LoopCommand::Engage);
     assert_eq!(
-        bench.tick(|s| s.blockers = LOST),
+        bench.tick(|s| s.engage_inhibits = LOST),
         Failsafe(SENSORS_LOST),
         "blocked"
     );
 
     let mut bench = failing();
-    bench.order(Order::Disengage);
+    bench.command(LoopCommand::Disengage);
     assert_eq!(bench.tick(|_| {}), Standby);
     assert_eq!(bench.stage.log().held, [false, false]);
 
@@ -256,7 +256,7 @@ fn failsafe_can_be_left_by_every_hand() {
     assert_eq!(bench.stage.log().held, [false, false]);
 
     let mut bench = failing();
-    bench.order(Order::Stop);
+    bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(bench.stage.log().held, [false, false]);
 }

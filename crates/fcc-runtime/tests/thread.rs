@@ -9,7 +9,9 @@ use std::time::Duration;
 
 use bench::{Puppet, Stage, parts};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
-use fcc_runtime::{Ending, Link, Loop, LoopConfig, LoopHandle, Message, Order, Parts, SpawnError};
+use fcc_runtime::{
+    Ending, Link, Loop, LoopCommand, LoopConfig, LoopHandle, Message, Parts, SpawnError,
+};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, TimerKind};
 
 /// 500 Hz.
@@ -43,10 +45,10 @@ fn orders_in_and_records_out() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
     wait_for(&mut link, State::Standby);
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     wait_for(&mut link, State::Engaged);
     assert!(!handle.is_finished());
-    link.orders.send(Order::Stop).unwrap();
+    link.commands.send(LoopCommand::Stop).unwrap();
     wait_for(&mut link, State::Stopped);
     let report = handle.join();
     assert!(matches!(report.ending, Ending::StopOrder));
@@ -62,7 +64,7 @@ fn orders_in_and_records_out() {
 fn the_stop_flag_ends_it_from_another_thread() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     wait_for(&mut link, State::Engaged);
     let stop = link.stop.clone();
     thread::spawn(move || stop.stop()).join().unwrap();
@@ -74,7 +76,7 @@ fn the_stop_flag_ends_it_from_another_thread() {
 fn a_dropped_handle_leaves_nobody_in_control() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     wait_for(&mut link, State::Engaged);
     drop(handle);
     assert_eq!(stage.log().held, [false, false]);
@@ -87,7 +89,7 @@ fn a_dropped_handle_leaves_nobody_in_control() {
 fn a_panic_in_its_thread_is_in_the_report() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     wait_for(&mut link, State::Engaged);
     stage.set(|s| s.panic_in = Some("control"));
     let Ending::Panicked(words) = handle.join().ending else {
@@ -125,7 +127,7 @@ fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
 fn here_it_runs_until_the_timer_ends() {
     let stage = Stage::default();
     let (this, mut link) = Loop::new(parts(&stage), &LoopConfig::default()).unwrap();
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     let ender = stage.clone();
     let end = thread::spawn(move || {
         while ender.log().applied.is_empty() {

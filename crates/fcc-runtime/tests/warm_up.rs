@@ -7,7 +7,7 @@ use std::time::Duration;
 use fcc_core::framework::{
     Actuator, ActuatorFault, Controller, Flags, Sensor, SensorFault, State, Tick,
 };
-use fcc_runtime::{LoopConfig, Machine, Order, Parts};
+use fcc_runtime::{LoopCommand, LoopConfig, Machine, Parts};
 use fcc_timer::ManualTimer;
 
 /// What was called, in which tick, and with what measured.
@@ -66,7 +66,7 @@ impl Controller for Noting {
     type Measurements = u64;
     type Setpoints = ();
     type Outputs = u64;
-    type Order = ();
+    type Command = ();
 
     fn estimate(&mut self, tick: &Tick, measured: &u64) {
         self.note("tick", tick, *measured);
@@ -77,7 +77,7 @@ impl Controller for Noting {
         self.note("warm up", tick, *measured);
     }
 
-    fn blockers(&self, _: &Tick, _: &u64) -> Flags {
+    fn engage_inhibits(&self, _: &Tick, _: &u64) -> Flags {
         Flags::NONE
     }
 
@@ -117,7 +117,7 @@ fn calls_of(timer: ManualTimer) -> Vec<(&'static str, u64, u64)> {
     };
     let (mut machine, mut link) = Machine::new(parts, &LoopConfig::default()).unwrap();
     machine.start().unwrap();
-    link.orders.send(Order::Engage).unwrap();
+    link.commands.send(LoopCommand::Engage).unwrap();
     for _ in 0..3 {
         machine.step();
     }

@@ -14,7 +14,7 @@ use crate::truth::{NUMBERS, Truth};
 
 /// What sensor, actuator and onlookers share.
 #[derive(Debug, Default)]
-pub(crate) struct Link {
+pub(crate) struct SharedState {
     /// Bits of throttle, elevator, aileron and rudder.
     commands: [AtomicU64; 4],
     /// Whether the actuator holds the controls.
@@ -26,7 +26,7 @@ pub(crate) struct Link {
     truth: [AtomicU64; NUMBERS],
 }
 
-impl Link {
+impl SharedState {
     /// Holds the controls at these commands. Someone who reads from another
     /// thread in this very moment may see old and new commands mixed.
     pub(crate) fn command(&self, surfaces: &Surfaces) {
@@ -115,10 +115,10 @@ impl Link {
 /// A hand on the engage switch of a running simulation. Clones move the same
 /// switch, from any thread.
 #[derive(Clone, Debug)]
-pub struct SwitchHandle(Arc<Link>);
+pub struct SwitchHandle(Arc<SharedState>);
 
 impl SwitchHandle {
-    pub(crate) fn new(link: Arc<Link>) -> Self {
+    pub(crate) fn new(link: Arc<SharedState>) -> Self {
         Self(link)
     }
 
@@ -132,10 +132,10 @@ impl SwitchHandle {
 /// A view of the truth of a running simulation, from any thread: for scoring a
 /// flight, never for flying it.
 #[derive(Clone, Debug)]
-pub struct TruthHandle(Arc<Link>);
+pub struct TruthHandle(Arc<SharedState>);
 
 impl TruthHandle {
-    pub(crate) fn new(link: Arc<Link>) -> Self {
+    pub(crate) fn new(link: Arc<SharedState>) -> Self {
         Self(link)
     }
 

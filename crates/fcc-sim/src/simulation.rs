@@ -7,7 +7,7 @@ use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault,
 
 use crate::aircraft::Aircraft;
 use crate::config::{SimConfig, SimError, SwitchScript};
-use crate::link::{Link, SwitchHandle, TruthHandle};
+use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{History, Sensors};
 use crate::trim::Trim;
 
@@ -35,7 +35,7 @@ impl Simulation {
         let aircraft = Aircraft::new(config)?;
         let start = aircraft.truth();
         let trim = *aircraft.trim();
-        let link = Arc::new(Link::default());
+        let link = Arc::new(SharedState::default());
         link.show(&start);
         Ok(Self {
             switch: SwitchHandle::new(Arc::clone(&link)),
@@ -69,7 +69,7 @@ pub struct SimSensor {
     sensors: Sensors,
     history: Option<History>,
     script: SwitchScript,
-    link: Arc<Link>,
+    link: Arc<SharedState>,
 }
 
 impl SimSensor {
@@ -144,7 +144,7 @@ impl Sensor<Measurements> for SimSensor {
 /// one levels the wings.
 #[derive(Debug)]
 pub struct SimActuator {
-    link: Arc<Link>,
+    link: Arc<SharedState>,
 }
 
 impl Actuator<Surfaces> for SimActuator {

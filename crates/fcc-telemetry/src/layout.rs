@@ -134,7 +134,7 @@ pub const FIELDS: &[Field] = fields![
     "state": U8 = state,
     "state_cause": U8 = state + 1,
     "state_flags": U32 = state + 4,
-    "blockers": U32 = blockers,
+    "engage_inhibits": U32 = engage_inhibits,
     "faults": U32 = faults,
     "sent": U8 = sent,
 ];

@@ -60,7 +60,7 @@ mod tests {
                 offset_of!(FlightRecord, outputs),
                 offset_of!(FlightRecord, sensor_faults),
                 offset_of!(FlightRecord, state),
-                offset_of!(FlightRecord, blockers),
+                offset_of!(FlightRecord, engage_inhibits),
                 offset_of!(FlightRecord, faults),
                 offset_of!(FlightRecord, sent),
             ],

@@ -235,7 +235,7 @@ mod tests {
             ticks: 2_400,
             worst_lateness_us: 12.34,
             state: "stopped".to_owned(),
-            ending: "ordered to stop".to_owned(),
+            ending: "stopped by command".to_owned(),
             not_recorded: 0,
             file: Wholeness::Whole,
         };

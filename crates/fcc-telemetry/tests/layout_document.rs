@@ -110,7 +110,7 @@ fn record() {
         page_faults: "u64", "page faults of the loop's thread since its start";
         early_wake_ns: "u64", "how long before the deadline the timer asked to be woken; 0 where it does not wake early";
         state: "u8, u8, u32", "phase: 0 standby, 1 engaged, 2 failsafe, 3 stopped; at +1 why failsafe: 1 faults, 2 invalid output, 3 overruns; at +4 those faults";
-        blockers: "u32", "why it may not engage, a set of bits";
+        engage_inhibits: "u32", "why it may not engage, a set of bits";
         faults: "u32", "what makes going on unsafe, a set of bits";
         sent: "u8", "1 if the outputs were handed to the actuators";
     ));

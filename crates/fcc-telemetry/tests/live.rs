@@ -57,7 +57,7 @@ fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
 
 #[test]
 fn each_record_arrives_once_and_in_order() {
-    let instance = instance("order");
+    let instance = instance("command");
     let mut publisher = started(&instance);
     let mut watcher = Watcher::open(&instance).unwrap();
     assert_eq!(watcher.info().software.as_str(), "1.2.3");

@@ -12,7 +12,7 @@ use fcc_core::framework::{Actuator, ActuatorFault, Tick, Time};
 use crate::config::XPlaneConfig;
 use crate::confirmation::Confirmation;
 use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
-use crate::link::{Control, Link, count};
+use crate::link::{Control, SharedState, count};
 use crate::port::{Errno, Port, UdpPort};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
@@ -32,7 +32,7 @@ const ASSERT_EVERY: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub struct XPlaneActuator<P: Port = UdpPort> {
     port: Arc<P>,
-    link: Arc<Link>,
+    link: Arc<SharedState>,
     controls: Controls,
     held: Option<Held>,
 }
@@ -51,7 +51,7 @@ impl<P: Port> XPlaneActuator<P> {
     pub(crate) fn new(
         config: &XPlaneConfig,
         port: Arc<P>,
-        link: Arc<Link>,
+        link: Arc<SharedState>,
     ) -> Result<Self, PathError> {
         Ok(Self {
             port,
@@ -141,7 +141,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             }
         }
         link.set_unconfirmed(false);
-        link.set_control(Control::LettingGo);
+        link.set_control(Control::ReleaseMonitor);
         if released {
             self.held = None;
             Ok(())

@@ -143,7 +143,7 @@ pub enum Output {
 /// What is wrong with a configuration.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-pub enum ConfigError {
+pub enum XPlaneConfigError {
     /// A number is out of its range.
     #[error("{key} is {value}: choose {range}")]
     Range {
@@ -179,7 +179,7 @@ impl XPlaneConfig {
     ///
     /// # Errors
     /// The first field that is not, with what would be right.
-    pub fn validate(&self) -> Result<(), ConfigError> {
+    pub fn validate(&self) -> Result<(), XPlaneConfigError> {
         range("rate_hz", self.rate_hz, 1, 1_000, "1 to 1000")?;
         range("engines", self.engines, 1, 8, "1 to 8")?;
         let most = self.datagrams_per_tick;
@@ -206,7 +206,7 @@ impl XPlaneConfig {
             range("beacon port", 0, 1, u16::MAX, "1 to 65535")?;
         }
         check_path(&self.engage_switch, rref::PATH_BYTES).map_err(|source| {
-            ConfigError::EngageSwitch {
+            XPlaneConfigError::EngageSwitch {
                 path: self.engage_switch.clone(),
                 source,
             }
@@ -215,14 +215,14 @@ impl XPlaneConfig {
             let ip = address.ip();
             let one_machine = !(ip.is_unspecified() || ip.is_broadcast() || ip.is_multicast());
             if address.port() == 0 || !one_machine {
-                return Err(ConfigError::Simulator(address));
+                return Err(XPlaneConfigError::Simulator(address));
             }
         }
         if let Input::Data(rows) = self.input {
             let column = rows.magnetic_heading_column;
             range("magnetic_heading_column", column, 2, 7, "2 to 7")?;
             if self.local_port == 0 {
-                return Err(ConfigError::LocalPort);
+                return Err(XPlaneConfigError::LocalPort);
             }
         }
         Ok(())
@@ -245,10 +245,10 @@ fn range<T: Copy + PartialOrd + core::fmt::Display>(
     least: T,
     most: T,
     range: &'static str,
-) -> Result<(), ConfigError> {
+) -> Result<(), XPlaneConfigError> {
     if value < least || value > most {
         let value = value.to_string();
-        return Err(ConfigError::Range { key, value, range });
+        return Err(XPlaneConfigError::Range { key, value, range });
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-use crate::link::Link;
+use crate::link::SharedState;
 use crate::quantity::Quantity;
 
 /// Writing may go unconfirmed for so long.
@@ -100,7 +100,7 @@ impl Confirmation {
 
     /// Looks at what came back; whether the writing has gone unconfirmed for
     /// too long.
-    pub(crate) fn is_overdue(&mut self, now: Time, link: &Link) -> bool {
+    pub(crate) fn is_overdue(&mut self, now: Time, link: &SharedState) -> bool {
         if let Some(newest) = self.agreement(now, link) {
             self.confirmed = newest;
         }
@@ -108,7 +108,7 @@ impl Confirmation {
     }
 
     /// When the latest came back, if something did and all of it agrees.
-    fn agreement(&self, now: Time, link: &Link) -> Option<Time> {
+    fn agreement(&self, now: Time, link: &SharedState) -> Option<Time> {
         let lately = |quantity| {
             link.shown(quantity)
                 .filter(|(_, at)| *at > self.began && now.since(*at) <= LATELY)
@@ -143,7 +143,7 @@ mod tests {
     /// Writes a moving elevator for so many ticks while the simulator shows
     /// what `shows` makes of what was written 4 ticks ago.
     fn overdue_after(ticks: u32, shows: impl Fn(f32) -> Option<[f32; 3]>) -> Vec<bool> {
-        let link = Link::new(None);
+        let link = SharedState::new(None);
         let mut now = Time::from_nanos(1_000_000_000);
         let mut confirmation = Confirmation::begin(now);
         let mut written = vec![0.0; 4];

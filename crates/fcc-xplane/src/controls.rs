@@ -6,7 +6,7 @@
 //!
 //! No override has a timeout: X-Plane would fly on with the last deflection for
 //! ever. So letting go is: centre the surfaces, then release the overrides, in
-//! this order. The throttle has no centre; it stays where it is until the
+//! this command. The throttle has no centre; it stays where it is until the
 //! released override gives it back to the lever in the cockpit.
 
 use core::iter;

@@ -19,7 +19,7 @@ use fcc_core::flight::{
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
-use crate::link::{Link, count};
+use crate::link::{SharedState, count};
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
@@ -68,8 +68,8 @@ impl Inbox {
     }
 
     /// When anything last came.
-    pub(crate) const fn heard(&self) -> Time {
-        self.clock.heard()
+    pub(crate) const fn last_received(&self) -> Time {
+        self.clock.last_received()
     }
 
     /// Takes in a datagram of the simulator.
@@ -77,7 +77,7 @@ impl Inbox {
         &mut self,
         datagram: &[u8],
         now: Time,
-        link: &Link,
+        link: &SharedState,
     ) -> Result<(), Malformed> {
         match Kind::of(datagram) {
             Some(Kind::Rref) => self.accept_values(datagram, now, link),
@@ -94,7 +94,12 @@ impl Inbox {
         }
     }
 
-    fn accept_values(&mut self, datagram: &[u8], now: Time, link: &Link) -> Result<(), Malformed> {
+    fn accept_values(
+        &mut self,
+        datagram: &[u8],
+        now: Time,
+        link: &SharedState,
+    ) -> Result<(), Malformed> {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
             let quantity = Quantity::from_index(index)?;
@@ -105,7 +110,7 @@ impl Inbox {
         let time_s = pairs
             .clone()
             .find(|(quantity, _)| *quantity == Quantity::FlightTime)
-            .and_then(|(quantity, value)| quantity.believe(value));
+            .and_then(|(quantity, value)| quantity.validate(value));
         if self.is_late(now, time_s, link) {
             return Ok(());
         }
@@ -116,7 +121,7 @@ impl Inbox {
         for (quantity, raw) in pairs {
             self.take(quantity, raw, now, &mut word, link);
         }
-        self.clock.hear(now, word);
+        self.clock.receive(now, word);
         Ok(())
     }
 
@@ -125,7 +130,7 @@ impl Inbox {
         layout: DataRows,
         datagram: &[u8],
         now: Time,
-        link: &Link,
+        link: &SharedState,
     ) -> Result<(), Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
@@ -144,7 +149,7 @@ impl Inbox {
                 self.position = Reading::new(position, now);
             }
         }
-        self.clock.hear(now, word);
+        self.clock.receive(now, word);
         Ok(())
     }
 
@@ -158,11 +163,11 @@ impl Inbox {
             };
             self.position = Reading::new(position, now);
         }
-        self.clock.hear(now, Word::default());
+        self.clock.receive(now, Word::default());
         Ok(())
     }
 
-    fn is_late(&self, now: Time, time_s: Option<f64>, link: &Link) -> bool {
+    fn is_late(&self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
         let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s));
         if late {
             count(&link.counters.late);
@@ -170,9 +175,16 @@ impl Inbox {
         late
     }
 
-    fn take(&mut self, quantity: Quantity, raw: f64, now: Time, word: &mut Word, link: &Link) {
-        let Some(value) = quantity.believe(raw) else {
-            count(&link.counters.unbelievable);
+    fn take(
+        &mut self,
+        quantity: Quantity,
+        raw: f64,
+        now: Time,
+        word: &mut Word,
+        link: &SharedState,
+    ) {
+        let Some(value) = quantity.validate(raw) else {
+            count(&link.counters.implausible);
             return;
         };
         self.values.set(quantity, value, now);
@@ -192,7 +204,7 @@ impl Inbox {
         &mut self,
         now: Time,
         into: &mut Measurements,
-        link: &Link,
+        link: &SharedState,
     ) -> SimulatorState {
         self.publish_attitude(into);
         self.publish_motion(into);
@@ -324,12 +336,17 @@ impl Inbox {
 
     /// The simulator's clock and condition: written in every tick in which it
     /// spoke, once its clock is known.
-    fn publish_plant(&mut self, now: Time, into: &mut Measurements, link: &Link) -> SimulatorState {
+    fn publish_plant(
+        &mut self,
+        now: Time,
+        into: &mut Measurements,
+        link: &SharedState,
+    ) -> SimulatorState {
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);
         }
-        if self.clock.heard() == now
+        if self.clock.last_received() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
             into.plant = Reading::new(Plant { time_s, state }, now);

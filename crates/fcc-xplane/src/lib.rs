@@ -29,7 +29,7 @@
 //! | `simulator` | the simulator's clock against ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
 //! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
-//! | `controls`, `confirmation`, `letting_go`, `release` | writing, whether it takes effect, giving back |
+//! | `controls`, `confirmation`, `release_monitor`, `release` | writing, whether it takes effect, giving back |
 //! | `port`, `discovery` | sockets and the beacon |
 //!
 //! # What may go wrong out there
@@ -51,7 +51,6 @@ mod confirmation;
 mod controls;
 mod discovery;
 mod inbox;
-mod letting_go;
 mod link;
 mod missing;
 mod open;
@@ -59,6 +58,7 @@ mod port;
 pub mod protocol;
 mod quantity;
 mod release;
+mod release_monitor;
 mod rows;
 mod scratch_port;
 mod sensor;
@@ -71,7 +71,7 @@ mod values;
 
 pub use actuator::XPlaneActuator;
 pub use config::{
-    ConfigError, DataRows, Input, Output, RowsVersion, Simulator, XPLANE_PORT, XPlaneConfig,
+    DataRows, Input, Output, RowsVersion, Simulator, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
 pub use link::Control;

@@ -22,17 +22,17 @@ pub enum Control {
     /// The actuator: overrides are set.
     Held = 1,
     /// Given back, but X-Plane has not yet shown the overrides as released.
-    LettingGo = 2,
+    ReleaseMonitor = 2,
 }
 
 /// A value seen in the simulator and when.
 #[derive(Debug)]
-struct Seen {
+struct Readback {
     bits: AtomicU32,
     at: AtomicI64,
 }
 
-impl Seen {
+impl Readback {
     const fn never() -> Self {
         Self {
             bits: AtomicU32::new(0),
@@ -58,7 +58,7 @@ pub(crate) struct Counters {
     pub(crate) malformed: AtomicU64,
     pub(crate) unknown: AtomicU64,
     pub(crate) late: AtomicU64,
-    pub(crate) unbelievable: AtomicU64,
+    pub(crate) implausible: AtomicU64,
     pub(crate) jumps: AtomicU64,
     pub(crate) requests: AtomicU64,
     pub(crate) writes: AtomicU64,
@@ -76,7 +76,7 @@ const ANYWHERE: u64 = u64::MAX;
 const NOWHERE: u64 = 0;
 
 #[derive(Debug)]
-pub(crate) struct Link {
+pub(crate) struct SharedState {
     /// IPv4 address and port in the low 48 bits; 0 while unknown.
     simulator: AtomicU64,
     /// The same of where control may be taken, or [`ANYWHERE`].
@@ -89,11 +89,11 @@ pub(crate) struct Link {
     missing: AtomicU64,
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
-    read_back: [Seen; READ_BACK.len()],
+    read_back: [Readback; READ_BACK.len()],
     pub(crate) counters: Counters,
 }
 
-impl Link {
+impl SharedState {
     pub(crate) fn new(simulator: Option<SocketAddrV4>) -> Self {
         Self {
             simulator: AtomicU64::new(simulator.map_or(0, pack)),
@@ -104,7 +104,7 @@ impl Link {
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
             ground: AtomicU8::new(0),
-            read_back: [const { Seen::never() }; READ_BACK.len()],
+            read_back: [const { Readback::never() }; READ_BACK.len()],
             counters: Counters::default(),
         }
     }
@@ -142,7 +142,7 @@ impl Link {
     pub(crate) fn control(&self) -> Control {
         match self.control.load(Ordering::Acquire) {
             1 => Control::Held,
-            2 => Control::LettingGo,
+            2 => Control::ReleaseMonitor,
             _ => Control::Free,
         }
     }
@@ -151,11 +151,11 @@ impl Link {
         self.control.store(control as u8, Ordering::Release);
     }
 
-    /// `LettingGo` becomes `Free`, unless control was taken again meanwhile.
-    pub(crate) fn set_free_if_letting_go(&self) {
+    /// `ReleaseMonitor` becomes `Free`, unless control was taken again meanwhile.
+    pub(crate) fn set_free_if_releasing(&self) {
         // Losing the exchange means there is nothing to do.
         let _ = self.control.compare_exchange(
-            Control::LettingGo as u8,
+            Control::ReleaseMonitor as u8,
             Control::Free as u8,
             Ordering::AcqRel,
             Ordering::Acquire,
@@ -201,7 +201,7 @@ impl Link {
             .store(1 + u8::from(on_ground), Ordering::Relaxed);
     }
 
-    fn seen(&self, quantity: Quantity) -> Option<&Seen> {
+    fn seen(&self, quantity: Quantity) -> Option<&Readback> {
         let place = READ_BACK.iter().position(|of| *of == quantity)?;
         self.read_back.get(place)
     }
@@ -240,13 +240,13 @@ mod tests {
     #[test]
     fn an_address_comes_back_as_it_was() {
         let address: SocketAddrV4 = "192.168.250.7:49000".parse().unwrap();
-        assert_eq!(Link::new(Some(address)).simulator(), Some(address));
-        assert_eq!(Link::new(None).simulator(), None);
+        assert_eq!(SharedState::new(Some(address)).simulator(), Some(address));
+        assert_eq!(SharedState::new(None).simulator(), None);
     }
 
     #[test]
     fn what_is_shown_is_kept_with_its_time() {
-        let link = Link::new(None);
+        let link = SharedState::new(None);
         assert_eq!(link.shown(Quantity::YokeRoll), None);
         link.show(Quantity::YokeRoll, -0.25, Time::from_nanos(7));
         assert_eq!(

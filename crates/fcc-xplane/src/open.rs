@@ -5,8 +5,8 @@ use std::net::SocketAddrV4;
 use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
-use crate::config::{ConfigError, Simulator, XPlaneConfig};
-use crate::link::Link;
+use crate::config::{Simulator, XPlaneConfig, XPlaneConfigError};
+use crate::link::SharedState;
 use crate::port::{Port, UdpPort};
 use crate::protocol::PathError;
 use crate::sensor::XPlaneSensor;
@@ -21,7 +21,7 @@ pub struct XPlane;
 pub enum OpenError {
     /// The configuration is refused.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Config(#[from] XPlaneConfigError),
     /// A dataref's path cannot be sent.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -80,7 +80,7 @@ impl XPlane {
     ) -> Result<(XPlaneSensor<P>, XPlaneActuator<P>), OpenError> {
         config.validate()?;
         let port = Arc::new(port);
-        let link = Arc::new(Link::new(match config.simulator {
+        let link = Arc::new(SharedState::new(match config.simulator {
             Simulator::At(address) => Some(address),
             Simulator::Beacon => None,
         }));

@@ -73,7 +73,7 @@ pub(crate) enum Quantity {
 
 /// Where X-Plane keeps a quantity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Place {
+pub(crate) enum Source {
     /// In a dataref under `sim/flightmodel/position/`.
     Position(&'static str),
     /// In this dataref.
@@ -84,9 +84,9 @@ pub(crate) enum Place {
     Row,
 }
 
-struct Entry(Quantity, Place, Unit, f64, f64);
+struct Entry(Quantity, Source, Unit, f64, f64);
 
-use Place::{Dataref, Position, Row};
+use Source::{Dataref, Position, Row};
 
 pub(crate) const OVERRIDE_JOYSTICK: &str = "sim/operation/override/override_joystick";
 pub(crate) const OVERRIDE_THROTTLES: &str = "sim/operation/override/override_throttles";
@@ -120,7 +120,7 @@ const TABLE: [Entry; Quantity::COUNT] = [
     Entry(Quantity::AngleOfAttack, Position("alpha"), Unit::Degrees, -180.0, 180.0),
     Entry(Quantity::OnGround, Dataref("sim/flightmodel/failures/onground_any"), Unit::Si, 0.0, 1.0),
     Entry(Quantity::Version, Dataref("sim/version/xplane_internal_version"), Unit::Si, 0.0, 1e6),
-    Entry(Quantity::EngageSwitch, Place::EngageSwitch, Unit::Si, -1e6, 1e6),
+    Entry(Quantity::EngageSwitch, Source::EngageSwitch, Unit::Si, -1e6, 1e6),
     Entry(Quantity::OverrideJoystick, Dataref(OVERRIDE_JOYSTICK), Unit::Si, 0.0, 1.0),
     Entry(Quantity::OverrideThrottles, Dataref(OVERRIDE_THROTTLES), Unit::Si, 0.0, 1.0),
     Entry(Quantity::YokePitch, Dataref(YOKE_PITCH), Unit::Si, -1e3, 1e3),
@@ -164,7 +164,7 @@ impl Quantity {
         ) || self == Self::Altitude
     }
 
-    fn place(self) -> Place {
+    fn place(self) -> Source {
         self.entry().map_or(Row, |entry| entry.1)
     }
 
@@ -174,13 +174,13 @@ impl Quantity {
         match self.place() {
             Position(name) => Some(format!("{P}{name}")),
             Dataref(path) => Some(path.to_owned()),
-            Place::EngageSwitch => Some(engage_switch.to_owned()),
+            Source::EngageSwitch => Some(engage_switch.to_owned()),
             Row => None,
         }
     }
 
     /// The value in SI units and radians, if it can be believed.
-    pub(crate) fn believe(self, raw: f64) -> Option<f64> {
+    pub(crate) fn validate(self, raw: f64) -> Option<f64> {
         let Entry(_, _, unit, least, greatest) = self.entry()?;
         (*least..=*greatest).contains(&raw).then(|| unit.to_si(raw))
     }
@@ -216,8 +216,8 @@ mod tests {
 
     #[test]
     fn what_no_aircraft_does_is_not_believed() {
-        assert_eq!(Quantity::Pitch.believe(91.0), None);
-        assert_eq!(Quantity::Roll.believe(1e30), None);
-        assert_eq!(Quantity::Airspeed.believe(f64::NAN), None);
+        assert_eq!(Quantity::Pitch.validate(91.0), None);
+        assert_eq!(Quantity::Roll.validate(1e30), None);
+        assert_eq!(Quantity::Airspeed.validate(f64::NAN), None);
     }
 }

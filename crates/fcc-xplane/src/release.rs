@@ -74,7 +74,8 @@ impl XPlane {
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
-        let outcome = insist(&socket, &mut controls, &requests, patience, is_called_off);
+        let outcome =
+            retry_until_released(&socket, &mut controls, &requests, patience, is_called_off);
         for request in &mut requests {
             rref::set_frequency(request, 0);
             let _ = socket.send(request);
@@ -91,7 +92,7 @@ fn connect(simulator: SocketAddrV4) -> std::io::Result<UdpSocket> {
     Ok(socket)
 }
 
-fn insist(
+fn retry_until_released(
     socket: &UdpSocket,
     controls: &mut Controls,
     requests: &[[u8; rref::REQUEST_BYTES]; 2],

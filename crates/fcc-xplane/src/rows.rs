@@ -109,6 +109,6 @@ pub(crate) fn position(row: &Row) -> Option<Position> {
 pub(crate) fn flight_time(row: &Row) -> Option<f64> {
     let time = row.columns.get(FLIGHT_TIME).copied().flatten()?;
     (row.index == TIMES)
-        .then(|| Quantity::FlightTime.believe(f64::from(time)))
+        .then(|| Quantity::FlightTime.validate(f64::from(time)))
         .flatten()
 }

@@ -12,10 +12,10 @@ use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::inbox::Inbox;
-use crate::letting_go::LettingGo;
-use crate::link::{Control, Link, count};
+use crate::link::{Control, SharedState, count};
 use crate::port::{Errno, Port, UdpPort};
 use crate::protocol::{Kind, PathError, beacon};
+use crate::release_monitor::ReleaseMonitor;
 use crate::simulator::SimulatorState;
 use crate::status::XPlaneStatus;
 use crate::subscriptions::Subscriptions;
@@ -39,12 +39,12 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     port: Arc<P>,
     /// Where beacons come in, if the simulator is found by them.
     beacons: Option<P>,
-    link: Arc<Link>,
+    link: Arc<SharedState>,
     inbox: Inbox,
     subscriptions: Subscriptions,
     engage_switch: Arc<str>,
     rows: Option<DataRows>,
-    letting_go: LettingGo,
+    release_monitor: ReleaseMonitor,
     datagrams_per_tick: usize,
     silent_after: Duration,
     /// The first tick: silence counts from here until something comes.
@@ -61,7 +61,7 @@ impl<P: Port> XPlaneSensor<P> {
         config: &XPlaneConfig,
         port: Arc<P>,
         beacons: Option<P>,
-        link: Arc<Link>,
+        link: Arc<SharedState>,
     ) -> Result<Self, PathError> {
         let rows = match config.input {
             Input::Rref => None,
@@ -75,7 +75,7 @@ impl<P: Port> XPlaneSensor<P> {
             subscriptions: Subscriptions::new(config)?,
             engage_switch: config.engage_switch.as_str().into(),
             rows,
-            letting_go: LettingGo::new(Controls::new(config)?),
+            release_monitor: ReleaseMonitor::new(Controls::new(config)?),
             datagrams_per_tick: usize::from(config.datagrams_per_tick),
             silent_after: config.silent_after,
             began: Time::NEVER,
@@ -109,7 +109,7 @@ impl<P: Port> XPlaneSensor<P> {
                 continue;
             };
             let known = self.link.simulator();
-            let silent = now.since(self.inbox.heard()) > self.silent_after;
+            let silent = now.since(self.inbox.last_received()) > self.silent_after;
             let address = SocketAddrV4::new(*from.ip(), beacon.port);
             let stay = known.is_some_and(|known| {
                 known != address && (!silent || self.link.control() == Control::Held)
@@ -164,9 +164,9 @@ impl<P: Port> XPlaneSensor<P> {
         })
     }
 
-    fn see_to_letting_go(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+    fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
-        self.letting_go.see_to_it(now, link, |write| {
+        self.release_monitor.see_to_it(now, link, |write| {
             count(&link.counters.writes);
             send(port.as_ref(), link, write, simulator)
         })
@@ -176,7 +176,7 @@ impl<P: Port> XPlaneSensor<P> {
 /// Sends, and counts what the operating system refuses.
 pub(crate) fn send<P: Port>(
     port: &P,
-    link: &Link,
+    link: &SharedState,
     datagram: &[u8],
     to: SocketAddrV4,
 ) -> Result<(), Errno> {
@@ -205,7 +205,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         if let Some(simulator) = simulator {
             sent = self.ask(now, simulator);
             if self.link.is_allowed(simulator) {
-                sent = sent.and(self.see_to_letting_go(now, simulator));
+                sent = sent.and(self.poll_release_monitor(now, simulator));
             }
         }
 
@@ -220,7 +220,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
     /// Decodes the last values once more, into copies of what a tick changes.
     fn warm_up(&self, tick: &Tick) {
         self.port.warm_up_receive();
-        let link = Link::new(self.link.simulator());
+        let link = SharedState::new(self.link.simulator());
         let mut inbox = self.inbox.clone();
         let mut measurements = Measurements::default();
         let datagram = self.last_values.get(..self.last_values_bytes);

@@ -155,7 +155,7 @@ impl SimulatorClock {
     }
 
     /// Takes in what a datagram that was accepted says.
-    pub(crate) fn hear(&mut self, now: Time, word: Word) {
+    pub(crate) fn receive(&mut self, now: Time, word: Word) {
         let was_silent = self.is_silent(now);
         self.heard = now;
         if let Some(paused) = word.paused {
@@ -230,7 +230,7 @@ impl SimulatorClock {
     }
 
     /// When something last came.
-    pub(crate) const fn heard(&self) -> Time {
+    pub(crate) const fn last_received(&self) -> Time {
         self.heard
     }
 

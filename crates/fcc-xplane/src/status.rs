@@ -6,14 +6,14 @@ use std::net::SocketAddrV4;
 use std::sync::Arc;
 
 use crate::config::DataRows;
-use crate::link::{Control, Link};
+use crate::link::{Control, SharedState};
 use crate::missing::Missing;
 use crate::simulator::SimulatorState;
 
 /// Watches the connection to X-Plane from any thread, without a lock.
 #[derive(Clone, Debug)]
 pub struct XPlaneStatus {
-    link: Arc<Link>,
+    link: Arc<SharedState>,
     engage_switch: Arc<str>,
     /// The rows that are read, if rows are the input.
     rows: Option<DataRows>,
@@ -33,7 +33,7 @@ pub struct Counts {
     /// Datagrams overtaken by newer ones, dropped.
     pub late: u64,
     /// Single values outside what any aircraft does, left out.
-    pub unbelievable: u64,
+    pub implausible: u64,
     /// Jumps of the simulator's clock.
     pub jumps: u64,
     /// Requests for datarefs and for the position.
@@ -46,7 +46,7 @@ pub struct Counts {
 
 impl XPlaneStatus {
     pub(crate) const fn new(
-        link: Arc<Link>,
+        link: Arc<SharedState>,
         engage_switch: Arc<str>,
         rows: Option<DataRows>,
     ) -> Self {
@@ -117,7 +117,7 @@ impl XPlaneStatus {
             malformed: read(&counters.malformed),
             unknown: read(&counters.unknown),
             late: read(&counters.late),
-            unbelievable: read(&counters.unbelievable),
+            implausible: read(&counters.implausible),
             jumps: read(&counters.jumps),
             requests: read(&counters.requests),
             writes: read(&counters.writes),

@@ -118,8 +118,9 @@ impl Subscriptions {
 
     /// What does not arrive though other values do, looked for once a second.
     pub(crate) fn missing(&mut self, now: Time, inbox: &Inbox) -> Option<ValueSet> {
-        self.absences
-            .look(now, inbox.heard(), |expected| arrived(inbox, expected))
+        self.absences.look(now, inbox.last_received(), |expected| {
+            arrived(inbox, expected)
+        })
     }
 
     /// Reads what [`send_due`](Self::send_due) reads.
@@ -147,7 +148,7 @@ impl Subscriptions {
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
         let resubscribe = self.resubscribe;
-        let silent = now.since(inbox.heard()) >= LOST_AFTER;
+        let silent = now.since(inbox.last_received()) >= LOST_AFTER;
         let mut outcome = Ok(());
         let mut budget = REQUESTS_PER_TICK;
         for subscription in &mut self.list {

@@ -90,7 +90,7 @@ fn release_centres_and_lets_go() {
     bench.simulator.listen();
     bench.actuator.as_mut().unwrap().release().unwrap();
     bench.assert_released();
-    assert_eq!(bench.status.control(), Control::LettingGo);
+    assert_eq!(bench.status.control(), Control::ReleaseMonitor);
     for _ in 0..20 {
         bench.watch().unwrap();
     }

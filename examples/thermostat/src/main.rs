@@ -14,7 +14,7 @@ use std::error::Error;
 use std::thread;
 use std::time::Duration;
 
-use fcc_runtime::{Loop, LoopConfig, LoopReport, Message, Order, Parts};
+use fcc_runtime::{Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
@@ -67,7 +67,7 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
     for denied in &handle.granted().denied {
         println!("goes on without: {denied}");
     }
-    link.orders.send(Order::Engage)?;
+    link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
         thread::sleep(Duration::from_secs(1));
         let mut last = None;
@@ -86,7 +86,7 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
             );
         }
     }
-    link.orders.send(Order::Stop)?;
+    link.commands.send(LoopCommand::Stop)?;
     Ok(handle.join())
 }
 
@@ -125,7 +125,7 @@ mod tests {
         let (mut machine, mut link) =
             Machine::new(parts(timer, &heater), &LoopConfig::default()).unwrap();
         machine.start().unwrap();
-        link.orders.send(Order::Engage).unwrap();
+        link.commands.send(LoopCommand::Engage).unwrap();
         let mut warmest_c = 0.0_f64;
         for _ in 0..40 * SECONDS {
             assert_eq!(machine.step(), State::Engaged);

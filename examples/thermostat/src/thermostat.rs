@@ -44,17 +44,17 @@ impl Controller for Thermostat {
     type Setpoints = f64;
     type Outputs = f64;
     /// Another temperature, °C.
-    type Order = f64;
+    type Command = f64;
 
     fn estimate(&mut self, _: &Tick, _: &Measured) {}
 
-    fn blockers(&self, tick: &Tick, measured: &Measured) -> Flags {
+    fn engage_inhibits(&self, tick: &Tick, measured: &Measured) -> Flags {
         let known = measured.room_c.is_fresh(tick.woke, MAX_AGE);
         Flags::NONE.with(NO_TEMPERATURE, !known)
     }
 
     fn faults(&self, tick: &Tick, measured: &Measured) -> Flags {
-        self.blockers(tick, measured)
+        self.engage_inhibits(tick, measured)
     }
 
     fn flag_name(_: u32) -> &'static str {

@@ -38,12 +38,12 @@ impl Complementary {
 
     /// Leans towards a measurement; `dt_s` is the time since the one before.
     pub fn correct(&mut self, measurement: f64, dt_s: f64) {
-        self.lean(measurement - self.value, dt_s);
+        self.correct_by(measurement - self.value, dt_s);
     }
 
     /// Leans by an error that the caller worked out: on a circle, the short
     /// way round.
-    pub fn lean(&mut self, error: f64, dt_s: f64) {
+    pub fn correct_by(&mut self, error: f64, dt_s: f64) {
         self.value += smoothing_factor(dt_s, self.tau_s) * error;
     }
 

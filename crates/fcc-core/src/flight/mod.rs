@@ -17,7 +17,7 @@ pub mod orientation;
 mod setpoints;
 mod surfaces;
 
-pub use autopilot::{Autopilot, AutopilotConfig, Order, Resume, Scale, flags};
+pub use autopilot::{Autopilot, AutopilotCommand, AutopilotConfig, Resume, Scale, flags};
 pub use measurements::{
     Attitude, BodyRates, Measurements, Plant, PlantState, Position, SpecificForce, Velocity,
 };

@@ -18,7 +18,7 @@ pub enum Switch {
 /// What the loop runs: from measurements to outputs.
 ///
 /// In each tick the loop calls, in this order and each at most once:
-/// [`command`](Self::command) for every order, [`estimate`](Self::estimate)
+/// [`command`](Self::command) for every command, [`estimate`](Self::estimate)
 /// (in every state), [`engage`](Self::engage) if it is to begin, then
 /// [`guide`](Self::guide) and [`control`](Self::control) while engaged or
 /// [`failsafe`](Self::failsafe) while in failsafe. All of them are pure
@@ -32,29 +32,29 @@ pub trait Controller: Send {
     /// What the actuators carry out.
     type Outputs: Copy + Default + Send + 'static;
     /// What may be asked of the controller from outside.
-    type Order: Copy + Send + 'static;
+    type Command: Copy + Send + 'static;
 
     /// Follows the plant, in every state of the loop: filters and estimates,
     /// so that they are settled when the loop engages.
     fn estimate(&mut self, tick: &Tick, measurements: &Self::Measurements);
 
     /// Why the loop may not engage now; empty if it may.
-    fn blockers(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
     /// What makes going on unsafe, while engaged; empty if nothing does.
     fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
-    /// The name of one bit of [`blockers`](Self::blockers) and
+    /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits) and
     /// [`faults`](Self::faults), in words for people.
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;
 
-    /// An order to this controller, in words for people.
+    /// A command to this controller, in words for people.
     ///
     /// # Errors
     /// What the formatter says.
-    fn write_order(_order: &Self::Order, f: &mut fmt::Formatter<'_>) -> fmt::Result
+    fn write_command(_command: &Self::Command, f: &mut fmt::Formatter<'_>) -> fmt::Result
     where
         Self: Sized,
     {
@@ -83,8 +83,8 @@ pub trait Controller: Send {
     /// Lets go.
     fn disengage(&mut self) {}
 
-    /// Takes an order from outside; one that makes no sense now is left.
-    fn command(&mut self, _order: &Self::Order) {}
+    /// Takes a command from outside; one that makes no sense now is left.
+    fn command(&mut self, _command: &Self::Command) {}
 
     /// The present set points.
     fn setpoints(&self) -> Self::Setpoints;

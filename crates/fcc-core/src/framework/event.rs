@@ -2,7 +2,9 @@
 
 use core::fmt;
 
-use super::{ActuatorFault, Cause, Controller, Flags, Order, SensorFault, Stage, State, Time};
+use super::{
+    ActuatorFault, Cause, Controller, Flags, LoopCommand, SensorFault, Stage, State, Time,
+};
 
 /// Something that happened once, unlike a [`Record`](super::Record), of which
 /// there is one per tick; `O` is what may be ordered of the controller.
@@ -17,7 +19,7 @@ pub struct Event<O> {
 }
 
 /// The event of a controller's loop.
-pub type EventOf<C> = Event<<C as Controller>::Order>;
+pub type EventOf<C> = Event<<C as Controller>::Command>;
 
 /// What can happen in a loop. Sensors and actuators go by their place in the
 /// loop, the first being 0.
@@ -31,17 +33,17 @@ pub enum EventKind<O> {
         /// The state now.
         to: State,
     },
-    /// An order was read, in the sequence they were sent in: with these and the
+    /// A command was read, in the sequence they were sent in: with these and the
     /// measurements of its records a flight can be flown again.
-    Ordered(Order<O>),
+    CommandReceived(LoopCommand<O>),
     /// The loop was told to end by its stop flag, as a signal does; this too
     /// comes from outside, and is needed to fly a flight again.
-    ToldToStop,
+    StopRequested,
     /// Somebody wanted to engage, and must ask again.
     EngageRefused {
         /// Why; empty if control was let go in the same tick, or if as many
         /// ticks in a row overrun as lead to failsafe.
-        blockers: Flags,
+        engage_inhibits: Flags,
     },
     /// A sensor went wrong, or goes wrong in another way than before.
     SensorFault {
@@ -134,16 +136,16 @@ pub enum EventKind<O> {
 }
 
 impl<O: Copy> EventKind<O> {
-    /// The event in words for people, its conditions and orders named by the
+    /// The event in words for people, its conditions and commands named by the
     /// controller.
-    pub const fn words<C: Controller<Order = O>>(&self) -> EventWords<C> {
+    pub const fn words<C: Controller<Command = O>>(&self) -> EventWords<C> {
         EventWords { kind: *self }
     }
 }
 
 /// An event in words for people; see [`EventKind::words`].
 pub struct EventWords<C: Controller> {
-    kind: EventKind<C::Order>,
+    kind: EventKind<C::Command>,
 }
 
 impl<C: Controller> fmt::Display for EventWords<C> {
@@ -163,20 +165,20 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                     _ => Ok(()),
                 }
             }
-            EventKind::Ordered(Order::Engage) => f.write_str("ordered: engage"),
-            EventKind::Ordered(Order::Disengage) => f.write_str("ordered: disengage"),
-            EventKind::Ordered(Order::Stop) => f.write_str("ordered: stop"),
-            EventKind::Ordered(Order::Controller(order)) => {
-                f.write_str("ordered: ")?;
-                C::write_order(&order, f)
+            EventKind::CommandReceived(LoopCommand::Engage) => f.write_str("command: engage"),
+            EventKind::CommandReceived(LoopCommand::Disengage) => f.write_str("command: disengage"),
+            EventKind::CommandReceived(LoopCommand::Stop) => f.write_str("command: stop"),
+            EventKind::CommandReceived(LoopCommand::Controller(command)) => {
+                f.write_str("command: ")?;
+                C::write_command(&command, f)
             }
-            EventKind::ToldToStop => f.write_str("told to stop"),
-            EventKind::EngageRefused { blockers } if blockers.is_empty() => {
+            EventKind::StopRequested => f.write_str("told to stop"),
+            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => {
                 f.write_str("not engaged: control was let go at the same time, or ticks overrun")
             }
-            EventKind::EngageRefused { blockers } => {
+            EventKind::EngageRefused { engage_inhibits } => {
                 f.write_str("not engaged: ")?;
-                name_flags::<C>(f, blockers)
+                name_flags::<C>(f, engage_inhibits)
             }
             EventKind::SensorFault { index, fault } => write!(f, "sensor {index}: {fault}"),
             EventKind::SensorRecovered { index } => write!(f, "sensor {index} works again"),

@@ -17,5 +17,5 @@ pub type MessageOf<C> = Message<
     <C as Controller>::Measurements,
     <C as Controller>::Setpoints,
     <C as Controller>::Outputs,
-    <C as Controller>::Order,
+    <C as Controller>::Command,
 >;

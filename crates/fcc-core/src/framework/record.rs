@@ -37,7 +37,7 @@ pub struct Record<M, S, O> {
     /// The loop's state at the tick's end.
     pub state: StateCode,
     /// Why the loop may not engage; empty while engaged.
-    pub blockers: Flags,
+    pub engage_inhibits: Flags,
     /// What makes going on unsafe; empty in standby.
     pub faults: Flags,
     /// Whether outputs were handed to the actuators.
@@ -77,6 +77,6 @@ pub struct StageTimes {
     /// Driving the actuators.
     pub actuators_ns: u64,
     /// All of the tick, from the wake-up to the last actuator write: the
-    /// stages above, and orders, decisions and releases between them.
+    /// stages above, and commands, decisions and releases between them.
     pub total_ns: u64,
 }

@@ -89,7 +89,7 @@ impl Cockpit {
 
     pub(crate) fn engaged(guidance: GuidanceConfig) -> Self {
         let mut cockpit = Self::new(guidance);
-        assert_eq!(cockpit.blockers(), Flags::NONE);
+        assert_eq!(cockpit.engage_inhibits(), Flags::NONE);
         cockpit
             .autopilot
             .engage(&cockpit.tick, &cockpit.measurements);
@@ -197,8 +197,9 @@ impl Cockpit {
         (0..count).fold(Surfaces::default(), |_, _| self.step())
     }
 
-    pub(crate) fn blockers(&self) -> Flags {
-        self.autopilot.blockers(&self.tick, &self.measurements)
+    pub(crate) fn engage_inhibits(&self) -> Flags {
+        self.autopilot
+            .engage_inhibits(&self.tick, &self.measurements)
     }
 
     pub(crate) fn faults(&self) -> Flags {

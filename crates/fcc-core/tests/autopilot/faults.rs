@@ -1,7 +1,7 @@
 //! What it may not fly by, and what it does then.
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, AutopilotConfig, Order, PlantState, Surfaces, flags};
+use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, Surfaces, flags};
 use fcc_core::framework::{Controller, Flags, Switch};
 
 use crate::cockpit::{Cockpit, DT_S, Feel, LEVEL, SENSORS, STANDING};
@@ -97,7 +97,7 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
         .engage(&cockpit.tick, &cockpit.measurements);
     cockpit
         .autopilot
-        .command(&Order::Heading(100.0_f64.to_radians()));
+        .command(&AutopilotCommand::Heading(100.0_f64.to_radians()));
     cockpit.feel.altitude_m += 14.0;
     cockpit.feel.roll_deg = 5.0;
     let before = cockpit.steps(20);
@@ -120,7 +120,7 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
         }
     }
     assert_eq!(*cockpit.autopilot.estimated(), estimated);
-    assert_eq!(cockpit.blockers(), flags::PLANT_PAUSED);
+    assert_eq!(cockpit.engage_inhibits(), flags::PLANT_PAUSED);
     assert_eq!(cockpit.faults(), Flags::NONE);
 }
 
@@ -191,14 +191,14 @@ fn what_blocks_engaging_is_said() {
     for _ in 0..400 {
         slow.observe();
     }
-    assert_eq!(slow.blockers(), flags::TOO_SLOW);
+    assert_eq!(slow.engage_inhibits(), flags::TOO_SLOW);
 
     let mut upset = Cockpit::new(GuidanceConfig::Hold);
     upset.feel.roll_deg = 75.0;
     for _ in 0..400 {
         upset.observe();
     }
-    assert_eq!(upset.blockers(), flags::UPSET);
+    assert_eq!(upset.engage_inhibits(), flags::UPSET);
     assert_eq!(
         Autopilot::flag_name(9),
         "bank or pitch is beyond 60 degrees"
@@ -211,10 +211,10 @@ fn it_engages_only_after_it_has_watched_for_a_second() {
     cockpit.autopilot = Autopilot::new(*cockpit.autopilot.config());
     for _ in 0..40 {
         cockpit.observe();
-        assert_eq!(cockpit.blockers(), flags::SETTLING);
+        assert_eq!(cockpit.engage_inhibits(), flags::SETTLING);
     }
     cockpit.observe();
-    assert_eq!(cockpit.blockers(), Flags::NONE);
+    assert_eq!(cockpit.engage_inhibits(), Flags::NONE);
 }
 
 /// Engaged with the nose 12° up; the failsafe does not keep that pitch.

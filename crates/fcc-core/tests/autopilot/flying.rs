@@ -1,7 +1,7 @@
 //! What the autopilot flies once it is engaged.
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{AutopilotConfig, Order};
+use fcc_core::flight::{AutopilotCommand, AutopilotConfig};
 use fcc_core::framework::Controller;
 
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
@@ -29,17 +29,19 @@ fn surfaces_act_in_the_directions_of_the_house() {
     let mut right = Cockpit::engaged(GuidanceConfig::Hold);
     right
         .autopilot
-        .command(&Order::Heading(120.0_f64.to_radians()));
+        .command(&AutopilotCommand::Heading(120.0_f64.to_radians()));
     assert!(right.steps(8).aileron > STANDING.aileron + 0.01);
 
     let mut up = Cockpit::engaged(GuidanceConfig::Hold);
-    up.autopilot.command(&Order::Altitude(914.4 + 50.0));
+    up.autopilot
+        .command(&AutopilotCommand::Altitude(914.4 + 50.0));
     let out = up.steps(8);
     assert!(out.elevator > STANDING.elevator + 0.001);
     assert!(out.throttle > STANDING.throttle + 0.01);
 
     let mut fast = Cockpit::engaged(GuidanceConfig::Hold);
-    fast.autopilot.command(&Order::Airspeed(110.0 * KNOT_MPS));
+    fast.autopilot
+        .command(&AutopilotCommand::Airspeed(110.0 * KNOT_MPS));
     assert!(fast.steps(8).throttle > STANDING.throttle + 0.01);
 }
 
@@ -48,7 +50,7 @@ fn the_bank_asked_for_ends_at_the_limit() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit
         .autopilot
-        .command(&Order::Heading((30.0_f64 - 120.0).to_radians()));
+        .command(&AutopilotCommand::Heading((30.0_f64 - 120.0).to_radians()));
     cockpit.steps(40);
     let bank = cockpit.autopilot.setpoints().roll_rad.to_degrees();
     assert!((bank + 30.0).abs() < 1e-9, "{bank}");
@@ -70,7 +72,9 @@ fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
 #[test]
 fn too_slow_trades_altitude_for_speed() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
-    cockpit.autopilot.command(&Order::Altitude(1_200.0));
+    cockpit
+        .autopilot
+        .command(&AutopilotCommand::Altitude(1_200.0));
     cockpit.feel.airspeed_kt = 55.0; // the floor is 33 m/s, 64 kt
     let out = cockpit.steps(400);
     assert!(out.throttle > 0.999, "{}", out.throttle);
@@ -126,7 +130,7 @@ fn a_heading_is_turned_to_from_where_the_nose_points() {
     for heading_deg in [90.0_f64, 260.0] {
         cockpit
             .autopilot
-            .command(&Order::Heading(heading_deg.to_radians()));
+            .command(&AutopilotCommand::Heading(heading_deg.to_radians()));
         cockpit.step();
     }
     assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
@@ -146,7 +150,9 @@ fn the_captured_altitude_is_learnt_and_an_ordered_one_is_kept() {
     let learnt = cockpit.autopilot.setpoints().altitude_m - captured;
     assert!((0.01..0.3).contains(&learnt), "{learnt}");
 
-    cockpit.autopilot.command(&Order::Altitude(950.0));
+    cockpit
+        .autopilot
+        .command(&AutopilotCommand::Altitude(950.0));
     cockpit.feel.altitude_m += 0.3;
     for _ in 0..200 {
         cockpit.step();

@@ -1,7 +1,7 @@
 //! A flight that was cut off, taken up again.
 
 use fcc_core::flight::guidance::{GuidanceConfig, Targets};
-use fcc_core::flight::{AutopilotConfig, Order, Resume, Surfaces};
+use fcc_core::flight::{AutopilotCommand, AutopilotConfig, Resume, Surfaces};
 use fcc_core::framework::Controller;
 
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
@@ -21,7 +21,7 @@ fn a_pattern_is_gone_on_with_where_it_was() {
         pattern_s: Some(65.0),
         surfaces: STANDING,
     };
-    cockpit.autopilot.command(&Order::Resume(resume));
+    cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
     let aims_at = |cockpit: &mut Cockpit, heading_deg: f64, altitude_ft: f64| {
         cockpit.step();
         let aims = cockpit.autopilot.setpoints();
@@ -56,7 +56,7 @@ fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
         pattern_s: None,
         surfaces: flew,
     };
-    cockpit.autopilot.command(&Order::Resume(resume));
+    cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
     let first = cockpit.step();
     for (ours, was) in [
         (first.throttle, flew.throttle),
@@ -92,7 +92,7 @@ fn a_flight_that_cannot_have_been_is_not_taken_up() {
     };
     for resume in [no_altitude, too_much_throttle, a_pattern] {
         let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
-        cockpit.autopilot.command(&Order::Resume(resume));
+        cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
         cockpit.step();
         let aims = cockpit.autopilot.setpoints();
         assert!((aims.altitude_m - 914.4).abs() < 1e-6, "{resume:?}");

@@ -8,7 +8,7 @@ use crate::exit::Exit;
 use crate::output;
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
-    FlyError, Length, Outcome, Pace, Plan, RecordingWish, assemble, fly as fly_assembly,
+    FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
 };
 
 /// The legs that a flight has if nobody says how long it is to be.
@@ -55,7 +55,7 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
             };
         }
     };
-    let recording = RecordingWish::of(config, as_given);
+    let recording = RecordingRequest::of(config, as_given);
     match fly_assembly(assembly, &config.tick, plan, recording) {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {

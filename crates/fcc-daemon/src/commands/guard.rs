@@ -8,7 +8,7 @@ use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 use super::fail;
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::flight::stand_guard;
+use fcc_flight::flight::run_release_helper;
 
 /// Waits until the daemon that started this is gone.
 pub(super) fn guard() -> Exit {
@@ -21,7 +21,7 @@ pub(super) fn guard() -> Exit {
             return fail(&format!("guard: signals cannot be caught: {error}"));
         }
     }
-    match stand_guard(io::stdin().lock()) {
+    match run_release_helper(io::stdin().lock()) {
         Ok(None | Some((_, Released::Gone))) => Exit::Success,
         Ok(Some((simulator, Released::CalledOff))) => {
             output::message(format!(

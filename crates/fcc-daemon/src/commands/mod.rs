@@ -2,12 +2,12 @@
 //! people on standard error, and ends with a code that means something.
 
 mod check;
+#[cfg(feature = "live")]
+mod command;
 mod doctor;
 mod fly;
 mod guard;
 mod list;
-#[cfg(feature = "live")]
-mod order;
 mod progress;
 mod recover;
 mod replay;
@@ -24,7 +24,7 @@ use std::path::Path;
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 
-use crate::cli::{Cli, Command};
+use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
 
@@ -46,24 +46,24 @@ pub fn run() -> Exit {
     }
 }
 
-fn carry_out(command: Command) -> Exit {
+fn carry_out(command: Action) -> Exit {
     match command {
-        Command::Fly(args) => fly::fly(&args),
-        Command::Run(args) => run::run(&args),
-        Command::List(args) => list::list(&args),
-        Command::Recover(args) => recover::recover(&args),
-        Command::Timing(args) => timing::timing(&args),
-        Command::Replay(args) => replay::replay(&args),
+        Action::Fly(args) => fly::fly(&args),
+        Action::Run(args) => run::run(&args),
+        Action::List(args) => list::list(&args),
+        Action::Recover(args) => recover::recover(&args),
+        Action::Timing(args) => timing::timing(&args),
+        Action::Replay(args) => replay::replay(&args),
         #[cfg(feature = "live")]
-        Command::Order(args) => order::order(&args),
+        Action::Command(args) => command::command(&args),
         #[cfg(feature = "live")]
-        Command::Top(args) => top::top(&args),
-        Command::Check(args) => check::check(&args),
-        Command::Doctor(args) => doctor::doctor(&args),
-        Command::Report(args) => report::report(&args),
-        Command::Guard => guard::guard(),
-        Command::Completions { shell } => completions(shell),
-        Command::Man { folder } => man(&folder),
+        Action::Top(args) => top::top(&args),
+        Action::Check(args) => check::check(&args),
+        Action::Doctor(args) => doctor::doctor(&args),
+        Action::Report(args) => report::report(&args),
+        Action::Guard => guard::guard(),
+        Action::Completions { shell } => completions(shell),
+        Action::Man { folder } => man(&folder),
     }
 }
 

@@ -13,17 +13,17 @@
 //! | `rights` | what the program may ask of the kernel |
 //! | `cpus` | clock speed, sleep, isolation |
 //! | `interrupts` | which devices interrupt which CPU |
-//! | `surroundings` | power and heat, memory, virtual machine, container |
+//! | `host_environment` | power and heat, memory, virtual machine, container |
 //! | `show` | the findings for people |
 
 mod board;
 mod cpus;
+mod host_environment;
 mod interrupts;
 mod kernel;
 mod machine;
 mod rights;
 mod show;
-mod surroundings;
 
 use std::path::Path;
 
@@ -127,13 +127,13 @@ impl Diagnosis {
             cpus::idle_states,
             cpus::hyper_threads,
             kernel::timer_slack,
-            surroundings::power,
-            surroundings::heat,
-            surroundings::swap,
-            surroundings::compaction,
-            surroundings::virtual_machine,
-            surroundings::container,
-            surroundings::cpu_quota,
+            host_environment::power,
+            host_environment::heat,
+            host_environment::swap,
+            host_environment::compaction,
+            host_environment::virtual_machine,
+            host_environment::container,
+            host_environment::cpu_quota,
         ];
         Self {
             machine: board.name.clone(),

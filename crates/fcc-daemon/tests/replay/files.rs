@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Output};
 use std::time::Duration;
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::Order;
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::LoopCommand;
 use fcc_flight::config::Config;
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
@@ -45,13 +45,13 @@ fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<
     status.files
 }
 
-/// 25 s, with orders, and told to stop at the end.
+/// 25 s, with commands, and told to stop at the end.
 fn flight() -> Vec<FlightMessage> {
     let happenings = Happenings {
-        orders: vec![
-            (400, Order::Controller(Command::Heading(1.0))),
-            (600, Order::Disengage),
-            (640, Order::Engage),
+        commands: vec![
+            (400, LoopCommand::Controller(AutopilotCommand::Heading(1.0))),
+            (600, LoopCommand::Disengage),
+            (640, LoopCommand::Engage),
         ],
         stop_before: Some(1_000),
         steps: 1_100,

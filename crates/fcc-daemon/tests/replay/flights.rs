@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use fcc_core::flight::{Measurements, Order as Command};
-use fcc_core::framework::{Message, Order, Sensor, SensorFault, State, Tick};
+use fcc_core::flight::{AutopilotCommand, Measurements};
+use fcc_core::framework::{LoopCommand, Message, Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
 use fcc_flight::flight::assemble;
 use fcc_flight::replay::{Identity, Replay, Run, run};
@@ -15,8 +15,8 @@ use fcc_timer::ManualTimer;
 /// What happens in a flight, beside gusts.
 #[derive(Default)]
 pub(crate) struct Happenings {
-    /// Orders given before a step.
-    pub(crate) orders: Vec<(u64, Order<Command>)>,
+    /// Commands given before a step.
+    pub(crate) commands: Vec<(u64, LoopCommand<AutopilotCommand>)>,
     /// Ticks in which the sensors are silent.
     pub(crate) silent: Vec<RangeInclusive<u64>>,
     /// Deadlines for which the loop wakes late.
@@ -65,8 +65,8 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
     machine.start().unwrap();
     let mut messages = Vec::new();
     for step in 1..=happenings.steps {
-        for (_, order) in happenings.orders.iter().filter(|(at, _)| *at == step) {
-            link.orders.send(*order).unwrap();
+        for (_, command) in happenings.commands.iter().filter(|(at, _)| *at == step) {
+            link.commands.send(*command).unwrap();
         }
         if happenings.stop_before == Some(step) {
             link.stop.stop();

@@ -3,8 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::Order;
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::LoopCommand;
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
 use fcc_flight::config::{Config, Then};
 
@@ -26,32 +26,32 @@ fn ten_minutes_in_gusts_noise_and_delay() {
 
 #[test]
 fn every_way_of_being_ordered_about() {
-    let commands = [
-        Command::Heading(FRAC_PI_2),
-        Command::Altitude(1_000.0),
-        Command::Airspeed(55.0),
-        Command::Heading(f64::NAN),
+    let targets = [
+        AutopilotCommand::Heading(FRAC_PI_2),
+        AutopilotCommand::Altitude(1_000.0),
+        AutopilotCommand::Airspeed(55.0),
+        AutopilotCommand::Heading(f64::NAN),
     ];
-    let mut orders = vec![
+    let mut commands = vec![
         // Several in a tick, one to the loop among them.
-        (400, Order::Controller(commands[0])),
-        (400, Order::Controller(commands[1])),
-        (800, Order::Disengage),
-        (800, Order::Controller(commands[2])),
-        (900, Order::Engage),
-        (900, Order::Controller(commands[0])),
-        (1_000, Order::Controller(commands[3])),
+        (400, LoopCommand::Controller(targets[0])),
+        (400, LoopCommand::Controller(targets[1])),
+        (800, LoopCommand::Disengage),
+        (800, LoopCommand::Controller(targets[2])),
+        (900, LoopCommand::Engage),
+        (900, LoopCommand::Controller(targets[0])),
+        (1_000, LoopCommand::Controller(targets[3])),
         // Refused: control is let go in the same tick.
-        (1_100, Order::Disengage),
-        (1_100, Order::Engage),
-        (1_600, Order::Stop),
+        (1_100, LoopCommand::Disengage),
+        (1_100, LoopCommand::Engage),
+        (1_600, LoopCommand::Stop),
     ];
     // More than a tick reads.
-    orders.extend((0..40).map(|_| (1_200, Order::Controller(commands[2]))));
+    commands.extend((0..40).map(|_| (1_200, LoopCommand::Controller(targets[2]))));
     let messages = fly(
         &rough(),
         &Happenings {
-            orders,
+            commands,
             steps: 2_000,
             ..Happenings::default()
         },
@@ -74,7 +74,7 @@ fn failsafe_and_back() {
         &Happenings {
             // One too short to matter, one that ends in time, one that does not.
             silent: vec![300..=305, 400..=440, 600..=800],
-            orders: vec![(450, Order::Engage), (900, Order::Engage)],
+            commands: vec![(450, LoopCommand::Engage), (900, LoopCommand::Engage)],
             steps: 1_200,
             ..Happenings::default()
         },
@@ -135,7 +135,7 @@ fn late_and_missed_ticks() {
             (500, ms(180)),
             (700, ms(400)),
         ],
-        orders: vec![(760, Order::Engage)],
+        commands: vec![(760, LoopCommand::Engage)],
         steps: 1_500,
         ..Happenings::default()
     };

@@ -1,7 +1,7 @@
 //! What is missing or makes no sense ends a replay, and is said.
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::{EventKind, Message, Order, Reading, Time};
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::{EventKind, LoopCommand, Message, Reading, Time};
 use fcc_flight::config::Then;
 use fcc_telemetry::FlightMessage;
 
@@ -31,14 +31,14 @@ fn a_gap_ends_what_can_be_flown_again() {
 #[test]
 fn missing_events_end_it_too() {
     let happenings = Happenings {
-        orders: vec![(300, Order::Disengage)],
+        commands: vec![(300, LoopCommand::Disengage)],
         steps: 400,
         ..Happenings::default()
     };
     let messages = fly(&rough(), &happenings);
     let told = |message: &FlightMessage| match message {
         Message::Event(event) => match event.kind {
-            EventKind::Ordered(_) => {
+            EventKind::CommandReceived(_) => {
                 let kind = EventKind::EventsDropped {
                     count: 1,
                     first: event.tick,
@@ -53,13 +53,13 @@ fn missing_events_end_it_too() {
     let messages: Vec<_> = messages.iter().map(told).collect();
     let (run, identity) = again(&rough(), &messages);
     assert_eq!((run.ticks, identity.differing), (299, 0));
-    assert!(run.unflown.unwrap().why.contains("may be orders"));
+    assert!(run.unflown.unwrap().why.contains("may be commands"));
 }
 
 #[test]
 fn a_recording_that_begins_in_flight_is_refused_and_chained_ones_are_not() {
     let happenings = Happenings {
-        orders: vec![(700, Order::Controller(Command::Heading(1.0)))],
+        commands: vec![(700, LoopCommand::Controller(AutopilotCommand::Heading(1.0)))],
         steps: 1_000,
         ..Happenings::default()
     };

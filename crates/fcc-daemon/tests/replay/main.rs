@@ -16,7 +16,7 @@ use fcc_telemetry::FlightMessage;
 use flights::{again, records};
 
 /// The outputs of a tick: 4 surfaces, 6 set points, the step's length, state,
-/// blockers, faults, and whether they were sent.
+/// engage_inhibits, faults, and whether they were sent.
 const OUTPUTS: u64 = 15;
 
 /// Asserts that a recording flown again is the same in every bit, and gives

@@ -3,7 +3,7 @@
 //! One table of ranges for all numeric keys; a test shows that no key is
 //! missing from it.
 
-use fcc_xplane::{ConfigError, XPlaneConfig};
+use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
 use super::places::Places;
 use super::{Config, Problem};
@@ -243,9 +243,9 @@ fn x_plane(config: &Config, problems: &mut Vec<Problem>, places: &Places<'_>) {
         return;
     };
     let key = match error {
-        ConfigError::EngageSwitch { .. } => "x-plane.engage_switch",
-        ConfigError::Simulator(_) => "x-plane.simulator",
-        ConfigError::LocalPort => "x-plane.local_port",
+        XPlaneConfigError::EngageSwitch { .. } => "x-plane.engage_switch",
+        XPlaneConfigError::Simulator(_) => "x-plane.simulator",
+        XPlaneConfigError::LocalPort => "x-plane.local_port",
         _ if problems.iter().any(|problem| problem.is_in("x-plane")) => return,
         _ => "x-plane",
     };

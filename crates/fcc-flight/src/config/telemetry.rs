@@ -12,8 +12,8 @@ pub struct TelemetrySection {
     /// What watchers call this daemon.
     #[serde(with = "instance_name")]
     pub instance: Instance,
-    /// Whether programs of the same user may give orders.
-    pub orders: bool,
+    /// Whether programs of the same user may give commands.
+    pub commands: bool,
 }
 
 impl Default for TelemetrySection {
@@ -21,7 +21,7 @@ impl Default for TelemetrySection {
         Self {
             enabled: true,
             instance: Instance::default(),
-            orders: true,
+            commands: true,
         }
     }
 }

@@ -8,8 +8,8 @@ use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
 
-use super::restart::RestartWish;
-use super::tap::{TruthReceiver, tap};
+use super::restart::RestartRequest;
+use super::truth_recorder::{TruthReceiver, tap};
 use crate::config::{Aircraft, Config, TelemetrySection, WatchdogSection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
@@ -28,7 +28,7 @@ pub struct Assembly {
     pub(super) telemetry: TelemetrySection,
     /// How it is to be taken up if it is cut off; not with an aircraft that
     /// ends when the program does.
-    pub(super) restart: Option<RestartWish>,
+    pub(super) restart: Option<RestartRequest>,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
@@ -88,7 +88,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
                 loop_config,
                 watchdog: config.watchdog.clone(),
                 telemetry: config.telemetry.clone(),
-                restart: Some(RestartWish::of(config)),
+                restart: Some(RestartRequest::of(config)),
                 truth: None,
                 x_plane: Some((status, section.clone())),
             })

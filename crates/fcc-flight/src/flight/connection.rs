@@ -70,7 +70,7 @@ impl Connection {
     /// What has changed, in words; none if there is nothing to say.
     pub(super) fn poll(&mut self) -> Option<String> {
         if self.status.control() == Control::Held && self.relieved.elapsed() >= RELIEVE_EVERY {
-            self.relieve_guard();
+            self.take_over_from_release_helper();
         }
         if let Some(guard) = &mut self.guard {
             guard.tell(self.status.held_at());
@@ -96,7 +96,7 @@ impl Connection {
 
     /// Sends away the guard of a daemon that was killed, if one still releases
     /// the controls that are, or are to be, held here.
-    pub(super) fn relieve_guard(&mut self) {
+    pub(super) fn take_over_from_release_helper(&mut self) {
         self.relieved = Instant::now();
         if let Some(simulator) = self.status.simulator() {
             relieve(simulator);

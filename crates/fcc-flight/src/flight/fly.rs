@@ -13,12 +13,12 @@ use super::assemble::Assembly;
 use super::connection::Connection;
 use super::follow::Follower;
 use super::hang::HangWatch;
+use super::instance_lock::InstanceLock;
 use super::live::Live;
 use super::plan::{Length, Pace, Plan};
-use super::recording::{LoopFacts, Recording, RecordingWish};
+use super::recording::{LoopFacts, Recording, RecordingRequest};
+use super::run_statistics::RunStatistics;
 use super::signals::{self, Kept};
-use super::sole::Sole;
-use super::tally::Tally;
 use super::watch::{Names, Watch};
 use super::{Outcome, Pilot};
 use crate::config::LoopSection;
@@ -57,10 +57,10 @@ pub fn fly(
     assembly: Assembly,
     tick: &LoopSection,
     plan: Plan,
-    recording: Option<RecordingWish>,
+    recording: Option<RecordingRequest>,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
-    let mut sole = claim(&assembly)?;
+    let mut instance_lock = claim(&assembly)?;
     let timer: Box<dyn Timer> = match plan.pace {
         Pace::RealTime => tick.build_timer()?,
         Pace::Lockstep => Box::new(ManualTimer::new(period)?),
@@ -105,7 +105,7 @@ pub fn fly(
             let watchdog =
                 HangWatch::start(&assembly.watchdog, period, request.priority, &link, held_at)
                     .map_err(FlyError::Watchdog)?;
-            let mut tally = Tally::new(period)?;
+            let mut run_statistics = RunStatistics::new(period)?;
             let handle = flight_loop.spawn()?;
             // At once, not only in the report of a flight that may take days.
             for denied in &handle.granted().denied {
@@ -125,8 +125,8 @@ pub fn fly(
                 link: &mut link,
                 watch: &mut watch,
                 recording: recording.as_mut(),
-                tally: Some(&mut tally),
-                sole: sole.as_mut(),
+                run_statistics: Some(&mut run_statistics),
+                instance_lock: instance_lock.as_mut(),
                 plan,
             }
             .follow(connection.as_mut(), watched_by, news);
@@ -139,7 +139,7 @@ pub fn fly(
                     // Not dismissed, the guard gives the controls back once
                     // more: a loop that wakes up now may yet take them.
                     connection = None;
-                    tally.report(hung, timer_name, granted)
+                    run_statistics.report(hung, timer_name, granted)
                 }
             };
             (report, recording, interrupted)
@@ -159,7 +159,7 @@ pub fn fly(
     let recording =
         recording.map(|recording| recording.end(&report.ending.to_string(), &mut watch));
     // A beacon may have led to where another daemon flies.
-    refuse_if_taken(sole.as_ref().filter(|_| report.released))?;
+    refuse_if_taken(instance_lock.as_ref().filter(|_| report.released))?;
     let refused = watch.was_refused() && !matches!(plan.length, Length::Open);
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
@@ -170,14 +170,14 @@ pub fn fly(
 }
 
 /// Claims the simulator for this process, if it is one and known already.
-fn claim(assembly: &Assembly) -> Result<Option<Sole>, FlyError> {
+fn claim(assembly: &Assembly) -> Result<Option<InstanceLock>, FlyError> {
     let x_plane = assembly.x_plane.as_ref();
-    let sole = x_plane.map(|(status, _)| Sole::of(status.clone()));
-    refuse_if_taken(sole.as_ref()).map(|()| sole)
+    let instance_lock = x_plane.map(|(status, _)| InstanceLock::of(status.clone()));
+    refuse_if_taken(instance_lock.as_ref()).map(|()| instance_lock)
 }
 
-fn refuse_if_taken(sole: Option<&Sole>) -> Result<(), FlyError> {
-    match sole.and_then(Sole::taken) {
+fn refuse_if_taken(instance_lock: Option<&InstanceLock>) -> Result<(), FlyError> {
+    match instance_lock.and_then(InstanceLock::taken) {
         Some(simulator) => Err(FlyError::Taken(simulator)),
         None => Ok(()),
     }
@@ -215,8 +215,8 @@ fn run_in_lockstep(
         link,
         watch,
         recording,
-        tally: None,
-        sole: None,
+        run_statistics: None,
+        instance_lock: None,
         plan,
     };
     while machine.step() != State::Stopped {

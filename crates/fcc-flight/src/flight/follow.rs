@@ -11,10 +11,10 @@ use fcc_telemetry::FlightMessage;
 use super::Pilot;
 use super::connection::Connection;
 use super::hang::{HangWatch, Hung};
+use super::instance_lock::InstanceLock;
 use super::plan::Plan;
 use super::recording::Recording;
-use super::sole::Sole;
-use super::tally::Tally;
+use super::run_statistics::RunStatistics;
 use super::watch::Watch;
 
 /// How often what the loop tells is fetched: often enough to look alive, and
@@ -27,9 +27,9 @@ pub(super) struct Follower<'a> {
     pub(super) watch: &'a mut Watch,
     pub(super) recording: Option<&'a mut Recording>,
     /// Only of a loop in real time: one in lockstep gives its own account.
-    pub(super) tally: Option<&'a mut Tally>,
+    pub(super) run_statistics: Option<&'a mut RunStatistics>,
     /// The right to fly what is flown, where somebody else may have it.
-    pub(super) sole: Option<&'a mut Sole>,
+    pub(super) instance_lock: Option<&'a mut InstanceLock>,
     pub(super) plan: Plan,
 }
 
@@ -58,18 +58,18 @@ impl Follower<'_> {
         let mut hung = None;
         while hung.is_none() && !self.link.messages.is_over() {
             self.drain();
-            if let Some(sole) = &mut self.sole {
-                sole.follow();
-                if sole.taken().is_some() {
+            if let Some(instance_lock) = &mut self.instance_lock {
+                instance_lock.follow();
+                if instance_lock.taken().is_some() {
                     self.link.stop.stop();
                 }
             }
             self.watch.service.tell();
-            self.watch.live.pass_orders(&mut self.link.orders);
+            self.watch.live.pass_commands(&mut self.link.commands);
             let said = [
                 news.take(),
                 self.watch
-                    .poll_restart(&mut self.link.orders, connection.as_deref_mut()),
+                    .poll_restart(&mut self.link.commands, connection.as_deref_mut()),
                 connection.as_deref_mut().and_then(Connection::poll),
                 self.watch.live.poll(),
             ];
@@ -91,7 +91,10 @@ impl Follower<'_> {
 
     /// Records that the loop hung, after the last it told.
     fn tell_of_hang(&mut self, hung: Hung) {
-        let last = self.tally.as_ref().map(|tally| tally.last().tick);
+        let last = self
+            .run_statistics
+            .as_ref()
+            .map(|run_statistics| run_statistics.last().tick);
         let last = last.unwrap_or_default();
         self.take(&Message::Event(Event {
             tick: last.number,
@@ -113,8 +116,8 @@ impl Follower<'_> {
 
     fn take(&mut self, message: &FlightMessage) {
         self.watch.take(message);
-        if let Some(tally) = &mut self.tally {
-            tally.take(message);
+        if let Some(run_statistics) = &mut self.run_statistics {
+            run_statistics.take(message);
         }
         if let Some(recording) = &mut self.recording {
             recording.take(message);

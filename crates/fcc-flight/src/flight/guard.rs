@@ -82,9 +82,11 @@ impl Guard {
 ///
 /// # Errors
 /// When what is read makes no sense, or there is no socket to be had.
-pub fn stand_guard(from: impl BufRead) -> Result<Option<(SocketAddrV4, Released)>, GuardError> {
+pub fn run_release_helper(
+    from: impl BufRead,
+) -> Result<Option<(SocketAddrV4, Released)>, ReleaseHelperError> {
     let mut lines = from.lines();
-    let first = lines.next().ok_or(GuardError::Nothing)??;
+    let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let section: XPlaneSection = serde_json::from_str(&first)?;
     let mut held: Option<SocketAddrV4> = None;
     // A pipe that breaks is a pipe that ends.
@@ -107,7 +109,7 @@ pub fn stand_guard(from: impl BufRead) -> Result<Option<(SocketAddrV4, Released)
 /// Why a guard could not do its work.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
-pub enum GuardError {
+pub enum ReleaseHelperError {
     /// Nothing came through the pipe.
     #[error("fccd guard is started by fccd itself, which tells it what to guard")]
     Nothing,
@@ -178,7 +180,7 @@ mod tests {
         for deaf_for in [0, 3] {
             let simulator = simulator();
             let script = script(&simulator, "");
-            let guard = std::thread::spawn(move || stand_guard(script.as_bytes()).unwrap());
+            let guard = std::thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
             assert!(answer(&simulator, deaf_for).abs() < 0.5);
             let (_, released) = guard.join().unwrap().unwrap();
             assert_eq!(released, Released::Confirmed);
@@ -188,7 +190,7 @@ mod tests {
     #[test]
     fn what_is_free_is_left_alone() {
         let simulator = simulator();
-        let told = stand_guard(script(&simulator, "free\n").as_bytes()).unwrap();
+        let told = run_release_helper(script(&simulator, "free\n").as_bytes()).unwrap();
         assert_eq!(told, None);
         assert!(simulator.recv(&mut [0; 600]).is_err(), "something was sent");
     }
@@ -198,14 +200,17 @@ mod tests {
         let simulator = simulator();
         let script = script(&simulator, "");
         drop(simulator);
-        let (_, released) = stand_guard(script.as_bytes()).unwrap().unwrap();
+        let (_, released) = run_release_helper(script.as_bytes()).unwrap().unwrap();
         assert_eq!(released, Released::Gone);
     }
 
     #[test]
     fn nonsense_is_refused_in_words() {
-        let error = stand_guard("what?\n".as_bytes()).unwrap_err();
+        let error = run_release_helper("what?\n".as_bytes()).unwrap_err();
         assert!(error.to_string().contains("[x-plane]"), "{error}");
-        assert!(matches!(stand_guard(&b""[..]), Err(GuardError::Nothing)));
+        assert!(matches!(
+            run_release_helper(&b""[..]),
+            Err(ReleaseHelperError::Nothing)
+        ));
     }
 }

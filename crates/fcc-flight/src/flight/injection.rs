@@ -13,7 +13,7 @@ use std::fmt;
 use std::thread;
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
 
 /// An autopilot that goes wrong when it is told to.
@@ -112,14 +112,14 @@ impl Controller for Faulty {
     type Measurements = Measurements;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
-    type Order = Order;
+    type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
         Controller::estimate(&mut self.autopilot, tick, measurements);
     }
 
-    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.blockers(tick, measurements)
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.engage_inhibits(tick, measurements)
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
@@ -130,8 +130,8 @@ impl Controller for Faulty {
         Autopilot::flag_name(bit)
     }
 
-    fn write_order(order: &Order, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Autopilot::write_order(order, f)
+    fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Autopilot::write_command(command, f)
     }
 
     fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
@@ -170,8 +170,8 @@ impl Controller for Faulty {
         self.autopilot.disengage();
     }
 
-    fn command(&mut self, order: &Order) {
-        self.autopilot.command(order);
+    fn command(&mut self, command: &AutopilotCommand) {
+        self.autopilot.command(command);
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -1,19 +1,19 @@
 //! Lets others watch a flight, live.
 
-use fcc_core::flight::Order as Command;
-use fcc_runtime::OrderSender;
+use fcc_core::flight::AutopilotCommand;
+use fcc_runtime::CommandSender;
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
 use fcc_timer::RealtimeGranted;
 
-use super::orders::Orders;
+use super::commands::Commands;
 use crate::config::{LoopSection, TelemetrySection};
 
-/// Lets others watch a flight and give it orders; where that cannot be, nothing
+/// Lets others watch a flight and give it commands; where that cannot be, nothing
 /// comes of it.
 pub(super) struct Live {
     publisher: Option<Publisher>,
-    orders: Orders,
+    commands: Commands,
 }
 
 impl Live {
@@ -21,7 +21,7 @@ impl Live {
     pub(super) fn off() -> Self {
         Self {
             publisher: None,
-            orders: Orders::default(),
+            commands: Commands::default(),
         }
     }
 
@@ -31,8 +31,8 @@ impl Live {
         if !section.enabled {
             return Self::off();
         }
-        let start = if section.orders {
-            Publisher::start_with_orders
+        let start = if section.commands {
+            Publisher::start_with_commands
         } else {
             Publisher::start
         };
@@ -43,7 +43,7 @@ impl Live {
             .ok();
         Self {
             publisher,
-            orders: Orders::default(),
+            commands: Commands::default(),
         }
     }
 
@@ -77,7 +77,7 @@ impl Live {
     pub(super) fn record(&mut self, record: &FlightRecord) {
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
-            while let Some((id, verdict)) = self.orders.verdict(record) {
+            while let Some((id, verdict)) = self.commands.verdict(record) {
                 publisher.answer(id, verdict);
             }
         }
@@ -87,7 +87,7 @@ impl Live {
     pub(super) fn event(&mut self, event: &FlightEvent, text: &str) {
         if let Some(publisher) = &mut self.publisher {
             publisher.event(Event::new(event, text));
-            self.orders.event(event);
+            self.commands.event(event);
         }
     }
 
@@ -121,12 +121,12 @@ impl Live {
     }
 
     /// Sends the loop what other programs have ordered.
-    pub(super) fn pass_orders(&mut self, to: &mut OrderSender<Command>) {
+    pub(super) fn pass_commands(&mut self, to: &mut CommandSender<AutopilotCommand>) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };
-        while let Some(asked) = publisher.next_order() {
-            if let Some((id, verdict)) = self.orders.send(asked, to) {
+        while let Some(asked) = publisher.next_command() {
+            if let Some((id, verdict)) = self.commands.send(asked, to) {
                 publisher.answer(id, verdict);
             }
         }

@@ -5,6 +5,8 @@
 //! the outcome.
 
 mod assemble;
+#[cfg(feature = "live")]
+mod commands;
 mod connection;
 mod fly;
 mod follow;
@@ -12,29 +14,27 @@ mod guard;
 mod hang;
 #[cfg(feature = "fault-injection")]
 mod injection;
+mod instance_lock;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
 mod live;
-#[cfg(feature = "live")]
-mod orders;
 mod outcome;
 mod plan;
 mod recording;
 mod relief;
 mod restart;
+mod run_statistics;
 mod service;
 mod signals;
-mod sole;
 mod status;
-mod tally;
-mod tap;
+mod truth_recorder;
 mod watch;
 
 pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, fly};
-pub use guard::{GuardError, stand_guard};
+pub use guard::{ReleaseHelperError, run_release_helper};
 pub use outcome::{EventEntry, Outcome, RecordingOutcome};
 pub use plan::{Length, Pace, Plan};
-pub use recording::{RecordingWish, about};
+pub use recording::{RecordingRequest, about};
 pub use watch::true_sample;
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;

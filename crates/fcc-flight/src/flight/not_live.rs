@@ -1,8 +1,8 @@
 //! A flight that nobody can watch: this program was built without live
 //! telemetry.
 
-use fcc_core::flight::Order as Command;
-use fcc_runtime::OrderSender;
+use fcc_core::flight::AutopilotCommand;
+use fcc_runtime::CommandSender;
 use fcc_telemetry::recording::RecorderStatus;
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
@@ -25,7 +25,7 @@ impl Live {
     pub(super) const fn event(&mut self, _: &FlightEvent, _: &str) {}
     pub(super) const fn remark(&mut self, _: u64, _: i64, _: &str) {}
     pub(super) const fn recorder(&mut self, _: &RecorderStatus) {}
-    pub(super) const fn pass_orders(&mut self, _: &mut OrderSender<Command>) {}
+    pub(super) const fn pass_commands(&mut self, _: &mut CommandSender<AutopilotCommand>) {}
     pub(super) const fn poll(&mut self) -> Option<String> {
         None
     }

@@ -15,12 +15,12 @@ use crate::config::{Aircraft, Config};
 
 /// How a flight is to be recorded.
 #[derive(Clone, Debug)]
-pub struct RecordingWish {
+pub struct RecordingRequest {
     settings: RecorderSettings,
     about: About,
 }
 
-impl RecordingWish {
+impl RecordingRequest {
     /// Records a configuration's flight, if it says so; `as_given` is the text
     /// of its file.
     pub fn of(config: &Config, as_given: Option<String>) -> Option<Self> {
@@ -107,7 +107,7 @@ pub(super) struct LoopFacts {
     pub(super) actuators: Vec<String>,
 }
 
-impl RecordingWish {
+impl RecordingRequest {
     /// Takes what the loop knows of itself, and repairs what the last flight
     /// may have left. To be called before the loop's clock matters.
     pub(super) fn prepare(&mut self, facts: LoopFacts, watch: &mut Watch) {

@@ -38,7 +38,7 @@ pub(super) struct Service {
 #[derive(Clone, Copy, PartialEq)]
 struct Condition {
     state: StateCode,
-    blockers: Flags,
+    engage_inhibits: Flags,
 }
 
 impl Service {
@@ -137,7 +137,7 @@ impl Condition {
     fn of(record: &FlightRecord) -> Self {
         Self {
             state: record.state,
-            blockers: record.blockers,
+            engage_inhibits: record.engage_inhibits,
         }
     }
 
@@ -145,7 +145,7 @@ impl Condition {
         let mut words = self.state.to_string();
         let because = match self.state.state() {
             State::Failsafe(_) => self.state.flags(),
-            State::Standby => self.blockers,
+            State::Standby => self.engage_inhibits,
             State::Engaged | State::Stopped => Flags::NONE,
         };
         for (n, bit) in because.iter().enumerate() {

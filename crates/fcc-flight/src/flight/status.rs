@@ -62,7 +62,7 @@ impl Printer {
                     "{now_s:8.2} s  {state:<13}  heading {heading:3.0}°  bank {bank:3.0}°  \
                      altitude {altitude:5.0} ft  airspeed {airspeed:5.1} kt  {timing}"
                 );
-                for (n, bit) in record.blockers.iter().enumerate() {
+                for (n, bit) in record.engage_inhibits.iter().enumerate() {
                     line.push_str(if n == 0 { "  not ready: " } else { ", " });
                     line.push_str(Pilot::flag_name(bit));
                 }

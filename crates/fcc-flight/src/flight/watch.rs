@@ -1,9 +1,9 @@
 //! Takes what the loop tells, and keeps what matters later.
 
-use fcc_core::flight::Order;
+use fcc_core::flight::AutopilotCommand;
 use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use fcc_core::framework::{self, EventKind, Message, State};
-use fcc_runtime::OrderSender;
+use fcc_runtime::CommandSender;
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
@@ -13,10 +13,10 @@ use super::connection::Connection;
 use super::live::Live;
 use super::outcome::EventEntry;
 use super::plan::{Length, Plan};
-use super::restart::{Restart, RestartWish};
+use super::restart::{Restart, RestartRequest};
 use super::service::Service;
 use super::status;
-use super::tap::TruthReceiver;
+use super::truth_recorder::TruthReceiver;
 
 /// The most events that are kept for the end.
 const MOST_EVENTS: usize = 10_000;
@@ -161,7 +161,7 @@ impl Watch {
         self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
         if matches!(
             event.kind,
-            EventKind::Ordered(framework::Order::Controller(_))
+            EventKind::CommandReceived(framework::LoopCommand::Controller(_))
         ) {
             // What is flown is not the pattern from its beginning: no score.
             self.log = None;
@@ -171,7 +171,7 @@ impl Watch {
 
     /// Looks at what a flight before this one left, and keeps this one for the
     /// next; what there is to say.
-    pub(super) fn begin_restart(&mut self, wish: Option<RestartWish>) -> Option<String> {
+    pub(super) fn begin_restart(&mut self, wish: Option<RestartRequest>) -> Option<String> {
         let (restart, words) = Restart::begin(wish?);
         self.restart = restart;
         words
@@ -180,12 +180,12 @@ impl Watch {
     /// Goes on with what a restart in flight asks for; what is new, in words.
     pub(super) fn poll_restart(
         &mut self,
-        orders: &mut OrderSender<Order>,
+        commands: &mut CommandSender<AutopilotCommand>,
         connection: Option<&mut Connection>,
     ) -> Option<String> {
-        self.restart.as_mut()?.poll(orders, || {
+        self.restart.as_mut()?.poll(commands, || {
             if let Some(connection) = connection {
-                connection.relieve_guard();
+                connection.take_over_from_release_helper();
             }
         })
     }

@@ -24,7 +24,7 @@ const fn field(name: &'static str, value: fn(&FlightRecord) -> Value) -> Field {
 /// that differs is the most telling.
 pub(super) const FIELDS: [Field; COUNT] = [
     field("tick.dt_s", |r| Value::Number(r.tick.dt_s)),
-    field("blockers", |r| Value::Flags(r.blockers)),
+    field("engage_inhibits", |r| Value::Flags(r.engage_inhibits)),
     field("faults", |r| Value::Flags(r.faults)),
     field("state", |r| Value::State(r.state)),
     field("setpoints.airspeed_mps", |r| {

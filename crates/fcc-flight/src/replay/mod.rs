@@ -1,7 +1,7 @@
 //! Flies a recording again, through the very code that flew it.
 //!
 //! A tick of the loop is a pure function of the loop's state, the tick's
-//! times, the measurements and what came from outside (orders, the stop flag);
+//! times, the measurements and what came from outside (commands, the stop flag);
 //! a recording holds all of these. So the same [`Machine`](fcc_runtime::Machine)
 //! with the same autopilot, handed what was recorded, must give what was
 //! recorded, to the last bit.

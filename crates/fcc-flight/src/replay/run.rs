@@ -59,12 +59,12 @@ impl Replay {
         if self.machine.state() == State::Stopped {
             return Err(Cut::StoppedEarly { tick: tick.number });
         }
-        for order in inputs.orders {
+        for command in inputs.commands {
             // A tick reads 16 at most, and the ring holds more.
-            let sent = self.link.orders.send(order);
+            let sent = self.link.commands.send(command);
             sent.map_err(|_| Cut::OrderOutOfPlace { tick: tick.number })?;
         }
-        if inputs.told_to_stop {
+        if inputs.stop_requested {
             self.link.stop.stop();
         }
         // The ring is empty: the sensor takes what is in it in every tick.

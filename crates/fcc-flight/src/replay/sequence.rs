@@ -1,8 +1,8 @@
 //! Puts together, tick by tick, what came into the loop, and notices what is
 //! missing.
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::{EventKind, Message, Order, Tick};
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::{EventKind, LoopCommand, Message, Tick};
 use fcc_telemetry::{FlightEvent, FlightMessage};
 
 /// Why a recording cannot be flown again from some tick on.
@@ -40,18 +40,18 @@ pub enum Cut {
         /// The tick before it.
         after: u64,
     },
-    /// Events are missing, and they may have been orders.
-    #[error("events of ticks {first} to {last} are missing, and there may be orders among them")]
+    /// Events are missing, and they may have been commands.
+    #[error("events of ticks {first} to {last} are missing, and there may be commands among them")]
     EventsMissing {
         /// The tick of the first.
         first: u64,
         /// The tick of the last.
         last: u64,
     },
-    /// An order is not with the record of its tick.
-    #[error("an order of tick {tick} is not recorded beside the record of its tick")]
+    /// A command is not with the record of its tick.
+    #[error("a command of tick {tick} is not recorded beside the record of its tick")]
     OrderOutOfPlace {
-        /// The order's tick.
+        /// The command's tick.
         tick: u64,
     },
     /// A part of the loop panicked in flight; how far that tick got is not
@@ -69,7 +69,7 @@ pub enum Cut {
     },
 }
 
-/// Far more orders than a loop reads in a tick: only a file that nobody flew
+/// Far more commands than a loop reads in a tick: only a file that nobody flew
 /// has as many before a record, and they are not gathered without end.
 const MOST_ORDERS: usize = 1_024;
 
@@ -79,8 +79,8 @@ pub(super) struct Sequence {
     last: Option<Tick>,
     /// The tick of what waits for its record.
     awaited: Option<u64>,
-    orders: Vec<Order<Command>>,
-    told_to_stop: bool,
+    commands: Vec<LoopCommand<AutopilotCommand>>,
+    stop_requested: bool,
     panicked: bool,
 }
 
@@ -88,9 +88,9 @@ pub(super) struct Sequence {
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Inputs {
     /// In the sequence they were read.
-    pub(super) orders: Vec<Order<Command>>,
+    pub(super) commands: Vec<LoopCommand<AutopilotCommand>>,
     /// Whether the stop flag was seen.
-    pub(super) told_to_stop: bool,
+    pub(super) stop_requested: bool,
 }
 
 impl Sequence {
@@ -107,13 +107,13 @@ impl Sequence {
 
     fn event(&mut self, event: &FlightEvent) -> Result<(), Cut> {
         match event.kind {
-            EventKind::Ordered(order) => {
+            EventKind::CommandReceived(command) => {
                 self.await_record(event.tick)?;
-                self.orders.push(order);
+                self.commands.push(command);
             }
-            EventKind::ToldToStop => {
+            EventKind::StopRequested => {
                 self.await_record(event.tick)?;
-                self.told_to_stop = true;
+                self.stop_requested = true;
             }
             // One without a record after it happened between ticks.
             EventKind::Panicked => {
@@ -133,7 +133,7 @@ impl Sequence {
 
     fn await_record(&mut self, tick: u64) -> Result<(), Cut> {
         let is_late = self.last.is_some_and(|last| tick <= last.number);
-        if is_late || self.orders.len() >= MOST_ORDERS {
+        if is_late || self.commands.len() >= MOST_ORDERS {
             return Err(Cut::OrderOutOfPlace { tick });
         }
         match self.awaited.replace(tick) {
@@ -154,8 +154,8 @@ impl Sequence {
         }
         self.last = Some(*tick);
         Ok(Inputs {
-            orders: std::mem::take(&mut self.orders),
-            told_to_stop: std::mem::take(&mut self.told_to_stop),
+            commands: std::mem::take(&mut self.commands),
+            stop_requested: std::mem::take(&mut self.stop_requested),
         })
     }
 
@@ -208,7 +208,7 @@ mod tests {
         Message::Tick(Record::new(tick, State::Standby))
     }
 
-    fn event(tick: u64, kind: EventKind<Command>) -> FlightMessage {
+    fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> FlightMessage {
         Message::Event(Event {
             tick,
             time: Time::NEVER,
@@ -216,7 +216,8 @@ mod tests {
         })
     }
 
-    const HEADING: Order<Command> = Order::Controller(Command::Heading(1.0));
+    const HEADING: LoopCommand<AutopilotCommand> =
+        LoopCommand::Controller(AutopilotCommand::Heading(1.0));
 
     /// The cut that ends a sequence of messages, if one does.
     fn cut(messages: &[FlightMessage]) -> Option<Cut> {
@@ -230,22 +231,22 @@ mod tests {
     fn orders_and_the_stop_flag_go_with_their_tick() {
         let mut sequence = Sequence::default();
         let messages = [
-            event(1, EventKind::Ordered(HEADING)),
-            event(1, EventKind::Ordered(Order::Engage)),
+            event(1, EventKind::CommandReceived(HEADING)),
+            event(1, EventKind::CommandReceived(LoopCommand::Engage)),
             record(1, 0),
             record(2, 0),
-            event(4, EventKind::ToldToStop),
+            event(4, EventKind::StopRequested),
             record(4, 1),
         ];
         let told: Vec<_> = messages
             .iter()
             .filter_map(|message| sequence.take(message).unwrap())
-            .map(|inputs| (inputs.orders, inputs.told_to_stop))
+            .map(|inputs| (inputs.commands, inputs.stop_requested))
             .collect();
         assert_eq!(
             told,
             [
-                (vec![HEADING, Order::Engage], false),
+                (vec![HEADING, LoopCommand::Engage], false),
                 (vec![], false),
                 (vec![], true)
             ]
@@ -274,22 +275,22 @@ mod tests {
 
     #[test]
     fn an_order_after_its_record_is_out_of_place() {
-        let late = event(1, EventKind::Ordered(HEADING));
+        let late = event(1, EventKind::CommandReceived(HEADING));
         let out_of_place = Some(Cut::OrderOutOfPlace { tick: 1 });
         assert_eq!(cut(&[record(1, 0), late]), out_of_place);
         let out_of_place = Some(Cut::OrderOutOfPlace { tick: 2 });
-        let early = event(2, EventKind::Ordered(HEADING));
+        let early = event(2, EventKind::CommandReceived(HEADING));
         assert_eq!(cut(&[early, record(1, 0)]), out_of_place);
-        let next = event(3, EventKind::Ordered(HEADING));
+        let next = event(3, EventKind::CommandReceived(HEADING));
         assert_eq!(cut(&[record(1, 0), early, next]), out_of_place);
     }
 
     #[test]
     fn orders_without_a_record_are_not_gathered_without_end() {
-        let mut orders = vec![event(1, EventKind::Ordered(HEADING)); MOST_ORDERS];
-        assert_eq!(cut(&orders), None);
-        orders.push(event(1, EventKind::Ordered(HEADING)));
-        assert_eq!(cut(&orders), Some(Cut::OrderOutOfPlace { tick: 1 }));
+        let mut commands = vec![event(1, EventKind::CommandReceived(HEADING)); MOST_ORDERS];
+        assert_eq!(cut(&commands), None);
+        commands.push(event(1, EventKind::CommandReceived(HEADING)));
+        assert_eq!(cut(&commands), Some(Cut::OrderOutOfPlace { tick: 1 }));
     }
 
     #[test]

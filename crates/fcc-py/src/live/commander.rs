@@ -1,20 +1,20 @@
-//! Orders to a running daemon.
+//! Commands to a running daemon.
 
 use std::sync::{Mutex, PoisonError};
 
 use fcc_telemetry::Instance;
-use fcc_telemetry::live::{Commander, FlightOrder, NewSetpoints, OrderError};
+use fcc_telemetry::live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::instance;
 use crate::errors;
 
-/// Gives orders to a daemon on this machine, by its instance's name. Each call
-/// waits until the order is carried out and returns the tick that did; the GIL
+/// Gives commands to a daemon on this machine, by its instance's name. Each call
+/// waits until the command is carried out and returns the tick that did; the GIL
 /// is released meanwhile.
 ///
-/// Raises `OrderError` with the daemon's reason if it refuses, and
+/// Raises `CommandError` with the daemon's reason if it refuses, and
 /// `TelemetryError` if it cannot be reached.
 #[pyclass(name = "Commander", module = "fcc")]
 pub(crate) struct PyCommander {
@@ -22,9 +22,11 @@ pub(crate) struct PyCommander {
     instance: Instance,
 }
 
-fn refused(error: &OrderError) -> PyErr {
+fn refused(error: &CommandError) -> PyErr {
     match error {
-        OrderError::Unreachable(_) | OrderError::TakesNone { .. } => errors::TELEMETRY.say(error),
+        CommandError::Unreachable(_) | CommandError::TakesNone { .. } => {
+            errors::TELEMETRY.say(error)
+        }
         _ => errors::ORDER.say(error),
     }
 }
@@ -46,17 +48,17 @@ impl PyCommander {
 
     /// Take over as things are.
     fn engage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.order(py, FlightOrder::Engage)
+        self.command(py, FlightCommand::Engage)
     }
 
     /// Give the controls back.
     fn disengage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.order(py, FlightOrder::Disengage)
+        self.command(py, FlightCommand::Disengage)
     }
 
     /// Give the controls back and end the daemon.
     fn stop(&self, py: Python<'_>) -> PyResult<u64> {
-        self.order(py, FlightOrder::Stop)
+        self.command(py, FlightCommand::Stop)
     }
 
     /// Fly by other set points, those that are not given staying: indicated
@@ -70,13 +72,13 @@ impl PyCommander {
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<u64> {
-        let order = FlightOrder::Set(NewSetpoints {
+        let command = FlightCommand::Set(NewSetpoints {
             airspeed_mps,
             heading_rad,
             altitude_m,
         });
-        order.check().map_err(PyValueError::new_err)?;
-        self.order(py, order)
+        command.check().map_err(PyValueError::new_err)?;
+        self.command(py, command)
     }
 
     fn __repr__(&self) -> String {
@@ -85,13 +87,13 @@ impl PyCommander {
 }
 
 impl PyCommander {
-    fn order(&self, py: Python<'_>, order: FlightOrder) -> PyResult<u64> {
+    fn command(&self, py: Python<'_>, command: FlightCommand) -> PyResult<u64> {
         py.detach(|| {
             let mut commander = self
                 .commander
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner);
-            commander.order(order)
+            commander.command(command)
         })
         .map_err(|error| refused(&error))
     }

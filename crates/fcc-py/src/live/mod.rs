@@ -1,4 +1,4 @@
-//! A running daemon: watched, and given orders.
+//! A running daemon: watched, and given commands.
 
 mod commander;
 mod watcher;

@@ -11,7 +11,7 @@ use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace}
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
-use super::ends::{HandedOver, Held};
+use super::python_io::{HandedOver, Held};
 use crate::events::PyEvent;
 use crate::structured::RecordRow;
 

@@ -1,15 +1,15 @@
 //! The daemon's loop, one call one tick: its states, its failsafe and its
 //! recording, with sensors that say what Python hands over.
 
-mod ends;
 mod flown;
+mod python_io;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fcc_core::flight::{Autopilot, Order as FlightOrder, Surfaces};
-use fcc_core::framework::{Order, State, Switch};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
+use fcc_core::framework::{LoopCommand, State, Switch};
 use fcc_runtime::{Link, Machine, Parts};
 use fcc_timer::ManualTimer;
 use numpy::PyArray1;
@@ -17,15 +17,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rtrb::Producer;
 
-use crate::autopilot::checked_orders;
+use crate::autopilot::checked_commands;
 use crate::config::{configuration, refused};
 use crate::errors;
 use crate::events::PyEvent;
 use crate::stepped::names;
 use crate::structured::{self, RecordRow};
 use crate::values::{PyEstimate, PyMeasurements, PySetpoints, PySurfaces, checked_surfaces};
-use ends::{HandedOver, Held, Missing, Said};
 use flown::Flown;
+use python_io::{HandedOver, Held, Missing, Said};
 
 /// The daemon's loop, one call one tick: the very machine that `fccd` runs, on
 /// a clock that stands still between calls.
@@ -123,32 +123,32 @@ impl PyMachine {
         Ok(record.sent.then(|| record.outputs.into()))
     }
 
-    /// Orders the loop to take over in the next tick, if nothing blocks it.
+    /// Commands the loop to take over in the next tick, if nothing blocks it.
     fn engage(&mut self) -> PyResult<()> {
-        self.stepped().send(Order::Engage)
+        self.stepped().send(LoopCommand::Engage)
     }
 
-    /// Orders the loop to let go in the next tick.
+    /// Commands the loop to let go in the next tick.
     fn disengage(&mut self) -> PyResult<()> {
-        self.stepped().send(Order::Disengage)
+        self.stepped().send(LoopCommand::Disengage)
     }
 
-    /// Orders the loop to let go and end in the next tick.
+    /// Commands the loop to let go and end in the next tick.
     fn stop(&mut self) -> PyResult<()> {
-        self.stepped().send(Order::Stop)
+        self.stepped().send(LoopCommand::Stop)
     }
 
-    /// Orders another airspeed (m/s), heading (rad) or altitude (m); ends a
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
     /// pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
-    fn order(
+    fn command(
         &mut self,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
-        for order in checked_orders(airspeed_mps, heading_rad, altitude_m)? {
-            self.stepped().send(Order::Controller(order))?;
+        for command in checked_commands(airspeed_mps, heading_rad, altitude_m)? {
+            self.stepped().send(LoopCommand::Controller(command))?;
         }
         Ok(())
     }
@@ -187,8 +187,8 @@ impl PyMachine {
 
     /// Why the loop may not engage, in words; empty while engaged.
     #[getter]
-    fn blockers(&mut self) -> Vec<&'static str> {
-        names(self.stepped().machine.record().blockers)
+    fn engage_inhibits(&mut self) -> Vec<&'static str> {
+        names(self.stepped().machine.record().engage_inhibits)
     }
 
     /// What makes going on unsafe, in words; empty in standby.
@@ -243,12 +243,12 @@ impl PyMachine {
 }
 
 impl Stepped {
-    fn send(&mut self, order: Order<FlightOrder>) -> PyResult<()> {
+    fn send(&mut self, command: LoopCommand<AutopilotCommand>) -> PyResult<()> {
         if self.machine.state() == State::Stopped {
             return Err(errors::ENGAGE
-                .say("the loop has stopped and takes no orders: make another Machine"));
+                .say("the loop has stopped and takes no commands: make another Machine"));
         }
-        let sent = self.link.orders.send(order);
+        let sent = self.link.commands.send(command);
         sent.map_err(|full| errors::ENGAGE.say(full))
     }
 

@@ -31,7 +31,7 @@ pub(crate) const PERIOD: Duration = Duration::from_millis(25);
 pub(crate) struct Script {
     /// `None`: the switch is silent, its last reading grows old.
     pub(crate) switch: Option<Switch>,
-    pub(crate) blockers: Flags,
+    pub(crate) engage_inhibits: Flags,
     pub(crate) faults: Flags,
     pub(crate) output: f64,
     pub(crate) failsafe_output: f64,
@@ -53,7 +53,7 @@ impl Default for Script {
     fn default() -> Self {
         Self {
             switch: None,
-            blockers: Flags::NONE,
+            engage_inhibits: Flags::NONE,
             faults: Flags::NONE,
             output: 0.5,
             failsafe_output: -0.25,
@@ -179,15 +179,15 @@ impl Bench {
     /// A bench whose machine is engaged, with nothing left to fetch.
     pub(crate) fn engaged(config: &LoopConfig) -> Self {
         let mut bench = Self::with(config);
-        bench.order(fcc_runtime::Order::Engage);
+        bench.command(fcc_runtime::LoopCommand::Engage);
         assert_eq!(bench.machine.step(), State::Engaged);
         bench.events();
         bench.stage.forget();
         bench
     }
 
-    pub(crate) fn order(&mut self, order: fcc_runtime::Order<u32>) {
-        self.link.orders.send(order).unwrap();
+    pub(crate) fn command(&mut self, command: fcc_runtime::LoopCommand<u32>) {
+        self.link.commands.send(command).unwrap();
     }
 
     /// Changes the script and performs a tick.
@@ -200,7 +200,7 @@ impl Bench {
         std::iter::from_fn(|| self.link.messages.receive()).collect()
     }
 
-    /// Fetches all; what happened, but for the orders: those the script knows.
+    /// Fetches all; what happened, but for the commands: those the script knows.
     pub(crate) fn events(&mut self) -> Vec<EventKind> {
         happened(self.messages())
     }
@@ -217,7 +217,7 @@ impl Bench {
     }
 }
 
-/// What happened, but for the orders.
+/// What happened, but for the commands.
 pub(crate) fn happened(messages: Vec<MessageOf<Puppet>>) -> Vec<EventKind> {
     messages
         .into_iter()
@@ -225,7 +225,7 @@ pub(crate) fn happened(messages: Vec<MessageOf<Puppet>>) -> Vec<EventKind> {
             Message::Event(event) => Some(event.kind),
             Message::Tick(_) => None,
         })
-        .filter(|kind| !matches!(kind, EventKind::Ordered(_)))
+        .filter(|kind| !matches!(kind, EventKind::CommandReceived(_)))
         .collect()
 }
 

@@ -38,16 +38,16 @@ impl Controller for Puppet {
     type Measurements = Measured;
     type Setpoints = f64;
     type Outputs = f64;
-    type Order = u32;
+    type Command = u32;
 
     fn estimate(&mut self, tick: &Tick, _: &Measured) {
         self.dt_s = tick.dt_s;
         self.stage.called("estimate");
     }
 
-    fn blockers(&self, _: &Tick, _: &Measured) -> Flags {
-        self.stage.perhaps_panic("blockers");
-        self.stage.script().blockers
+    fn engage_inhibits(&self, _: &Tick, _: &Measured) -> Flags {
+        self.stage.perhaps_panic("engage_inhibits");
+        self.stage.script().engage_inhibits
     }
 
     fn faults(&self, _: &Tick, _: &Measured) -> Flags {
@@ -83,9 +83,9 @@ impl Controller for Puppet {
         self.stage.called("disengage");
     }
 
-    fn command(&mut self, order: &u32) {
+    fn command(&mut self, command: &u32) {
         self.stage.called("command");
-        self.stage.note(|log| log.ordered.push(*order));
+        self.stage.note(|log| log.ordered.push(*command));
     }
 
     fn setpoints(&self) -> f64 {

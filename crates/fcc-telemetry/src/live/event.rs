@@ -1,6 +1,6 @@
 //! What happened once, in numbers and in words.
 
-use fcc_core::framework::{EventKind, Order, StateCode};
+use fcc_core::framework::{EventKind, LoopCommand, StateCode};
 
 use super::Text;
 use crate::FlightEvent;
@@ -33,7 +33,7 @@ pub enum EventCode {
     /// The loop's state changed (phase before, phase now, faults that led to
     /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
     StateChanged = 1,
-    /// An order was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
+    /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
     Ordered = 2,
     /// Somebody wanted to engage and may not (what blocks it).
     EngageRefused = 3,
@@ -107,18 +107,20 @@ fn numbers(event: &FlightEvent) -> (EventCode, u32, [u64; 3]) {
             ];
             (EventCode::StateChanged, 0, values)
         }
-        EventKind::Ordered(order) => {
-            let which = match order {
-                Order::Engage => 0,
-                Order::Disengage => 1,
-                Order::Stop => 2,
-                Order::Controller(_) => 3,
+        EventKind::CommandReceived(command) => {
+            let which = match command {
+                LoopCommand::Engage => 0,
+                LoopCommand::Disengage => 1,
+                LoopCommand::Stop => 2,
+                LoopCommand::Controller(_) => 3,
             };
             (EventCode::Ordered, 0, [which, 0, 0])
         }
-        EventKind::EngageRefused { blockers } => {
-            (EventCode::EngageRefused, 0, [blockers.bits().into(), 0, 0])
-        }
+        EventKind::EngageRefused { engage_inhibits } => (
+            EventCode::EngageRefused,
+            0,
+            [engage_inhibits.bits().into(), 0, 0],
+        ),
         EventKind::SensorFault { index, .. } => (EventCode::SensorFault, index.into(), NONE),
         EventKind::SensorRecovered { index } => (EventCode::SensorRecovered, index.into(), NONE),
         EventKind::ActuatorFault { index, .. } => (EventCode::ActuatorFault, index.into(), NONE),

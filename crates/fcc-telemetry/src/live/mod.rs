@@ -16,17 +16,17 @@
 //! | `fcc/INSTANCE/event/v1` | [`Event`]: what happened once | 64 |
 //! | `fcc/INSTANCE/status/v1` | [`Status`]: each second, how the run stands | 1 |
 //!
-//! Orders come in the other way: a [`Commander`] asks by the service
-//! `fcc/INSTANCE/order/v1`, and learns what became of it.
+//! Commands come in the other way: a [`Commander`] asks by the service
+//! `fcc/INSTANCE/command/v1`, and learns what became of it.
 //!
 //! The layout of `info` never changes, so that a reader of another version can
 //! say what it found. Everything else bears a version: [`LAYOUT`].
 
+mod command;
 mod error;
 mod event;
 mod info;
 mod lateness;
-mod order;
 mod publisher;
 mod record;
 mod services;
@@ -36,11 +36,13 @@ mod text;
 mod thread;
 mod watcher;
 
+pub use command::{
+    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, Verdict,
+};
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
 pub use info::Info;
 pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
-pub use order::{Asked, Commander, FlightOrder, NewSetpoints, ORDERS_VERSION, OrderError, Verdict};
 pub use publisher::Publisher;
 pub use services::{EVENT_HISTORY, MAX_WATCHERS, RECORD_BUFFER};
 pub use status::{RecorderState, RecorderStatus, Status};

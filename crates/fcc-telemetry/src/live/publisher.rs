@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use rtrb::{Producer, RingBuffer};
 
-use super::order::{Asked, Desk, Ends, Verdict};
+use super::command::{Asked, CommandServer, Ends, Verdict};
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use crate::{FlightRecord, Instance};
@@ -49,12 +49,12 @@ pub struct Publisher {
     left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
     words: Receiver<String>,
-    orders: Option<Ends>,
+    commands: Option<Ends>,
     over: bool,
 }
 
 impl Publisher {
-    /// Starts to publish as `instance`, and takes no orders.
+    /// Starts to publish as `instance`, and takes no commands.
     ///
     /// # Errors
     /// When there is no shared memory to be had, or the name is taken. Whoever
@@ -63,12 +63,12 @@ impl Publisher {
         Self::start_thread(instance, false)
     }
 
-    /// Starts to publish as `instance`, and to take orders: who flies looks
-    /// for them by [`next_order`](Self::next_order) and answers each.
+    /// Starts to publish as `instance`, and to take commands: who flies looks
+    /// for them by [`next_command`](Self::next_command) and answers each.
     ///
     /// # Errors
     /// As [`start`](Self::start).
-    pub fn start_with_orders(instance: &Instance) -> Result<Self, PublishError> {
+    pub fn start_with_commands(instance: &Instance) -> Result<Self, PublishError> {
         Self::start_thread(instance, true)
     }
 
@@ -77,7 +77,7 @@ impl Publisher {
         let (started, start) = mpsc::sync_channel::<Started>(1);
         // More than the thread will ever have to say unheard.
         let (say, words) = mpsc::sync_channel(16);
-        let (orders, rings) = takes_orders.then(Desk::rings).unzip();
+        let (commands, rings) = takes_orders.then(CommandServer::rings).unzip();
         let owned = instance.clone();
         let left_out = Arc::new(AtomicU64::new(0));
         let seen = Arc::clone(&left_out);
@@ -91,7 +91,7 @@ impl Publisher {
                 left_out,
                 thread,
                 words,
-                orders,
+                commands,
                 over: false,
             }),
             Ok(Err(error)) => Err(error),
@@ -125,16 +125,16 @@ impl Publisher {
         self.put(Item::Recorder(Box::new(status)));
     }
 
-    /// The next order from another program, if there is one. Each wants its
+    /// The next command from another program, if there is one. Each wants its
     /// [`answer`](Self::answer).
-    pub fn next_order(&mut self) -> Option<Asked> {
-        self.orders.as_ref()?.orders.try_recv().ok()
+    pub fn next_command(&mut self) -> Option<Asked> {
+        self.commands.as_ref()?.commands.try_recv().ok()
     }
 
-    /// Says what became of an order.
+    /// Says what became of a command.
     pub fn answer(&mut self, id: u64, verdict: Verdict) {
-        if let Some(ends) = &self.orders {
-            // As many answers as orders have room; a thread that is gone has
+        if let Some(ends) = &self.commands {
+            // As many answers as commands have room; a thread that is gone has
             // nobody to tell.
             let _ = ends.verdicts.try_send((id, verdict));
         }

@@ -10,8 +10,8 @@ use iceoryx2::prelude::PortFactory;
 use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
+use super::command::{CommandServer, Rings};
 use super::lateness::Lateness;
-use super::order::{Desk, Rings};
 use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
@@ -31,16 +31,16 @@ const STATUS_EVERY: Duration = Duration::from_secs(1);
 pub(super) type Started = Result<(), PublishError>;
 
 /// Publishes what comes by the ring, until nobody can put anything there, and
-/// takes orders if there are rings for them.
+/// takes commands if there are rings for them.
 pub(super) fn publish(
     instance: &Instance,
-    orders: Option<Rings>,
+    commands: Option<Rings>,
     mut items: Consumer<Item>,
     left_out: &AtomicU64,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::open(instance, orders) {
+    let mut thread = match Publishing::open(instance, commands) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this; if it has given up, nobody does.
@@ -72,7 +72,7 @@ pub(super) fn publish(
             return;
         }
         thread.greet();
-        thread.take_orders();
+        thread.take_commands();
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
@@ -86,7 +86,7 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
 }
 
 struct Publishing {
-    desk: Option<Desk>,
+    desk: Option<CommandServer>,
     records: Out<Published>,
     service: Service<Published>,
     events: Out<Event>,
@@ -102,7 +102,7 @@ struct Publishing {
 }
 
 impl Publishing {
-    fn open(instance: &Instance, orders: Option<Rings>) -> Result<Self, PublishError> {
+    fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
@@ -112,8 +112,8 @@ impl Publishing {
         let (service, records) = RECORD.publish(&access, instance)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
-        let desk = orders
-            .map(|rings| Desk::open(&access, instance, rings))
+        let desk = commands
+            .map(|rings| CommandServer::open(&access, instance, rings))
             .transpose()?;
         Ok(Self {
             desk,
@@ -131,8 +131,8 @@ impl Publishing {
         })
     }
 
-    /// Takes and answers orders; they wait while shared memory is nearly full.
-    fn take_orders(&mut self) {
+    /// Takes and answers commands; they wait while shared memory is nearly full.
+    fn take_commands(&mut self) {
         if let Some(desk) = self.desk.as_mut().filter(|_| !self.paused) {
             desk.serve();
         }

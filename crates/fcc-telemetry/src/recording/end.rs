@@ -67,13 +67,13 @@ impl End {
 
 /// Keeps the account while messages go by.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tally {
+pub(super) struct RunStatistics {
     end: End,
     first_woke_ns: i64,
     last_state: Option<State>,
 }
 
-impl Tally {
+impl RunStatistics {
     pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => self.count(record),

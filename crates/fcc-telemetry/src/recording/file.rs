@@ -11,7 +11,7 @@ use mcap::{Attachment, McapError, WriteOptions};
 
 use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
 use super::disk::Disk;
-use super::end::{END, Tally};
+use super::end::{END, RunStatistics};
 use super::foxglove::{self, Thinned};
 use super::outlet::Outlet;
 use super::schema::{self, Topic};
@@ -41,7 +41,7 @@ pub(super) struct RecordingFile {
     gathered_bytes: u64,
     attitude: Thinned,
     position: Thinned,
-    tally: Tally,
+    run_statistics: RunStatistics,
     names: Names,
     /// A message's bytes, kept for the next.
     bytes: Vec<u8>,
@@ -80,7 +80,7 @@ impl RecordingFile {
             gathered_bytes: 0,
             attitude: Thinned::new(),
             position: Thinned::new(),
-            tally: Tally::default(),
+            run_statistics: RunStatistics::default(),
             names: Names {
                 sensors: about.sensors.clone(),
                 actuators: about.actuators.clone(),
@@ -130,7 +130,7 @@ impl RecordingFile {
 
     /// Takes a record or an event.
     pub(super) fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
-        self.tally.take(message);
+        self.run_statistics.take(message);
         match message {
             FlightMessage::Tick(record) => self.record(record),
             FlightMessage::Event(event) => self.event(event),
@@ -228,7 +228,7 @@ impl RecordingFile {
     fn write_end(&mut self, ending: &str) -> Result<(), McapError> {
         self.writer.write_metadata(&Metadata {
             name: END.to_owned(),
-            metadata: self.tally.end(ending).to_fields(),
+            metadata: self.run_statistics.end(ending).to_fields(),
         })?;
         self.writer.finish()?;
         Ok(())
@@ -261,7 +261,7 @@ impl RecordingFile {
 
     /// Records given to the file.
     pub(super) fn ticks(&self) -> u64 {
-        self.tally.ticks()
+        self.run_statistics.ticks()
     }
 }
 

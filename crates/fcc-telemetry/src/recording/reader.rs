@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use mcap::records::Record;
 
 use super::about::About;
-use super::end::{End, Tally};
+use super::end::{End, RunStatistics};
 use super::items::{Items, Messages};
 use super::raw::RawReader;
 use super::schema;
@@ -119,12 +119,12 @@ impl Recording {
         if let Some(end) = &self.end {
             return Ok(end.clone());
         }
-        let mut tally = Tally::default();
+        let mut run_statistics = RunStatistics::default();
         let mut messages = self.messages()?;
         for message in &mut messages {
-            tally.take(&message);
+            run_statistics.take(&message);
         }
-        Ok(tally.end(messages.cut().unwrap_or("")))
+        Ok(run_statistics.end(messages.cut().unwrap_or("")))
     }
 
     /// Where the file is.

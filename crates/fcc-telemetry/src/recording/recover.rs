@@ -12,7 +12,7 @@ use mcap::{Attachment, McapError};
 use serde::Serialize;
 
 use super::disk;
-use super::end::{END, Tally};
+use super::end::{END, RunStatistics};
 use super::file::options;
 use super::items::{Channels, Item};
 use super::name::{damaged, unfinished};
@@ -188,7 +188,7 @@ fn rewrite(
             return Ok(None);
         }
     };
-    let ticks = copy.tally.ticks();
+    let ticks = copy.run_statistics.ticks();
     if !matches!(cut, Cut::Unreadable { .. }) {
         copy.finish(&format!("not known: the recording was {cut}"))?;
     }
@@ -204,7 +204,7 @@ type Output = NoSeek<BufWriter<File>>;
 struct Copy {
     writer: mcap::Writer<Output>,
     channels: Channels,
-    tally: Tally,
+    run_statistics: RunStatistics,
     records: u64,
 }
 
@@ -214,7 +214,7 @@ impl Copy {
         Ok(Self {
             writer,
             channels: Channels::default(),
-            tally: Tally::default(),
+            run_statistics: RunStatistics::default(),
             records: 0,
         })
     }
@@ -222,7 +222,7 @@ impl Copy {
     fn take(&mut self, record: &Record<'_>) -> Result<(), McapError> {
         self.records += 1;
         if let Some(Ok(Item::Message(message))) = self.channels.item(record, 0) {
-            self.tally.take(&message);
+            self.run_statistics.take(&message);
         }
         match record {
             Record::Metadata(metadata) if metadata.name != END => {
@@ -255,7 +255,7 @@ impl Copy {
     }
 
     fn finish(mut self, ending: &str) -> io::Result<()> {
-        let metadata: BTreeMap<_, _> = self.tally.end(ending).to_fields();
+        let metadata: BTreeMap<_, _> = self.run_statistics.end(ending).to_fields();
         let end = Metadata {
             name: END.to_owned(),
             metadata,

@@ -295,7 +295,9 @@ const COLUMNS: [(&str, Column); 71] = [
     ("state_flags", |r| {
         Cell::Count(u64::from(r.state.flags().bits()))
     }),
-    ("blockers", |r| Cell::Count(u64::from(r.blockers.bits()))),
+    ("engage_inhibits", |r| {
+        Cell::Count(u64::from(r.engage_inhibits.bits()))
+    }),
     ("faults", |r| Cell::Count(u64::from(r.faults.bits()))),
     ("sensor_faults", |r| Cell::Count(r.sensor_faults)),
     ("actuator_faults", |r| Cell::Count(r.actuator_faults)),

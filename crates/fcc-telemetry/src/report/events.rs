@@ -1,6 +1,6 @@
 //! What happened in a flight, numbered to be found in the plots.
 
-use fcc_core::flight::Order;
+use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::{EventKind, State};
 use serde::Serialize;
 
@@ -76,7 +76,7 @@ impl Events {
     }
 }
 
-fn weight(kind: EventKind<Order>) -> Weight {
+fn weight(kind: EventKind<AutopilotCommand>) -> Weight {
     match kind {
         EventKind::StateChanged { .. }
         | EventKind::Panicked
@@ -89,21 +89,21 @@ fn weight(kind: EventKind<Order>) -> Weight {
         | EventKind::NotRecorded { .. }
         | EventKind::Overrun { .. }
         | EventKind::Released { ok: false } => Weight::Wrong,
-        EventKind::Ordered(_) | EventKind::EngageRefused { .. } => Weight::Asked,
+        EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Asked,
         _ => Weight::Minor,
     }
 }
 
-/// Whether an order to the autopilot itself, which ends a pattern.
-pub(super) fn is_order_to_autopilot(kind: EventKind<Order>) -> bool {
+/// Whether a command to the autopilot itself, which ends a pattern.
+pub(super) fn is_autopilot_command(kind: EventKind<AutopilotCommand>) -> bool {
     matches!(
         kind,
-        EventKind::Ordered(fcc_core::framework::Order::Controller(_))
+        EventKind::CommandReceived(fcc_core::framework::LoopCommand::Controller(_))
     )
 }
 
 /// Whether the loop fell into failsafe.
-pub(super) fn is_failsafe(kind: EventKind<Order>) -> bool {
+pub(super) fn is_failsafe(kind: EventKind<AutopilotCommand>) -> bool {
     matches!(
         kind,
         EventKind::StateChanged {

@@ -53,7 +53,7 @@ pub use thesis::ThesisFigures;
 
 use crate::{FlightScore, TimingReport};
 use lines::Lines;
-use track::Place;
+use track::TrackPoint;
 
 /// All that is said of a recorded flight. Serialized, it is every statistic
 /// in it; the plots are in the page.
@@ -91,7 +91,7 @@ pub struct Report {
     #[serde(skip)]
     lines: Lines,
     #[serde(skip)]
-    track: Vec<Place>,
+    track: Vec<TrackPoint>,
 }
 
 impl Report {

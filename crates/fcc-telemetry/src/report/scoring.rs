@@ -14,7 +14,7 @@ use crate::{FlightLog, FlightRecord, FlightScore, Sample};
 pub(super) struct Scoring {
     log: FlightLog,
     engaged: bool,
-    /// An order ended the pattern: what follows is not part of it.
+    /// A command ended the pattern: what follows is not part of it.
     free: bool,
     legs: FlightScore,
     failed: Option<String>,
@@ -44,7 +44,7 @@ impl Scoring {
         self.engaged = engaged;
     }
 
-    /// An order to the autopilot ends the pattern.
+    /// A command to the autopilot ends the pattern.
     pub(super) fn ordered(&mut self) {
         if self.engaged {
             self.free = true;

@@ -140,7 +140,7 @@ impl Survey {
     /// Takes an event.
     pub fn take_event(&mut self, event: &FlightEvent) {
         let time_s = self.seconds(event.time);
-        if events::is_order_to_autopilot(event.kind)
+        if events::is_autopilot_command(event.kind)
             && let Some(scoring) = &mut self.scoring
         {
             scoring.ordered();

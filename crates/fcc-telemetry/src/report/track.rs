@@ -9,7 +9,7 @@ const FINEST_M: f64 = 0.5;
 
 /// A point of the track.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Place {
+pub(super) struct TrackPoint {
     /// Since the first tick.
     pub(super) time_s: f64,
     /// Of the first position.
@@ -23,8 +23,8 @@ pub(super) struct Place {
 pub(super) struct Track {
     frame: Option<Frame>,
     apart_m: f64,
-    places: Vec<Place>,
-    last: Option<Place>,
+    places: Vec<TrackPoint>,
+    last: Option<TrackPoint>,
 }
 
 impl Default for Track {
@@ -60,14 +60,14 @@ impl Track {
         }
     }
 
-    fn is_far(&self, place: &Place) -> bool {
+    fn is_far(&self, place: &TrackPoint) -> bool {
         self.places
             .last()
             .is_none_or(|last| last.distance_m(place) >= self.apart_m)
     }
 
     /// In ascending time, from the first position to the last.
-    pub(super) fn into_places(mut self) -> Vec<Place> {
+    pub(super) fn into_places(mut self) -> Vec<TrackPoint> {
         if self.places.last() != self.last.as_ref() {
             self.places.extend(self.last);
         }
@@ -75,7 +75,7 @@ impl Track {
     }
 }
 
-impl Place {
+impl TrackPoint {
     pub(super) fn distance_m(&self, other: &Self) -> f64 {
         (self.north_m - other.north_m).hypot(self.east_m - other.east_m)
     }
@@ -108,12 +108,12 @@ impl Frame {
         }
     }
 
-    fn place(&self, time_s: f64, position: &Position) -> Place {
+    fn place(&self, time_s: f64, position: &Position) -> TrackPoint {
         let turn = std::f64::consts::TAU;
         let east_rad = position.longitude_rad - self.longitude_rad;
         // Across the date line the shorter way.
         let east_rad = (east_rad + turn / 2.0).rem_euclid(turn) - turn / 2.0;
-        Place {
+        TrackPoint {
             time_s,
             north_m: (position.latitude_rad - self.latitude_rad) * self.north_m_per_rad,
             east_m: east_rad * self.east_m_per_rad,

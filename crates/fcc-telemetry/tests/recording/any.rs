@@ -83,7 +83,7 @@ pub(crate) fn bits(record: &FlightRecord) -> Vec<u64> {
         u64::from(record.state.phase()),
         u64::from(record.state.cause()),
         u64::from(record.state.flags().bits()),
-        u64::from(record.blockers.bits()),
+        u64::from(record.engage_inhibits.bits()),
         u64::from(record.faults.bits()),
         u64::from(record.sent),
         m.engage_switch.value as u64,
@@ -271,7 +271,7 @@ pub(crate) fn any_record() -> impl Strategy<Value = FlightRecord> {
                 page_faults: counts[4],
                 early_wake_ns: counts[5],
                 state: state.into(),
-                blockers: Flags::from_bits(flags[0]),
+                engage_inhibits: Flags::from_bits(flags[0]),
                 faults: Flags::from_bits(flags[1]),
                 sent,
             }

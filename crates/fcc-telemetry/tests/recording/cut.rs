@@ -117,7 +117,7 @@ fn what_is_being_written_is_not_recovered() {
     assert_eq!(repair_last(folder.path()).unwrap(), None);
     let seen = entry(&path).unwrap();
     assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
-    recorder.finish("ordered to stop");
+    recorder.finish("stopped by command");
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
 }
 

@@ -65,7 +65,7 @@ impl DiskFile for SmallFile {
 }
 
 /// A disk whose syncs wait until they are let go.
-pub(crate) struct Stuck {
+pub(crate) struct StuckDetector {
     pub(crate) gate: Arc<(Mutex<bool>, Condvar)>,
 }
 
@@ -74,7 +74,7 @@ struct StuckFile {
     gate: Arc<(Mutex<bool>, Condvar)>,
 }
 
-impl Disk for Stuck {
+impl Disk for StuckDetector {
     fn create(&mut self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
         Ok(Box::new(StuckFile {
             file: FileSystem.create(path)?,

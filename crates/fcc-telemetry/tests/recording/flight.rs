@@ -88,7 +88,7 @@ pub(crate) fn record(number: u64) -> FlightRecord {
 
 pub(crate) fn event(
     record: &FlightRecord,
-    kind: EventKind<fcc_core::flight::Order>,
+    kind: EventKind<fcc_core::flight::AutopilotCommand>,
 ) -> FlightMessage {
     Message::Event(Event {
         tick: record.tick.number,
@@ -117,7 +117,7 @@ pub(crate) fn record_all(recorder: Recorder, messages: &[FlightMessage]) -> Vec<
         recorder.take(message);
     }
     recorder
-        .finish("ordered to stop")
+        .finish("stopped by command")
         .1
         .into_iter()
         .map(|news| news.text)

@@ -37,7 +37,7 @@ fn a_recording_is_split_by_age_without_a_gap() {
         assert_eq!(part.about().part, n);
         assert_eq!(part.about().config, about().config);
     }
-    assert_eq!(parts[2].end().unwrap().ending, "ordered to stop");
+    assert_eq!(parts[2].end().unwrap().ending, "stopped by command");
     assert_eq!(
         parts[0].end().unwrap().ending,
         "the recording goes on in its next file"

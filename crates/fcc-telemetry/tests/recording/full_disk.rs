@@ -49,7 +49,7 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
     // Room for a part of the next chunk.
     free.store(100, Ordering::SeqCst);
     take(&mut recorder, 41..=80);
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
 
     let stopped = status.stopped.unwrap();
     assert!(
@@ -94,7 +94,7 @@ fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
     // The file that follows is begun as soon as there is room.
     wait_for(&recorder, |status| status.files.len() == 2);
     take(&mut recorder, 51..=60);
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert_eq!(status.stopped, None, "{news:?}");
     assert!(!old.exists() && kept.exists() && unrelated.exists());
     assert_eq!(status.files.len(), 2, "{news:?}");
@@ -132,7 +132,7 @@ fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
     begin_well(&mut recorder);
     free.store(10, Ordering::SeqCst);
     take(&mut recorder, 41..=50);
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert_eq!(status.stopped, None, "{news:?}");
     assert!(!old.exists());
     let [first, second] = &status.files[..] else {
@@ -149,7 +149,7 @@ fn a_recording_that_cannot_be_ended_says_so_and_no_more() {
     let (mut recorder, free) = recorder(settings(folder.path()), None);
     begin_well(&mut recorder);
     free.store(0, Ordering::SeqCst);
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert!(status.stopped.unwrap().contains("fccd recover"), "{news:?}");
     let last = &news.last().unwrap().text;
     assert!(last.starts_with("recording stopped: "), "{last}");
@@ -186,7 +186,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
     free.store(u64::MAX, Ordering::SeqCst);
     wait_for(&recorder, |status| status.file.is_some());
     take(&mut recorder, 91..=100);
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert_eq!((status.stopped, status.not_recorded), (None, 50));
     assert_eq!((status.ticks, status.files.len()), (50, 2));
     assert_eq!(
@@ -236,7 +236,7 @@ fn a_folder_that_cannot_be_written_is_news_and_no_error() {
     for message in &flight(10) {
         recorder.take(message);
     }
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert_eq!(news.len(), 1);
     assert!(news[0].text.starts_with("recording stopped: "), "{news:?}");
     assert!(
@@ -264,7 +264,7 @@ fn a_recorder_that_panics_says_so_in_flight() {
     for message in &flight(10) {
         recorder.take(message);
     }
-    let (status, news) = recorder.finish("ordered to stop");
+    let (status, news) = recorder.finish("stopped by command");
     assert!(status.stopped.unwrap().contains("panicked"), "{news:?}");
     assert_eq!((status.ticks, status.not_recorded), (0, 11));
     assert_eq!(news.len(), 1);

@@ -1,9 +1,9 @@
 //! What is recorded comes back with the very same bits.
 
 use fcc_core::flight::guidance::Targets;
-use fcc_core::flight::{Order as Command, Resume, Surfaces};
+use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
-    ActuatorFault, Cause, EventKind, Flags, Message, Order, SensorFault, Stage, State, Time,
+    ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, SensorFault, Stage, State, Time,
 };
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{Compression, Item, Recorder, RecorderSettings, Recording};
@@ -80,7 +80,7 @@ fn every_event_comes_back() {
             to: failsafe,
         },
         EventKind::EngageRefused {
-            blockers: Flags::from_bits(0x8000_0401),
+            engage_inhibits: Flags::from_bits(0x8000_0401),
         },
         EventKind::RecordsDropped { count, first, last },
         EventKind::EventsDropped { count, first, last },
@@ -89,7 +89,7 @@ fn every_event_comes_back() {
         EventKind::Released { ok: false },
         EventKind::Panicked,
         EventKind::TimerFailed,
-        EventKind::ToldToStop,
+        EventKind::StopRequested,
         EventKind::OverrunsOver { count, first, last },
         EventKind::Hung {
             silent_ns: u64::MAX,
@@ -113,20 +113,20 @@ fn every_event_comes_back() {
             longest: Stage::Control,
         });
     }
-    for order in [
-        Order::Engage,
-        Order::Disengage,
-        Order::Stop,
-        Order::Controller(Command::Airspeed(-0.0)),
-        Order::Controller(Command::Heading(6.1)),
-        Order::Controller(Command::Altitude(f64::INFINITY)),
-        Order::Controller(Command::Resume(RESUME)),
-        Order::Controller(Command::Resume(Resume {
+    for command in [
+        LoopCommand::Engage,
+        LoopCommand::Disengage,
+        LoopCommand::Stop,
+        LoopCommand::Controller(AutopilotCommand::Airspeed(-0.0)),
+        LoopCommand::Controller(AutopilotCommand::Heading(6.1)),
+        LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
+        LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
+        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
             pattern_s: None,
             ..RESUME
         })),
     ] {
-        kinds.push(EventKind::Ordered(order));
+        kinds.push(EventKind::CommandReceived(command));
     }
     for fault in [
         SensorFault::Silent,
@@ -170,7 +170,7 @@ fn a_file_says_what_flew_and_how_it_ended() {
     assert_eq!(end.duration_ns, 99 * 25_001_000);
     assert_eq!(
         (end.state.as_str(), end.ending.as_str()),
-        ("engaged", "ordered to stop")
+        ("engaged", "stopped by command")
     );
 
     let entry = fcc_telemetry::recording::entry(&path).unwrap();
@@ -186,7 +186,7 @@ fn remarks_come_back_at_the_time_of_the_message_before() {
     }
     recorder.remark("the wind is light".to_owned());
     recorder.take(&Message::Tick(record(4)));
-    recorder.finish("ordered to stop");
+    recorder.finish("stopped by command");
     let items: Vec<_> = Recording::open(only_file(folder.path()))
         .unwrap()
         .items()

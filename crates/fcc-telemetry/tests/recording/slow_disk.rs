@@ -6,14 +6,14 @@ use fcc_core::framework::{EventKind, Message};
 use fcc_telemetry::FlightMessage;
 use fcc_telemetry::recording::{Recorder, RecorderSettings, Recording};
 
-use crate::disks::{Stuck, set, wait_for_ticks};
+use crate::disks::{StuckDetector, set, wait_for_ticks};
 use crate::flight::{about, only_file, record};
 
 #[test]
 fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
     let folder = tempfile::tempdir().unwrap();
     let gate = Arc::new((Mutex::new(false), Condvar::new()));
-    let disk = Stuck {
+    let disk = StuckDetector {
         gate: Arc::clone(&gate),
     };
     let capacity = 16;
@@ -37,7 +37,7 @@ fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
     set(&gate, true);
     wait_for_ticks(&recorder, capacity as u64);
     recorder.take(&Message::Tick(record(1_001)));
-    let (status, _) = recorder.finish("ordered to stop");
+    let (status, _) = recorder.finish("stopped by command");
     assert_eq!((status.ticks, status.stopped), (17, None));
 
     let path = only_file(folder.path());

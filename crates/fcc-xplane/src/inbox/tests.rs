@@ -8,7 +8,7 @@ const TICK: Duration = Duration::from_millis(25);
 
 struct Bench {
     inbox: Inbox,
-    link: Link,
+    link: SharedState,
     now: Time,
     measurements: Measurements,
 }
@@ -17,7 +17,7 @@ impl Bench {
     fn new(rows: Option<DataRows>) -> Self {
         Self {
             inbox: Inbox::new(rows, Duration::from_millis(500)),
-            link: Link::new(None),
+            link: SharedState::new(None),
             now: Time::from_nanos(1_000_000_000),
             measurements: Measurements::default(),
         }

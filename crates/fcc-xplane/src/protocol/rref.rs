@@ -4,7 +4,7 @@
 //! A request is 413 bytes: header, i32 frequency in Hz, i32 index of the
 //! caller's choice, path\[400\]. The values come back to the sender's own
 //! address and port, as any number of pairs (i32 index, f32 value) in any
-//! order; up to 183 pairs are seen in one datagram.
+//! command; up to 183 pairs are seen in one datagram.
 
 use super::{HEADER_BYTES, Kind, Malformed, PathError, body, check_path, fields};
 

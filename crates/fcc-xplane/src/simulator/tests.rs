@@ -23,7 +23,7 @@ impl Bench {
     fn tell(&mut self, word: Word) -> SimulatorState {
         self.now = self.now + Self::TICK;
         self.clock.begin();
-        self.clock.hear(self.now, word);
+        self.clock.receive(self.now, word);
         self.clock.state(self.now)
     }
 

@@ -57,7 +57,7 @@ impl Default for AutopilotConfig {
 /// are.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
-pub enum Order {
+pub enum AutopilotCommand {
     /// Indicated airspeed, m/s; held to what the envelope allows.
     Airspeed(f64),
     /// Magnetic heading, rad; turned to the shorter way from where the nose

@@ -2,11 +2,11 @@
 
 mod capture;
 mod config;
-mod fitness;
 pub mod flags;
 mod plant_clock;
 mod resume;
 mod scale;
+mod sensor_health;
 
 use core::fmt;
 use core::hint::black_box;
@@ -14,14 +14,14 @@ use core::hint::black_box;
 use libm::cos;
 
 use capture::Capture;
-pub use config::{AutopilotConfig, Order};
+pub use config::{AutopilotCommand, AutopilotConfig};
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenWatch, Navigation, accept};
+use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
 use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
@@ -36,7 +36,7 @@ pub struct Autopilot {
     /// The last measurements that can be true.
     accepted: Measurements,
     navigation: Navigation,
-    frozen: FrozenWatch,
+    frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
     capture: Option<Capture>,
@@ -54,7 +54,7 @@ impl Autopilot {
         Self {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation),
-            frozen: FrozenWatch::new(config.frozen_after.as_secs_f64()),
+            frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
             capture: None,
@@ -119,16 +119,16 @@ impl Controller for Autopilot {
     type Measurements = Measurements;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
-    type Order = Order;
+    type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        accept(&mut self.accepted, measurements, self.config.max_age);
+        plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
         if self.plant_is(PlantState::Jumped) {
             // It is not where it was, so nothing is too far from the last.
             self.accepted = Measurements::default();
-            accept(&mut self.accepted, measurements, self.config.max_age);
+            plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
             self.navigation.reset(&self.config.navigation);
-            self.frozen = FrozenWatch::new(self.config.frozen_after.as_secs_f64());
+            self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
             self.clock = PlantClock::default();
             self.watching_since = Time::NEVER;
         }
@@ -146,7 +146,7 @@ impl Controller for Autopilot {
         }
     }
 
-    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
         self.unsafe_to_fly(tick.woke, measurements)
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
@@ -176,12 +176,12 @@ impl Controller for Autopilot {
             .unwrap_or("unknown condition")
     }
 
-    fn write_order(order: &Order, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match order {
-            Order::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
-            Order::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
-            Order::Altitude(m) => write!(f, "altitude {m:.1} m"),
-            Order::Resume(Resume { pattern_s, .. }) => match pattern_s {
+    fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match command {
+            AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
+            AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
+            AutopilotCommand::Altitude(m) => write!(f, "altitude {m:.1} m"),
+            AutopilotCommand::Resume(Resume { pattern_s, .. }) => match pattern_s {
                 Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
                 None => f.write_str("go on with what was flown"),
             },
@@ -314,21 +314,21 @@ impl Controller for Autopilot {
         self.setpoints = Setpoints::default();
     }
 
-    fn command(&mut self, order: &Order) {
+    fn command(&mut self, command: &AutopilotCommand) {
         let mut targets = self.targets;
-        match *order {
-            Order::Airspeed(mps) if mps.is_finite() => {
+        match *command {
+            AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
                 targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
             }
-            Order::Heading(rad) if rad.is_finite() => {
+            AutopilotCommand::Heading(rad) if rad.is_finite() => {
                 let now_rad = self.navigation.estimate().heading_rad;
                 targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
             }
-            Order::Altitude(m) if m.is_finite() => {
+            AutopilotCommand::Altitude(m) if m.is_finite() => {
                 targets.altitude_m = m;
                 self.capture = None;
             }
-            Order::Resume(ref resume) => return self.resume(resume),
+            AutopilotCommand::Resume(ref resume) => return self.resume(resume),
             _ => return,
         }
         self.targets = targets;

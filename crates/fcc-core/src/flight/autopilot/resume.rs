@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
-use crate::flight::Order;
+use crate::flight::AutopilotCommand;
 use crate::flight::Surfaces;
 use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Progress, Targets};
 
@@ -40,7 +40,7 @@ impl Resume {
     }
 }
 
-impl Order {
+impl AutopilotCommand {
     /// Whether it ends a pattern that is flown.
     pub fn ends_pattern(&self) -> bool {
         match *self {

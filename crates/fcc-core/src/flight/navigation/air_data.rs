@@ -4,7 +4,7 @@ use libm::{asin, cos, sin, sqrt};
 
 use super::attitude::Orientation;
 use super::vertical::VerticalState;
-use super::{Arrival, News, is_current};
+use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, limit_abs};
 use crate::flight::Measurements;
 use crate::flight::atmosphere::{GRAVITY_MPS2, density_ratio};
@@ -16,7 +16,7 @@ use crate::framework::Time;
 #[derive(Clone, Debug)]
 pub struct AirspeedChannel {
     airspeed: Complementary,
-    news: Arrival,
+    news: SampleTracker,
 }
 
 /// Below this the flight-path angle is not worked out, m/s.
@@ -30,7 +30,7 @@ impl AirspeedChannel {
     pub const fn new(tau_s: f64) -> Self {
         Self {
             airspeed: Complementary::new(tau_s),
-            news: Arrival::new(),
+            news: SampleTracker::new(),
         }
     }
 
@@ -55,9 +55,9 @@ impl AirspeedChannel {
                 .predict((along_path - GRAVITY_MPS2 * sin_path) * sqrt_density, dt_s);
         }
         match self.news.of(&measurements.airspeed_mps, dt_s) {
-            News::None => {}
-            News::First => self.airspeed.reset(measurements.airspeed_mps.value),
-            News::Next(since_s) => self
+            NewSample::None => {}
+            NewSample::First => self.airspeed.reset(measurements.airspeed_mps.value),
+            NewSample::Next(since_s) => self
                 .airspeed
                 .correct(measurements.airspeed_mps.value, since_s),
         }

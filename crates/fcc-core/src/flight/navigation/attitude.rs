@@ -2,7 +2,7 @@
 
 use libm::{cos, sin};
 
-use super::{Arrival, News, is_current};
+use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, wrap_pi};
 use crate::flight::Measurements;
 use crate::framework::Time;
@@ -25,8 +25,8 @@ pub struct AttitudeChannel {
     roll: Complementary,
     pitch: Complementary,
     heading: Complementary,
-    attitude_news: Arrival,
-    heading_news: Arrival,
+    attitude_news: SampleTracker,
+    heading_news: SampleTracker,
 }
 
 /// Near the vertical the heading is undefined; the rates are not divided by
@@ -40,8 +40,8 @@ impl AttitudeChannel {
             roll: Complementary::new(attitude_tau_s),
             pitch: Complementary::new(attitude_tau_s),
             heading: Complementary::new(heading_tau_s),
-            attitude_news: Arrival::new(),
-            heading_news: Arrival::new(),
+            attitude_news: SampleTracker::new(),
+            heading_news: SampleTracker::new(),
         }
     }
 
@@ -63,27 +63,27 @@ impl AttitudeChannel {
         }
         let attitude = measurements.attitude;
         match self.attitude_news.of(&attitude, dt_s) {
-            News::None => {}
-            News::First => {
+            NewSample::None => {}
+            NewSample::First => {
                 self.roll.reset(attitude.value.roll_rad);
                 self.pitch.reset(attitude.value.pitch_rad);
             }
-            News::Next(since_s) => {
+            NewSample::Next(since_s) => {
                 let roll_error = wrap_pi(attitude.value.roll_rad - self.roll.value());
-                self.roll.lean(roll_error, since_s);
+                self.roll.correct_by(roll_error, since_s);
                 self.pitch.correct(attitude.value.pitch_rad, since_s);
             }
         }
         match self.heading_news.of(&measurements.heading_rad, dt_s) {
-            News::None => {}
-            News::First => {
+            NewSample::None => {}
+            NewSample::First => {
                 // Keep counting turns from where the count was.
                 let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
                 self.heading.reset(self.heading.value() + error);
             }
-            News::Next(since_s) => {
+            NewSample::Next(since_s) => {
                 let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
-                self.heading.lean(error, since_s);
+                self.heading.correct_by(error, since_s);
             }
         }
         Orientation {

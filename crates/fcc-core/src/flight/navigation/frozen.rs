@@ -49,7 +49,7 @@ const CURRENT: Duration = Duration::from_millis(500);
 
 /// One quantity and for how long it has been the same.
 #[derive(Clone, Copy, Debug)]
-struct Stuck<const N: usize> {
+struct StuckDetector<const N: usize> {
     values: [f64; N],
     taken: Time,
     repeats: u32,
@@ -57,7 +57,7 @@ struct Stuck<const N: usize> {
     is_frozen: bool,
 }
 
-impl<const N: usize> Stuck<N> {
+impl<const N: usize> StuckDetector<N> {
     const fn new(values: [f64; N], taken: Time) -> Self {
         Self {
             values,
@@ -94,9 +94,9 @@ impl<const N: usize> Stuck<N> {
 
 /// Sums up and forgets.
 #[derive(Clone, Copy, Debug, Default)]
-struct Leaky(f64);
+struct LeakyIntegrator(f64);
 
-impl Leaky {
+impl LeakyIntegrator {
     fn add(&mut self, amount: f64, dt_s: f64) {
         self.0 += amount - self.0 * (dt_s / LEAK_S).min(1.0);
     }
@@ -127,22 +127,22 @@ type Angles = [f64; 3];
 
 /// Watches the six quantities that control needs.
 #[derive(Clone, Debug)]
-pub(crate) struct FrozenWatch {
+pub(crate) struct FrozenDetector {
     /// 0 never calls one frozen.
     after_s: f64,
-    roll: Stuck<1>,
-    pitch: Stuck<1>,
-    heading: Stuck<1>,
-    rates: Stuck<3>,
-    force: Stuck<3>,
-    airspeed: Stuck<1>,
-    altitude: Stuck<1>,
+    roll: StuckDetector<1>,
+    pitch: StuckDetector<1>,
+    heading: StuckDetector<1>,
+    rates: StuckDetector<3>,
+    force: StuckDetector<3>,
+    airspeed: StuckDetector<1>,
+    altitude: StuckDetector<1>,
     /// Turned, as the gyroscopes say, since roll, pitch and heading changed.
-    turned: [Leaky; 3],
+    turned: [LeakyIntegrator; 3],
     /// Turned otherwise than the gyroscopes say, since they changed.
-    unsaid: [Leaky; 3],
+    unsaid: [LeakyIntegrator; 3],
     /// Climbed since the altitude changed.
-    climbed: Leaky,
+    climbed: LeakyIntegrator,
     /// Climb rate less what the pitch made of it, when the altitude changed.
     climb_at_level_mps: f64,
     /// The attitude when specific force and airspeed changed.
@@ -152,22 +152,22 @@ pub(crate) struct FrozenWatch {
     before: Option<Angles>,
 }
 
-impl FrozenWatch {
+impl FrozenDetector {
     /// A value must have been the same for `after_s` of the plant's time; 0
     /// never calls one frozen.
     pub(crate) const fn new(after_s: f64) -> Self {
         Self {
             after_s,
-            roll: Stuck::new([0.0], Time::NEVER),
-            pitch: Stuck::new([0.0], Time::NEVER),
-            heading: Stuck::new([0.0], Time::NEVER),
-            rates: Stuck::new([0.0; 3], Time::NEVER),
-            force: Stuck::new([0.0; 3], Time::NEVER),
-            airspeed: Stuck::new([0.0], Time::NEVER),
-            altitude: Stuck::new([0.0], Time::NEVER),
-            turned: [Leaky(0.0); 3],
-            unsaid: [Leaky(0.0); 3],
-            climbed: Leaky(0.0),
+            roll: StuckDetector::new([0.0], Time::NEVER),
+            pitch: StuckDetector::new([0.0], Time::NEVER),
+            heading: StuckDetector::new([0.0], Time::NEVER),
+            rates: StuckDetector::new([0.0; 3], Time::NEVER),
+            force: StuckDetector::new([0.0; 3], Time::NEVER),
+            airspeed: StuckDetector::new([0.0], Time::NEVER),
+            altitude: StuckDetector::new([0.0], Time::NEVER),
+            turned: [LeakyIntegrator(0.0); 3],
+            unsaid: [LeakyIntegrator(0.0); 3],
+            climbed: LeakyIntegrator(0.0),
             climb_at_level_mps: 0.0,
             force_at: [0.0; 3],
             airspeed_at: [0.0; 3],
@@ -241,7 +241,7 @@ impl FrozenWatch {
             .zip(said)
         {
             if stuck.has_changed([value], EXACTLY, taken, dt_s) {
-                *turned = Leaky::default();
+                *turned = LeakyIntegrator::default();
             } else {
                 turned.add(rate * dt_s, dt_s);
             }
@@ -264,7 +264,7 @@ impl FrozenWatch {
             rates.value.yaw_radps,
         ];
         if self.rates.has_changed(values, EXACTLY, rates.taken, dt_s) {
-            self.unsaid = [Leaky::default(); 3];
+            self.unsaid = [LeakyIntegrator::default(); 3];
             return;
         }
         let mut exceeds = false;
@@ -289,7 +289,7 @@ impl FrozenWatch {
             .altitude
             .has_changed([altitude.value], EXACTLY, altitude.taken, dt_s)
         {
-            self.climbed = Leaky::default();
+            self.climbed = LeakyIntegrator::default();
             self.climb_at_level_mps = estimate.climb_rate_mps - by_pitch_mps;
             return;
         }

@@ -5,10 +5,10 @@
 //! the long. Each channel here blends one such pair, and predicts through
 //! ticks in which nothing new arrived.
 
-mod acceptance;
 mod air_data;
 mod attitude;
 mod frozen;
+mod plausibility;
 mod vertical;
 mod vertical_covariance;
 
@@ -18,10 +18,10 @@ use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
 
-pub(crate) use acceptance::accept;
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
-pub(crate) use frozen::{Frozen, FrozenWatch};
+pub(crate) use frozen::{Frozen, FrozenDetector};
+pub(crate) use plausibility::plausibility_gate;
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
@@ -175,11 +175,11 @@ fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
 
 /// Tells a new value from one seen before, and how to take it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Arrival {
+struct SampleTracker {
     taken: Time,
 }
 
-enum News {
+enum NewSample {
     /// Nothing new.
     None,
     /// The first, or the first after a long silence: believe it at once.
@@ -188,25 +188,25 @@ enum News {
     Next(f64),
 }
 
-impl Arrival {
+impl SampleTracker {
     const fn new() -> Self {
         Self { taken: Time::NEVER }
     }
 
     /// `dt_s` is the plant's time since the last tick: while it stands still,
     /// a measurement says nothing new.
-    fn of<T>(&mut self, reading: &Reading<T>, dt_s: f64) -> News {
+    fn of<T>(&mut self, reading: &Reading<T>, dt_s: f64) -> NewSample {
         if reading.is_never() || reading.taken <= self.taken {
-            return News::None;
+            return NewSample::None;
         }
         let gap = reading.taken.since(self.taken);
         self.taken = reading.taken;
         if gap > CURRENT {
-            News::First
+            NewSample::First
         } else if dt_s > 0.0 {
-            News::Next(gap.as_secs_f64())
+            NewSample::Next(gap.as_secs_f64())
         } else {
-            News::None
+            NewSample::None
         }
     }
 }

@@ -3,8 +3,8 @@
 use libm::{cos, sin};
 
 use super::attitude::Orientation;
-use super::vertical_covariance::{Link, VerticalCovariance};
-use super::{Arrival, News, is_current};
+use super::vertical_covariance::{CrossCovariance, VerticalCovariance};
+use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
 use crate::flight::atmosphere::GRAVITY_MPS2;
@@ -34,14 +34,14 @@ pub struct VerticalChannel {
     bias_mps2: f64,
     covariance: VerticalCovariance,
     mark: Option<Mark>,
-    news: Arrival,
+    news: SampleTracker,
 }
 
 /// The altitude at an instant gone by, and how it goes with the present state.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
     altitude_m: f64,
-    link: Link,
+    link: CrossCovariance,
 }
 
 /// An accelerometer whose bias is larger than this is broken, m/s².
@@ -58,7 +58,7 @@ impl VerticalChannel {
             bias_mps2: 0.0,
             covariance: VerticalCovariance::new(bandwidth_radps),
             mark: None,
-            news: Arrival::new(),
+            news: SampleTracker::new(),
         }
     }
 
@@ -83,9 +83,9 @@ impl VerticalChannel {
         };
         self.predict(acceleration, felt, dt_s);
         match self.news.of(&measurements.altitude_m, dt_s) {
-            News::None => {}
-            News::First => self.begin(measurements.altitude_m.value),
-            News::Next(since_s) => self.correct(measurements.altitude_m.value, since_s),
+            NewSample::None => {}
+            NewSample::First => self.begin(measurements.altitude_m.value),
+            NewSample::Next(since_s) => self.correct(measurements.altitude_m.value, since_s),
         }
         self.state
     }
@@ -123,7 +123,7 @@ impl VerticalChannel {
         self.bias_mps2 = 0.0;
         self.covariance.restart();
         if let Some(mark) = &mut self.mark {
-            mark.link = Link::default();
+            mark.link = CrossCovariance::default();
         }
     }
 

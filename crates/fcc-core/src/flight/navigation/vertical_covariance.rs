@@ -124,8 +124,8 @@ impl VerticalCovariance {
     }
 
     /// How the present altitude goes with the state: wholly.
-    pub(super) const fn of_altitude(&self) -> Link {
-        Link {
+    pub(super) const fn of_altitude(&self) -> CrossCovariance {
+        CrossCovariance {
             h: self.hh,
             v: self.hv,
             b: self.hb,
@@ -136,13 +136,13 @@ impl VerticalCovariance {
 /// Covariance of something gone by with the present altitude, climb rate and
 /// bias.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Link {
+pub(super) struct CrossCovariance {
     h: f64,
     v: f64,
     b: f64,
 }
 
-impl Link {
+impl CrossCovariance {
     /// As [`VerticalCovariance::predict`].
     pub(super) fn predict(&mut self, felt: bool, dt_s: f64) {
         if felt {

@@ -129,7 +129,7 @@ fn foot_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
         format!(" fccd '{instance}' has ended. This shows it again when it is started again.").red()
     } else if let Some(record) = &picture.record {
         let (title, flags, color) = if record.faults.is_empty() {
-            ("not ready", record.blockers, Color::Yellow)
+            ("not ready", record.engage_inhibits, Color::Yellow)
         } else {
             ("faults", record.faults, Color::Red)
         };

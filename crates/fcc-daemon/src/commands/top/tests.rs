@@ -143,7 +143,7 @@ fn what_keeps_it_from_engaging_is_named() {
     let mut picture = picture();
     let mut record = picture.record.unwrap();
     record.state = State::Standby.into();
-    record.blockers = Flags::bit(0);
+    record.engage_inhibits = Flags::bit(0);
     picture.record(&record);
     let rows = drawn(&picture, 80, 24);
     assert!(rows[0].contains("STANDBY"));

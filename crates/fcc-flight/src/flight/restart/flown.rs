@@ -1,8 +1,8 @@
 //! What is flown, worked out from what the loop tells.
 
 use fcc_core::flight::guidance::{Guidance, Progress, Targets, TimedPattern, TimedPatternConfig};
-use fcc_core::flight::{Order as Command, Resume};
-use fcc_core::framework::{EventKind, Message, Order, State};
+use fcc_core::flight::{AutopilotCommand, Resume};
+use fcc_core::framework::{EventKind, LoopCommand, Message, State};
 use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
 
 /// Near a change of legs it is not certain to the tick which one is flown, s.
@@ -74,13 +74,17 @@ impl Flown {
                 ..
             } if !self.is_broken => return Matter::Over,
             EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
-            EventKind::Ordered(Order::Controller(Command::Resume(resume))) => {
+            EventKind::CommandReceived(LoopCommand::Controller(AutopilotCommand::Resume(
+                resume,
+            ))) => {
                 self.pattern = resume.pattern_s.map(|elapsed_s| Place {
                     elapsed_s,
                     captured: Some(resume.targets),
                 });
             }
-            EventKind::Ordered(Order::Controller(order)) if order.ends_pattern() => {
+            EventKind::CommandReceived(LoopCommand::Controller(command))
+                if command.ends_pattern() =>
+            {
                 self.pattern = None;
             }
             _ => {}
@@ -150,7 +154,7 @@ mod tests {
     use fcc_core::flight::{Setpoints, Surfaces};
     use fcc_core::framework::{Event, Tick, Time};
 
-    fn event(kind: EventKind<Command>) -> FlightMessage {
+    fn event(kind: EventKind<AutopilotCommand>) -> FlightMessage {
         Message::Event(Event {
             tick: 0,
             time: Time::from_nanos(0),
@@ -217,10 +221,10 @@ mod tests {
         let mut flown = Flown::new(Some(TimedPatternConfig::default()));
         flown.take(&changed(State::Standby, State::Engaged));
         flying(&mut flown, &tick(10.0, 900.0));
-        let order = |order| event(EventKind::Ordered(Order::Controller(order)));
-        flown.take(&order(Command::Altitude(f64::NAN)));
+        let command = |command| event(EventKind::CommandReceived(LoopCommand::Controller(command)));
+        flown.take(&command(AutopilotCommand::Altitude(f64::NAN)));
         assert!(flying(&mut flown, &tick(10.0, 900.0)).pattern_s.is_some());
-        flown.take(&order(Command::Altitude(950.0)));
+        flown.take(&command(AutopilotCommand::Altitude(950.0)));
         let held = flying(&mut flown, &tick(10.0, 950.0));
         assert_eq!(held.pattern_s, None);
         assert_eq!(held.targets.altitude_m, 950.0);
@@ -228,7 +232,7 @@ mod tests {
             pattern_s: Some(45.0),
             ..held
         };
-        flown.take(&order(Command::Resume(earlier)));
+        flown.take(&command(AutopilotCommand::Resume(earlier)));
         let on = flying(&mut flown, &tick(190.0, 950.0));
         assert!((on.pattern_s.unwrap() - 45.025).abs() < 1e-9);
         assert!((on.targets.heading_rad.to_degrees() - 10.0).abs() < 1e-9);

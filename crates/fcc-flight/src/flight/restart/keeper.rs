@@ -15,12 +15,12 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Keeps the state file. Of what is asked while the disk is busy, only the last
 /// counts.
 pub(super) struct Keeper {
-    desk: Arc<Desk>,
+    desk: Arc<CommandServer>,
     trouble: Receiver<String>,
 }
 
 #[derive(Default)]
-struct Desk {
+struct CommandServer {
     slot: Mutex<Slot>,
     filled: Condvar,
 }
@@ -42,7 +42,7 @@ impl Keeper {
     /// # Errors
     /// When there is none to be had.
     pub(super) fn start(path: PathBuf) -> io::Result<Self> {
-        let desk = Arc::<Desk>::default();
+        let desk = Arc::<CommandServer>::default();
         let theirs = Arc::clone(&desk);
         // Trouble that lasts is said once; more of it finds no room.
         let (say, trouble) = mpsc::sync_channel(1);
@@ -98,7 +98,7 @@ impl Keeper {
     }
 }
 
-impl Desk {
+impl CommandServer {
     fn slot(&self) -> MutexGuard<'_, Slot> {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
     }

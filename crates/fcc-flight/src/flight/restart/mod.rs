@@ -18,9 +18,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{GuidanceConfig, Targets, TimedPatternConfig};
-use fcc_core::flight::{Order, Resume};
+use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::{Message, Switch};
-use fcc_runtime::OrderSender;
+use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, FlightRecord};
 
 use crate::config::{Config, RestartMode};
@@ -46,7 +46,7 @@ const MOST_TAKE_UPS: u32 = 3;
 
 /// What is to be known of a flight to restart it.
 #[derive(Clone, Debug)]
-pub(super) struct RestartWish {
+pub(super) struct RestartRequest {
     mode: RestartMode,
     max_age: Duration,
     path: PathBuf,
@@ -54,7 +54,7 @@ pub(super) struct RestartWish {
     pattern: Option<TimedPatternConfig>,
 }
 
-impl RestartWish {
+impl RestartRequest {
     /// As a configuration says.
     pub(super) fn of(config: &Config) -> Self {
         let section = &config.restart;
@@ -95,7 +95,7 @@ fn fingerprint(config: &Config) -> u32 {
 
 /// Keeps what is flown, and takes up what was.
 pub(super) struct Restart {
-    wish: RestartWish,
+    wish: RestartRequest,
     boot: Option<BootInstant>,
     /// Held until the process ends, however it does.
     _lock: File,
@@ -111,7 +111,7 @@ pub(super) struct Restart {
 impl Restart {
     /// Looks at what the last flight left, and keeps this one from here on.
     /// Gives what there is to say; without a place to keep it, only that.
-    pub(super) fn begin(wish: RestartWish) -> (Option<Self>, Option<String>) {
+    pub(super) fn begin(wish: RestartRequest) -> (Option<Self>, Option<String>) {
         let lock = match prepare(&wish.path) {
             Ok(lock) => lock,
             Err(words) => return (None, Some(words)),
@@ -168,7 +168,7 @@ impl Restart {
     /// is called right before control is taken. Gives what is new, in words.
     pub(super) fn poll(
         &mut self,
-        orders: &mut OrderSender<Order>,
+        commands: &mut CommandSender<AutopilotCommand>,
         relieve: impl FnOnce(),
     ) -> Option<String> {
         if let Some(words) = self.keeper.trouble() {
@@ -181,9 +181,9 @@ impl Restart {
         );
         match next {
             Next::Wait => None,
-            Next::Order(resume) => {
+            Next::Command(resume) => {
                 relieve();
-                taking_up.order(orders, resume);
+                taking_up.command(commands, resume);
                 None
             }
             Next::Taken(words) => {
@@ -261,7 +261,7 @@ fn prepare(path: &Path) -> Result<File, String> {
 
 /// What is to become of what was found, and what to say of it.
 fn judge(
-    wish: &RestartWish,
+    wish: &RestartRequest,
     read: Result<Option<Saved>, StateFileError>,
     now: Option<&BootInstant>,
 ) -> (Option<TakingUp>, Option<String>) {

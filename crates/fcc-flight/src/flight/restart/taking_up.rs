@@ -1,16 +1,16 @@
 //! Taking up a flight that was cut off: when, and when not.
 //!
 //! The sensors have to say that the aircraft flies, which is what
-//! [`blockers`](fcc_core::framework::Controller::blockers) look at before any
+//! [`engage_inhibits`](fcc_core::framework::Controller::engage_inhibits) look at before any
 //! engaging: everything fresh, faster than the envelope's floor, not upset. And
 //! a hand that has switched off in the meantime has the last word.
 
 use std::time::Duration;
 
 use fcc_core::flight::guidance::Targets;
-use fcc_core::flight::{Order as Command, Resume};
-use fcc_core::framework::{Controller, EventKind, Flags, Message, Order, State, Switch};
-use fcc_runtime::OrderSender;
+use fcc_core::flight::{AutopilotCommand, Resume};
+use fcc_core::framework::{Controller, EventKind, Flags, LoopCommand, Message, State, Switch};
+use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
 
 use super::boot_clock::BootInstant;
@@ -32,7 +32,7 @@ pub(super) struct TakingUp {
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     state: State,
-    blockers: Flags,
+    engage_inhibits: Flags,
     switched_off: bool,
 }
 
@@ -41,8 +41,8 @@ struct Seen {
 pub(super) enum Next {
     /// Nothing yet.
     Wait,
-    /// Now is the time to order this.
-    Order(Resume),
+    /// Now is the time to command this.
+    Command(Resume),
     /// It is flown again.
     Taken(String),
     /// It is not.
@@ -70,7 +70,7 @@ impl TakingUp {
                 let switch = record.measurements.engage_switch;
                 self.seen = Some(Seen {
                     state: record.state.state(),
-                    blockers: record.blockers,
+                    engage_inhibits: record.engage_inhibits,
                     switched_off: !switch.is_never() && switch.value == Switch::Off,
                 });
             }
@@ -105,30 +105,39 @@ impl TakingUp {
                 "the flight that was cut off was not taken up within restart.max_age_s, {} s",
                 max_age.as_secs_f64()
             );
-            for (n, bit) in seen.blockers.iter().enumerate() {
+            for (n, bit) in seen.engage_inhibits.iter().enumerate() {
                 words.push_str(if n == 0 { ": " } else { ", " });
                 words.push_str(Pilot::flag_name(bit));
             }
             return Next::LeftAlone(words);
         }
-        if !seen.blockers.is_empty() {
+        if !seen.engage_inhibits.is_empty() {
             return Next::Wait;
         }
         // The pattern's time went on while nobody flew it.
         let pattern_s = self.saved.resume.pattern_s;
-        Next::Order(Resume {
+        Next::Command(Resume {
             pattern_s: pattern_s.map(|elapsed_s| elapsed_s + age.as_secs_f64()),
             ..self.saved.resume
         })
     }
 
-    /// Orders it: engage first, for engaging forgets what was ordered before.
+    /// Commands it: engage first, for engaging forgets what was ordered before.
     /// Without room for both neither is sent, for engaged alone it would fly
     /// something else; it is tried again.
-    pub(super) fn order(&mut self, orders: &mut OrderSender<Command>, resume: Resume) {
-        let both = [Order::Engage, Order::Controller(Command::Resume(resume))];
-        if orders.room() >= both.len() {
-            let sent = both.into_iter().all(|order| orders.send(order).is_ok());
+    pub(super) fn command(
+        &mut self,
+        commands: &mut CommandSender<AutopilotCommand>,
+        resume: Resume,
+    ) {
+        let both = [
+            LoopCommand::Engage,
+            LoopCommand::Controller(AutopilotCommand::Resume(resume)),
+        ];
+        if commands.room() >= both.len() {
+            let sent = both
+                .into_iter()
+                .all(|command| commands.send(command).is_ok());
             self.ordered = sent.then_some(resume);
         }
     }
@@ -183,7 +192,7 @@ mod tests {
         };
         for (room, sent) in [(1, 0), (2, 2), (3, 2)] {
             let config = LoopConfig {
-                orders_capacity: room,
+                commands_capacity: room,
                 ..LoopConfig::default()
             };
             let parts = Parts {
@@ -194,8 +203,8 @@ mod tests {
             };
             let (_machine, mut link) = Machine::new(parts, &config).unwrap();
             let mut taking_up = TakingUp::new(saved.clone());
-            taking_up.order(&mut link.orders, resume);
-            assert_eq!(room - link.orders.room(), sent);
+            taking_up.command(&mut link.commands, resume);
+            assert_eq!(room - link.commands.room(), sent);
             assert_eq!(taking_up.ordered.is_some(), sent == 2);
         }
     }

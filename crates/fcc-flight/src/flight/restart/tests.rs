@@ -20,15 +20,15 @@ const FLOWN: Resume = Resume {
     },
 };
 
-struct Desk {
+struct CommandServer {
     folder: TempDir,
-    wish: RestartWish,
+    wish: RestartRequest,
 }
 
-impl Desk {
+impl CommandServer {
     fn new(mode: RestartMode) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let wish = RestartWish {
+        let wish = RestartRequest {
             mode,
             max_age: Duration::from_secs(60),
             path: folder.path().join("fccd.flight"),
@@ -70,13 +70,13 @@ impl Desk {
 #[test]
 fn nothing_left_is_nothing_said() {
     for mode in [RestartMode::Cold, RestartMode::Warm] {
-        assert_eq!(Desk::new(mode).found(), (false, String::new()));
+        assert_eq!(CommandServer::new(mode).found(), (false, String::new()));
     }
 }
 
 #[test]
 fn a_young_flight_is_taken_up_where_that_is_wanted() {
-    let desk = Desk::new(RestartMode::Warm);
+    let desk = CommandServer::new(RestartMode::Warm);
     desk.leave(2, |_| {});
     let (taken, said) = desk.found();
     assert!(taken && said.contains("taking it up"), "{said}");
@@ -85,7 +85,7 @@ fn a_young_flight_is_taken_up_where_that_is_wanted() {
 
 #[test]
 fn a_cold_restart_says_so_once() {
-    let desk = Desk::new(RestartMode::Cold);
+    let desk = CommandServer::new(RestartMode::Cold);
     desk.leave(2, |_| {});
     let (taken, said) = desk.found();
     assert!(
@@ -107,7 +107,7 @@ fn what_cannot_be_trusted_is_not_taken_up() {
         ("taken up 3 times in a row", 2, |saved| saved.take_ups = 3),
     ];
     for (because, seconds_ago, change) in reasons {
-        let desk = Desk::new(RestartMode::Warm);
+        let desk = CommandServer::new(RestartMode::Warm);
         desk.leave(seconds_ago, change);
         let (taken, said) = desk.found();
         assert!(!taken && said.contains(because), "{said}");
@@ -118,7 +118,7 @@ fn what_cannot_be_trusted_is_not_taken_up() {
 
 #[test]
 fn a_damaged_file_is_said_and_a_foreign_one_is_left_alone() {
-    let desk = Desk::new(RestartMode::Warm);
+    let desk = CommandServer::new(RestartMode::Warm);
     fs::write(&desk.wish.path, "fccd-flight 1 0\n{").unwrap();
     let (taken, said) = desk.found();
     assert!(!taken && said.contains("damaged"), "{said}");
@@ -132,7 +132,7 @@ fn a_damaged_file_is_said_and_a_foreign_one_is_left_alone() {
 
 #[test]
 fn two_daemons_do_not_share_a_file() {
-    let desk = Desk::new(RestartMode::Warm);
+    let desk = CommandServer::new(RestartMode::Warm);
     desk.leave(2, |_| {});
     let (first, _) = Restart::begin(desk.wish.clone());
     let (second, said) = Restart::begin(desk.wish.clone());
@@ -142,7 +142,7 @@ fn two_daemons_do_not_share_a_file() {
 
 #[test]
 fn a_place_that_cannot_be_is_said() {
-    let mut desk = Desk::new(RestartMode::Warm);
+    let mut desk = CommandServer::new(RestartMode::Warm);
     fs::write(desk.folder.path().join("file"), "").unwrap();
     desk.wish.path = desk.folder.path().join("file/fccd.flight");
     let (restart, said) = Restart::begin(desk.wish.clone());

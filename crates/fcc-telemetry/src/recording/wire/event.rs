@@ -1,14 +1,14 @@
 //! An event as a message.
 
 use fcc_core::flight::guidance::Targets;
-use fcc_core::flight::{Order as Command, Resume, Surfaces};
+use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
-    ActuatorFault, Event, EventKind, Flags, Order, SensorFault, Stage, Time,
+    ActuatorFault, Event, EventKind, Flags, LoopCommand, SensorFault, Stage, Time,
 };
 
+use super::fcc::command::Command as WireCommand;
 use super::fcc::event::Kind;
 use super::fcc::fault::Kind as FaultKind;
-use super::fcc::order::Order as WireOrder;
 use super::record::{state_in, state_out};
 use super::{Unknown, fcc};
 use crate::FlightEvent;
@@ -33,19 +33,19 @@ pub(crate) fn decode(event: &fcc::Event) -> Result<FlightEvent, Unknown> {
 }
 
 /// None for a kind that came to the loop and not to the schema.
-fn kind_out(kind: &EventKind<Command>) -> Option<Kind> {
+fn kind_out(kind: &EventKind<AutopilotCommand>) -> Option<Kind> {
     let gap = |count, first, last| fcc::Gap { count, first, last };
     Some(match *kind {
         EventKind::StateChanged { from, to } => Kind::StateChanged(fcc::StateChanged {
             from: Some(state_out(from.into())),
             to: Some(state_out(to.into())),
         }),
-        EventKind::Ordered(order) => Kind::Ordered(fcc::Order {
-            order: Some(order_out(order)?),
+        EventKind::CommandReceived(command) => Kind::Ordered(fcc::Command {
+            command: Some(command_out(command)?),
         }),
-        EventKind::ToldToStop => Kind::ToldToStop(fcc::ToldToStop {}),
-        EventKind::EngageRefused { blockers } => Kind::EngageRefused(fcc::EngageRefused {
-            blockers: blockers.bits(),
+        EventKind::StopRequested => Kind::StopRequested(fcc::StopRequested {}),
+        EventKind::EngageRefused { engage_inhibits } => Kind::EngageRefused(fcc::EngageRefused {
+            engage_inhibits: engage_inhibits.bits(),
         }),
         EventKind::SensorFault { index, fault } => {
             let (kind, errno) = match fault {
@@ -100,16 +100,16 @@ fn kind_out(kind: &EventKind<Command>) -> Option<Kind> {
     })
 }
 
-fn kind_in(kind: Kind) -> Result<EventKind<Command>, Unknown> {
+fn kind_in(kind: Kind) -> Result<EventKind<AutopilotCommand>, Unknown> {
     Ok(match kind {
         Kind::StateChanged(changed) => EventKind::StateChanged {
             from: state_in(changed.from.unwrap_or_default())?.state(),
             to: state_in(changed.to.unwrap_or_default())?.state(),
         },
-        Kind::Ordered(order) => EventKind::Ordered(order_in(order)?),
-        Kind::ToldToStop(_) => EventKind::ToldToStop,
+        Kind::Ordered(command) => EventKind::CommandReceived(command_in(command)?),
+        Kind::StopRequested(_) => EventKind::StopRequested,
         Kind::EngageRefused(refused) => EventKind::EngageRefused {
-            blockers: Flags::from_bits(refused.blockers),
+            engage_inhibits: Flags::from_bits(refused.engage_inhibits),
         },
         Kind::SensorFault(fault) => EventKind::SensorFault {
             index: index_in(fault.index)?,
@@ -179,28 +179,32 @@ fn stage_in(number: i32) -> Result<Stage, Unknown> {
         .ok_or(Unknown("a stage of a tick"))
 }
 
-fn order_out(order: Order<Command>) -> Option<WireOrder> {
-    Some(match order {
-        Order::Engage => WireOrder::Engage(fcc::Engage {}),
-        Order::Disengage => WireOrder::Disengage(fcc::Disengage {}),
-        Order::Stop => WireOrder::Stop(fcc::Stop {}),
-        Order::Controller(Command::Airspeed(mps)) => WireOrder::AirspeedMps(mps),
-        Order::Controller(Command::Heading(rad)) => WireOrder::HeadingRad(rad),
-        Order::Controller(Command::Altitude(m)) => WireOrder::AltitudeM(m),
-        Order::Controller(Command::Resume(resume)) => WireOrder::Resume(resume_out(&resume)),
-        Order::Controller(_) => return None,
+fn command_out(command: LoopCommand<AutopilotCommand>) -> Option<WireCommand> {
+    Some(match command {
+        LoopCommand::Engage => WireCommand::Engage(fcc::Engage {}),
+        LoopCommand::Disengage => WireCommand::Disengage(fcc::Disengage {}),
+        LoopCommand::Stop => WireCommand::Stop(fcc::Stop {}),
+        LoopCommand::Controller(AutopilotCommand::Airspeed(mps)) => WireCommand::AirspeedMps(mps),
+        LoopCommand::Controller(AutopilotCommand::Heading(rad)) => WireCommand::HeadingRad(rad),
+        LoopCommand::Controller(AutopilotCommand::Altitude(m)) => WireCommand::AltitudeM(m),
+        LoopCommand::Controller(AutopilotCommand::Resume(resume)) => {
+            WireCommand::Resume(resume_out(&resume))
+        }
+        LoopCommand::Controller(_) => return None,
     })
 }
 
-fn order_in(order: fcc::Order) -> Result<Order<Command>, Unknown> {
-    Ok(match order.order.ok_or(Unknown("an order"))? {
-        WireOrder::Engage(_) => Order::Engage,
-        WireOrder::Disengage(_) => Order::Disengage,
-        WireOrder::Stop(_) => Order::Stop,
-        WireOrder::AirspeedMps(mps) => Order::Controller(Command::Airspeed(mps)),
-        WireOrder::HeadingRad(rad) => Order::Controller(Command::Heading(rad)),
-        WireOrder::AltitudeM(m) => Order::Controller(Command::Altitude(m)),
-        WireOrder::Resume(resume) => Order::Controller(Command::Resume(resume_in(&resume))),
+fn command_in(command: fcc::Command) -> Result<LoopCommand<AutopilotCommand>, Unknown> {
+    Ok(match command.command.ok_or(Unknown("a command"))? {
+        WireCommand::Engage(_) => LoopCommand::Engage,
+        WireCommand::Disengage(_) => LoopCommand::Disengage,
+        WireCommand::Stop(_) => LoopCommand::Stop,
+        WireCommand::AirspeedMps(mps) => LoopCommand::Controller(AutopilotCommand::Airspeed(mps)),
+        WireCommand::HeadingRad(rad) => LoopCommand::Controller(AutopilotCommand::Heading(rad)),
+        WireCommand::AltitudeM(m) => LoopCommand::Controller(AutopilotCommand::Altitude(m)),
+        WireCommand::Resume(resume) => {
+            LoopCommand::Controller(AutopilotCommand::Resume(resume_in(&resume)))
+        }
     })
 }
 

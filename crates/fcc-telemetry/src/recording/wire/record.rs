@@ -28,7 +28,7 @@ pub(crate) fn encode(record: &FlightRecord) -> fcc::Record {
         outputs: Some(surfaces_out(&record.outputs)),
         sent: record.sent,
         state: Some(state_out(record.state)),
-        blockers: record.blockers.bits(),
+        engage_inhibits: record.engage_inhibits.bits(),
         faults: record.faults.bits(),
         sensor_faults: record.sensor_faults,
         actuator_faults: record.actuator_faults,
@@ -60,7 +60,7 @@ pub(crate) fn decode(record: &fcc::Record) -> Result<FlightRecord, Unknown> {
         page_faults: record.page_faults,
         early_wake_ns: record.early_wake_ns,
         state: state_in(record.state.unwrap_or_default())?,
-        blockers: Flags::from_bits(record.blockers),
+        engage_inhibits: Flags::from_bits(record.engage_inhibits),
         faults: Flags::from_bits(record.faults),
         sent: record.sent,
     })

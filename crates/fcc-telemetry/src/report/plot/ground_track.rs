@@ -5,7 +5,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::super::Report;
 use super::super::states::Phase;
-use super::super::track::Place;
+use super::super::track::TrackPoint;
 use super::Figure;
 use super::axis::Axis;
 use super::canvas::{
@@ -52,8 +52,8 @@ struct Map {
 }
 
 impl Map {
-    fn of(track: &[Place]) -> Self {
-        let around = |of: fn(&Place) -> f64| {
+    fn of(track: &[TrackPoint]) -> Self {
+        let around = |of: fn(&TrackPoint) -> f64| {
             let low = track.iter().map(of).fold(f64::INFINITY, f64::min);
             let high = track.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
             let reach = (high - low).max(LEAST_SPAN_M) * 0.56;
@@ -102,7 +102,7 @@ impl Map {
         let y = axis(self.north_m, self.height_px, "north");
         let mut panel = Panel::new(area, frame, x, y)?;
         panel.axes(true)?;
-        let at = |place: &Place| (place.east_m / unit_m, place.north_m / unit_m);
+        let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
         for (phase, places) in stretches(report) {
             let style = if phase == Phase::Engaged {
                 pen(ACTUAL, 1.4)
@@ -147,9 +147,9 @@ fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f
 }
 
 /// The track in pieces of one state each, which touch.
-fn stretches(report: &Report) -> Vec<(Phase, Vec<Place>)> {
+fn stretches(report: &Report) -> Vec<(Phase, Vec<TrackPoint>)> {
     let mut spans = report.states.iter().peekable();
-    let mut pieces: Vec<(Phase, Vec<Place>)> = Vec::new();
+    let mut pieces: Vec<(Phase, Vec<TrackPoint>)> = Vec::new();
     let mut phase = Phase::Standby;
     for place in &report.track {
         while let Some(span) = spans.next_if(|span| span.from_s <= place.time_s) {
@@ -173,7 +173,7 @@ fn number_states(
     area: &Area<'_>,
     report: &Report,
     panel: &Panel<'_>,
-    at: impl Fn(&Place) -> (f64, f64),
+    at: impl Fn(&TrackPoint) -> (f64, f64),
 ) -> Drawn {
     use super::super::events::Weight;
     let style = text(SMALL_PX, FAINT, HPos::Left, VPos::Bottom);

@@ -55,7 +55,7 @@ fn flying(tick: i64) -> Measurements {
 
 /// When, in s, each quantity is called frozen over 20 s.
 fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
-    let mut watch = FrozenWatch::new(AFTER_S);
+    let mut watch = FrozenDetector::new(AFTER_S);
     let estimate = Estimate::default();
     let mut seen = Vec::new();
     for tick in 0..800 {

@@ -17,7 +17,7 @@ use std::os::unix::net::{SocketAddr, UnixDatagram};
 use fcc_xplane::XPlaneStatus;
 
 /// The right to fly a simulator; given up when dropped.
-pub(super) struct Sole {
+pub(super) struct InstanceLock {
     status: XPlaneStatus,
     claim: Claim,
 }
@@ -34,7 +34,7 @@ enum Claim {
     Taken(SocketAddrV4),
 }
 
-impl Sole {
+impl InstanceLock {
     /// Claims what the connection leads to, if that is known yet. From here on
     /// control is taken only of what was claimed.
     pub(super) fn of(status: XPlaneStatus) -> Self {

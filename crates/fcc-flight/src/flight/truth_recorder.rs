@@ -7,7 +7,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 /// The built-in aircraft's sensor, which also leaves the truth of each tick in
 /// a ring. A full ring drops: scoring must not hold up a flight.
-pub(super) struct TappedSensor {
+pub(super) struct TruthRecorder {
     sensor: SimSensor,
     truth: Producer<(u64, Truth)>,
 }
@@ -18,10 +18,10 @@ pub(super) struct TruthReceiver {
 }
 
 /// Taps a sensor; the ring holds `capacity` ticks.
-pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TappedSensor, TruthReceiver) {
+pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TruthRecorder, TruthReceiver) {
     let (producer, consumer) = RingBuffer::new(capacity);
     (
-        TappedSensor {
+        TruthRecorder {
             sensor,
             truth: producer,
         },
@@ -29,7 +29,7 @@ pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TappedSensor, TruthRec
     )
 }
 
-impl Sensor<Measurements> for TappedSensor {
+impl Sensor<Measurements> for TruthRecorder {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let sampled = self.sensor.sample(tick, into);
         let _ = self

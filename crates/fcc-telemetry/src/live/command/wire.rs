@@ -1,17 +1,17 @@
-//! Orders and answers as they lie in shared memory.
+//! Commands and answers as they lie in shared memory.
 
 #![expect(unsafe_code, reason = "iceoryx2 asks for a promise about layouts")]
 
 use iceoryx2::prelude::ZeroCopySend;
 
 use super::super::Text;
-use super::{FlightOrder, NewSetpoints, ORDERS_VERSION, Verdict};
+use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, Verdict};
 
-/// An order as it lies in shared memory.
+/// A command as it lies in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Request {
-    /// [`ORDERS_VERSION`].
+    /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
     /// 0 engage, 1 disengage, 2 stop, 3 set.
     pub(super) code: u32,
@@ -29,9 +29,9 @@ pub(super) struct Request {
 pub(super) struct Answer {
     /// 0 carried out, 1 refused.
     pub(super) code: u32,
-    /// [`ORDERS_VERSION`].
+    /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
-    /// The tick that read the order; 0 if none did.
+    /// The tick that read the command; 0 if none did.
     pub(super) tick: u64,
     /// Why it was refused.
     pub(super) text: Text<240>,
@@ -40,14 +40,14 @@ pub(super) struct Answer {
 // SAFETY: repr(C), numbers only.
 unsafe impl ZeroCopySend for Request {
     unsafe fn type_name() -> &'static str {
-        "fcc.v1.Order"
+        "fcc.v1.Command"
     }
 }
 
 // SAFETY: repr(C), numbers and bytes only.
 unsafe impl ZeroCopySend for Answer {
     unsafe fn type_name() -> &'static str {
-        "fcc.v1.OrderAnswer"
+        "fcc.v1.CommandAnswer"
     }
 }
 
@@ -59,17 +59,17 @@ const SET: u32 = 3;
 const CARRIED_OUT: u32 = 0;
 const REFUSED: u32 = 1;
 
-impl From<FlightOrder> for Request {
-    fn from(order: FlightOrder) -> Self {
-        let (code, set) = match order {
-            FlightOrder::Engage => (ENGAGE, NewSetpoints::default()),
-            FlightOrder::Disengage => (DISENGAGE, NewSetpoints::default()),
-            FlightOrder::Stop => (STOP, NewSetpoints::default()),
-            FlightOrder::Set(set) => (SET, set),
+impl From<FlightCommand> for Request {
+    fn from(command: FlightCommand) -> Self {
+        let (code, set) = match command {
+            FlightCommand::Engage => (ENGAGE, NewSetpoints::default()),
+            FlightCommand::Disengage => (DISENGAGE, NewSetpoints::default()),
+            FlightCommand::Stop => (STOP, NewSetpoints::default()),
+            FlightCommand::Set(set) => (SET, set),
         };
         let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
         Self {
-            version: ORDERS_VERSION,
+            version: COMMANDS_VERSION,
             code,
             airspeed_mps: number(set.airspeed_mps),
             heading_rad: number(set.heading_rad),
@@ -82,28 +82,28 @@ impl Request {
     /// What another program wrote may be anything.
     ///
     /// # Errors
-    /// Why it is no order, in words.
-    pub(super) fn order(&self) -> Result<FlightOrder, String> {
-        if self.version != ORDERS_VERSION {
+    /// Why it is no command, in words.
+    pub(super) fn command(&self) -> Result<FlightCommand, String> {
+        if self.version != COMMANDS_VERSION {
             return Err(format!(
-                "the order is of version {}, and this daemon takes version {ORDERS_VERSION}: use \
+                "the command is of version {}, and this daemon takes version {COMMANDS_VERSION}: use \
                  the fccd that belongs to it",
                 self.version
             ));
         }
         let given = |value: f64| (!value.is_nan()).then_some(value);
-        let order = match self.code {
-            ENGAGE => FlightOrder::Engage,
-            DISENGAGE => FlightOrder::Disengage,
-            STOP => FlightOrder::Stop,
-            SET => FlightOrder::Set(NewSetpoints {
+        let command = match self.code {
+            ENGAGE => FlightCommand::Engage,
+            DISENGAGE => FlightCommand::Disengage,
+            STOP => FlightCommand::Stop,
+            SET => FlightCommand::Set(NewSetpoints {
                 airspeed_mps: given(self.airspeed_mps),
                 heading_rad: given(self.heading_rad),
                 altitude_m: given(self.altitude_m),
             }),
-            other => return Err(format!("there is no order with the number {other}")),
+            other => return Err(format!("there is no command with the number {other}")),
         };
-        order.check().map(|()| order)
+        command.check().map(|()| command)
     }
 }
 
@@ -115,7 +115,7 @@ impl From<&Verdict> for Answer {
         };
         Self {
             code,
-            version: ORDERS_VERSION,
+            version: COMMANDS_VERSION,
             tick,
             text: Text::new(text),
         }
@@ -166,16 +166,16 @@ mod tests {
 
     #[test]
     fn orders_and_verdicts_come_back() {
-        for order in [
-            FlightOrder::Engage,
-            FlightOrder::Disengage,
-            FlightOrder::Stop,
-            FlightOrder::Set(NewSetpoints {
+        for command in [
+            FlightCommand::Engage,
+            FlightCommand::Disengage,
+            FlightCommand::Stop,
+            FlightCommand::Set(NewSetpoints {
                 heading_rad: Some(1.5),
                 ..NewSetpoints::default()
             }),
         ] {
-            assert_eq!(Request::from(order).order(), Ok(order));
+            assert_eq!(Request::from(command).command(), Ok(command));
         }
         for verdict in [
             Verdict::CarriedOut { tick: 9 },
@@ -187,9 +187,9 @@ mod tests {
 
     #[test]
     fn another_version_is_refused() {
-        let mut request = Request::from(FlightOrder::Engage);
+        let mut request = Request::from(FlightCommand::Engage);
         request.version = 2;
-        let words = request.order().unwrap_err();
+        let words = request.command().unwrap_err();
         assert!(
             words.contains("version 2") && words.contains("version 1"),
             "{words}"
@@ -197,13 +197,13 @@ mod tests {
     }
 
     proptest! {
-        /// Nothing that lies in shared memory is an order that cannot be flown.
+        /// Nothing that lies in shared memory is a command that cannot be flown.
         #[test]
         fn any_bytes_are_an_order_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
             let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
             let request = Request { version, code, airspeed_mps, heading_rad, altitude_m };
-            if let Ok(order) = request.order() {
-                prop_assert!(order.check().is_ok());
+            if let Ok(command) = request.command() {
+                prop_assert!(command.check().is_ok());
             }
         }
     }

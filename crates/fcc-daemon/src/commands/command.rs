@@ -1,10 +1,10 @@
-//! `fccd order`: orders to a daemon on this machine.
+//! `fccd command`: commands to a daemon on this machine.
 
-use fcc_telemetry::live::{Commander, FlightOrder, NewSetpoints, OrderError};
+use fcc_telemetry::live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use serde::Serialize;
 
 use super::fail;
-use crate::cli::{OrderArgs, OrderWhat, SetArgs};
+use crate::cli::{CommandArgs, CommandChoice, SetArgs};
 use crate::exit::Exit;
 use crate::output;
 use fcc_flight::config::{FOOT_M, KNOT_MPS};
@@ -19,17 +19,17 @@ struct Told {
     why: Option<String>,
 }
 
-/// Gives an order, and says what became of it.
-pub(super) fn order(args: &OrderArgs) -> Exit {
-    let order = FlightOrder::from(&args.what);
-    if let Err(words) = order.check() {
+/// Gives a command, and says what became of it.
+pub(super) fn command(args: &CommandArgs) -> Exit {
+    let command = FlightCommand::from(&args.what);
+    if let Err(words) = command.check() {
         output::message(format!("fccd: {words}"));
         return Exit::Usage;
     }
-    let told = Commander::open(&args.instance).and_then(|mut daemon| daemon.order(order));
+    let told = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
     let exit = match &told {
         Ok(_) => Exit::Success,
-        Err(OrderError::Refused(_)) => Exit::Refused,
+        Err(CommandError::Refused(_)) => Exit::Refused,
         Err(_) => Exit::Failure,
     };
     if args.json {
@@ -54,13 +54,13 @@ pub(super) fn order(args: &OrderArgs) -> Exit {
     exit
 }
 
-impl From<&OrderWhat> for FlightOrder {
-    fn from(what: &OrderWhat) -> Self {
+impl From<&CommandChoice> for FlightCommand {
+    fn from(what: &CommandChoice) -> Self {
         match what {
-            OrderWhat::Engage => Self::Engage,
-            OrderWhat::Disengage => Self::Disengage,
-            OrderWhat::Stop => Self::Stop,
-            OrderWhat::Set(set) => Self::Set(NewSetpoints::from(set)),
+            CommandChoice::Engage => Self::Engage,
+            CommandChoice::Disengage => Self::Disengage,
+            CommandChoice::Stop => Self::Stop,
+            CommandChoice::Set(set) => Self::Set(NewSetpoints::from(set)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Orders between two programs on one machine: who gives them, and who flies.
+//! Commands between two programs on one machine: who gives them, and who flies.
 #![cfg(test)]
 #![cfg(feature = "live")]
 
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use fcc_telemetry::Instance;
 use fcc_telemetry::live::{
-    Asked, Commander, FlightOrder, Info, NewSetpoints, OrderError, Publisher, Text, Verdict,
+    Asked, CommandError, Commander, FlightCommand, Info, NewSetpoints, Publisher, Text, Verdict,
     WatchError,
 };
 
@@ -30,22 +30,22 @@ fn describe(mut publisher: Publisher) -> Publisher {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    describe(Publisher::start_with_orders(instance).unwrap())
+    describe(Publisher::start_with_commands(instance).unwrap())
 }
 
 fn next(publisher: &mut Publisher) -> Asked {
     let deadline = Instant::now() + PATIENCE;
     loop {
         publisher.flush();
-        if let Some(asked) = publisher.next_order() {
+        if let Some(asked) = publisher.next_command() {
             return asked;
         }
-        assert!(Instant::now() < deadline, "no order came");
+        assert!(Instant::now() < deadline, "no command came");
         sleep(Duration::from_millis(2));
     }
 }
 
-const HEADING: FlightOrder = FlightOrder::Set(NewSetpoints {
+const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
     airspeed_mps: None,
     heading_rad: Some(1.25),
     altitude_m: None,
@@ -58,20 +58,20 @@ fn an_order_arrives_and_its_answer_goes_back() {
     let told = thread::scope(|scope| {
         let giver = scope.spawn(|| {
             let mut commander = Commander::open(&instance).unwrap();
-            let first = commander.order(HEADING);
-            (first, commander.order(FlightOrder::Engage))
+            let first = commander.command(HEADING);
+            (first, commander.command(FlightCommand::Engage))
         });
         let asked = next(&mut publisher);
-        assert_eq!(asked.order, HEADING);
+        assert_eq!(asked.command, HEADING);
         publisher.answer(asked.id, Verdict::CarriedOut { tick: 77 });
         let asked = next(&mut publisher);
-        assert_eq!(asked.order, FlightOrder::Engage);
+        assert_eq!(asked.command, FlightCommand::Engage);
         publisher.answer(asked.id, Verdict::Refused("too slow".to_owned()));
         publisher.flush();
         giver.join().unwrap()
     });
     assert_eq!(told.0, Ok(77));
-    assert_eq!(told.1, Err(OrderError::Refused("too slow".to_owned())));
+    assert_eq!(told.1, Err(CommandError::Refused("too slow".to_owned())));
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn who_waits_when_the_flight_ends_is_told() {
         let giver = scope.spawn(|| {
             Commander::open(&instance)
                 .unwrap()
-                .order(FlightOrder::Disengage)
+                .command(FlightCommand::Disengage)
         });
         next(&mut publisher);
         drop(publisher);
@@ -92,8 +92,8 @@ fn who_waits_when_the_flight_ends_is_told() {
     assert!(
         matches!(
             &told,
-            Err(OrderError::Refused(words)) if words == "the flight is over"
-        ) || told == Err(OrderError::Unreachable(WatchError::NotRunning(instance))),
+            Err(CommandError::Refused(words)) if words == "the flight is over"
+        ) || told == Err(CommandError::Unreachable(WatchError::NotRunning(instance))),
         "{told:?}"
     );
 }
@@ -103,13 +103,13 @@ fn what_cannot_be_flown_does_not_leave_the_program() {
     let instance = instance("nonsense");
     let mut publisher = started(&instance);
     let mut commander = Commander::open(&instance).unwrap();
-    let nonsense = FlightOrder::Set(NewSetpoints {
+    let nonsense = FlightCommand::Set(NewSetpoints {
         altitude_m: Some(f64::INFINITY),
         ..NewSetpoints::default()
     });
-    let words = commander.order(nonsense).unwrap_err().to_string();
+    let words = commander.command(nonsense).unwrap_err().to_string();
     assert!(words.contains("altitude is inf m"), "{words}");
-    assert_eq!(publisher.next_order(), None);
+    assert_eq!(publisher.next_command(), None);
 }
 
 #[test]
@@ -117,18 +117,21 @@ fn a_daemon_that_takes_none_is_told_from_none_at_all() {
     let instance = instance("none");
     assert_eq!(
         Commander::open(&instance).unwrap_err(),
-        OrderError::Unreachable(WatchError::NotRunning(instance.clone()))
+        CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
     );
     let _publisher = describe(Publisher::start(&instance).unwrap());
     let words = Commander::open(&instance).unwrap_err().to_string();
-    assert!(words.contains("version 1.2.3, takes no orders"), "{words}");
-    assert!(words.contains("orders = false"), "{words}");
+    assert!(
+        words.contains("version 1.2.3, takes no commands"),
+        "{words}"
+    );
+    assert!(words.contains("commands = false"), "{words}");
 }
 
 #[test]
 fn a_daemon_with_another_layout_is_refused_in_words() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start_with_orders(&instance).unwrap();
+    let mut publisher = Publisher::start_with_commands(&instance).unwrap();
     publisher.describe(Info {
         layout: u32::MAX,
         software: Text::new("9.0.0"),

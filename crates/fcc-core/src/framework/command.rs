@@ -1,9 +1,9 @@
 //! What may be asked of a loop from outside.
 
 /// What may be asked of a loop from outside; `O` is what may be asked of its
-/// controller. Orders are carried out in the sequence they were sent in.
+/// controller. Commands are carried out in the sequence they were sent in.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Order<O> {
+pub enum LoopCommand<O> {
     /// Take over, if nothing blocks it: one attempt, answered by a change of
     /// state or by [`EngageRefused`](super::EventKind::EngageRefused).
     Engage,

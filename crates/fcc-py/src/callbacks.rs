@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fcc_core::flight::{Autopilot, Measurements, Order, Setpoints, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick};
 use pyo3::prelude::*;
 
@@ -30,12 +30,12 @@ impl Raised {
 
 /// A sensor in Python: called with the plant's time and what the sensors
 /// before it have measured, gives other measurements or None.
-pub(crate) struct GuestSensor {
+pub(crate) struct CallbackSensor {
     pub(crate) call: Py<PyAny>,
     pub(crate) raised: Raised,
 }
 
-impl Sensor<Measurements> for GuestSensor {
+impl Sensor<Measurements> for CallbackSensor {
     fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let measured = PyMeasurements::from_core(into);
         let said = Python::attach(|py| -> PyResult<Option<PyMeasurements>> {
@@ -68,7 +68,7 @@ impl Sensor<Measurements> for GuestSensor {
 
 /// A controller in Python beside the autopilot: navigation, guidance, states
 /// and failsafe are the autopilot's, and its surfaces are a proposal.
-pub(crate) struct GuestController {
+pub(crate) struct CallbackController {
     pub(crate) autopilot: Autopilot,
     pub(crate) call: Py<PyAny>,
     pub(crate) raised: Raised,
@@ -82,18 +82,18 @@ const NO_OUTPUT: Surfaces = Surfaces {
     rudder: f64::NAN,
 };
 
-impl Controller for GuestController {
+impl Controller for CallbackController {
     type Measurements = Measurements;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
-    type Order = Order;
+    type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
         self.autopilot.estimate(tick, measurements);
     }
 
-    fn blockers(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.blockers(tick, measurements)
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.engage_inhibits(tick, measurements)
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
@@ -104,8 +104,11 @@ impl Controller for GuestController {
         Autopilot::flag_name(bit)
     }
 
-    fn write_order(order: &Order, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        Autopilot::write_order(order, f)
+    fn write_command(
+        command: &AutopilotCommand,
+        f: &mut std::fmt::Formatter<'_>,
+    ) -> std::fmt::Result {
+        Autopilot::write_command(command, f)
     }
 
     fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
@@ -141,8 +144,8 @@ impl Controller for GuestController {
         self.autopilot.disengage();
     }
 
-    fn command(&mut self, order: &Order) {
-        self.autopilot.command(order);
+    fn command(&mut self, command: &AutopilotCommand) {
+        self.autopilot.command(command);
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -1,17 +1,17 @@
-//! Orders from other programs: sends them to the loop, and sees in what the
+//! Commands from other programs: sends them to the loop, and sees in what the
 //! loop tells what became of each.
 
 use std::collections::VecDeque;
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::{EventKind, Order, State};
-use fcc_runtime::OrderSender;
-use fcc_telemetry::live::{Asked, FlightOrder, Verdict};
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::{EventKind, LoopCommand, State};
+use fcc_runtime::CommandSender;
+use fcc_telemetry::live::{Asked, FlightCommand, Verdict};
 use fcc_telemetry::{FlightEvent, FlightRecord, event_words};
 
-/// Orders that were sent and whose outcome is not known yet, oldest first.
+/// Commands that were sent and whose outcome is not known yet, oldest first.
 #[derive(Debug, Default)]
-pub(super) struct Orders {
+pub(super) struct Commands {
     waiting: VecDeque<Waiting>,
 }
 
@@ -19,23 +19,23 @@ pub(super) struct Orders {
 struct Waiting {
     asked: Asked,
     /// What the loop has not read of it.
-    unread: VecDeque<Order<Command>>,
+    unread: VecDeque<LoopCommand<AutopilotCommand>>,
     /// The tick that read the last of it.
     read_in: Option<u64>,
     /// Why it was refused, if it was.
     refusal: Option<String>,
 }
 
-impl Orders {
-    /// Sends an order to the loop; the verdict if it is known at once.
+impl Commands {
+    /// Sends a command to the loop; the verdict if it is known at once.
     pub(super) fn send(
         &mut self,
         asked: Asked,
-        to: &mut OrderSender<Command>,
+        to: &mut CommandSender<AutopilotCommand>,
     ) -> Option<(u64, Verdict)> {
-        let unread: VecDeque<_> = asked.order.for_the_loop().into();
-        for order in &unread {
-            if let Err(error) = to.send(*order) {
+        let unread: VecDeque<_> = asked.command.for_the_loop().into();
+        for command in &unread {
+            if let Err(error) = to.send(*command) {
                 return Some((asked.id, Verdict::Refused(error.to_string())));
             }
         }
@@ -52,11 +52,11 @@ impl Orders {
     pub(super) fn event(&mut self, event: &FlightEvent) {
         match event.kind {
             // The loop reads in the sequence of sending, and somebody else's
-            // order is none that waits here.
-            EventKind::Ordered(order) => {
+            // command is none that waits here.
+            EventKind::CommandReceived(command) => {
                 let first = self.waiting.iter_mut().find(|w| w.read_in.is_none());
                 if let Some(waiting) = first
-                    && waiting.unread.front() == Some(&order)
+                    && waiting.unread.front() == Some(&command)
                 {
                     waiting.unread.pop_front();
                     if waiting.unread.is_empty() {
@@ -66,7 +66,7 @@ impl Orders {
             }
             EventKind::EngageRefused { .. } => {
                 for waiting in self.waiting.iter_mut().filter(|w| {
-                    w.read_in == Some(event.tick) && w.asked.order == FlightOrder::Engage
+                    w.read_in == Some(event.tick) && w.asked.command == FlightCommand::Engage
                 }) {
                     waiting.refusal = Some(event_words(event, &[], &[]));
                 }
@@ -82,10 +82,10 @@ impl Orders {
         let tick = first.read_in.filter(|tick| *tick <= record.tick.number)?;
         let state = record.state.state();
         let waiting = self.waiting.pop_front()?;
-        let done = match waiting.asked.order {
-            FlightOrder::Engage | FlightOrder::Set(_) => state == State::Engaged,
-            FlightOrder::Disengage => matches!(state, State::Standby | State::Stopped),
-            FlightOrder::Stop => state == State::Stopped,
+        let done = match waiting.asked.command {
+            FlightCommand::Engage | FlightCommand::Set(_) => state == State::Engaged,
+            FlightCommand::Disengage => matches!(state, State::Standby | State::Stopped),
+            FlightCommand::Stop => state == State::Stopped,
         };
         let verdict = if done {
             Verdict::CarriedOut { tick }
@@ -93,8 +93,8 @@ impl Orders {
             Verdict::Refused(
                 waiting
                     .refusal
-                    .unwrap_or_else(|| match waiting.asked.order {
-                        FlightOrder::Set(_) => {
+                    .unwrap_or_else(|| match waiting.asked.command {
+                        FlightCommand::Set(_) => {
                             format!("the state is {state}: set points are taken while engaged")
                         }
                         _ => format!("the state is {state}"),
@@ -113,22 +113,22 @@ mod tests {
 
     use super::*;
 
-    const HEADING: FlightOrder = FlightOrder::Set(NewSetpoints {
+    const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
         airspeed_mps: None,
         heading_rad: Some(1.0),
         altitude_m: Some(900.0),
     });
 
-    fn waiting(orders: &mut Orders, id: u64, order: FlightOrder) {
-        orders.waiting.push_back(Waiting {
-            asked: Asked { id, order },
-            unread: order.for_the_loop().into(),
+    fn waiting(commands: &mut Commands, id: u64, command: FlightCommand) {
+        commands.waiting.push_back(Waiting {
+            asked: Asked { id, command },
+            unread: command.for_the_loop().into(),
             read_in: None,
             refusal: None,
         });
     }
 
-    fn event(tick: u64, kind: EventKind<Command>) -> FlightEvent {
+    fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> FlightEvent {
         Event {
             tick,
             time: Time::NEVER,
@@ -146,25 +146,26 @@ mod tests {
 
     #[test]
     fn an_order_is_answered_by_the_record_of_the_tick_that_read_it() {
-        let mut orders = Orders::default();
-        waiting(&mut orders, 1, FlightOrder::Engage);
-        assert_eq!(orders.verdict(&record(4, State::Standby)), None);
-        orders.event(&event(5, EventKind::Ordered(Order::Engage)));
+        let mut commands = Commands::default();
+        waiting(&mut commands, 1, FlightCommand::Engage);
+        assert_eq!(commands.verdict(&record(4, State::Standby)), None);
+        commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         assert_eq!(
-            orders.verdict(&record(5, State::Engaged)),
+            commands.verdict(&record(5, State::Engaged)),
             Some((1, Verdict::CarriedOut { tick: 5 }))
         );
-        assert_eq!(orders.verdict(&record(5, State::Engaged)), None);
+        assert_eq!(commands.verdict(&record(5, State::Engaged)), None);
     }
 
     #[test]
     fn a_refusal_says_what_blocks() {
-        let mut orders = Orders::default();
-        waiting(&mut orders, 1, FlightOrder::Engage);
-        orders.event(&event(5, EventKind::Ordered(Order::Engage)));
-        let blockers = flags::TOO_SLOW;
-        orders.event(&event(5, EventKind::EngageRefused { blockers }));
-        let Some((1, Verdict::Refused(words))) = orders.verdict(&record(5, State::Standby)) else {
+        let mut commands = Commands::default();
+        waiting(&mut commands, 1, FlightCommand::Engage);
+        commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
+        let engage_inhibits = flags::TOO_SLOW;
+        commands.event(&event(5, EventKind::EngageRefused { engage_inhibits }));
+        let Some((1, Verdict::Refused(words))) = commands.verdict(&record(5, State::Standby))
+        else {
             panic!("not refused");
         };
         assert!(words.contains(Autopilot::flag_name(8)), "{words}");
@@ -172,22 +173,26 @@ mod tests {
 
     #[test]
     fn set_points_wait_for_the_last_of_them_and_need_an_engaged_loop() {
-        let mut orders = Orders::default();
-        waiting(&mut orders, 1, HEADING);
-        waiting(&mut orders, 2, HEADING);
+        let mut commands = Commands::default();
+        waiting(&mut commands, 1, HEADING);
+        waiting(&mut commands, 2, HEADING);
         let [heading, altitude] = HEADING.for_the_loop()[..] else {
-            panic!("two orders");
+            panic!("two commands");
         };
-        // Somebody else's order is not mistaken for one that waits.
-        orders.event(&event(3, EventKind::Ordered(Order::Disengage)));
-        orders.event(&event(3, EventKind::Ordered(heading)));
-        assert_eq!(orders.verdict(&record(3, State::Engaged)), None);
-        orders.event(&event(4, EventKind::Ordered(altitude)));
+        // Somebody else's command is not mistaken for one that waits.
+        commands.event(&event(
+            3,
+            EventKind::CommandReceived(LoopCommand::Disengage),
+        ));
+        commands.event(&event(3, EventKind::CommandReceived(heading)));
+        assert_eq!(commands.verdict(&record(3, State::Engaged)), None);
+        commands.event(&event(4, EventKind::CommandReceived(altitude)));
         let carried_out = Some((1, Verdict::CarriedOut { tick: 4 }));
-        assert_eq!(orders.verdict(&record(4, State::Engaged)), carried_out);
-        orders.event(&event(6, EventKind::Ordered(heading)));
-        orders.event(&event(6, EventKind::Ordered(altitude)));
-        let Some((2, Verdict::Refused(words))) = orders.verdict(&record(6, State::Standby)) else {
+        assert_eq!(commands.verdict(&record(4, State::Engaged)), carried_out);
+        commands.event(&event(6, EventKind::CommandReceived(heading)));
+        commands.event(&event(6, EventKind::CommandReceived(altitude)));
+        let Some((2, Verdict::Refused(words))) = commands.verdict(&record(6, State::Standby))
+        else {
             panic!("not refused");
         };
         assert!(

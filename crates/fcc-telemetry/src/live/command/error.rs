@@ -1,18 +1,18 @@
-//! Why an order was not carried out.
+//! Why a command was not carried out.
 
 use super::super::WatchError;
 use crate::Instance;
 
-/// Why an order was not carried out.
+/// Why a command was not carried out.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
-pub enum OrderError {
+pub enum CommandError {
     /// The daemon cannot be reached.
     #[error(transparent)]
     Unreachable(#[from] WatchError),
-    /// The daemon flies and takes no orders.
+    /// The daemon flies and takes no commands.
     #[error(
-        "fccd '{instance}', version {software}, takes no orders of version {own}: it has orders = \
+        "fccd '{instance}', version {software}, takes no commands of version {own}: it has commands = \
          false under [telemetry], or is another version"
     )]
     TakesNone {
@@ -20,18 +20,18 @@ pub enum OrderError {
         instance: Instance,
         /// Its version.
         software: String,
-        /// The version of this program's orders.
+        /// The version of this program's commands.
         own: u32,
     },
-    /// As many programs give orders as may.
-    #[error("too many programs give orders to fccd '{0}' at once: end one of them")]
+    /// As many programs give commands as may.
+    #[error("too many programs give commands to fccd '{0}' at once: end one of them")]
     TooMany(Instance),
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
     /// The daemon did not answer: whether it was carried out is not known.
     #[error(
-        "fccd '{0}' did not answer within {1} s, so it is not known whether the order was carried \
+        "fccd '{0}' did not answer within {1} s, so it is not known whether the command was carried \
          out: look at it with `fccd top --instance {0}`"
     )]
     NoAnswer(Instance, u64),

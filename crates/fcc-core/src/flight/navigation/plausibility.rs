@@ -29,39 +29,39 @@ const MAX_ANGLE_RAD: f64 = 12.6;
 ///
 /// Wide of what a light aircraft does, so that only what no aircraft does is
 /// kept out: a smaller step goes through the filters as noise does.
-struct Reach {
+struct PlausibilityLimit {
     at_once: f64,
     per_s: f64,
 }
 
 /// 10° of a sensor that finds its way back after a gap, and a roll of half a
 /// turn a second: twice what trainers do.
-const ATTITUDE_RAD: Reach = Reach {
+const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.175,
     per_s: PI,
 };
 /// 15° of a compass that swings, and half a turn a second: a fast spin.
-const HEADING_RAD: Reach = Reach {
+const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.26,
     per_s: PI,
 };
 /// A gust, and the roll acceleration of full aileron twice over.
-const RATES_RADPS: Reach = Reach {
+const RATES_RADPS: PlausibilityLimit = PlausibilityLimit {
     at_once: 1.0,
     per_s: 8.0,
 };
 /// 3 g at once, as a hard landing, and what a gust builds up.
-const SPECIFIC_FORCE_MPS2: Reach = Reach {
+const SPECIFIC_FORCE_MPS2: PlausibilityLimit = PlausibilityLimit {
     at_once: 30.0,
     per_s: 200.0,
 };
 /// 23 kt at once is the shear of a gust front; 2 g along the path.
-const AIRSPEED_MPS: Reach = Reach {
+const AIRSPEED_MPS: PlausibilityLimit = PlausibilityLimit {
     at_once: 12.0,
     per_s: 20.0,
 };
 /// 50 ft at once, of a static source in a gust; 60 m/s is a steep dive.
-const HEIGHT_M: Reach = Reach {
+const HEIGHT_M: PlausibilityLimit = PlausibilityLimit {
     at_once: 15.0,
     per_s: 60.0,
 };
@@ -76,7 +76,7 @@ const GROWS_FOR_S: f64 = 0.1;
 /// was put somewhere else. By then its loss was seen.
 const CONVINCED_AFTER: u32 = 4;
 
-impl Reach {
+impl PlausibilityLimit {
     fn holds(&self, difference: f64, gap_s: f64) -> bool {
         difference.abs() <= self.at_once + self.per_s * gap_s.min(GROWS_FOR_S)
     }
@@ -84,7 +84,7 @@ impl Reach {
 
 /// Copies from `new` into `good` what can be true. Readings are too old at
 /// `max_age`.
-pub(crate) fn accept(good: &mut Measurements, new: &Measurements, max_age: Duration) {
+pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max_age: Duration) {
     let convinced = CONVINCED_AFTER * max_age;
     take(
         &mut good.attitude,
@@ -185,7 +185,7 @@ fn forces(f: &SpecificForce) -> [f64; 3] {
     [f.x_mps2, f.y_mps2, f.z_mps2]
 }
 
-fn near(a: [f64; 3], b: [f64; 3], reach: &Reach, gap_s: f64) -> bool {
+fn near(a: [f64; 3], b: [f64; 3], reach: &PlausibilityLimit, gap_s: f64) -> bool {
     a.iter().zip(b).all(|(a, b)| reach.holds(b - a, gap_s))
 }
 
@@ -218,11 +218,11 @@ mod tests {
     fn what_cannot_be_true_leaves_the_last_good_value_to_grow_old() {
         let mut good = Measurements::default();
         let mut new = flying(ms(1));
-        accept(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE);
         for bad in [f64::NAN, f64::INFINITY, -1e9, 1e9] {
             new.airspeed_mps = Reading::new(bad, ms(2));
             new.altitude_m = Reading::new(bad, ms(2));
-            accept(&mut good, &new, MAX_AGE);
+            plausibility_gate(&mut good, &new, MAX_AGE);
             assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(1)));
             assert_eq!(good.altitude_m, Reading::new(914.0, ms(1)));
         }
@@ -234,13 +234,13 @@ mod tests {
         for at_ms in (25..1_000).step_by(25) {
             let mut new = flying(ms(at_ms));
             new.altitude_m.value = 1_200.0;
-            accept(&mut good, &new, MAX_AGE);
+            plausibility_gate(&mut good, &new, MAX_AGE);
             assert_eq!(good.altitude_m, Reading::new(914.0, ms(0)), "{at_ms} ms");
             assert_eq!(good.airspeed_mps.taken, ms(at_ms));
         }
         let mut new = flying(ms(1_000));
         new.altitude_m.value = 1_200.0;
-        accept(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE);
         assert_eq!(good.altitude_m, new.altitude_m);
     }
 
@@ -249,8 +249,8 @@ mod tests {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
         new.airspeed_mps.value = 90.0;
-        accept(&mut good, &new, MAX_AGE);
-        accept(&mut good, &flying(ms(50)), MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &flying(ms(50)), MAX_AGE);
         assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(50)));
     }
 
@@ -259,7 +259,7 @@ mod tests {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
         new.heading_rad.value = 0.05;
-        accept(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE);
         assert_eq!(good.heading_rad, new.heading_rad);
     }
 }

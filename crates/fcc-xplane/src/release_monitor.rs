@@ -10,7 +10,7 @@ use core::time::Duration;
 use fcc_core::framework::Time;
 
 use crate::controls::Controls;
-use crate::link::{Control, Link};
+use crate::link::{Control, SharedState};
 use crate::port::Errno;
 use crate::quantity::Quantity;
 
@@ -23,7 +23,7 @@ const MOST_TIMES: u8 = 40;
 
 /// Watches the overrides after control was given back.
 #[derive(Debug)]
-pub(crate) struct LettingGo {
+pub(crate) struct ReleaseMonitor {
     controls: Controls,
     /// Since when control is being given back; never while it is not.
     since: Time,
@@ -31,7 +31,7 @@ pub(crate) struct LettingGo {
     times: u8,
 }
 
-impl LettingGo {
+impl ReleaseMonitor {
     pub(crate) const fn new(controls: Controls) -> Self {
         Self {
             controls,
@@ -46,10 +46,10 @@ impl LettingGo {
     pub(crate) fn see_to_it(
         &mut self,
         now: Time,
-        link: &Link,
+        link: &SharedState,
         send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
-        if link.control() != Control::LettingGo {
+        if link.control() != Control::ReleaseMonitor {
             self.since = Time::NEVER;
             return Ok(());
         }
@@ -71,7 +71,7 @@ impl LettingGo {
                 .clone()
                 .all(|(value, at)| *value < 0.5 && *at > settled);
         if all_clear {
-            link.set_free_if_letting_go();
+            link.set_free_if_releasing();
         } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
             self.sent = now;
             self.times += 1;
@@ -91,8 +91,8 @@ mod tests {
     /// So many ticks in which the simulator shows its overrides; how many
     /// datagrams were sent in each.
     fn watch(
-        letting_go: &mut LettingGo,
-        link: &Link,
+        release_monitor: &mut ReleaseMonitor,
+        link: &SharedState,
         now: &mut Time,
         ticks: u32,
         overrides: [f64; 2],
@@ -102,7 +102,7 @@ mod tests {
             *now = *now + TICK;
             link.show(Quantity::OverrideJoystick, overrides[0], *now);
             link.show(Quantity::OverrideThrottles, overrides[1], *now);
-            letting_go
+            release_monitor
                 .see_to_it(*now, link, |_| {
                     sent += 1;
                     Ok(())
@@ -112,49 +112,70 @@ mod tests {
         sent
     }
 
-    fn bench() -> (LettingGo, Link, Time) {
+    fn bench() -> (ReleaseMonitor, SharedState, Time) {
         let controls = Controls::new(&XPlaneConfig::default()).unwrap();
         (
-            LettingGo::new(controls),
-            Link::new(None),
+            ReleaseMonitor::new(controls),
+            SharedState::new(None),
             Time::from_nanos(1_000_000_000),
         )
     }
 
     #[test]
     fn an_override_that_is_not_ours_is_left_alone() {
-        let (mut letting_go, link, mut now) = bench();
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 400, [1.0, 1.0]), 0);
+        let (mut release_monitor, link, mut now) = bench();
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 400, [1.0, 1.0]),
+            0
+        );
         link.set_control(Control::Held);
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 400, [1.0, 1.0]), 0);
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 400, [1.0, 1.0]),
+            0
+        );
     }
 
     #[test]
     fn released_and_seen_released_is_free_at_once() {
-        let (mut letting_go, link, mut now) = bench();
-        link.set_control(Control::LettingGo);
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 20, [0.0, 0.0]), 0);
+        let (mut release_monitor, link, mut now) = bench();
+        link.set_control(Control::ReleaseMonitor);
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 20, [0.0, 0.0]),
+            0
+        );
         assert_eq!(link.control(), Control::Free);
     }
 
     #[test]
     fn one_that_still_shows_is_released_again_until_it_is() {
-        let (mut letting_go, link, mut now) = bench();
-        link.set_control(Control::LettingGo);
+        let (mut release_monitor, link, mut now) = bench();
+        link.set_control(Control::ReleaseMonitor);
         // Five datagrams each: three surfaces, two overrides.
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 12, [0.0, 1.0]), 5);
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 20, [0.0, 1.0]), 10);
-        assert_eq!(link.control(), Control::LettingGo);
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 2, [0.0, 0.0]), 0);
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 12, [0.0, 1.0]),
+            5
+        );
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 20, [0.0, 1.0]),
+            10
+        );
+        assert_eq!(link.control(), Control::ReleaseMonitor);
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 2, [0.0, 0.0]),
+            0
+        );
         assert_eq!(link.control(), Control::Free);
-        assert_eq!(watch(&mut letting_go, &link, &mut now, 40, [1.0, 1.0]), 0);
+        assert_eq!(
+            watch(&mut release_monitor, &link, &mut now, 40, [1.0, 1.0]),
+            0
+        );
     }
 
     #[test]
     fn somebody_who_keeps_setting_it_wins_after_ten_seconds() {
-        let (mut letting_go, link, mut now) = bench();
-        link.set_control(Control::LettingGo);
-        let sent = watch(&mut letting_go, &link, &mut now, 2_000, [1.0, 1.0]);
+        let (mut release_monitor, link, mut now) = bench();
+        link.set_control(Control::ReleaseMonitor);
+        let sent = watch(&mut release_monitor, &link, &mut now, 2_000, [1.0, 1.0]);
         assert_eq!(sent, 40 * 5);
     }
 }

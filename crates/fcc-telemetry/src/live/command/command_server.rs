@@ -1,4 +1,4 @@
-//! The end that takes orders, in the publishing thread: hands them to who
+//! The end that takes commands, in the publishing thread: hands them to who
 //! flies by a ring, and gives the answers back.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -11,21 +11,21 @@ use iceoryx2::service::service_name::ServiceName;
 use super::super::PublishError;
 use super::super::services::{Access, Ipc};
 use super::wire::{Answer, Request};
-use super::{Asked, ORDERS_VERSION, Verdict};
+use super::{Asked, COMMANDS_VERSION, Verdict};
 use crate::Instance;
 
-/// Programs that may give orders to one daemon at the same time.
+/// Programs that may give commands to one daemon at the same time.
 const MAX_COMMANDERS: usize = 16;
 /// Processes that may hold the service open: some were killed and are not
 /// cleaned up yet.
 const MAX_NODES: usize = MAX_COMMANDERS + 16;
-/// Orders of one program that may wait.
+/// Commands of one program that may wait.
 const MAX_WAITING: usize = 4;
 
 /// The ends of the rings that who flies holds.
 #[derive(Debug)]
 pub(in super::super) struct Ends {
-    pub(in super::super) orders: Receiver<Asked>,
+    pub(in super::super) commands: Receiver<Asked>,
     pub(in super::super) verdicts: SyncSender<(u64, Verdict)>,
 }
 
@@ -34,34 +34,34 @@ pub(in super::super) type Rings = (SyncSender<Asked>, Receiver<(u64, Verdict)>);
 
 type Waiting = ActiveRequest<Ipc, Request, (), Answer, ()>;
 
-/// Takes orders from other programs.
-pub(in super::super) struct Desk {
+/// Takes commands from other programs.
+pub(in super::super) struct CommandServer {
     server: Server<Ipc, Request, (), Answer, ()>,
     waiting: Vec<(u64, Waiting)>,
-    orders: SyncSender<Asked>,
+    commands: SyncSender<Asked>,
     verdicts: Receiver<(u64, Verdict)>,
     next_id: u64,
 }
 
-/// What the daemon's orders are asked for by.
+/// What the daemon's commands are asked for by.
 pub(super) fn service_name(instance: &Instance) -> Option<ServiceName> {
-    ServiceName::new(&format!("fcc/{instance}/order/v{ORDERS_VERSION}")).ok()
+    ServiceName::new(&format!("fcc/{instance}/command/v{COMMANDS_VERSION}")).ok()
 }
 
-impl Desk {
+impl CommandServer {
     /// The rings between the desk and who flies.
     pub(in super::super) fn rings() -> (Ends, Rings) {
         let room = MAX_COMMANDERS * MAX_WAITING;
-        let (orders_in, orders) = sync_channel(room);
+        let (commands_in, commands) = sync_channel(room);
         let (verdicts, verdicts_out) = sync_channel(room);
-        (Ends { orders, verdicts }, (orders_in, verdicts_out))
+        (Ends { commands, verdicts }, (commands_in, verdicts_out))
     }
 
     /// Opens the service, and makes it if there is none.
     pub(in super::super) fn open(
         access: &Access,
         instance: &Instance,
-        (orders, verdicts): Rings,
+        (commands, verdicts): Rings,
     ) -> Result<Self, PublishError> {
         let unavailable = |words: String| PublishError::NoSharedMemory(words);
         let name = service_name(instance)
@@ -76,16 +76,16 @@ impl Desk {
             .max_response_buffer_size(1)
             .enable_fire_and_forget_requests(false)
             .open_or_create()
-            .map_err(|error| unavailable(format!("orders: {error:?}")))?;
+            .map_err(|error| unavailable(format!("commands: {error:?}")))?;
         let server = service
             .server_builder()
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
-            .map_err(|error| unavailable(format!("orders: {error:?}")))?;
+            .map_err(|error| unavailable(format!("commands: {error:?}")))?;
         Ok(Self {
             server,
             waiting: Vec::new(),
-            orders,
+            commands,
             verdicts,
             next_id: 0,
         })
@@ -102,7 +102,7 @@ impl Desk {
                 answer(&request, &verdict);
             }
         }
-        // Who is gone waits for nothing; the order stands.
+        // Who is gone waits for nothing; the command stands.
         self.waiting.retain(|(_, request)| request.is_connected());
     }
 
@@ -116,16 +116,16 @@ impl Desk {
     }
 
     fn take(&mut self, request: Waiting) {
-        let order = match request.order() {
-            Ok(order) => order,
+        let command = match request.command() {
+            Ok(command) => command,
             Err(words) => return answer(&request, &Verdict::Refused(words)),
         };
         let id = self.next_id;
         self.next_id += 1;
-        if self.orders.try_send(Asked { id, order }).is_ok() {
+        if self.commands.try_send(Asked { id, command }).is_ok() {
             self.waiting.push((id, request));
         } else {
-            let words = "too many orders wait: send it again".to_owned();
+            let words = "too many commands wait: send it again".to_owned();
             answer(&request, &Verdict::Refused(words));
         }
     }

@@ -1,4 +1,4 @@
-//! The end that gives orders.
+//! The end that gives commands.
 
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use super::super::services::{self, Access, Ipc};
 use super::super::watcher::{check_layout, read_info};
 use super::super::{Info, WatchError};
 use super::wire::{Answer, Request};
-use super::{FlightOrder, ORDERS_VERSION, OrderError, Verdict, desk};
+use super::{COMMANDS_VERSION, CommandError, FlightCommand, Verdict, command_server};
 use crate::Instance;
 
 /// How long a daemon may take to answer: some ten times what it needs at the
@@ -18,18 +18,18 @@ use crate::Instance;
 const PATIENCE: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// Gives orders to a daemon on this machine.
+/// Gives commands to a daemon on this machine.
 ///
 /// ```no_run
 /// use fcc_telemetry::Instance;
-/// use fcc_telemetry::live::{Commander, FlightOrder, NewSetpoints};
+/// use fcc_telemetry::live::{Commander, FlightCommand, NewSetpoints};
 ///
 /// let mut commander = Commander::open(&Instance::default())?;
-/// commander.order(FlightOrder::Engage)?;
+/// commander.command(FlightCommand::Engage)?;
 /// let set = NewSetpoints { heading_rad: Some(1.57), ..NewSetpoints::default() };
-/// let tick = commander.order(FlightOrder::Set(set))?;
+/// let tick = commander.command(FlightCommand::Set(set))?;
 /// println!("carried out in tick {tick}");
-/// # Ok::<(), fcc_telemetry::live::OrderError>(())
+/// # Ok::<(), fcc_telemetry::live::CommandError>(())
 /// ```
 #[derive(Debug)]
 pub struct Commander {
@@ -45,17 +45,17 @@ impl Commander {
     ///
     /// # Errors
     /// When no daemon of this name runs here, when it is of another version,
-    /// or when it takes no orders.
-    pub fn open(instance: &Instance) -> Result<Self, OrderError> {
+    /// or when it takes no commands.
+    pub fn open(instance: &Instance) -> Result<Self, CommandError> {
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
         check_layout(&info, instance)?;
-        let name =
-            desk::service_name(instance).ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
-        let takes_none = || OrderError::TakesNone {
+        let name = command_server::service_name(instance)
+            .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
+        let takes_none = || CommandError::TakesNone {
             instance: instance.clone(),
             software: info.software.as_str().to_owned(),
-            own: ORDERS_VERSION,
+            own: COMMANDS_VERSION,
         };
         let service = access
             .service_builder(&name)
@@ -66,7 +66,7 @@ impl Commander {
             .client_builder()
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
-            .map_err(|_| OrderError::TooMany(instance.clone()))?;
+            .map_err(|_| CommandError::TooMany(instance.clone()))?;
         Ok(Self {
             instance: instance.clone(),
             info,
@@ -75,22 +75,22 @@ impl Commander {
         })
     }
 
-    /// Who takes the orders.
+    /// Who takes the commands.
     pub const fn info(&self) -> &Info {
         &self.info
     }
 
-    /// Gives an order and waits until it is carried out; the tick that did.
+    /// Gives a command and waits until it is carried out; the tick that did.
     ///
     /// # Errors
     /// When it cannot be flown, when the daemon refuses it (with the daemon's
     /// reason), is gone, or does not answer.
-    pub fn order(&mut self, order: FlightOrder) -> Result<u64, OrderError> {
-        order.check().map_err(OrderError::Refused)?;
-        let gone = || OrderError::Unreachable(WatchError::NotRunning(self.instance.clone()));
+    pub fn command(&mut self, command: FlightCommand) -> Result<u64, CommandError> {
+        command.check().map_err(CommandError::Refused)?;
+        let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self
             .client
-            .send_copy(Request::from(order))
+            .send_copy(Request::from(command))
             .map_err(|error| WatchError::NoSharedMemory(format!("{error:?}")))?;
         let deadline = Instant::now() + PATIENCE;
         loop {
@@ -100,7 +100,7 @@ impl Commander {
                 Ok(Some(answer)) => {
                     return match answer.verdict() {
                         Verdict::CarriedOut { tick } => Ok(tick),
-                        Verdict::Refused(words) => Err(OrderError::Refused(words)),
+                        Verdict::Refused(words) => Err(CommandError::Refused(words)),
                     };
                 }
                 Ok(None) if !connected => return Err(gone()),
@@ -108,7 +108,7 @@ impl Commander {
                 Err(error) => return Err(WatchError::NoSharedMemory(format!("{error:?}")).into()),
             }
             if Instant::now() > deadline {
-                return Err(OrderError::NoAnswer(
+                return Err(CommandError::NoAnswer(
                     self.instance.clone(),
                     PATIENCE.as_secs(),
                 ));
@@ -121,15 +121,15 @@ impl Commander {
 fn refused(
     error: RequestResponseOpenError,
     instance: &Instance,
-    takes_none: impl Fn() -> OrderError,
-) -> OrderError {
+    takes_none: impl Fn() -> CommandError,
+) -> CommandError {
     use RequestResponseOpenError as Open;
     match error {
         Open::DoesNotExist
         | Open::IsMarkedForDestruction
         | Open::HangsInCreation
         | Open::IncompatibleRequestOrResponseType => takes_none(),
-        Open::ExceedsMaxNumberOfNodes => OrderError::TooMany(instance.clone()),
+        Open::ExceedsMaxNumberOfNodes => CommandError::TooMany(instance.clone()),
         Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()).into(),
         error => WatchError::NoSharedMemory(format!("{error:?}")).into(),
     }

@@ -1,39 +1,39 @@
-//! Orders to a daemon from another program on the machine.
+//! Commands to a daemon from another program on the machine.
 //!
 //! ```text
 //! Commander ─► service ─► fcc-live ─► ring ─► who flies ─► the loop's ring
 //!    ▲         request     looks             sends, and sees in what the loop
-//!    └──────── response ◄─ answers ◄─ ring ◄ tells what became of the order
+//!    └──────── response ◄─ answers ◄─ ring ◄ tells what became of the command
 //! ```
 //!
-//! The loop's thread takes no part but that it reads its ring of orders, as it
-//! always does. Whoever asks learns what became of the order in the tick that
+//! The loop's thread takes no part but that it reads its ring of commands, as it
+//! always does. Whoever asks learns what became of the command in the tick that
 //! read it. Only the daemon's own user can open the service: iceoryx2 makes
 //! its files for their owner alone.
 
+mod command_server;
 mod commander;
-mod desk;
 mod error;
 mod wire;
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::Order as Command;
-use fcc_core::framework::Order;
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::LoopCommand;
 
+pub(super) use command_server::{CommandServer, Ends, Rings};
 pub use commander::Commander;
-pub(super) use desk::{Desk, Ends, Rings};
-pub use error::OrderError;
+pub use error::CommandError;
 
-/// The version of orders and answers, apart from the layouts': whoever changes
+/// The version of commands and answers, apart from the layouts': whoever changes
 /// one of them, or what it means, counts this up, the names of the types with
 /// it.
-pub const ORDERS_VERSION: u32 = 1;
+pub const COMMANDS_VERSION: u32 = 1;
 
 /// What may be asked of a flight from outside.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub enum FlightOrder {
+pub enum FlightCommand {
     /// Take over as things are, if nothing blocks it.
     Engage,
     /// Give the controls back.
@@ -59,7 +59,7 @@ const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
 const HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
 const ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
 
-impl FlightOrder {
+impl FlightCommand {
     /// Checks its numbers.
     ///
     /// # Errors
@@ -79,19 +79,19 @@ impl FlightOrder {
     }
 
     /// What goes to the loop for it, in this sequence.
-    pub fn for_the_loop(&self) -> Vec<Order<Command>> {
+    pub fn for_the_loop(&self) -> Vec<LoopCommand<AutopilotCommand>> {
         match self {
-            Self::Engage => vec![Order::Engage],
-            Self::Disengage => vec![Order::Disengage],
-            Self::Stop => vec![Order::Stop],
+            Self::Engage => vec![LoopCommand::Engage],
+            Self::Disengage => vec![LoopCommand::Disengage],
+            Self::Stop => vec![LoopCommand::Stop],
             Self::Set(set) => [
-                set.airspeed_mps.map(Command::Airspeed),
-                set.heading_rad.map(Command::Heading),
-                set.altitude_m.map(Command::Altitude),
+                set.airspeed_mps.map(AutopilotCommand::Airspeed),
+                set.heading_rad.map(AutopilotCommand::Heading),
+                set.altitude_m.map(AutopilotCommand::Altitude),
             ]
             .into_iter()
             .flatten()
-            .map(Order::Controller)
+            .map(LoopCommand::Controller)
             .collect(),
         }
     }
@@ -114,16 +114,16 @@ fn within(
     }
 }
 
-/// An order that came from another program, and waits for its answer.
+/// A command that came from another program, and waits for its answer.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Asked {
     /// Which, for [`Publisher::answer`](super::Publisher::answer).
     pub id: u64,
     /// What is asked.
-    pub order: FlightOrder,
+    pub command: FlightCommand,
 }
 
-/// What became of an order.
+/// What became of a command.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Verdict {
     /// It was carried out in this tick.
@@ -139,8 +139,8 @@ pub enum Verdict {
 mod tests {
     use super::*;
 
-    fn set(airspeed_mps: Option<f64>, heading_rad: Option<f64>) -> FlightOrder {
-        FlightOrder::Set(NewSetpoints {
+    fn set(airspeed_mps: Option<f64>, heading_rad: Option<f64>) -> FlightCommand {
+        FlightCommand::Set(NewSetpoints {
             airspeed_mps,
             heading_rad,
             altitude_m: None,
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_flown_is_refused_in_words() {
-        for (order, word) in [
+        for (command, word) in [
             (set(None, None), "no set point"),
             (
                 set(Some(f64::NAN), None),
@@ -158,7 +158,7 @@ mod tests {
             (set(Some(-1.0), None), "airspeed is -1"),
             (set(None, Some(7.0)), "heading is 7 rad"),
         ] {
-            let words = order.check().unwrap_err();
+            let words = command.check().unwrap_err();
             assert!(words.contains(word), "{words}");
         }
         assert_eq!(set(Some(50.0), Some(1.0)).check(), Ok(()));
@@ -169,10 +169,10 @@ mod tests {
         assert_eq!(
             set(Some(50.0), Some(1.0)).for_the_loop(),
             [
-                Order::Controller(Command::Airspeed(50.0)),
-                Order::Controller(Command::Heading(1.0))
+                LoopCommand::Controller(AutopilotCommand::Airspeed(50.0)),
+                LoopCommand::Controller(AutopilotCommand::Heading(1.0))
             ]
         );
-        assert_eq!(FlightOrder::Stop.for_the_loop(), [Order::Stop]);
+        assert_eq!(FlightCommand::Stop.for_the_loop(), [LoopCommand::Stop]);
     }
 }

@@ -11,7 +11,7 @@ use super::hang::Hung;
 
 /// Keeps count, from what the loop tells, of what the loop itself would say at
 /// its end: for one that hangs.
-pub(super) struct Tally {
+pub(super) struct RunStatistics {
     timing: TimingStats,
     ticks: u64,
     failsafes: u64,
@@ -19,7 +19,7 @@ pub(super) struct Tally {
     last: FlightRecord,
 }
 
-impl Tally {
+impl RunStatistics {
     /// Nothing yet.
     ///
     /// # Errors

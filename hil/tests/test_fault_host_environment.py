@@ -145,7 +145,7 @@ def a_full_ring(fccd: Path, scratch: Path) -> Flown:
 @pytest.fixture(scope="module")
 def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
     """All flights, side by side."""
-    scratch = tmp_path_factory.mktemp("surroundings")
+    scratch = tmp_path_factory.mktemp("host_environment")
     assert shutil.which("prlimit"), "install util-linux"
     made: dict[str, Callable[[], object]] = {
         "disk": lambda: a_full_disk(fccd, scratch / "disk"),
