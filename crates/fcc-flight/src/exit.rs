@@ -33,6 +33,8 @@ pub enum Exit {
     Refused = 11,
     /// Another program has what is asked for: the simulator, or the local port.
     Taken = 12,
+    /// The flight went as it should, but was not recorded, or not as a whole.
+    NotRecorded = 13,
 }
 
 /// For `--help`.
@@ -50,7 +52,8 @@ Exit codes:
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
  11  the daemon refused the command
- 12  another program has the simulator or the local port";
+ 12  another program has the simulator or the local port
+ 13  the flight went as it should, but was not recorded, or not as a whole";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

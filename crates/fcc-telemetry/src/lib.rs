@@ -22,5 +22,5 @@ pub use instance::{Instance, InstanceError};
 pub use layout::{FIELDS, Field, FieldKind, RECORD_BYTES, RecordWords, words_of};
 pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
-pub use table::{flight_table, recordings_table, timing_table};
+pub use table::{ScoredBy, flight_table, recordings_table, timing_table};
 pub use timing::{DeniedRequest, Lateness, Period, Realtime, TimingReport};

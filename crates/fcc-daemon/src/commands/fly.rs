@@ -1,6 +1,10 @@
 //! `fccd fly`: the built-in aircraft through the pattern.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use fcc_runtime::SpawnError;
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
@@ -8,7 +12,7 @@ use crate::exit::Exit;
 use crate::output;
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
-    FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
+    FlyError, Length, Lines, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
 };
 
 /// The legs that a flight has if nobody says how long it is to be.
@@ -37,7 +41,6 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
             GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
         quiet: args.quiet,
-        announce: true,
     };
     conduct(&config, as_given, plan, args.json)
 }
@@ -56,7 +59,16 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
         }
     };
     let recording = RecordingRequest::of(config, as_given);
-    match fly_assembly(assembly, &config.tick, plan, recording) {
+    // In lockstep there is no time to lose: every line is waited for.
+    let (lines, printer) = match plan.pace {
+        Pace::RealTime => output::lines(),
+        Pace::Lockstep => (Box::new(output::message) as Lines, None),
+    };
+    let flown = fly_assembly(assembly, &config.tick, plan, recording, lines);
+    if let Some(printer) = printer {
+        printer.finish();
+    }
+    match flown {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
@@ -71,6 +83,12 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
 }
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
+    // Whoever does not read what follows may end the program without it: the
+    // controls are released, and the recording is on the disk.
+    for signal in [SIGTERM, SIGINT] {
+        let over = Arc::new(AtomicBool::new(true));
+        let _ = signal_hook::flag::register_conditional_default(signal, over);
+    }
     if json {
         output::json(outcome, outcome.exit);
     } else {

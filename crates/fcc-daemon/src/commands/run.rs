@@ -19,7 +19,6 @@ pub(super) fn run(args: &RunArgs) -> Exit {
                 pace: Pace::RealTime,
                 length: Length::Open,
                 quiet: args.quiet,
-                announce: true,
             };
             conduct(&config, Some(text), plan, args.json)
         }

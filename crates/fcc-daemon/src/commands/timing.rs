@@ -51,10 +51,10 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         pace: Pace::RealTime,
         length: Length::Whole(args.seconds),
         quiet: true,
-        announce: false,
     };
     let progress = Progress::start(rate_hz, args.seconds);
-    let outcome = fly(assembly, &config.tick, plan, None).map_err(|error| error.to_string());
+    let outcome =
+        fly(assembly, &config.tick, plan, None, Box::new(drop)).map_err(|error| error.to_string());
     progress.stop();
     let outcome = outcome?;
     if outcome.interrupted {

@@ -7,7 +7,7 @@ use fcc_xplane::{
 };
 
 use super::guard::Guard;
-use super::relief::relieve;
+use super::relief::{Relief, relieve};
 use crate::config::XPlaneSection;
 
 /// Trouble that lasts this long is worth a word: at the start, X-Plane has
@@ -27,6 +27,8 @@ pub(super) struct Connection {
     status: XPlaneStatus,
     section: XPlaneSection,
     guard: Option<Guard>,
+    /// What is to be reported next.
+    waiting: Option<String>,
     trouble: Option<(Trouble, Instant)>,
     told: Told,
     pace: SimulatorState,
@@ -47,18 +49,21 @@ enum Told {
 impl Connection {
     /// Watches from now on. Without a guard the flight goes on, and says so.
     pub(super) fn watch(status: XPlaneStatus, section: &XPlaneSection) -> Self {
-        let guard = Guard::start(section)
-            .inspect_err(|error| {
-                eprintln!(
+        let (guard, waiting) = match Guard::start(section) {
+            Ok(guard) => (Some(guard), None),
+            Err(error) => (
+                None,
+                Some(format!(
                     "no guard process ({error}): if this process is killed, release X-Plane's \
                      overrides by hand"
-                );
-            })
-            .ok();
+                )),
+            ),
+        };
         Self {
             status,
             section: section.clone(),
             guard,
+            waiting,
             trouble: None,
             told: Told::Nothing,
             pace: SimulatorState::Running,
@@ -76,6 +81,9 @@ impl Connection {
             guard.tell(self.status.held_at());
         }
         let now = self.status.trouble();
+        if let Some(words) = self.waiting.take() {
+            return Some(words);
+        }
         if self.trouble.map(|(trouble, _)| trouble) != now {
             self.trouble = now.map(|trouble| (trouble, Instant::now()));
         }
@@ -98,8 +106,14 @@ impl Connection {
     /// the controls that are, or are to be, held here.
     pub(super) fn take_over_from_release_helper(&mut self) {
         self.relieved = Instant::now();
-        if let Some(simulator) = self.status.simulator() {
-            relieve(simulator);
+        if let Some(simulator) = self.status.simulator()
+            && relieve(simulator) == Relief::Stays
+        {
+            self.waiting = Some(
+                "the guard of the daemon before this one does not go: it may hold X-Plane's \
+                 controls back"
+                    .to_owned(),
+            );
         }
     }
 

@@ -15,7 +15,7 @@ use super::follow::Follower;
 use super::hang::HangWatch;
 use super::instance_lock::InstanceLock;
 use super::live::Live;
-use super::plan::{Length, Pace, Plan};
+use super::plan::{Length, Lines, Pace, Plan};
 use super::recording::{LoopFacts, Recording, RecordingRequest};
 use super::run_statistics::RunStatistics;
 use super::signals::{self, Kept};
@@ -48,7 +48,7 @@ pub enum FlyError {
     Watchdog(#[source] io::Error),
 }
 
-/// Flies an assembly until it is told to stop, by the plan, by a signal
+/// Flies an assembly, with each line about it to `lines`, until it is told to stop, by the plan, by a signal
 /// (TERM, INT, HUP) or by the aircraft's switch.
 ///
 /// # Errors
@@ -58,24 +58,19 @@ pub fn fly(
     tick: &LoopSection,
     plan: Plan,
     recording: Option<RecordingRequest>,
+    lines: Lines,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
     let mut instance_lock = claim(&assembly)?;
-    let timer: Box<dyn Timer> = match plan.pace {
-        Pace::RealTime => tick.build_timer()?,
-        Pace::Lockstep => Box::new(ManualTimer::new(period)?),
-    };
+    let timer = timer(plan.pace, tick)?;
     let timer_name = timer.name();
     let guidance = assembly.autopilot.config().guidance;
     let names = Names::of(&assembly);
     let kept = Kept::from_new_threads().map_err(FlyError::Signals)?;
-    // There is nothing to watch where time does not pass.
-    let live = match plan.pace {
-        Pace::RealTime => Live::start(&assembly.telemetry),
-        Pace::Lockstep => Live::off(),
-    };
+    let live = live(plan.pace, &assembly);
     let aircraft = names.aircraft();
-    let mut watch = Watch::new(&guidance, assembly.truth, plan, names.clone(), live);
+    let mut watch = Watch::new(&guidance, assembly.truth, plan, names.clone(), live, lines);
+    let to_be_recorded = recording.is_some();
     let mut wish = recording;
     if let Some(wish) = &mut wish {
         let facts = LoopFacts {
@@ -161,12 +156,35 @@ pub fn fly(
     // A beacon may have led to where another daemon flies.
     refuse_if_taken(instance_lock.as_ref().filter(|_| report.released))?;
     let refused = watch.was_refused() && !matches!(plan.length, Length::Open);
+    let scored_by = watch.scored_by();
     let (events, log) = watch.into_parts();
     // A flight with a leg that was not flown to its end has no score.
     let score = log.and_then(|log| log.score().ok());
-    let mut outcome = Outcome::new(timer_name, report, events, score, recording);
+    let mut outcome = Outcome::new(timer_name, report, events, (score, scored_by), recording);
+    outcome.is_realtime = plan.pace == Pace::RealTime;
+    if to_be_recorded {
+        outcome.was_to_be_recorded();
+    }
     outcome.explain(interrupted.load(Ordering::Relaxed), refused);
     Ok(outcome)
+}
+
+fn timer(pace: Pace, tick: &LoopSection) -> Result<Box<dyn Timer>, TimerError> {
+    Ok(match pace {
+        Pace::RealTime => tick.build_timer()?,
+        Pace::Lockstep => Box::new(ManualTimer::new(tick.period())?),
+    })
+}
+
+/// Who may watch: nobody where time does not pass.
+fn live(pace: Pace, assembly: &Assembly) -> Live {
+    match pace {
+        Pace::RealTime => {
+            let airspeeds_mps = assembly.autopilot.config().envelope.allowed_airspeeds();
+            Live::start(&assembly.telemetry, airspeeds_mps)
+        }
+        Pace::Lockstep => Live::off(),
+    }
 }
 
 /// Claims the simulator for this process, if it is one and known already.

@@ -56,7 +56,11 @@ impl Follower<'_> {
         mut news: Option<String>,
     ) -> Option<Hung> {
         let mut hung = None;
+        #[cfg(feature = "fault-injection")]
+        let mut pause = super::injection::Pause::from_environment();
         while hung.is_none() && !self.link.messages.is_over() {
+            #[cfg(feature = "fault-injection")]
+            pause.look();
             self.drain();
             if let Some(instance_lock) = &mut self.instance_lock {
                 instance_lock.follow();

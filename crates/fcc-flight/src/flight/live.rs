@@ -1,5 +1,7 @@
 //! Lets others watch a flight, live.
 
+use std::ops::RangeInclusive;
+
 use fcc_core::flight::AutopilotCommand;
 use fcc_runtime::CommandSender;
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
@@ -13,6 +15,8 @@ use crate::config::{LoopSection, TelemetrySection};
 /// comes of it.
 pub(super) struct Live {
     publisher: Option<Publisher>,
+    /// Why there is none, until it is reported.
+    trouble: Option<String>,
     commands: Commands,
 }
 
@@ -21,13 +25,15 @@ impl Live {
     pub(super) fn off() -> Self {
         Self {
             publisher: None,
-            commands: Commands::default(),
+            trouble: None,
+            // Nobody gives any.
+            commands: Commands::new(f64::NEG_INFINITY..=f64::INFINITY),
         }
     }
 
     /// Begins to publish, if that is wanted. Without shared memory the flight
-    /// goes on, and says so.
-    pub(super) fn start(section: &TelemetrySection) -> Self {
+    /// goes on, and says so. Commands are held to these airspeeds, m/s.
+    pub(super) fn start(section: &TelemetrySection, airspeeds_mps: RangeInclusive<f64>) -> Self {
         if !section.enabled {
             return Self::off();
         }
@@ -36,14 +42,18 @@ impl Live {
         } else {
             Publisher::start
         };
-        let publisher = start(&section.instance)
-            .inspect_err(|error| {
-                eprintln!("no live telemetry, so nobody can watch this flight: {error}");
-            })
-            .ok();
-        Self {
-            publisher,
-            commands: Commands::default(),
+        match start(&section.instance) {
+            Ok(publisher) => Self {
+                publisher: Some(publisher),
+                trouble: None,
+                commands: Commands::new(airspeeds_mps),
+            },
+            Err(error) => Self {
+                trouble: Some(format!(
+                    "no live telemetry, so nobody can watch this flight: {error}"
+                )),
+                ..Self::off()
+            },
         }
     }
 
@@ -134,7 +144,9 @@ impl Live {
 
     /// Publishes now what was handed over; gives words if there is trouble.
     pub(super) fn poll(&mut self) -> Option<String> {
-        let publisher = self.publisher.as_mut()?;
+        let Some(publisher) = self.publisher.as_mut() else {
+            return self.trouble.take();
+        };
         publisher.flush();
         publisher.poll()
     }

@@ -1,7 +1,7 @@
 //! Makes a loop of a configuration, flies it and watches.
 //!
 //! The loop runs in its own thread and knows nothing of what is here. This
-//! side fetches what it tells, prints a status line each second, and gathers
+//! side fetches what it tells, gives a status line each second, and gathers
 //! the outcome.
 
 mod assemble;
@@ -33,7 +33,7 @@ pub use assemble::{Assembly, AssemblyError, assemble};
 pub use fly::{FlyError, fly};
 pub use guard::{ReleaseHelperError, run_release_helper};
 pub use outcome::{EventEntry, Outcome, RecordingOutcome};
-pub use plan::{Length, Pace, Plan};
+pub use plan::{Length, Lines, Pace, Plan};
 pub use recording::{RecordingRequest, about};
 pub use watch::true_sample;
 

@@ -1,6 +1,8 @@
 //! A flight that nobody can watch: this program was built without live
 //! telemetry.
 
+use std::ops::RangeInclusive;
+
 use fcc_core::flight::AutopilotCommand;
 use fcc_runtime::CommandSender;
 use fcc_telemetry::recording::RecorderStatus;
@@ -17,7 +19,7 @@ impl Live {
     pub(super) const fn off() -> Self {
         Self
     }
-    pub(super) const fn start(_: &TelemetrySection) -> Self {
+    pub(super) fn start(_: &TelemetrySection, _: RangeInclusive<f64>) -> Self {
         Self
     }
     pub(super) const fn describe(&mut self, _: &LoopSection, _: &RealtimeGranted, _: &str) {}

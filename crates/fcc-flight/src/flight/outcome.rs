@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{
-    DeniedRequest, FlightScore, Realtime, TimingReport, flight_table, timing_table,
+    DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport, flight_table, timing_table,
 };
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
@@ -22,6 +22,8 @@ pub struct Outcome {
     pub timing: TimingReport,
     /// How well the pattern was flown; none without a pattern.
     pub flight: Option<FlightScore>,
+    /// What that was scored by.
+    pub scored_by: ScoredBy,
     /// What happened, in order.
     pub events: Vec<EventEntry>,
     /// Why the loop ended.
@@ -36,6 +38,9 @@ pub struct Outcome {
     pub records_dropped: u64,
     /// What of the flight got onto the disk; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
+    /// Whether it was flown in real time, and not in lockstep.
+    #[serde(skip)]
+    pub is_realtime: bool,
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
@@ -76,7 +81,7 @@ impl Outcome {
         timer: &'static str,
         report: LoopReport,
         events: Vec<EventEntry>,
-        flight: Option<FlightScore>,
+        (flight, scored_by): (Option<FlightScore>, ScoredBy),
         recording: Option<RecordingOutcome>,
     ) -> Self {
         let exit = match report.ending {
@@ -99,6 +104,7 @@ impl Outcome {
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
             flight,
+            scored_by,
             events,
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
@@ -106,8 +112,21 @@ impl Outcome {
             released: report.released,
             records_dropped: report.records_dropped,
             recording,
+            is_realtime: true,
             interrupted: false,
             exit,
+        }
+    }
+
+    /// A flight of which not all that was to be recorded is: that does not end
+    /// it, but its end says so.
+    pub(super) fn was_to_be_recorded(&mut self) {
+        let whole = self
+            .recording
+            .as_ref()
+            .is_some_and(|recording| recording.stopped.is_none() && recording.not_recorded == 0);
+        if (!whole || self.records_dropped > 0) && self.exit == Exit::Success {
+            self.exit = Exit::NotRecorded;
         }
     }
 
@@ -126,12 +145,17 @@ impl Outcome {
 
     /// Tables for people.
     pub fn to_text(&self) -> String {
-        let mut text = timing_table(std::slice::from_ref(&self.timing));
-        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+        let mut text = String::new();
+        // In lockstep no time passes that could be kept.
+        if self.is_realtime {
+            text = timing_table(std::slice::from_ref(&self.timing));
             text.push_str("\n\n");
-            text.push_str(&flight_table(flight));
         }
-        let _ = write!(text, "\n\nended: {}", self.ending);
+        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+            text.push_str(&flight_table(flight, self.scored_by));
+            text.push_str("\n\n");
+        }
+        let _ = write!(text, "ended: {}", self.ending);
         if self.failsafes > 0 {
             let _ = write!(text, "; failsafe {} times", self.failsafes);
         }
@@ -147,6 +171,9 @@ impl Outcome {
             }
             if recording.not_recorded > 0 {
                 let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+            }
+            if let Some(why) = &recording.stopped {
+                let _ = write!(text, "\nTHE END IS NOT RECORDED: {why}");
             }
         }
         text

@@ -30,6 +30,8 @@ pub struct Plan {
     pub length: Length,
     /// No status lines.
     pub quiet: bool,
-    /// Whether to print events as they happen.
-    pub announce: bool,
 }
+
+/// Takes each line about a flight for people: its status, and what happens. It
+/// must not wait: a terminal may be held or gone.
+pub type Lines = Box<dyn FnMut(String)>;

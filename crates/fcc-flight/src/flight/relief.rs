@@ -68,23 +68,30 @@ fn may_relieve(user: Uid, guard: Uid) -> bool {
     user == guard || user.is_root()
 }
 
+/// What became of a guard.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Relief {
+    /// There is none.
+    None,
+    /// It is gone.
+    Gone,
+    /// It is still there.
+    Stays,
+}
+
 /// Relieves the guard that releases `simulator`, if there is one, and waits for
-/// a moment until it is gone. Whether there was one.
-pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
+/// a moment until it is gone.
+pub(super) fn relieve(simulator: SocketAddrV4) -> Relief {
     let Ok(mut stream) = name(simulator).and_then(|name| UnixStream::connect_addr(&name)) else {
-        return false;
+        return Relief::None;
     };
     let gone = stream
         .set_read_timeout(Some(GOES_WITHIN))
         .and_then(|()| stream.read(&mut [0; 1]));
-    if let Err(error) = gone
-        && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
-    {
-        eprintln!(
-            "the guard of the daemon before this one does not go: it may hold X-Plane's controls back"
-        );
+    match gone.map_err(|error| error.kind()) {
+        Err(ErrorKind::WouldBlock | ErrorKind::TimedOut) => Relief::Stays,
+        _ => Relief::Gone,
     }
-    true
 }
 
 #[cfg(test)]
@@ -108,7 +115,7 @@ mod tests {
 
     #[test]
     fn a_guard_is_relieved_once_somebody_comes_and_not_before() {
-        assert!(!relieve(SIMULATOR), "there is none");
+        assert_eq!(relieve(SIMULATOR), Relief::None);
         let mut post = Post::at(SIMULATOR);
         assert!(!post.is_relieved());
         let comes = std::thread::spawn(|| relieve(SIMULATOR));
@@ -116,7 +123,7 @@ mod tests {
             std::thread::yield_now();
         }
         drop(post);
-        assert!(comes.join().unwrap());
-        assert!(!relieve(SIMULATOR), "it is gone");
+        assert_eq!(comes.join().unwrap(), Relief::Gone);
+        assert_eq!(relieve(SIMULATOR), Relief::None);
     }
 }

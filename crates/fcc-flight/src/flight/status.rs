@@ -6,26 +6,34 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::Pilot;
 
-/// Prints a line each second of the loop's time, on standard error.
+/// A line each second of the loop's time.
 #[derive(Default)]
-pub(super) struct Printer {
-    printed_s: Option<f64>,
+pub(super) struct StatusLines {
+    given_s: Option<f64>,
     worst_us: f64,
     missed: u64,
 }
 
-impl Printer {
-    pub(super) fn record(&mut self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) {
+impl StatusLines {
+    /// Takes a record; the line, if it is time for one.
+    pub(super) fn record(
+        &mut self,
+        record: &FlightRecord,
+        now_s: f64,
+        engaged_at_s: Option<f64>,
+    ) -> Option<String> {
         self.worst_us = self
             .worst_us
             .max(record.tick.lateness().as_secs_f64() * 1e6);
         self.missed += record.tick.missed;
         // A hair early, so that a sum of ticks does not skip a second.
-        if self.printed_s.is_none_or(|last| now_s - last >= 1.0 - 1e-6) {
-            self.printed_s = Some(now_s);
-            eprintln!("{}", self.line(record, now_s, engaged_at_s));
-            self.worst_us = 0.0;
+        if self.given_s.is_some_and(|last| now_s - last < 1.0 - 1e-6) {
+            return None;
         }
+        self.given_s = Some(now_s);
+        let line = self.line(record, now_s, engaged_at_s);
+        self.worst_us = 0.0;
+        Some(line)
     }
 
     fn line(&self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) -> String {

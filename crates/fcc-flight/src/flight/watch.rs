@@ -6,16 +6,18 @@ use fcc_core::framework::{self, EventKind, Message, State};
 use fcc_runtime::CommandSender;
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
-use fcc_telemetry::{FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, event_words};
+use fcc_telemetry::{
+    FlightEvent, FlightLog, FlightMessage, FlightRecord, Sample, ScoredBy, event_words,
+};
 
 use super::assemble::Assembly;
 use super::connection::Connection;
 use super::live::Live;
 use super::outcome::EventEntry;
-use super::plan::{Length, Plan};
+use super::plan::{Length, Lines, Plan};
 use super::restart::{Restart, RestartRequest};
 use super::service::Service;
-use super::status;
+use super::status::StatusLines;
 use super::truth_recorder::TruthReceiver;
 
 /// The most events that are kept for the end.
@@ -34,8 +36,8 @@ pub(super) struct Watch {
     woke_ns: i64,
     failed: bool,
     refused: bool,
-    announce: bool,
-    status: Option<status::Printer>,
+    lines: Lines,
+    status: Option<StatusLines>,
     /// Who watches from elsewhere.
     pub(super) live: Live,
     /// Who started this.
@@ -52,6 +54,7 @@ impl Watch {
         plan: Plan,
         names: Names,
         live: Live,
+        lines: Lines,
     ) -> Self {
         Self {
             names,
@@ -65,8 +68,8 @@ impl Watch {
             woke_ns: i64::MIN,
             failed: false,
             refused: false,
-            announce: plan.announce,
-            status: (!plan.quiet).then(status::Printer::default),
+            lines,
+            status: (!plan.quiet).then(StatusLines::default),
             live,
             service: Service::from_environment(),
             restart: None,
@@ -105,6 +108,14 @@ impl Watch {
         self.refused
     }
 
+    /// What the flight is scored by.
+    pub(super) const fn scored_by(&self) -> ScoredBy {
+        match self.truth {
+            Some(_) => ScoredBy::Truth,
+            None => ScoredBy::Measurement,
+        }
+    }
+
     /// What was kept: events, and the log of the flight.
     pub(super) fn into_parts(self) -> (Vec<EventEntry>, Option<FlightLog>) {
         (self.events, self.log)
@@ -139,8 +150,10 @@ impl Watch {
         } else {
             self.engaged_at_s = None;
         }
-        if let Some(status) = &mut self.status {
-            status.record(record, self.now_s, self.engaged_at_s);
+        if let Some(status) = &mut self.status
+            && let Some(line) = status.record(record, self.now_s, self.engaged_at_s)
+        {
+            (self.lines)(line);
         }
     }
 
@@ -201,16 +214,12 @@ impl Watch {
     }
 
     /// Something that is said and not kept: it is no part of the flight.
-    pub(super) fn mention(&self, text: &str) {
-        if self.announce {
-            eprintln!("{:8.2} s  {text}", self.now_s);
-        }
+    pub(super) fn mention(&mut self, text: &str) {
+        (self.lines)(format!("{:8.2} s  {text}", self.now_s));
     }
 
     fn keep(&mut self, entry: EventEntry) {
-        if self.announce {
-            eprintln!("{:8.2} s  {}", entry.time_s, entry.text);
-        }
+        (self.lines)(format!("{:8.2} s  {}", entry.time_s, entry.text));
         // A flight may take weeks; the recording has them all.
         if self.events.len() < MOST_EVENTS {
             self.events.push(entry);
