@@ -2,8 +2,8 @@
 //! ends.
 #![cfg(test)]
 
-mod commands;
 mod output;
+mod setpoints;
 mod top;
 
 use std::process::{Child, Command, Stdio};

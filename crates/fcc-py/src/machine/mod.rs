@@ -38,7 +38,7 @@ pub(crate) struct PyMachine {
     // A loop's ends are for one thread at a time, and so is `&mut self`.
     stepped: Mutex<Stepped>,
     period_s: f64,
-    /// What airspeeds may be ordered.
+    /// What airspeeds may be commanded.
     airspeeds_mps: RangeInclusive<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What may be ordered, and how it is said that something else was.
+//! What may be commanded, and the message where something else was.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -27,7 +27,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// What may be ordered of it, whatever is flown.
+    /// What may be commanded of it, whatever is flown.
     pub(super) const fn range(self) -> RangeInclusive<f64> {
         match self {
             Self::Airspeed => AIRSPEED_MPS,
@@ -42,7 +42,7 @@ impl Quantity {
 pub struct OutsideLimits {
     /// What it sets.
     pub quantity: Quantity,
-    /// What was ordered.
+    /// What was commanded.
     pub value: f64,
     /// The least that may be.
     pub least: f64,
@@ -51,7 +51,7 @@ pub struct OutsideLimits {
 }
 
 impl OutsideLimits {
-    /// Whether a value is outside; none if it may be ordered.
+    /// Whether a value is outside; none if it may be commanded.
     pub fn of(quantity: Quantity, value: f64, limits: &RangeInclusive<f64>) -> Option<Self> {
         let (least, most) = (*limits.start(), *limits.end());
         let inside = (least - ROUNDING..=most + ROUNDING).contains(&value);

@@ -5,7 +5,7 @@ use super::{Flight, fccd};
 #[test]
 fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
     let folder = tempfile::tempdir().unwrap();
-    let instance = format!("order-{}", std::process::id());
+    let instance = format!("command-{}", std::process::id());
     let _flight = Flight::start(folder.path(), &instance);
     let command = |words: &[&str]| {
         let ended = fccd(folder.path(), &["command", "set", "--instance", &instance])
