@@ -202,7 +202,7 @@ fn varint(bytes: &[u8]) -> u64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(32))]
 
     /// Whatever is damaged: what is not is read, what is missing is said, and
     /// made whole is all that can be read.
