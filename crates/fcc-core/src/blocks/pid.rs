@@ -82,7 +82,7 @@ impl Default for PidConfig {
 /// PID controller with derivative on measurement, anti-windup, limits on
 /// output and its rate, feed-forward, and take-over without a bump.
 ///
-/// The integral is kept in units of the output, so changing a gain in flight
+/// The integral is kept in units of the output, so changing a gain while it runs
 /// does not make the output jump.
 ///
 /// ```
