@@ -48,7 +48,7 @@ LEG = {
     "lateral_acceleration_g",
 }
 
-NOT_RECORDED = 13
+NOT_RECORDED = 14
 
 _RUN_S = 60.0
 
@@ -161,7 +161,7 @@ def test_help_names_the_exit_codes(fccd: Path) -> None:
     assert ended.returncode == 0
     assert "3  the flight fell into failsafe" in ended.stdout
     assert "12  another program has the simulator" in ended.stdout
-    assert "13  the flight went as it should, but was not recorded" in ended.stdout
+    assert "14  the flight went as it should, but was not recorded" in ended.stdout
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

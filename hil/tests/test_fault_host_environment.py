@@ -39,7 +39,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import BEACON_GROUP, Settings
 
 SUCCESS = 0
-NOT_RECORDED = 13
+NOT_RECORDED = 14
 TAKEN = 12
 
 NORMAL_HZ = 40

@@ -33,8 +33,10 @@ pub enum Exit {
     Refused = 11,
     /// Another program has what is asked for: the simulator, or the local port.
     Taken = 12,
+    /// A recording is damaged or cut off: what is said is of the rest of it.
+    Incomplete = 13,
     /// The flight went as it should, but was not recorded, or not as a whole.
-    NotRecorded = 13,
+    NotRecorded = 14,
 }
 
 /// For `--help`.
@@ -53,7 +55,9 @@ Exit codes:
  10  the machine lacks something that a real-time loop needs (doctor)
  11  the daemon refused the command
  12  another program has the simulator or the local port
- 13  the flight went as it should, but was not recorded, or not as a whole";
+ 13  a recording is damaged or cut off: the result is of the rest (report,
+     replay), or a part of it is lost (list, recover)
+ 14  the flight went as it should, but was not recorded, or not as a whole";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -2,6 +2,9 @@
 //! ends.
 #![cfg(test)]
 
+#![cfg(test)]
+
+mod damaged;
 mod output;
 mod setpoints;
 mod top;
