@@ -1,7 +1,6 @@
 //! The program as a shell sees it: what it prints, where that fails, and how it
 //! ends.
 #![cfg(test)]
-
 #![cfg(test)]
 
 mod damaged;
