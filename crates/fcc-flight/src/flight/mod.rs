@@ -5,8 +5,6 @@
 //! the outcome.
 
 mod assemble;
-#[cfg(feature = "live")]
-mod commands;
 mod connection;
 mod fly;
 mod follow;
@@ -14,18 +12,20 @@ mod guard;
 mod hang;
 #[cfg(feature = "fault-injection")]
 mod injection;
-mod instance_lock;
 #[cfg_attr(not(feature = "live"), path = "not_live.rs")]
 mod live;
+#[cfg(feature = "live")]
+mod commands;
 mod outcome;
 mod plan;
 mod recording;
 mod relief;
 mod restart;
-mod run_statistics;
 mod service;
 mod signals;
+mod instance_lock;
 mod status;
+mod run_statistics;
 mod truth_recorder;
 mod watch;
 

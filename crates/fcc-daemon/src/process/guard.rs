@@ -82,9 +82,7 @@ impl Guard {
 ///
 /// # Errors
 /// When what is read makes no sense, or there is no socket to be had.
-pub fn run_release_helper(
-    from: impl BufRead,
-) -> Result<Option<(SocketAddrV4, Released)>, ReleaseHelperError> {
+pub fn run_release_helper(from: impl BufRead) -> Result<Option<(SocketAddrV4, Released)>, ReleaseHelperError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let section: XPlaneSection = serde_json::from_str(&first)?;
@@ -208,9 +206,6 @@ mod tests {
     fn nonsense_is_refused_in_words() {
         let error = run_release_helper("what?\n".as_bytes()).unwrap_err();
         assert!(error.to_string().contains("[x-plane]"), "{error}");
-        assert!(matches!(
-            run_release_helper(&b""[..]),
-            Err(ReleaseHelperError::Nothing)
-        ));
+        assert!(matches!(run_release_helper(&b""[..]), Err(ReleaseHelperError::Nothing)));
     }
 }
