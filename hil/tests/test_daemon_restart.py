@@ -229,7 +229,7 @@ def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:
             guard.stdin.close()
             assert simulator.recv(600), "it releases"
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as relief:
-                relief.connect(f"\0fccd-guard-{address}")
+                relief.connect(f"\0fccd-guard-X-Plane at {address}")
                 relief.settimeout(15.0)
                 assert relief.recv(1) == b"", "it is gone"
             assert "another has taken" in guard.stderr.read()

@@ -1,131 +1,99 @@
-//! One daemon for one simulator.
+//! One daemon for one plant.
 //!
 //! Two that see the same engage switch would both take the controls and write
 //! over each other. The first holds a name that the kernel gives to one socket
 //! only (abstract, see unix(7)) and takes back when the process ends, however
 //! it does: no file is left behind by a daemon that was killed.
 //!
-//! The name is made of the simulator's address, and not of how a configuration
-//! finds it: who follows a beacon claims once the beacon has told the address,
+//! The name is the plant's own, and not how a configuration finds it: who follows a beacon claims once the beacon has told the address,
 //! and takes no control before.
 
 use std::io;
-use std::net::{Ipv4Addr, SocketAddrV4, UdpSocket};
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixDatagram};
+use std::sync::Arc;
 
-use fcc_xplane::XPlaneStatus;
+use fcc_core::framework::{ControlAuthority, PlantId};
 
-/// The right to fly a simulator; given up when dropped.
+/// The right to control a plant; given up when dropped.
 pub(super) struct InstanceLock {
-    status: XPlaneStatus,
+    authority: Arc<dyn ControlAuthority>,
     claim: Claim,
 }
 
 enum Claim {
-    /// Nobody has told where there is a simulator.
+    /// Nobody has told where there is a plant.
     Nowhere,
     /// Where the kernel has no such names, nobody is kept from flying.
     Had {
-        simulator: SocketAddrV4,
+        plant: PlantId,
         _name: Option<UnixDatagram>,
     },
-    /// Another daemon flies it.
-    Taken(SocketAddrV4),
+    /// Another daemon controls it.
+    Taken(PlantId),
 }
 
 impl InstanceLock {
     /// Claims what the connection leads to, if that is known yet. From here on
     /// control is taken only of what was claimed.
-    pub(super) fn of(status: XPlaneStatus) -> Self {
-        status.ask_first();
+    pub(super) fn of(authority: Arc<dyn ControlAuthority>) -> Self {
+        authority.require_permission();
         let mut this = Self {
-            status,
+            authority,
             claim: Claim::Nowhere,
         };
         this.follow();
         this
     }
 
-    /// Claims the simulator that a beacon has told of since. It stays the same
-    /// while its controls are held, so none is given up that is still flown.
+    /// Claims the plant that was found since. It stays the same while its
+    /// controls are held, so none is given up that is still controlled.
     pub(super) fn follow(&mut self) {
-        let Some(simulator) = self.status.simulator() else {
+        let Some(plant) = self.authority.plant() else {
             return;
         };
-        if matches!(self.claim, Claim::Had { simulator: of, .. } | Claim::Taken(of) if of == simulator)
-        {
+        if matches!(self.claim, Claim::Had { plant: of, .. } | Claim::Taken(of) if of == plant) {
             return;
         }
-        self.claim = match claim(simulator) {
-            Err(error) if error.kind() == io::ErrorKind::AddrInUse => Claim::Taken(simulator),
+        self.claim = match claim(&self.authority.unique(&plant)) {
+            Err(error) if error.kind() == io::ErrorKind::AddrInUse => Claim::Taken(plant),
             claimed => {
-                self.status.allow(simulator);
+                self.authority.permit(&plant);
                 Claim::Had {
-                    simulator,
+                    plant,
                     _name: claimed.ok(),
                 }
             }
         };
     }
 
-    /// Where another daemon flies, if that is where this one was to.
-    pub(super) const fn taken(&self) -> Option<SocketAddrV4> {
+    /// The plant, if another daemon controls it.
+    pub(super) const fn taken(&self) -> Option<PlantId> {
         match self.claim {
-            Claim::Taken(simulator) => Some(simulator),
+            Claim::Taken(plant) => Some(plant),
             Claim::Nowhere | Claim::Had { .. } => None,
         }
     }
 }
 
 /// `AddrInUse` if another daemon of this machine has it.
-fn claim(simulator: SocketAddrV4) -> io::Result<UnixDatagram> {
-    UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(name(simulator))?)
-}
-
-/// X-Plane listens at every address of its machine, so one on this machine has
-/// one name, whichever of them it goes by.
-fn name(simulator: SocketAddrV4) -> String {
-    let ip = *simulator.ip();
-    let here = ip.is_loopback() || is_of_this_machine(ip);
-    let ip = if here { Ipv4Addr::LOCALHOST } else { ip };
-    format!("fccd/x-plane/{ip}:{}", simulator.port())
-}
-
-/// The kernel binds a socket to no other.
-fn is_of_this_machine(ip: Ipv4Addr) -> bool {
-    UdpSocket::bind((ip, 0)).is_ok()
+fn claim(plant: &PlantId) -> io::Result<UnixDatagram> {
+    UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(format!("fccd/{plant}"))?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A port that is nobody else's while the socket lives.
-    fn port() -> (UdpSocket, u16) {
-        let socket = UdpSocket::bind("0.0.0.0:0").unwrap();
-        let port = socket.local_addr().unwrap().port();
-        (socket, port)
-    }
-
     #[test]
-    fn a_simulator_is_claimed_once_and_given_up() {
-        let ((_one, port), (_other, other)) = (port(), port());
-        let simulator = SocketAddrV4::new(Ipv4Addr::LOCALHOST, port);
-        let first = claim(simulator).unwrap();
-        let error = claim(simulator).unwrap_err();
+    fn a_plant_is_claimed_once_and_given_up() {
+        let [one, other] = ["one", "another"]
+            .map(|which| PlantId::new(format_args!("{which} of a test")).unwrap());
+        let first = claim(&one).unwrap();
+        let error = claim(&one).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::AddrInUse);
-        assert!(claim(SocketAddrV4::new(Ipv4Addr::LOCALHOST, other)).is_ok());
+        assert!(claim(&other).is_ok());
         drop(first);
-        assert!(claim(simulator).is_ok());
-    }
-
-    #[test]
-    fn another_address_of_this_machine_is_the_same_simulator() {
-        let (_socket, port) = port();
-        let _first = claim(SocketAddrV4::new(Ipv4Addr::LOCALHOST, port)).unwrap();
-        assert!(claim(SocketAddrV4::new([127, 9, 9, 9].into(), port)).is_err());
-        // Of a block kept for documents (RFC 5737), so nobody's.
-        assert!(claim(SocketAddrV4::new([192, 0, 2, 1].into(), port)).is_ok());
+        assert!(claim(&one).is_ok());
     }
 }

@@ -3,7 +3,7 @@
 //! One table of ranges for all numeric keys; a test shows that no key is
 //! missing from it.
 
-use fcc_xplane::{XPlaneConfigError, XPlaneConfig};
+use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
 use super::places::Places;
 use super::{Config, Problem};

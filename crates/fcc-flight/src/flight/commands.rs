@@ -164,7 +164,8 @@ mod tests {
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         let engage_inhibits = flags::TOO_SLOW;
         commands.event(&event(5, EventKind::EngageRefused { engage_inhibits }));
-        let Some((1, Verdict::Refused(words))) = commands.verdict(&record(5, State::Standby)) else {
+        let Some((1, Verdict::Refused(words))) = commands.verdict(&record(5, State::Standby))
+        else {
             panic!("not refused");
         };
         assert!(words.contains(Autopilot::flag_name(8)), "{words}");
@@ -179,7 +180,10 @@ mod tests {
             panic!("two commands");
         };
         // Somebody else's command is not mistaken for one that waits.
-        commands.event(&event(3, EventKind::CommandReceived(LoopCommand::Disengage)));
+        commands.event(&event(
+            3,
+            EventKind::CommandReceived(LoopCommand::Disengage),
+        ));
         commands.event(&event(3, EventKind::CommandReceived(heading)));
         assert_eq!(commands.verdict(&record(3, State::Engaged)), None);
         commands.event(&event(4, EventKind::CommandReceived(altitude)));
@@ -187,7 +191,8 @@ mod tests {
         assert_eq!(commands.verdict(&record(4, State::Engaged)), carried_out);
         commands.event(&event(6, EventKind::CommandReceived(heading)));
         commands.event(&event(6, EventKind::CommandReceived(altitude)));
-        let Some((2, Verdict::Refused(words))) = commands.verdict(&record(6, State::Standby)) else {
+        let Some((2, Verdict::Refused(words))) = commands.verdict(&record(6, State::Standby))
+        else {
             panic!("not refused");
         };
         assert!(

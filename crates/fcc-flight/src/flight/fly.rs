@@ -150,7 +150,9 @@ impl RealTime<'_> {
         host: &mut dyn Host,
     ) -> Result<LoopReport, FlyError> {
         let watchdog = HangWatch::start(
-            self.watchdog.enabled.then(|| self.watchdog.hang_after(self.period)),
+            self.watchdog
+                .enabled
+                .then(|| self.watchdog.hang_after(self.period)),
             self.loop_priority,
             &self.link,
             self.authority.cloned(),
@@ -161,7 +163,11 @@ impl RealTime<'_> {
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // At once, not only in the report of a flight that may take days.
-        report_denied(&granted, watchdog.as_ref().map(|(_, granted)| granted), observers);
+        report_denied(
+            &granted,
+            watchdog.as_ref().map(|(_, granted)| granted),
+            observers,
+        );
         observers.begin(&Facts {
             granted: Some(&granted),
             ..facts

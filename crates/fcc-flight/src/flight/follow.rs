@@ -71,7 +71,10 @@ impl Follower<'_> {
 
     /// Records that the loop hung, after the last it reported.
     fn report_hang(&mut self, hung: Hung) {
-        let last = self.run_statistics.as_ref().map(|run_statistics| run_statistics.last().tick);
+        let last = self
+            .run_statistics
+            .as_ref()
+            .map(|run_statistics| run_statistics.last().tick);
         let last = last.unwrap_or_default();
         self.take(&Message::Event(Event {
             tick: last.number,

@@ -13,7 +13,7 @@ use std::fmt;
 use std::thread;
 use std::time::Duration;
 
-use fcc_core::flight::{Autopilot, Measurements, AutopilotCommand, Setpoints, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
 
 /// An autopilot that goes wrong when it is told to.

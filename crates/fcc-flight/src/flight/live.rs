@@ -3,8 +3,8 @@
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
 
-use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::commands::Commands;
+use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
 use crate::config::TelemetrySection;
 
@@ -27,12 +27,9 @@ impl Live {
 }
 
 impl Observer for Live {
-    /// Begins to publish, if that is wanted. Without shared memory the flight
+    /// Begins to publish. Without shared memory the flight
     /// goes on, and reports it.
     fn prepare(&mut self, reports: &mut Reports) {
-        if !self.section.enabled {
-            return;
-        }
         let start = if self.section.commands {
             Publisher::start_with_commands
         } else {
@@ -97,7 +94,7 @@ impl Observer for Live {
         }
     }
 
-    /// Sends the loop what other programs have ordered, and publishes now what
+    /// Sends the loop what other programs command, and publishes now what
     /// was handed over.
     fn poll(&mut self, access: &mut Access<'_>) {
         let Some(publisher) = &mut self.publisher else {

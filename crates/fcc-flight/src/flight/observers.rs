@@ -56,7 +56,11 @@ impl Observers {
     }
 
     /// Lets each do what there is to do.
-    pub(super) fn poll(&mut self, commands: &mut CommandSender<AutopilotCommand>, host: &mut dyn Host) {
+    pub(super) fn poll(
+        &mut self,
+        commands: &mut CommandSender<AutopilotCommand>,
+        host: &mut dyn Host,
+    ) {
         self.each(|observer, reports| {
             observer.poll(&mut Access {
                 commands,

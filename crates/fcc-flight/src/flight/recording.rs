@@ -105,10 +105,10 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    pub(super) fn new(wish: RecordingRequest) -> Self {
+    pub(super) fn new(request: RecordingRequest) -> Self {
         Self {
-            settings: wish.settings,
-            about: wish.about,
+            settings: request.settings,
+            about: request.about,
             recorder: None,
             reported: Instant::now(),
         }

@@ -1,7 +1,7 @@
 //! Scores how well the pattern is flown.
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::framework::{self, EventKind, State};
+use fcc_core::framework::{EventKind, LoopCommand, State};
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
 use fcc_telemetry::{FlightEvent, FlightLog, FlightRecord, Sample};
@@ -62,7 +62,7 @@ impl Observer for Scorer {
     fn event(&mut self, event: &FlightEvent, _: &str, _: &FlightTime) {
         if matches!(
             event.kind,
-            EventKind::CommandReceived(framework::LoopCommand::Controller(_))
+            EventKind::CommandReceived(LoopCommand::Controller(_))
         ) {
             // What is flown is not the pattern from its beginning: no score.
             self.log = None;

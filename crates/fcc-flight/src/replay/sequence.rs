@@ -2,7 +2,7 @@
 //! missing.
 
 use fcc_core::flight::AutopilotCommand;
-use fcc_core::framework::{EventKind, Message, LoopCommand, Tick};
+use fcc_core::framework::{EventKind, LoopCommand, Message, Tick};
 use fcc_telemetry::{FlightEvent, FlightMessage};
 
 /// Why a recording cannot be flown again from some tick on.
@@ -216,7 +216,8 @@ mod tests {
         })
     }
 
-    const HEADING: LoopCommand<AutopilotCommand> = LoopCommand::Controller(AutopilotCommand::Heading(1.0));
+    const HEADING: LoopCommand<AutopilotCommand> =
+        LoopCommand::Controller(AutopilotCommand::Heading(1.0));
 
     /// The cut that ends a sequence of messages, if one does.
     fn cut(messages: &[FlightMessage]) -> Option<Cut> {

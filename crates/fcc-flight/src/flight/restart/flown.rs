@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::{Guidance, Progress, Targets, TimedPattern, TimedPatternConfig};
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{EventKind, Message, LoopCommand, State};
+use fcc_core::framework::{EventKind, LoopCommand, Message, State};
 use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
 
 /// Near a change of legs it is not certain to the tick which one is flown, s.
@@ -74,13 +74,17 @@ impl Flown {
                 ..
             } if !self.is_broken => return Matter::Over,
             EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
-            EventKind::CommandReceived(LoopCommand::Controller(AutopilotCommand::Resume(resume))) => {
+            EventKind::CommandReceived(LoopCommand::Controller(AutopilotCommand::Resume(
+                resume,
+            ))) => {
                 self.pattern = resume.pattern_s.map(|elapsed_s| Place {
                     elapsed_s,
                     captured: Some(resume.targets),
                 });
             }
-            EventKind::CommandReceived(LoopCommand::Controller(command)) if command.ends_pattern() => {
+            EventKind::CommandReceived(LoopCommand::Controller(command))
+                if command.ends_pattern() =>
+            {
                 self.pattern = None;
             }
             _ => {}

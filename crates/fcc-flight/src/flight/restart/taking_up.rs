@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use fcc_core::flight::guidance::Targets;
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{Controller, EventKind, Flags, Message, LoopCommand, State, Switch};
+use fcc_core::framework::{Controller, EventKind, Flags, LoopCommand, Message, State, Switch};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
 
@@ -125,10 +125,19 @@ impl TakingUp {
     /// Commands it: engage first, for engaging forgets what was ordered before.
     /// Without room for both neither is sent, for engaged alone it would fly
     /// something else; it is tried again.
-    pub(super) fn command(&mut self, commands: &mut CommandSender<AutopilotCommand>, resume: Resume) {
-        let both = [LoopCommand::Engage, LoopCommand::Controller(AutopilotCommand::Resume(resume))];
+    pub(super) fn command(
+        &mut self,
+        commands: &mut CommandSender<AutopilotCommand>,
+        resume: Resume,
+    ) {
+        let both = [
+            LoopCommand::Engage,
+            LoopCommand::Controller(AutopilotCommand::Resume(resume)),
+        ];
         if commands.room() >= both.len() {
-            let sent = both.into_iter().all(|command| commands.send(command).is_ok());
+            let sent = both
+                .into_iter()
+                .all(|command| commands.send(command).is_ok());
             self.ordered = sent.then_some(resume);
         }
     }
