@@ -225,7 +225,8 @@ def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:
         ) as guard:
             assert guard.stdin is not None
             assert guard.stderr is not None
-            guard.stdin.write(json.dumps({"simulator": address}) + f"\nheld {address}\n")
+            config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
+            guard.stdin.write(f"{config}\nheld X-Plane at {address}\n")
             guard.stdin.close()
             assert simulator.recv(600), "it releases"
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as relief:
