@@ -136,6 +136,9 @@ pub struct ListArgs {
     /// Folder of recordings
     #[arg(value_name = "DIR", default_value = "recordings")]
     pub folder: PathBuf,
+    /// Look at the two ends of each file only: damage between them is not seen
+    #[arg(long)]
+    pub quick: bool,
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
@@ -298,6 +301,10 @@ pub struct CheckArgs {
 /// `fccd doctor`.
 #[derive(Args, Debug)]
 pub struct DoctorArgs {
+    /// Configuration of the loop that is to run here; without one, that of
+    /// `fccd fly`
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// Folder that the machine's files are under: the disk of another one, with
     /// its /proc and /sys copied
     #[arg(long, value_name = "DIR", default_value = "/")]
