@@ -73,7 +73,7 @@ fn early_wake(args: &TimingArgs) -> EarlyWakeSection {
     let usual = EarlyWakeSection::default();
     let max_us = args.max_margin.unwrap_or(usual.max_us);
     EarlyWakeSection {
-        enabled: args.early_wake,
+        enabled: args.early_wake.into(),
         min_us: usual.min_us.min(max_us),
         max_us,
         cpu_cap_percent: args.cpu_cap.unwrap_or(usual.cpu_cap_percent),
