@@ -8,11 +8,11 @@
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use fcc_flight::flight::Lines;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -51,52 +51,55 @@ fn not_printed(error: &dyn Display, exit: Exit) -> Exit {
 
 /// Prints a message for people.
 pub(crate) fn message(text: impl Display) {
-    // Nobody is left who could be told.
-    let _ = io::stderr().write_all(format!("{text}\n").as_bytes());
+    let line = format!("{text}\n");
+    match background().as_mut() {
+        Some(lines) => lines.give(line),
+        None => write(&line),
+    }
 }
 
-/// Lines that may wait while the terminal does not take them: some minutes of
-/// status.
+fn write(line: &str) {
+    // Nobody is left who could be told.
+    let _ = io::stderr().write_all(line.as_bytes());
+}
+
+/// Messages that may wait while the terminal does not take them: some minutes
+/// of status.
 const WAITING: usize = 256;
 /// How long the end of a flight waits until they are printed.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Where the lines of a flight in real time go: messages that another thread
-/// prints, so that a terminal that is held keeps nobody waiting. What finds no
-/// room is left out, and that is printed when there is room again.
-pub(crate) fn lines() -> (Lines, Option<Printer>) {
-    let (to, from) = sync_channel(WAITING);
-    let printing = thread::Builder::new()
-        .name("fccd-lines".to_owned())
-        .spawn(move || print(&from));
-    match printing {
-        Ok(thread) => {
-            let mut lines = Waiting { to, left_out: 0 };
-            let give = move |line| lines.give(line);
-            (Box::new(give), Some(Printer { thread }))
-        }
-        // Without a thread, the flight waits for its terminal.
-        Err(_) => (Box::new(message), None),
-    }
+static BACKGROUND: Mutex<Option<Lines>> = Mutex::new(None);
+
+fn background() -> MutexGuard<'static, Option<Lines>> {
+    BACKGROUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn print(from: &Receiver<String>) {
-    for line in from {
-        message(line);
-    }
+/// From here on a thread of its own prints messages, so that a terminal that is
+/// held keeps nobody waiting: what finds no room is left out, and that is
+/// printed where there is room again. Until what this gives is dropped.
+pub(crate) fn in_background() -> Option<Background> {
+    let (to, from) = sync_channel::<String>(WAITING);
+    // Without a thread, whoever prints waits for the terminal.
+    let printer = thread::Builder::new()
+        .name("fccd-printer".to_owned())
+        .spawn(move || from.iter().for_each(|line| write(&line)))
+        .ok()?;
+    *background() = Some(Lines { to, left_out: 0 });
+    Some(Background { printer })
 }
 
-/// Lines on their way to the thread that prints them.
-struct Waiting {
+/// Messages on their way to the thread that prints them.
+struct Lines {
     to: SyncSender<String>,
     left_out: u64,
 }
 
-impl Waiting {
+impl Lines {
     fn give(&mut self, line: String) {
         if self.left_out > 0 {
             let gap = format!(
-                "{} lines are left out here: the terminal did not take them",
+                "{} lines are left out here: the terminal did not take them\n",
                 self.left_out
             );
             if self.to.try_send(gap).is_err() {
@@ -105,22 +108,24 @@ impl Waiting {
             }
             self.left_out = 0;
         }
-        if let Err(TrySendError::Full(_)) = self.to.try_send(line) {
+        if self.to.try_send(line).is_err() {
             self.left_out += 1;
         }
     }
 }
 
-/// The thread that prints lines. It ends when nobody gives any more.
-pub(crate) struct Printer {
-    thread: JoinHandle<()>,
+/// The thread that prints messages.
+pub(crate) struct Background {
+    printer: JoinHandle<()>,
 }
 
-impl Printer {
+impl Drop for Background {
     /// Waits for a while until all are printed.
-    pub(crate) fn finish(self) {
+    fn drop(&mut self) {
+        // With its last sender the thread ends.
+        *background() = None;
         let begun = Instant::now();
-        while !self.thread.is_finished() && begun.elapsed() < PATIENCE {
+        while !self.printer.is_finished() && begun.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(1));
         }
     }
@@ -133,7 +138,7 @@ mod tests {
     #[test]
     fn lines_that_find_no_room_are_counted_where_they_are_missing() {
         let (to, from) = sync_channel(2);
-        let mut lines = Waiting { to, left_out: 0 };
+        let mut lines = Lines { to, left_out: 0 };
         for line in ["a", "b", "c", "d"] {
             lines.give(line.to_owned());
         }
@@ -144,7 +149,7 @@ mod tests {
         assert_eq!(
             printed,
             [
-                "2 lines are left out here: the terminal did not take them",
+                "2 lines are left out here: the terminal did not take them\n",
                 "e"
             ]
         );

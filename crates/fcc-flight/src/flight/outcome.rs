@@ -10,7 +10,7 @@ use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
-use crate::exit::Exit;
+use super::plan::Pace;
 
 /// The scheduling of a loop without a thread of its own.
 const NOT_ASKED: &str = "not asked for";
@@ -38,15 +38,34 @@ pub struct Outcome {
     pub records_dropped: u64,
     /// What of the flight got onto the disk; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
-    /// Whether it was flown in real time, and not in lockstep.
+    /// How fast time passed.
     #[serde(skip)]
-    pub is_realtime: bool,
+    pub pace: Pace,
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
-    /// What the program's exit code says.
+    /// What it means for whoever flew it.
     #[serde(skip)]
-    pub exit: Exit,
+    pub conclusion: Conclusion,
+}
+
+/// What a flight's end means for whoever flew it; of several the worst.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Conclusion {
+    /// It was flown as it should.
+    Completed,
+    /// It was flown as it should, but not recorded, or not as a whole.
+    NotRecorded,
+    /// It was not flown as it should: the timer failed, or engaging was refused.
+    Failed,
+    /// It fell into failsafe.
+    Failsafe,
+    /// A part of the loop panicked; the controls were released.
+    Panicked,
+    /// The loop hung; its watchdog released the controls.
+    Hung,
+    /// The controls may still be held.
+    NotReleased,
 }
 
 /// Something that happened once.
@@ -77,20 +96,14 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(
-        timer: &'static str,
-        report: LoopReport,
-        events: Vec<EventEntry>,
-        (flight, scored_by): (Option<FlightScore>, ScoredBy),
-        recording: Option<RecordingOutcome>,
-    ) -> Self {
-        let exit = match report.ending {
-            _ if !report.released => Exit::NotReleased,
-            Ending::Panicked(_) => Exit::Panicked,
-            Ending::Hung => Exit::Hung,
-            Ending::TimerFailed(_) => Exit::Failure,
-            _ if report.failsafes > 0 => Exit::Failsafe,
-            _ => Exit::Success,
+    pub(super) fn new(timer: &'static str, pace: Pace, report: LoopReport) -> Self {
+        let conclusion = match report.ending {
+            _ if !report.released => Conclusion::NotReleased,
+            Ending::Panicked(_) => Conclusion::Panicked,
+            Ending::Hung => Conclusion::Hung,
+            Ending::TimerFailed(_) => Conclusion::Failed,
+            _ if report.failsafes > 0 => Conclusion::Failsafe,
+            _ => Conclusion::Completed,
         };
         Self {
             timing: TimingReport {
@@ -103,30 +116,26 @@ impl Outcome {
             }
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
-            flight,
-            scored_by,
-            events,
+            flight: None,
+            scored_by: ScoredBy::Measurement,
+            events: Vec::new(),
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
             overruns: report.overruns,
             released: report.released,
             records_dropped: report.records_dropped,
-            recording,
-            is_realtime: true,
+            recording: None,
+            pace,
             interrupted: false,
-            exit,
+            conclusion,
         }
     }
 
-    /// A flight of which not all that was to be recorded is: that does not end
-    /// it, but its end says so.
-    pub(super) fn was_to_be_recorded(&mut self) {
-        let whole = self
-            .recording
-            .as_ref()
-            .is_some_and(|recording| recording.stopped.is_none() && recording.not_recorded == 0);
-        if (!whole || self.records_dropped > 0) && self.exit == Exit::Success {
-            self.exit = Exit::NotRecorded;
+    /// What was to be recorded is not, or not as a whole: that does not end a
+    /// flight, but its end says so.
+    pub(super) fn was_not_recorded(&mut self) {
+        if self.conclusion == Conclusion::Completed {
+            self.conclusion = Conclusion::NotRecorded;
         }
     }
 
@@ -137,8 +146,11 @@ impl Outcome {
             "interrupted by a signal".clone_into(&mut self.ending);
         } else if refused {
             "engaging was refused; the last event says why".clone_into(&mut self.ending);
-            if self.exit == Exit::Success {
-                self.exit = Exit::Failure;
+            if matches!(
+                self.conclusion,
+                Conclusion::Completed | Conclusion::NotRecorded
+            ) {
+                self.conclusion = Conclusion::Failed;
             }
         }
     }
@@ -147,7 +159,7 @@ impl Outcome {
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         // In lockstep no time passes that could be kept.
-        if self.is_realtime {
+        if self.pace == Pace::RealTime {
             text = timing_table(std::slice::from_ref(&self.timing));
             text.push_str("\n\n");
         }

@@ -28,10 +28,4 @@ pub struct Plan {
     pub pace: Pace,
     /// When it is over.
     pub length: Length,
-    /// No status lines.
-    pub quiet: bool,
 }
-
-/// Takes each line about a flight for people: its status, and what happens. It
-/// must not wait: a terminal may be held or gone.
-pub type Lines = Box<dyn FnMut(String)>;
