@@ -53,7 +53,7 @@ def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> None:
-    assert ctypes.sizeof(live.Record) == 536
+    assert ctypes.sizeof(live.Record) == 624
     records: list[live.Record] = []
     with fly(fccd, tmp_path, instance) as daemon:
         watcher = watch(instance, daemon)

@@ -15,6 +15,7 @@ mod flags;
 mod message;
 mod reading;
 mod record;
+pub mod schema;
 mod sensor;
 mod stage;
 mod state;

@@ -165,7 +165,7 @@ impl Recording {
 /// Reads what stands before the first message.
 fn read_about(mut raw: RawReader) -> Result<About, String> {
     enum Found {
-        Header(bool),
+        Header { profile: String, library: String },
         Metadata(bool),
         Other,
         Messages,
@@ -174,7 +174,10 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
     let mut known = false;
     loop {
         let found = raw.next(|record| match record {
-            Record::Header(header) => Found::Header(header.profile == schema::PROFILE),
+            Record::Header(header) => Found::Header {
+                profile: header.profile,
+                library: header.library,
+            },
             Record::Metadata(metadata) => {
                 Found::Metadata(about.take_metadata(&metadata.name, metadata.metadata))
             }
@@ -187,11 +190,19 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
         });
         let found = found.map_err(|cut| cut.to_string())?;
         match found {
-            Some(Found::Header(false)) => {
-                return Err("another program wrote it".to_owned());
-            }
+            Some(Found::Header { profile, library }) => match profile.as_str() {
+                schema::PROFILE => {}
+                schema::FIRST_PROFILE => {
+                    return Err(format!(
+                        "{library} wrote it, in a format before {}: read it with that version, \
+                         or with Foxglove or any other program that reads MCAP",
+                        schema::PROFILE
+                    ));
+                }
+                _ => return Err("another program wrote it".to_owned()),
+            },
             Some(Found::Metadata(taken)) => known |= taken,
-            Some(Found::Header(true) | Found::Other) => {}
+            Some(Found::Other) => {}
             Some(Found::Messages) | None if known => return Ok(about),
             Some(Found::Messages) | None => {
                 return Err("it does not say what flew".to_owned());

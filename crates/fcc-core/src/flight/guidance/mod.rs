@@ -22,18 +22,24 @@ pub use mode::{Mode, ModeInput};
 pub use pattern::{TimedPattern, TimedPatternConfig};
 pub use progress::Progress;
 
-/// What guidance asks of control.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Targets {
-    /// Indicated airspeed, m/s.
-    pub airspeed_mps: f64,
-    /// Magnetic heading, rad, counted on through full turns: which way to turn
-    /// is said by the number, not guessed from the shorter way. Turns that
-    /// pile up while the aircraft cannot keep up never reverse.
-    pub heading_rad: f64,
-    /// Barometric altitude, m.
-    pub altitude_m: f64,
+use crate::schema;
+
+schema! {
+    /// What guidance asks of control.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Targets {
+        /// Indicated airspeed, m/s.
+        #[field(1)]
+        pub airspeed_mps: f64,
+        /// Magnetic heading, rad, counted on through full turns: which way to turn
+        /// is said by the number, not guessed from the shorter way. Turns that
+        /// pile up while the aircraft cannot keep up never reverse.
+        #[field(2)]
+        pub heading_rad: f64,
+        /// Barometric altitude, m.
+        #[field(3)]
+        pub altitude_m: f64,
+    }
 }
 
 impl Targets {
