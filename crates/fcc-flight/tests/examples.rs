@@ -27,8 +27,8 @@ fn say_the_choices(config: &mut Config) {
     config.budget = BudgetSection {
         tick_us: Some(25_000),
         sensors_us: Some(5_000),
-        navigation_us: Some(1_000),
-        guidance_us: Some(1_000),
+        estimate_us: Some(1_000),
+        guide_us: Some(1_000),
         control_us: Some(1_000),
         actuators_us: Some(5_000),
         failsafe_after: Some(20),

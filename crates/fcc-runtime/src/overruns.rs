@@ -20,9 +20,9 @@ pub struct Budget {
     /// Sampling the sensors; `None` for no budget of its own, as below.
     pub sensors: Option<Duration>,
     /// The controller's `estimate`.
-    pub navigation: Option<Duration>,
+    pub estimate: Option<Duration>,
     /// The controller's `guide`.
-    pub guidance: Option<Duration>,
+    pub guide: Option<Duration>,
     /// The controller's `control` or `failsafe`.
     pub control: Option<Duration>,
     /// Driving the actuators.
@@ -44,8 +44,8 @@ impl Budget {
         match stage {
             Stage::Timer => None,
             Stage::Sensors => self.sensors,
-            Stage::Navigation => self.navigation,
-            Stage::Guidance => self.guidance,
+            Stage::Navigation => self.estimate,
+            Stage::Guidance => self.guide,
             Stage::Control => self.control,
             Stage::Actuators => self.actuators,
             Stage::Tick => self.tick,

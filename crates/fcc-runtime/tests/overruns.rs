@@ -153,7 +153,7 @@ fn missed_periods_count_in_the_row() {
 #[test]
 fn a_stage_has_a_budget_of_its_own() {
     let budget = Budget {
-        navigation: Some(Duration::from_millis(2)),
+        estimate: Some(Duration::from_millis(2)),
         ..Budget::default()
     };
     let mut bench = Bench::engaged(&config(budget));

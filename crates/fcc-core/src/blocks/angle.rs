@@ -16,6 +16,12 @@ pub fn wrap_pi(angle_rad: f64) -> f64 {
 }
 
 /// The same angle in 0..2π, rad: what a compass shows.
+///
+/// ```
+/// use core::f64::consts::FRAC_PI_2;
+/// let west = fcc_core::blocks::wrap_two_pi(-FRAC_PI_2);
+/// assert!((west.to_degrees() - 270.0).abs() < 1e-9);
+/// ```
 pub fn wrap_two_pi(angle_rad: f64) -> f64 {
     let wrapped = angle_rad - TAU * floor(angle_rad / TAU);
     // A tiny negative angle rounds up to a whole turn.

@@ -6,6 +6,15 @@ use super::LowPass;
 ///
 /// The filter of the thesis (`lp = 0.8 lp + 0.2 x`, `y = x - lp` at 40 Hz) is
 /// the time constant 0.112 s.
+///
+/// ```
+/// use fcc_core::blocks::HighPass;
+///
+/// let mut filter = HighPass::new(0.112);
+/// filter.reset(0.0);
+/// // The first sample of a step, of which the thesis' filter lets 0.8 through.
+/// assert!((filter.step(1.0, 0.025) - 0.8).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct HighPass {
     low: LowPass,

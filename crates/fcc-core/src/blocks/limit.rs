@@ -22,6 +22,10 @@ pub fn limit(value: f64, min: f64, max: f64) -> f64 {
 }
 
 /// The value, held to `-most..=most`.
+///
+/// ```
+/// assert_eq!(fcc_core::blocks::limit_abs(-1.2, 1.0), -1.0);
+/// ```
 pub fn limit_abs(value: f64, most: f64) -> f64 {
     limit(value, -most, most)
 }

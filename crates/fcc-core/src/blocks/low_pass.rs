@@ -5,6 +5,12 @@ use libm::{expm1, log1p};
 /// How far a first-order lag of time constant `tau_s` moves towards its input
 /// in `dt_s` seconds, 0..=1: `1 - exp(-dt/τ)`, exact for an input held during
 /// the step. A time constant of nought passes the input through.
+///
+/// ```
+/// // A first-order lag has gone 63.2 % of the way after its time constant.
+/// let gone = fcc_core::blocks::smoothing_factor(0.5, 0.5);
+/// assert!((gone - 0.632).abs() < 1e-3);
+/// ```
 pub fn smoothing_factor(dt_s: f64, tau_s: f64) -> f64 {
     if dt_s <= 0.0 {
         0.0
@@ -18,6 +24,12 @@ pub fn smoothing_factor(dt_s: f64, tau_s: f64) -> f64 {
 /// The time constant in s of a filter known by its factor per sample,
 /// `0 < alpha < 1`, and the time between samples: the inverse of
 /// [`smoothing_factor`].
+///
+/// ```
+/// // The low pass of the thesis: 0.15 a sample at 40 Hz.
+/// let tau_s = fcc_core::blocks::time_constant(0.15, 0.025);
+/// assert!((tau_s - 0.154).abs() < 1e-3);
+/// ```
 pub fn time_constant(alpha: f64, dt_s: f64) -> f64 {
     -dt_s / log1p(-alpha)
 }

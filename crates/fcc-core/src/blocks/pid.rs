@@ -3,6 +3,23 @@
 use super::{limit, limit_abs, smoothing_factor};
 
 /// What keeps the integral from growing while the output cannot follow.
+///
+/// ```
+/// use fcc_core::blocks::{AntiWindup, Pid, PidConfig};
+///
+/// let mut valve = Pid::new(PidConfig {
+///     ki: 1.0,
+///     output_min: -1.0,
+///     output_max: 1.0,
+///     anti_windup: AntiWindup::BackCalculation { tracking_tau_s: 0.1 },
+///     ..PidConfig::default()
+/// });
+/// // An error of 10 for 10 s, most of it in vain: 100 without anti-windup.
+/// for _ in 0..400 {
+///     valve.step(10.0, 0.0, 0.025);
+/// }
+/// assert!(valve.integral() < 2.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum AntiWindup {
     /// The integral stands still while it would push further into a limit.
@@ -17,6 +34,14 @@ pub enum AntiWindup {
 
 /// Gains and limits of a [`Pid`]. `kp` is output per error, `ki` output per
 /// error and second, `kd` output per error per second.
+///
+/// ```
+/// use fcc_core::blocks::{Pid, PidConfig};
+///
+/// // Proportional alone: what is not said is nought or without a limit.
+/// let mut rudder = Pid::new(PidConfig { kp: 0.5, ..PidConfig::default() });
+/// assert_eq!(rudder.step(3.0, 1.0, 0.025), 1.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct PidConfig {
     /// Proportional gain.
@@ -57,7 +82,7 @@ impl Default for PidConfig {
 /// PID controller with derivative on measurement, anti-windup, limits on
 /// output and its rate, feed-forward, and take-over without a bump.
 ///
-/// The integral is kept in units of the output, so changing a gain in flight
+/// The integral is kept in units of the output, so changing a gain while it runs
 /// does not make the output jump.
 ///
 /// ```

@@ -8,6 +8,15 @@ use libm::sqrt;
 ///
 /// From v² = 2 a s. With gain k the proportional part reaches to e₀ = a/k²;
 /// beyond it, v = √(2a(|e| - e₀/2)).
+///
+/// ```
+/// use fcc_core::blocks::SquareRootProfile;
+///
+/// // 100 m to go, braking with 2 m/s²: v² = 2 a s allows 20 m/s.
+/// let brake = SquareRootProfile { gain_per_s: 10.0, deceleration: 2.0 };
+/// assert!((brake.speed(100.0) - 20.0).abs() < 0.01);
+/// assert!((brake.speed(-0.01) + 0.1).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct SquareRootProfile {
     /// Closing speed per error near the target, 1/s; positive.

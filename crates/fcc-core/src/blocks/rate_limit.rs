@@ -3,6 +3,16 @@
 use super::limit_abs;
 
 /// Limits how fast a signal may move.
+///
+/// ```
+/// use fcc_core::blocks::RateLimit;
+///
+/// // A throttle that takes 2 s from idle to full.
+/// let mut throttle = RateLimit::new(0.5);
+/// throttle.reset(0.0);
+/// assert!((throttle.step(1.0, 1.0) - 0.5).abs() < 1e-12);
+/// assert!((throttle.step(1.0, 1.0) - 1.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct RateLimit {
     rate_per_s: f64,

@@ -6,6 +6,12 @@
 use libm::{pow, sqrt};
 
 /// Standard gravity, m/s².
+///
+/// ```
+/// use fcc_core::flight::atmosphere::GRAVITY_MPS2;
+/// // ISO 80000-3.
+/// assert_eq!(GRAVITY_MPS2, 9.806_65);
+/// ```
 pub const GRAVITY_MPS2: f64 = 9.806_65;
 
 const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
@@ -21,18 +27,36 @@ const PRESSURE_EXPONENT: f64 = GRAVITY_MPS2 / (-LAPSE_RATE_K_PER_M * GAS_CONSTAN
 /// Pressure altitude in m from static pressure in Pa (the thesis' figure 5.9:
 /// h = (T₀/L)((p/p₀)^(-L R/g) - 1)). Not a number for a pressure that is not
 /// positive.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::pressure_altitude_m;
+/// // ISO 2533, table 5: 89,874.6 Pa at 1,000 m.
+/// assert!((pressure_altitude_m(89_874.6) - 1_000.0).abs() < 0.1);
+/// ```
 pub fn pressure_altitude_m(pressure_pa: f64) -> f64 {
     let ratio = pow(pressure_pa / SEA_LEVEL_PRESSURE_PA, 1.0 / PRESSURE_EXPONENT);
     SEA_LEVEL_TEMPERATURE_K / LAPSE_RATE_K_PER_M * (ratio - 1.0)
 }
 
 /// Static pressure in Pa at a pressure altitude in m.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::pressure_pa;
+/// // ISO 2533, table 5: 54,019.9 Pa at 5,000 m.
+/// assert!((pressure_pa(5_000.0) - 54_019.9).abs() < 1.0);
+/// ```
 pub fn pressure_pa(altitude_m: f64) -> f64 {
     SEA_LEVEL_PRESSURE_PA * pow(temperature_ratio(altitude_m), PRESSURE_EXPONENT)
 }
 
 /// Air density over its sea-level value (1.225 kg/m³), σ, at a pressure
 /// altitude in m.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::density_ratio;
+/// // ISO 2533, table 5: 0.736116 kg/m³ at 5,000 m.
+/// assert!((density_ratio(5_000.0) * 1.225 - 0.736_116).abs() < 1e-4);
+/// ```
 pub fn density_ratio(altitude_m: f64) -> f64 {
     pow(temperature_ratio(altitude_m), PRESSURE_EXPONENT - 1.0)
 }
@@ -40,6 +64,13 @@ pub fn density_ratio(altitude_m: f64) -> f64 {
 /// True airspeed in m/s from equivalent airspeed in m/s at a pressure altitude
 /// in m: EAS/√σ. Below 100 m/s indicated, calibrated and equivalent airspeed
 /// differ by less than 1 %.
+///
+/// ```
+/// use fcc_core::flight::atmosphere::true_airspeed_mps;
+/// // 200 kt true at 10,000 ft are 171.88 kt equivalent, as JSBSim has them.
+/// let true_kt = true_airspeed_mps(171.88, 3_048.0);
+/// assert!((true_kt - 200.0).abs() < 0.1);
+/// ```
 pub fn true_airspeed_mps(equivalent_mps: f64, altitude_m: f64) -> f64 {
     equivalent_mps / sqrt(density_ratio(altitude_m))
 }

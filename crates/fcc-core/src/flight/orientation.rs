@@ -13,6 +13,17 @@ use libm::{asin, atan2, cos, sin, sqrt};
 use crate::blocks::{limit_abs, wrap_two_pi};
 
 /// Roll, pitch and heading, rad.
+///
+/// ```
+/// use fcc_core::flight::orientation::EulerAngles;
+///
+/// let climbing_east = EulerAngles {
+///     pitch_rad: 10.0_f64.to_radians(),
+///     heading_rad: 90.0_f64.to_radians(),
+///     ..EulerAngles::default()
+/// };
+/// assert_eq!(climbing_east.roll_rad, 0.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct EulerAngles {
     /// Right wing down, -π..π.
@@ -48,6 +59,15 @@ pub fn quaternion_from_euler(angles: EulerAngles) -> [f64; 4] {
 /// The Euler angles of a quaternion, which need not be of unit length. With
 /// the nose straight up or down, roll and heading are one rotation; how it is
 /// shared out means nothing then. Not a number for a quaternion of no length.
+///
+/// ```
+/// use core::f64::consts::FRAC_1_SQRT_2;
+/// use fcc_core::flight::orientation::euler_from_quaternion;
+///
+/// // A quarter of a turn about the forward axis: right wing straight down.
+/// let angles = euler_from_quaternion([FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0]);
+/// assert!((angles.roll_rad.to_degrees() - 90.0).abs() < 1e-9);
+/// ```
 pub fn euler_from_quaternion(quaternion: [f64; 4]) -> EulerAngles {
     let [w, x, y, z] = unit(quaternion);
     EulerAngles {
@@ -59,11 +79,30 @@ pub fn euler_from_quaternion(quaternion: [f64; 4]) -> EulerAngles {
 }
 
 /// A vector in body axes, in earth axes.
+///
+/// ```
+/// use core::f64::consts::FRAC_1_SQRT_2;
+/// use fcc_core::flight::orientation::body_to_earth;
+///
+/// // The nose points east: so does what moves forward.
+/// let east = [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
+/// let [north_mps, east_mps, _] = body_to_earth(east, [50.0, 0.0, 0.0]);
+/// assert!(north_mps.abs() < 1e-9 && (east_mps - 50.0).abs() < 1e-9);
+/// ```
 pub fn body_to_earth(quaternion: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
     turned(unit(quaternion), vector)
 }
 
 /// A vector in earth axes, in body axes.
+///
+/// ```
+/// use fcc_core::flight::orientation::{EulerAngles, earth_to_body, quaternion_from_euler};
+///
+/// // Gravity in a bank of 30° to the right: half of it pulls to the right.
+/// let bank = EulerAngles { roll_rad: 30.0_f64.to_radians(), ..EulerAngles::default() };
+/// let [_, right, _] = earth_to_body(quaternion_from_euler(bank), [0.0, 0.0, 9.806_65]);
+/// assert!((right - 4.903_325).abs() < 1e-9);
+/// ```
 pub fn earth_to_body(quaternion: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
     let [w, x, y, z] = unit(quaternion);
     turned([w, -x, -y, -z], vector)

@@ -46,11 +46,11 @@ schema! {
             to: State,
         },
         /// A command was read, in the sequence they were sent in: with these and the
-        /// measurements of its records a flight can be flown again.
+        /// measurements of its records a run can be replayed.
         #[field(11)]
-        CommandReceived(ordered: LoopCommand<O>),
+        CommandReceived(command: LoopCommand<O>),
         /// The loop was told to end by its stop flag, as a signal does; this too
-        /// comes from outside, and is needed to fly a flight again.
+        /// comes from outside, and is needed to replay a run.
         #[field(23)]
         StopRequested,
         /// Somebody wanted to engage, and must ask again.

@@ -7,9 +7,8 @@ use crate::schema;
 
 /// Writes its part of the measurements `M` once a tick.
 ///
-/// The loop holds sensors as `Box<dyn Sensor<M>>`: flying by the simulator or
-/// by a board's own sensors differs in configuration and in no line of the
-/// loop. A sensor that has nothing new leaves `into` as it is: each
+/// The loop holds sensors as `Box<dyn Sensor<M>>`: a simulated plant and a
+/// board's own sensors differ in configuration and in no line of the loop. A sensor that has nothing new leaves `into` as it is: each
 /// [`Reading`](super::Reading) carries its own time, and grows old by itself.
 pub trait Sensor<M>: Send {
     /// Takes what is there and returns. Never waits, allocates, locks, logs or

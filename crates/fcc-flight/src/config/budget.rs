@@ -16,13 +16,13 @@ pub struct BudgetSection {
     /// Sampling the sensors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensors_us: Option<u32>,
-    /// Navigation.
+    /// The controller's `estimate`: navigation.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub navigation_us: Option<u32>,
-    /// Guidance.
+    pub estimate_us: Option<u32>,
+    /// The controller's `guide`: guidance.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub guidance_us: Option<u32>,
-    /// Control.
+    pub guide_us: Option<u32>,
+    /// The controller's `control`, or `failsafe`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control_us: Option<u32>,
     /// Driving the actuators.
@@ -40,8 +40,8 @@ impl From<&BudgetSection> for Budget {
         Self {
             tick: time(section.tick_us),
             sensors: time(section.sensors_us),
-            navigation: time(section.navigation_us),
-            guidance: time(section.guidance_us),
+            estimate: time(section.estimate_us),
+            guide: time(section.guide_us),
             control: time(section.control_us),
             actuators: time(section.actuators_us),
             failsafe_after: section.failsafe_after,

@@ -23,8 +23,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("realtime.timer_slack_ns", 0.0, 1e9),
     ("budget.tick_us", 1.0, 1e6),
     ("budget.sensors_us", 1.0, 1e6),
-    ("budget.navigation_us", 1.0, 1e6),
-    ("budget.guidance_us", 1.0, 1e6),
+    ("budget.estimate_us", 1.0, 1e6),
+    ("budget.guide_us", 1.0, 1e6),
     ("budget.control_us", 1.0, 1e6),
     ("budget.actuators_us", 1.0, 1e6),
     ("budget.failsafe_after", 0.0, 1e6),
@@ -210,8 +210,8 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
     let budget = &config.budget;
     let stages = [
         ("budget.sensors_us", budget.sensors_us),
-        ("budget.navigation_us", budget.navigation_us),
-        ("budget.guidance_us", budget.guidance_us),
+        ("budget.estimate_us", budget.estimate_us),
+        ("budget.guide_us", budget.guide_us),
         ("budget.control_us", budget.control_us),
         ("budget.actuators_us", budget.actuators_us),
     ];
@@ -284,8 +284,8 @@ mod tests {
         config.budget = BudgetSection {
             tick_us: us,
             sensors_us: us,
-            navigation_us: us,
-            guidance_us: us,
+            estimate_us: us,
+            guide_us: us,
             control_us: us,
             actuators_us: us,
             failsafe_after: us,

@@ -153,6 +153,8 @@ mod tests {
         );
         let former = words("course.kind", Value::String("hold".to_owned()));
         assert!(former.contains("[guidance], its kind mode"), "{former}");
+        let stage = words("budget.guidance_us", Value::Integer(1_000));
+        assert!(stage.contains("is called guide_us"), "{stage}");
         let through = words("loop.rate_hz.x", Value::Float(1.0));
         assert_eq!(through, "config: loop.rate_hz.x: there is no such key");
         let nan = words("loop.rate_hz", Value::Float(f64::NAN));

@@ -23,10 +23,14 @@ pub(super) fn plainly(complaint: &str, key: Option<&str>) -> String {
 }
 
 /// Keys by their former names, and what they are called now.
-const RENAMED: &[(&str, &str)] = &[(
-    "course",
-    "a course is a ground track: the section is called [guidance], its kind mode",
-)];
+const RENAMED: &[(&str, &str)] = &[
+    ("budget.guidance_us", "the key is called guide_us"),
+    ("budget.navigation_us", "the key is called estimate_us"),
+    (
+        "course",
+        "a course is a ground track: the section is called [guidance], its kind mode",
+    ),
+];
 
 /// What a key of a former version is called now.
 pub(super) fn renamed(key: &str) -> Option<String> {

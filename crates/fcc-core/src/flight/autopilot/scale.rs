@@ -4,6 +4,16 @@ use super::AutopilotConfig;
 
 /// How an aircraft differs from the one that the gains were found on. 1 is
 /// the same; each factor multiplies a family of gains.
+///
+/// ```
+/// use fcc_core::flight::{AutopilotConfig, Scale};
+///
+/// // An airliner: half as quick. Rates are halved.
+/// let scale = Scale { pace: 0.5, ..Scale::default() };
+/// let as_found = AutopilotConfig::default();
+/// let scaled = as_found.scaled(&scale);
+/// assert_eq!(scaled.heading.roll_gain_per_s, 0.5 * as_found.heading.roll_gain_per_s);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Scale {
     /// Elevator: more where the elevator does less.

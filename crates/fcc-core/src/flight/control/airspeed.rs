@@ -6,6 +6,14 @@ use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
 
 /// Gains of the airspeed loop.
+///
+/// ```
+/// use fcc_core::flight::control::AirspeedConfig;
+///
+/// // Throttle that accelerates by 1 g, as a configuration file has it.
+/// let per_g = AirspeedConfig::default().throttle_per_mps2 * 9.806_65;
+/// assert!((per_g - 3.63).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AirspeedConfig {
     /// Acceleration asked for per airspeed error, 1/s.
@@ -38,6 +46,19 @@ impl Default for AirspeedConfig {
 }
 
 /// What the airspeed loop has to know of the other two.
+///
+/// ```
+/// use fcc_core::flight::control::ThrottleDemand;
+///
+/// let cruise = ThrottleDemand {
+///     airspeed_mps: 51.4,
+///     climb_rate_mps: 0.0,
+///     load_factor: 1.0,
+///     least_throttle: 0.0,
+/// };
+/// let turn = ThrottleDemand { load_factor: 1.0 / 30.0_f64.to_radians().cos(), ..cruise };
+/// assert!((turn.load_factor - 1.155).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ThrottleDemand {
     /// Indicated airspeed asked for, m/s.
@@ -51,6 +72,30 @@ pub struct ThrottleDemand {
 }
 
 /// Airspeed → throttle, with climb and turn fed forward.
+///
+/// ```
+/// use fcc_core::flight::control::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let level = Estimate {
+///     airspeed_mps: 51.4,
+///     true_airspeed_mps: 53.8,
+///     altitude_m: 914.4,
+///     ..Estimate::default()
+/// };
+/// let demand = ThrottleDemand {
+///     airspeed_mps: 51.4,
+///     climb_rate_mps: 0.0,
+///     load_factor: 1.0,
+///     least_throttle: 0.0,
+/// };
+/// let mut airspeed = AirspeedLoop::new(AirspeedConfig::default());
+/// airspeed.engage(0.65, &demand, &level);
+/// // Taken over as it stands; a knot too slow asks for more.
+/// assert!((airspeed.step(&demand, &level, 0.025) - 0.65).abs() < 1e-9);
+/// let slow = Estimate { airspeed_mps: 50.9, ..level };
+/// assert!(airspeed.step(&demand, &slow, 0.025) > 0.65);
+/// ```
 #[derive(Clone, Debug)]
 pub struct AirspeedLoop {
     config: AirspeedConfig,

@@ -8,6 +8,13 @@ use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
 
 /// Gains of the altitude loop; surface gains hold at the reference airspeed.
+///
+/// ```
+/// use fcc_core::flight::control::{AltitudeConfig, AltitudeLoop, Envelope};
+///
+/// let gentle = AltitudeConfig { altitude_gain_per_s: 0.5, ..AltitudeConfig::default() };
+/// assert_eq!(AltitudeLoop::new(gentle, &Envelope::default()).trim(), 0.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AltitudeConfig {
     /// Climb rate per altitude error near the target, 1/s.
@@ -58,6 +65,15 @@ impl Default for AltitudeConfig {
 
 /// Bounds of the climb rate, m/s; where they contradict, the upper one holds:
 /// too slow matters more than too fast.
+///
+/// ```
+/// use fcc_core::flight::control::{ClimbLimits, Envelope};
+///
+/// // At 100 kt a Cessna 172 is far from either limit: 965 ft/min up and down.
+/// let limits: ClimbLimits = Envelope::default().climb_limits(51.4);
+/// assert!((limits.max_mps * 196.85 - 965.0).abs() < 0.1);
+/// assert!((limits.min_mps + limits.max_mps).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ClimbLimits {
     /// Fastest climb.
@@ -67,6 +83,12 @@ pub struct ClimbLimits {
 }
 
 /// What the altitude loop commands.
+///
+/// ```
+/// use fcc_core::flight::control::PitchCommand;
+///
+/// assert_eq!(PitchCommand::default().elevator, 0.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct PitchCommand {
     /// Climb rate asked for, m/s.
@@ -78,6 +100,27 @@ pub struct PitchCommand {
 }
 
 /// Altitude → climb rate → pitch → pitch rate → elevator.
+///
+/// ```
+/// use fcc_core::flight::control::{AltitudeConfig, AltitudeLoop, Envelope, Schedule};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let level = Estimate {
+///     airspeed_mps: 51.4,
+///     true_airspeed_mps: 53.8,
+///     altitude_m: 914.4,
+///     ..Estimate::default()
+/// };
+/// let (envelope, schedule) = (Envelope::default(), Schedule::at(51.4, 51.4));
+/// let mut altitude = AltitudeLoop::new(AltitudeConfig::default(), &envelope);
+/// altitude.engage(0.05, &level, schedule);
+/// // It is where it is to be: the elevator stays.
+/// let held = altitude.step(914.4, &level, &envelope, schedule, 0.025);
+/// assert!((held.elevator - 0.05).abs() < 1e-9);
+/// // 150 ft higher: the nose goes up.
+/// let climb = altitude.step(960.1, &level, &envelope, schedule, 0.025);
+/// assert!(climb.climb_rate_mps > 0.0 && climb.elevator > held.elevator);
+/// ```
 #[derive(Clone, Debug)]
 pub struct AltitudeLoop {
     config: AltitudeConfig,

@@ -6,6 +6,14 @@ use super::ClimbLimits;
 use crate::blocks::limit;
 
 /// What the outer loops may ask of the aircraft.
+///
+/// ```
+/// use fcc_core::flight::control::Envelope;
+///
+/// // A level turn at 2 g banks by 60°.
+/// let envelope = Envelope { max_bank_rad: 1.3, max_load_factor: 2.0, ..Envelope::default() };
+/// assert!((envelope.bank_limit_rad().to_degrees() - 60.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Envelope {
     /// Largest bank, rad.

@@ -8,6 +8,13 @@ use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
 
 /// Gains of the heading loop; surface gains hold at the reference airspeed.
+///
+/// ```
+/// use fcc_core::flight::control::{HeadingConfig, HeadingLoop};
+///
+/// let calm = HeadingLoop::new(HeadingConfig { heading_gain_per_s: 0.5, ..HeadingConfig::default() });
+/// assert_eq!(calm.aileron_trim(), 0.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct HeadingConfig {
     /// Turn rate per heading error near the target, 1/s.
@@ -59,6 +66,16 @@ impl Default for HeadingConfig {
 }
 
 /// What the heading loop commands.
+///
+/// ```
+/// use fcc_core::flight::control::{HeadingConfig, HeadingLoop, Lateral, Schedule};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let mut heading = HeadingLoop::new(HeadingConfig::default());
+/// let schedule = Schedule::at(51.4, 51.4);
+/// let level: Lateral = heading.hold_bank(0.0, &Estimate::default(), schedule, 0.025);
+/// assert_eq!(level, Lateral::default());
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Lateral {
     /// Bank asked for, rad.
@@ -70,6 +87,25 @@ pub struct Lateral {
 }
 
 /// Heading → turn rate → bank → roll rate → aileron, and the rudder.
+///
+/// ```
+/// use fcc_core::flight::control::{Envelope, HeadingConfig, HeadingLoop, Schedule};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let level = Estimate {
+///     airspeed_mps: 51.4,
+///     true_airspeed_mps: 53.8,
+///     altitude_m: 914.4,
+///     ..Estimate::default()
+/// };
+/// let (envelope, schedule) = (Envelope::default(), Schedule::at(51.4, 51.4));
+/// let mut heading = HeadingLoop::new(HeadingConfig::default());
+/// heading.engage(0.0, 0.0, &level, schedule);
+/// // 90° to the right: the bank asked for is the limit, 30°.
+/// let command = heading.step(90.0_f64.to_radians(), &level, &envelope, schedule, 0.025);
+/// assert!((command.roll_rad.to_degrees() - 30.0).abs() < 1e-9);
+/// assert!(command.aileron > 0.0);
+/// ```
 #[derive(Clone, Debug)]
 pub struct HeadingLoop {
     config: HeadingConfig,

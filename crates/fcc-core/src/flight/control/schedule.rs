@@ -4,6 +4,14 @@ use crate::blocks::limit;
 
 /// How gains follow the airspeed, by the ratio of the reference airspeed to
 /// the present.
+///
+/// ```
+/// use fcc_core::flight::control::Schedule;
+///
+/// // At √2 times the reference airspeed dynamic pressure is twice as high.
+/// let schedule = Schedule::at(2.0_f64.sqrt() * 50.0, 50.0);
+/// assert!((schedule.moment - 0.5).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Schedule {
     /// For moments: a surface's moment is proportional to dynamic pressure, so

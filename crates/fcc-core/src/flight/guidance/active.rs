@@ -4,6 +4,13 @@ use super::{Guidance, Hold, Mode, Progress, Targets, TimedPattern, TimedPatternC
 use crate::flight::navigation::Estimate;
 
 /// The mode that is flown once engaged.
+///
+/// ```
+/// use fcc_core::flight::guidance::{GuidanceConfig, Mode, TimedPatternConfig};
+///
+/// let config = GuidanceConfig::TimedPattern(TimedPatternConfig::default());
+/// assert_eq!(config.mode(), Mode::TimedPattern);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum GuidanceConfig {
     /// Keep what was captured, until commanded otherwise.
@@ -24,6 +31,15 @@ impl GuidanceConfig {
 
 /// The mode that is flown. A further mode is a further variant, in this file
 /// and in [`Mode`].
+///
+/// ```
+/// use fcc_core::flight::guidance::{ActiveMode, GuidanceConfig, Mode, Targets};
+///
+/// let captured = Targets { airspeed_mps: 51.4, heading_rad: 0.0, altitude_m: 914.4 };
+/// let active = ActiveMode::enter(Mode::Hold, &GuidanceConfig::Hold, captured);
+/// assert_eq!(active.targets(), Some(captured));
+/// assert_eq!(active.progress().mode, Mode::Hold);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum ActiveMode {
     /// Nothing is flown.

@@ -4,6 +4,16 @@ use super::{Guidance, Mode, Progress, Targets};
 use crate::flight::navigation::Estimate;
 
 /// Keeps the heading, altitude and airspeed that were captured or commanded.
+///
+/// ```
+/// use fcc_core::flight::guidance::{Guidance, Hold, Targets};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let captured = Targets { airspeed_mps: 51.4, heading_rad: 0.0, altitude_m: 914.4 };
+/// let mut hold = Hold::enter((), captured);
+/// hold.advance(&Estimate::default(), 3_600.0);
+/// assert_eq!(hold.targets(), captured);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Hold {
     captured: Targets,

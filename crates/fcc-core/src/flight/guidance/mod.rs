@@ -26,6 +26,14 @@ use crate::schema;
 
 schema! {
     /// What guidance asks of control.
+    ///
+    /// ```
+    /// use fcc_core::flight::guidance::Targets;
+    ///
+    /// // A turn to the right from 350° to 80°: 440°, not 80°.
+    /// let target = Targets { heading_rad: 440.0_f64.to_radians(), ..Targets::default() };
+    /// assert!(target.is_finite() && target.heading_rad > 350.0_f64.to_radians());
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Targets {
         /// Indicated airspeed, m/s.
@@ -54,6 +62,22 @@ impl Targets {
 /// Under the rules of a tick: a pure function of what it holds and is handed,
 /// without heap, clock or panic. Every mode runs the conformance suite beside
 /// this trait, which shows what is said here.
+///
+/// ```
+/// use fcc_core::flight::guidance::{Guidance, Targets, TimedPattern, TimedPatternConfig};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let captured = Targets { airspeed_mps: 51.4, heading_rad: 0.0, altitude_m: 914.4 };
+/// let mut pattern = TimedPattern::enter(TimedPatternConfig::default(), captured);
+/// assert_eq!(pattern.targets(), captured);
+/// // The thesis holds for 20 s, then turns right by 90° and climbs 150 ft.
+/// pattern.advance(&Estimate::default(), 20.0);
+/// assert!((pattern.targets().heading_rad.to_degrees() - 90.0).abs() < 1e-9);
+/// assert!((pattern.targets().altitude_m / 0.304_8 - 3_150.0).abs() < 1e-9);
+/// // What it has done is all that is needed to go on with it elsewhere.
+/// let again = TimedPattern::resume(TimedPatternConfig::default(), &pattern.progress());
+/// assert_eq!(again, pattern);
+/// ```
 pub trait Guidance: Copy {
     /// What of this mode is the user's choice.
     type Config: Copy;

@@ -13,6 +13,14 @@ use core::fmt;
 /// | **None** | the configured mode | · | · | None |
 /// | **Hold** | the configured mode | Hold | the mode, if it is Hold or configured | None |
 /// | **`TimedPattern`** | the configured mode | Hold | the mode, if it is Hold or configured | None |
+///
+/// ```
+/// use fcc_core::flight::guidance::{Mode, ModeInput};
+///
+/// // A heading that is commanded ends a pattern, and the rest is held.
+/// let after = Mode::TimedPattern.after(ModeInput::SetPoint, Mode::TimedPattern);
+/// assert_eq!(after, Some(Mode::Hold));
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[repr(u8)]
 pub enum Mode {
@@ -26,6 +34,14 @@ pub enum Mode {
 }
 
 /// What can change the mode.
+///
+/// ```
+/// use fcc_core::flight::guidance::{Mode, ModeInput};
+///
+/// let engaged = Mode::None.after(ModeInput::Engage, Mode::TimedPattern);
+/// assert_eq!(engaged, Some(Mode::TimedPattern));
+/// assert_eq!(Mode::None.after(ModeInput::SetPoint, Mode::TimedPattern), None);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum ModeInput {
     /// The loop engages.

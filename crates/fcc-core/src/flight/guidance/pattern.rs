@@ -7,6 +7,14 @@ use crate::flight::navigation::Estimate;
 
 /// The timed pattern: hold, then legs that turn by a fixed angle and go up and
 /// back down in turn (thesis, section 6.3).
+///
+/// ```
+/// use fcc_core::flight::guidance::TimedPatternConfig;
+///
+/// // The thesis climbs 150 ft in a leg.
+/// let thesis = TimedPatternConfig::default();
+/// assert!((thesis.climb_m / 0.304_8 - 150.0).abs() < 1e-9);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TimedPatternConfig {
     /// How long to hold what was captured, s.
@@ -32,6 +40,16 @@ impl Default for TimedPatternConfig {
 }
 
 /// The pattern in flight.
+///
+/// ```
+/// use fcc_core::flight::guidance::{Guidance, Targets, TimedPattern, TimedPatternConfig};
+/// use fcc_core::flight::navigation::Estimate;
+///
+/// let mut pattern = TimedPattern::enter(TimedPatternConfig::default(), Targets::default());
+/// assert_eq!(pattern.leg(), 0);
+/// pattern.advance(&Estimate::default(), 65.0);
+/// assert_eq!(pattern.leg(), 3);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TimedPattern {
     config: TimedPatternConfig,

@@ -4,6 +4,14 @@ use super::{Mode, Targets};
 
 /// How far a mode has come: what an observer needs to know of it, and all that
 /// is needed to go on with it elsewhere.
+///
+/// ```
+/// use fcc_core::flight::guidance::{Mode, Progress};
+///
+/// let progress = Progress { mode: Mode::Hold, elapsed_s: 12.5, ..Progress::default() };
+/// assert!(progress.is_valid());
+/// assert!(!Progress::default().is_valid(), "nothing is flown");
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]
 pub struct Progress {

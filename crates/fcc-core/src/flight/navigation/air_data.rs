@@ -13,6 +13,22 @@ use crate::framework::Time;
 /// Complementary filter: the acceleration along the flight path in the short
 /// run, the airspeed sensor in the long. A gust that does not move the
 /// aircraft is not taken for a change of speed.
+///
+/// ```
+/// use fcc_core::flight::Measurements;
+/// use fcc_core::flight::navigation::{AirspeedChannel, AttitudeChannel, VerticalChannel};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let now = Time::from_nanos(25_000_000);
+/// let measured = Measurements {
+///     airspeed_mps: Reading::new(51.4, now),
+///     ..Measurements::default()
+/// };
+/// let level = AttitudeChannel::new(1.36, 1.44).step(now, &measured, 0.025);
+/// let vertical = VerticalChannel::new(0.68).step(now, &measured, &level, 0.025);
+/// let mut airspeed = AirspeedChannel::new(0.89);
+/// assert_eq!(airspeed.step(now, &measured, &level, &vertical, 0.025), 51.4);
+/// ```
 #[derive(Clone, Debug)]
 pub struct AirspeedChannel {
     airspeed: Complementary,

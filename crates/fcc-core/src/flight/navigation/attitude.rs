@@ -20,6 +20,27 @@ pub struct Orientation {
 
 /// Complementary filter over Euler angles (rates turned into angle rates as in
 /// Stevens, Lewis and Johnson 2016, equation 1.4-4).
+///
+/// ```
+/// use fcc_core::flight::navigation::AttitudeChannel;
+/// use fcc_core::flight::{BodyRates, Measurements};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let mut channel = AttitudeChannel::new(1.36, 1.44);
+/// // A standard rate turn, 3 °/s for 10 s, by the gyroscope alone.
+/// let yaw_radps = 3.0_f64.to_radians();
+/// let mut turned_rad = 0.0;
+/// for n in 1..=400 {
+///     let now = Time::from_nanos(n * 25_000_000);
+///     let rates = BodyRates { yaw_radps, ..BodyRates::default() };
+///     let measured = Measurements {
+///         body_rates: Reading::new(rates, now),
+///         ..Measurements::default()
+///     };
+///     turned_rad = channel.step(now, &measured, 0.025).heading_rad;
+/// }
+/// assert!((turned_rad.to_degrees() - 30.0).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug)]
 pub struct AttitudeChannel {
     roll: Complementary,

@@ -26,6 +26,13 @@ pub(crate) use plausibility::plausibility_gate;
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
+///
+/// ```
+/// use fcc_core::flight::navigation::{Navigation, NavigationConfig};
+///
+/// let smooth = NavigationConfig { airspeed_tau_s: 2.0, ..NavigationConfig::default() };
+/// assert_eq!(Navigation::new(&smooth).estimate().airspeed_mps, 0.0);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct NavigationConfig {
     /// Above 1/this the gyroscopes say the attitude, below it the measured
@@ -57,6 +64,15 @@ impl Default for NavigationConfig {
 
 schema! {
     /// What navigation makes of the measurements.
+    ///
+    /// ```
+    /// use fcc_core::flight::navigation::Estimate;
+    ///
+    /// // The heading counts on: 370° is 10° after a turn to the right.
+    /// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
+    /// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
+    /// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Estimate {
         /// Right wing down, rad.
@@ -91,6 +107,24 @@ schema! {
 }
 
 /// Turns measurements into an [`Estimate`].
+///
+/// ```
+/// use fcc_core::flight::Measurements;
+/// use fcc_core::flight::navigation::{Navigation, NavigationConfig};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let now = Time::from_nanos(25_000_000);
+/// let measured = Measurements {
+///     airspeed_mps: Reading::new(51.444, now),
+///     altitude_m: Reading::new(3_048.0, now),
+///     ..Measurements::default()
+/// };
+/// let mut navigation = Navigation::new(&NavigationConfig::default());
+/// navigation.step(now, &measured, 0.025);
+/// // 100 kt indicated at 10,000 ft are 116.4 kt true, as tables for pilots say.
+/// let true_kt = navigation.estimate().true_airspeed_mps / 0.514_444;
+/// assert!((true_kt - 116.4).abs() < 0.1);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Navigation {
     attitude: AttitudeChannel,

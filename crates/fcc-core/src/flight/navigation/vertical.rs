@@ -28,6 +28,27 @@ pub struct VerticalState {
 /// An altitude can be marked: what comes later still says something about
 /// where the aircraft was then, and the marked altitude follows it (a
 /// fixed-point smoother, Gelb 1974, section 5.3).
+///
+/// ```
+/// use fcc_core::flight::Measurements;
+/// use fcc_core::flight::navigation::{AttitudeChannel, VerticalChannel};
+/// use fcc_core::framework::{Reading, Time};
+///
+/// let mut attitude = AttitudeChannel::new(1.36, 1.44);
+/// let mut vertical = VerticalChannel::new(0.68);
+/// let mut climb_rate_mps = 0.0;
+/// // A barometer that rises by 2.5 m/s, for a minute.
+/// for n in 1..=2_400 {
+///     let now = Time::from_nanos(n * 25_000_000);
+///     let measured = Measurements {
+///         altitude_m: Reading::new(900.0 + 2.5 * 0.025 * n as f64, now),
+///         ..Measurements::default()
+///     };
+///     let level = attitude.step(now, &measured, 0.025);
+///     climb_rate_mps = vertical.step(now, &measured, &level, 0.025).climb_rate_mps;
+/// }
+/// assert!((climb_rate_mps - 2.5).abs() < 0.01);
+/// ```
 #[derive(Clone, Debug)]
 pub struct VerticalChannel {
     state: VerticalState,
