@@ -17,7 +17,7 @@ use super::outlet::Outlet;
 use super::schema::{self, Topic};
 use super::settings::Compression;
 use super::wire::log::Level;
-use crate::schema::protobuf::{append_text, encode};
+use crate::schema::protobuf::encode;
 use crate::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// What a chunk holds at most before it is compressed: what a reader needs in
@@ -156,8 +156,7 @@ impl RecordingFile {
         let log_ns = self.log_time(event.time.as_nanos());
         let text = self.words(event);
         self.bytes.clear();
-        encode(event, &mut self.bytes);
-        append_text(schema::TEXT.number, &text, &mut self.bytes);
+        schema::encode_event(event, &text, &mut self.bytes);
         self.write_bytes(Topic::Event, log_ns)?;
         let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
         self.write(Topic::Log, log_ns, &line)

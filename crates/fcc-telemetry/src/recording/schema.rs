@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use fcc_core::framework::schema::Schema as _;
 
-use crate::schema::protobuf::{Extra, File, describe};
+use crate::schema::protobuf::{Extra, File, append_text, describe, encode};
 use crate::{FlightEvent, FlightRecord};
 
 /// What says in a file that it is one of ours, in this format.
@@ -26,6 +26,12 @@ pub(super) const TEXT: Extra = Extra {
     number: 3,
     meaning: "What happened, in words for people.",
 };
+
+/// Appends an event and its words for people as a message.
+pub(super) fn encode_event(event: &FlightEvent, text: &str, into: &mut Vec<u8>) {
+    encode(event, into);
+    append_text(TEXT.number, text, into);
+}
 
 /// The topics of a recording.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
