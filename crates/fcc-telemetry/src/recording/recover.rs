@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use mcap::records::{MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
+use prost::Message as _;
 use serde::Serialize;
 
 use super::damage::Damage;
