@@ -179,7 +179,7 @@ def assert_whole(flown: Flown) -> None:
     assert_regular(flown.records, 1_000_000_000 // RATE_HZ)
     assert flown.records[-1].records_dropped == 0
     assert all(record.state.phase != FAILSAFE for record in flown.records)
-    assert any("released" in event.WhichOneof("kind") for event in flown.events)
+    assert any("released" in event.kind.WhichOneof("kind") for event in flown.events)
 
 
 @pytest.mark.parametrize(
