@@ -6,9 +6,6 @@ use std::str::Utf8Error;
 
 use serde::Serialize;
 
-use super::places::{Places, line_of};
-use super::wording::plainly;
-
 /// What is wrong with a configuration file.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -41,17 +38,6 @@ pub struct Problem {
 }
 
 impl ConfigError {
-    pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
-        let span = error.span();
-        let line = span.as_ref().map(|span| line_of(text, span));
-        let key = span.and_then(|span| Places::of(text).key_at(span.start));
-        let message = plainly(error.message(), key.as_deref());
-        Self::Invalid {
-            file: file.to_owned(),
-            problems: vec![Problem { line, key, message }],
-        }
-    }
-
     /// The file is no text.
     pub(super) fn not_text(file: &str, bytes: &[u8], error: Utf8Error) -> Self {
         let good = bytes.get(..error.valid_up_to()).unwrap_or_default();

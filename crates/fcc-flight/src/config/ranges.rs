@@ -134,8 +134,7 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
 
 /// Everything that is wrong with the values of a configuration, in the order
 /// of the text.
-pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
-    let places = Places::of(text);
+pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut complain = |key: &str, message: String| {
         problems.push(Problem {
@@ -161,7 +160,7 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
         ),
     }
     relations(config, &mut complain);
-    x_plane(config, &mut problems, &places);
+    x_plane(config, &mut problems, places);
     if config.x_plane.is_none() && config.built_in.is_none() {
         problems.push(Problem {
             line: None,
@@ -215,6 +214,19 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
         ("budget.control_us", budget.control_us),
         ("budget.actuators_us", budget.actuators_us),
     ];
+    // The rate may be out of its own range here.
+    let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
+    if let Some(tick_us) = budget.tick_us
+        && f64::from(tick_us) > period_us
+    {
+        complain(
+            "budget.tick_us",
+            format!(
+                "is {tick_us}: choose no more than the period, {period_us}: a tick that takes \
+                 longer has missed the next"
+            ),
+        );
+    }
     for (key, stage_us) in stages {
         if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
             && stage_us > tick_us
@@ -268,6 +280,10 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn check(config: &Config, text: &str) -> Vec<Problem> {
+        super::check(config, &super::super::read::read(text).places)
+    }
     use crate::config::{BudgetSection, BuiltInSection, CpuChoice, XPlaneSection};
 
     /// A new key without a range would be a key whose nonsense is believed.
