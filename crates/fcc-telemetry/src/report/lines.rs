@@ -13,11 +13,12 @@ use crate::units::{M_FT, MPS_KT};
 /// silent.
 const OLDEST: Duration = Duration::from_secs(1);
 
-/// What is desired and what is.
+/// What is desired, what is, and where that is estimated, what was measured.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pair {
     pub(super) desired: Trace,
     pub(super) actual: Trace,
+    pub(super) measured: Trace,
 }
 
 /// All lines of the plots over time.
@@ -117,6 +118,7 @@ impl Lines {
         ] {
             pair.desired.cut();
             pair.actual.cut();
+            pair.measured.cut();
         }
         for trace in [
             &mut self.throttle_percent,
