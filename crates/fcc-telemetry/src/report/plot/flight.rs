@@ -15,7 +15,7 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
     let mut figures = vec![
         Figure {
             title: "Heading",
-            caption: "Magnetic heading, desired and actual (thesis, figure 6.4).".to_owned(),
+            caption: "Magnetic heading, desired and actual, which is what the navigation made of what was measured (thesis, figure 6.4).".to_owned(),
             svg: time_figure(
                 report,
                 "Heading over time, desired and actual",
@@ -98,8 +98,8 @@ fn heading(of: &Pair) -> TimePanel {
     let range = (axis.from, axis.to);
     let step = match range.1 - range.0 {
         span if span > 3_600.0 => 360.0 * (span / 3_600.0).ceil(),
-        span if span > 1_440.0 => 360.0,
-        span if span > 720.0 => 180.0,
+        span if span > 2_160.0 => 360.0,
+        span if span > 1_080.0 => 180.0,
         span if span > 360.0 => 90.0,
         span if span > 200.0 => 45.0,
         span if span > 90.0 => 30.0,
