@@ -30,7 +30,7 @@
 //! | `inbox`, `values` | from datagrams to measurements |
 //! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
 //! | `controls`, `confirmation`, `release_monitor`, `release` | writing, whether it takes effect, giving back |
-//! | `port`, `discovery` | sockets and the beacon |
+//! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
 //! # What may go wrong out there
 //!
@@ -46,6 +46,7 @@
 #![forbid(unsafe_code)]
 
 mod actuator;
+mod address;
 mod config;
 mod confirmation;
 mod controls;
@@ -70,8 +71,9 @@ mod units;
 mod values;
 
 pub use actuator::XPlaneActuator;
+pub use address::{AddressError, HostName, Simulator};
 pub use config::{
-    DataRows, Input, Output, RowsVersion, Simulator, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
+    DataRows, Input, Output, RowsVersion, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
 pub use link::Control;

@@ -1,7 +1,7 @@
 //! Flies an assembly to its end.
 
 use std::io;
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::sync::atomic::Ordering;
 
 use fcc_core::framework::State;
@@ -42,7 +42,7 @@ pub enum FlyError {
         "another fccd on this machine flies X-Plane at {0}: end that one first, or fly another \
          X-Plane"
     )]
-    Taken(SocketAddrV4),
+    Taken(SocketAddr),
     /// There is no watchdog, and a flight without one was not asked for.
     #[error("the watchdog: {0}")]
     Watchdog(#[source] io::Error),

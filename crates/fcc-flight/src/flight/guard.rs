@@ -10,7 +10,7 @@
 //! control itself [relieves](super::relief) it.
 
 use std::io::{self, BufRead, Write};
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// The guard, as the process that it guards sees it.
 pub(super) struct Guard {
     child: Child,
-    held: Option<SocketAddrV4>,
+    held: Option<SocketAddr>,
 }
 
 impl Guard {
@@ -56,7 +56,7 @@ impl Guard {
 
     /// Says where control is held, if it is. A guard that is gone is no reason
     /// to stop.
-    pub(super) fn tell(&mut self, held: Option<SocketAddrV4>) {
+    pub(super) fn tell(&mut self, held: Option<SocketAddr>) {
         if self.held == held {
             return;
         }
@@ -84,11 +84,11 @@ impl Guard {
 /// When what is read makes no sense, or there is no socket to be had.
 pub fn run_release_helper(
     from: impl BufRead,
-) -> Result<Option<(SocketAddrV4, Released)>, ReleaseHelperError> {
+) -> Result<Option<(SocketAddr, Released)>, ReleaseHelperError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let section: XPlaneSection = serde_json::from_str(&first)?;
-    let mut held: Option<SocketAddrV4> = None;
+    let mut held: Option<SocketAddr> = None;
     // A pipe that breaks is a pipe that ends.
     for line in lines.map_while(Result::ok) {
         if line == FREE {

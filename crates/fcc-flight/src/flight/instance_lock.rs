@@ -10,9 +10,9 @@
 //! and takes no control before.
 
 use std::io;
-use std::net::{Ipv4Addr, SocketAddrV4, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::os::linux::net::SocketAddrExt;
-use std::os::unix::net::{SocketAddr, UnixDatagram};
+use std::os::unix::net::{SocketAddr as SocketName, UnixDatagram};
 
 use fcc_xplane::XPlaneStatus;
 
@@ -27,11 +27,11 @@ enum Claim {
     Nowhere,
     /// Where the kernel has no such names, nobody is kept from flying.
     Had {
-        simulator: SocketAddrV4,
+        simulator: SocketAddr,
         _name: Option<UnixDatagram>,
     },
     /// Another daemon flies it.
-    Taken(SocketAddrV4),
+    Taken(SocketAddr),
 }
 
 impl InstanceLock {
@@ -70,7 +70,7 @@ impl InstanceLock {
     }
 
     /// Where another daemon flies, if that is where this one was to.
-    pub(super) const fn taken(&self) -> Option<SocketAddrV4> {
+    pub(super) const fn taken(&self) -> Option<SocketAddr> {
         match self.claim {
             Claim::Taken(simulator) => Some(simulator),
             Claim::Nowhere | Claim::Had { .. } => None,
@@ -79,22 +79,26 @@ impl InstanceLock {
 }
 
 /// `AddrInUse` if another daemon of this machine has it.
-fn claim(simulator: SocketAddrV4) -> io::Result<UnixDatagram> {
-    UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(name(simulator))?)
+fn claim(simulator: SocketAddr) -> io::Result<UnixDatagram> {
+    UnixDatagram::bind_addr(&SocketName::from_abstract_name(name(simulator))?)
 }
 
 /// X-Plane listens at every address of its machine, so one on this machine has
 /// one name, whichever of them it goes by.
-fn name(simulator: SocketAddrV4) -> String {
-    let ip = *simulator.ip();
-    let here = ip.is_loopback() || is_of_this_machine(ip);
-    let ip = if here { Ipv4Addr::LOCALHOST } else { ip };
+fn name(simulator: SocketAddr) -> String {
+    let here = simulator.ip().is_loopback() || is_of_this_machine(simulator);
+    let ip = if here {
+        Ipv4Addr::LOCALHOST.into()
+    } else {
+        simulator.ip()
+    };
     format!("fccd/x-plane/{ip}:{}", simulator.port())
 }
 
 /// The kernel binds a socket to no other.
-fn is_of_this_machine(ip: Ipv4Addr) -> bool {
-    UdpSocket::bind((ip, 0)).is_ok()
+fn is_of_this_machine(mut address: SocketAddr) -> bool {
+    address.set_port(0);
+    UdpSocket::bind(address).is_ok()
 }
 
 #[cfg(test)]
@@ -111,11 +115,11 @@ mod tests {
     #[test]
     fn a_simulator_is_claimed_once_and_given_up() {
         let ((_one, port), (_other, other)) = (port(), port());
-        let simulator = SocketAddrV4::new(Ipv4Addr::LOCALHOST, port);
+        let simulator = (Ipv4Addr::LOCALHOST, port).into();
         let first = claim(simulator).unwrap();
         let error = claim(simulator).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::AddrInUse);
-        assert!(claim(SocketAddrV4::new(Ipv4Addr::LOCALHOST, other)).is_ok());
+        assert!(claim((Ipv4Addr::LOCALHOST, other).into()).is_ok());
         drop(first);
         assert!(claim(simulator).is_ok());
     }
@@ -123,9 +127,10 @@ mod tests {
     #[test]
     fn another_address_of_this_machine_is_the_same_simulator() {
         let (_socket, port) = port();
-        let _first = claim(SocketAddrV4::new(Ipv4Addr::LOCALHOST, port)).unwrap();
-        assert!(claim(SocketAddrV4::new([127, 9, 9, 9].into(), port)).is_err());
+        let _first = claim((Ipv4Addr::LOCALHOST, port).into()).unwrap();
+        assert!(claim(([127, 9, 9, 9], port).into()).is_err());
+        assert!(claim((std::net::Ipv6Addr::LOCALHOST, port).into()).is_err());
         // Of a block kept for documents (RFC 5737), so nobody's.
-        assert!(claim(SocketAddrV4::new([192, 0, 2, 1].into(), port)).is_ok());
+        assert!(claim(([192, 0, 2, 1], port).into()).is_ok());
     }
 }

@@ -11,9 +11,9 @@
 //! there can connect; a guard goes for who runs as the same user, and for root.
 
 use std::io::{ErrorKind, Read};
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::os::linux::net::SocketAddrExt;
-use std::os::unix::net::{SocketAddr, UnixListener, UnixStream};
+use std::os::unix::net::{SocketAddr as SocketName, UnixListener, UnixStream};
 use std::time::Duration;
 
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
@@ -22,8 +22,8 @@ use nix::unistd::{Uid, geteuid};
 /// How long a guard may take to go: it looks every 20 ms.
 const GOES_WITHIN: Duration = Duration::from_secs(1);
 
-fn name(simulator: SocketAddrV4) -> std::io::Result<SocketAddr> {
-    SocketAddr::from_abstract_name(format!("fccd-guard-{simulator}"))
+fn name(simulator: SocketAddr) -> std::io::Result<SocketName> {
+    SocketName::from_abstract_name(format!("fccd-guard-{simulator}"))
 }
 
 /// Where a guard is found while it releases.
@@ -36,7 +36,7 @@ pub(super) struct Post {
 impl Post {
     /// Opens the post. Where that fails, nobody can relieve this guard, and it
     /// releases to the end.
-    pub(super) fn at(simulator: SocketAddrV4) -> Self {
+    pub(super) fn at(simulator: SocketAddr) -> Self {
         let listener = name(simulator)
             .and_then(|name| UnixListener::bind_addr(&name))
             .and_then(|listener| listener.set_nonblocking(true).map(|()| listener));
@@ -70,7 +70,7 @@ fn may_relieve(user: Uid, guard: Uid) -> bool {
 
 /// Relieves the guard that releases `simulator`, if there is one, and waits for
 /// a moment until it is gone. Whether there was one.
-pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
+pub(super) fn relieve(simulator: SocketAddr) -> bool {
     let Ok(mut stream) = name(simulator).and_then(|name| UnixStream::connect_addr(&name)) else {
         return false;
     };
@@ -89,10 +89,12 @@ pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::net::{IpAddr, Ipv4Addr};
+
     use super::*;
 
     /// Nobody listens here, and no other test has this address.
-    const SIMULATOR: SocketAddrV4 = SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 9);
+    const SIMULATOR: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 9);
 
     #[test]
     fn a_guard_goes_for_its_own_user_and_root_alone() {
