@@ -103,7 +103,7 @@ def first_engaged_ns(ending: Ending) -> int:
     """Return when the loop first woke up engaged, by the machine's monotonic clock."""
     (path,) = ending.report["recording"]["files"]
     return next(
-        int(seen.content.woke_ns)
+        int(seen.content.tick.woke_ns)
         for seen in in_sequence(Path(path))
         if seen.topic == RECORD and seen.content.state.phase == ENGAGED
     )

@@ -17,6 +17,7 @@ mod message;
 mod plant_id;
 mod reading;
 mod record;
+pub mod schema;
 mod sensor;
 mod stage;
 mod state;
