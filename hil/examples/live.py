@@ -16,7 +16,7 @@ from typing import Any
 
 import iceoryx2 as iox2
 
-LAYOUT = 1
+LAYOUT = 2
 """The layout that this program was written for."""
 NEVER_NS = -(2**63)
 """The time of what has not happened."""
@@ -144,6 +144,22 @@ class Measurements(ctypes.Structure):
     )
 
 
+class Estimate(ctypes.Structure):
+    """What navigation makes of the measurements."""
+
+    _fields_ = (
+        ("roll_rad", ctypes.c_double),
+        ("pitch_rad", ctypes.c_double),
+        ("heading_rad", ctypes.c_double),
+        ("body_rates", BodyRates),
+        ("airspeed_mps", ctypes.c_double),
+        ("true_airspeed_mps", ctypes.c_double),
+        ("altitude_m", ctypes.c_double),
+        ("climb_rate_mps", ctypes.c_double),
+        ("side_force_mps2", ctypes.c_double),
+    )
+
+
 class Setpoints(ctypes.Structure):
     """What the autopilot aims for."""
 
@@ -174,6 +190,7 @@ class Record(ctypes.Structure):
         ("tick", Tick),
         ("stages", Stages),
         ("measurements", Measurements),
+        ("estimate", Estimate),
         ("setpoints", Setpoints),
         ("outputs", Surfaces),
         ("sensor_faults", ctypes.c_uint64),
@@ -191,7 +208,7 @@ class Record(ctypes.Structure):
     @staticmethod
     def type_name() -> str:
         """Return what the daemon calls this type."""
-        return "fcc.v1.Record"
+        return "fcc.v2.Record"
 
 
 class Event(ctypes.Structure):
@@ -209,7 +226,7 @@ class Event(ctypes.Structure):
     @staticmethod
     def type_name() -> str:
         """Return what the daemon calls this type."""
-        return "fcc.v1.Event"
+        return "fcc.v2.Event"
 
 
 class Info(ctypes.Structure):

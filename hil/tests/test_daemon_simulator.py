@@ -7,6 +7,7 @@ import socket
 import time
 from pathlib import Path
 
+import pytest
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
 from deaf_simulator import DeafSimulator
 from fault_flights import AT_ONCE_S, NS, Flown
@@ -16,6 +17,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import BEACON_GROUP, Mode, Settings
 
 SUCCESS = 0
+FAILURE = 1
 FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
@@ -34,7 +36,7 @@ SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
 
 def assert_lost_when_too_old(flown: Flown, place: int) -> None:
     record = flown.records[place]
-    age_s = (record.woke_ns - record.measurements.attitude.taken_ns) * NS
+    age_s = (record.tick.woke_ns - record.measurements.attitude.taken_ns) * NS
     assert MAX_AGE_S < age_s < MAX_AGE_S + AT_ONCE_S
 
 
@@ -48,6 +50,46 @@ def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_pa
     assert ending.exit_code == SUCCESS
     said = [text for text in ending.events if "does not send" in text]
     assert len(said) == 1, said
+
+
+@pytest.mark.parametrize(("host", "written"), [("::1", "[::1]"), ("127.0.0.1", "localhost")])
+def test_it_is_flown_by_ipv6_and_by_its_host_name(
+    fccd: Path, tmp_path: Path, host: str, written: str
+) -> None:
+    with StandInProcess(Settings(host=host, port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        text = config.read_text().replace('"127.0.0.1:', f'"{written}:')
+        config.write_text(text)
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["released"] is True
+
+
+def test_a_killed_daemon_that_flew_by_ipv6_leaves_a_guard_that_releases(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with StandInProcess(Settings(host="::1", port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        config.write_text(config.read_text().replace('"127.0.0.1:', '"[::1]:'))
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            daemon.end(signal.SIGKILL)
+            assert_released(simulator)
+
+
+def test_a_host_name_without_an_address_is_said_before_the_flight(
+    fccd: Path, tmp_path: Path
+) -> None:
+    config = write_config(tmp_path, 49_000)
+    config.write_text(config.read_text().replace('"127.0.0.1:49000"', '"sim.invalid"'))
+    with start(fccd, tmp_path, config) as daemon:
+        ending = daemon.end()
+    assert ending.exit_code == FAILURE
+    assert "cannot find X-Plane at sim.invalid:49000" in ending.said
+    assert "IP address" in ending.said
 
 
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
@@ -89,7 +131,7 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     recovered_ns = [
         event.time_ns
         for event in flown.events
-        if event.WhichOneof("kind") == "sensor_recovered" and event.time_ns > killed_ns
+        if event.kind.WhichOneof("kind") == "sensor_recovered" and event.time_ns > killed_ns
     ]
     assert (recovered_ns[0] - back_ns) * NS < ASKED_EVERY_S + AT_ONCE_S
 
@@ -147,7 +189,7 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     records = Flown.of(ending, tmp_path / "recordings").records
     paused = [record for record in records if record.measurements.plant.state == PAUSED]
-    assert (paused[0].woke_ns - paused_ns) * NS < AT_ONCE_S
+    assert (paused[0].tick.woke_ns - paused_ns) * NS < AT_ONCE_S
     assert len({str(record.outputs) for record in paused[1:]}) == 1, "they are held"
 
 
@@ -171,7 +213,7 @@ def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Pat
     flown = Flown.of(ending, tmp_path / "recordings")
     hung, jumped = flown.failsafes
     assert_lost_when_too_old(flown, hung)
-    assert 0.0 < (flown.records[jumped].woke_ns - jumped_ns) * NS < AT_ONCE_S
+    assert 0.0 < (flown.records[jumped].tick.woke_ns - jumped_ns) * NS < AT_ONCE_S
 
 
 def test_a_flight_that_is_loaded_anew_is_not_flown_on(fccd: Path, tmp_path: Path) -> None:

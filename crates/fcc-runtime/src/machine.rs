@@ -252,6 +252,7 @@ impl<C: Controller> Machine<C> {
             stopwatch.lap(&*self.timer);
         }
         self.record.stages.total_ns = stopwatch.since(tick.woke.as_nanos());
+        self.record.estimate = self.controller.estimated();
         self.record.setpoints = self.controller.setpoints();
     }
 

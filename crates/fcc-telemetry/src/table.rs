@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use serde::Serialize;
 
 use super::recording::{Entry, Wholeness};
 use super::score::{FlightScore, LegScore};
@@ -156,8 +157,32 @@ pub(crate) const LEG_COLUMNS: [&str; 10] = [
     "lateral g",
 ];
 
-/// A row per leg and the worst of each column.
-pub fn flight_table(score: &FlightScore) -> String {
+/// What a flight is scored by.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScoredBy {
+    /// How the simulated aircraft truly flew.
+    Truth,
+    /// What its sensors measured.
+    Measurement,
+}
+
+/// What the columns of a leg mean.
+const LEG_LEGEND: &str = "\
+≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
+overshoot        how far past the set point, in the direction of the turn or climb
+hdg RMS, alt RMS root mean square of the error in the leg's last 3 s, last 8 s
+turn loss        how far below the lower of the two altitudes that the leg joins
+airspeed         largest error either way
+lateral          largest sideways acceleration";
+
+/// What it is scored by, a row per leg and the worst of each column, and what
+/// the columns mean.
+pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
+    let by = match by {
+        ScoredBy::Truth => "how the simulated aircraft truly flew",
+        ScoredBy::Measurement => "what the sensors measured",
+    };
     let mut table = table(&LEG_COLUMNS);
     for (index, leg) in score.legs.iter().enumerate() {
         table.add_row(leg_cells((index + 1).to_string(), leg));
@@ -165,7 +190,7 @@ pub fn flight_table(score: &FlightScore) -> String {
     if let Some(worst) = &score.worst {
         table.add_row(leg_cells("worst".to_owned(), worst));
     }
-    table.to_string()
+    format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")
 }
 
 /// A row per recording.

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::Tick;
+use crate::schema;
 
 /// Carries the outputs `A` of a tick to the plant.
 pub trait Actuator<A>: Send {
@@ -33,19 +34,26 @@ pub trait Actuator<A>: Send {
     fn name(&self) -> &'static str;
 }
 
-/// What can go wrong when an actuator is driven.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum ActuatorFault {
-    /// The operating system refused a write, with its error number.
-    Io {
-        /// `errno`, 0 if there was none.
-        errno: i32,
-    },
-    /// Writes are sent, but the plant does not follow them.
-    Unconfirmed,
-    /// Where to send is not known yet.
-    NotConnected,
+schema! {
+    /// What can go wrong when an actuator is driven.
+    #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+    #[name("ActuatorFaultKind")]
+    #[non_exhaustive]
+    pub enum ActuatorFault {
+        /// The operating system refused a write, with its error number.
+        #[field(2)]
+        Io {
+            /// `errno`, 0 if there was none.
+            #[field(1)]
+            errno: i32,
+        },
+        /// Writes are sent, but the plant does not follow them.
+        #[field(4)]
+        Unconfirmed,
+        /// Where to send is not known yet.
+        #[field(5)]
+        NotConnected,
+    }
 }
 
 impl fmt::Display for ActuatorFault {

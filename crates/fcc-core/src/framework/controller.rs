@@ -2,17 +2,18 @@
 
 use core::fmt;
 
+use super::schema::Schema;
 use super::{Flags, Reading, Tick, Time};
+use crate::schema;
 
-/// The position of the switch that engages the loop.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[repr(u8)]
-pub enum Switch {
-    /// Hands off.
-    #[default]
-    Off = 0,
-    /// The loop shall control.
-    On = 1,
+schema! {
+    /// The position of the switch that engages the loop.
+    pub enum Switch {
+        /// Hands off.
+        Off = 0,
+        /// The loop shall control.
+        On = 1,
+    }
 }
 
 /// What the loop runs: from measurements to outputs.
@@ -26,13 +27,15 @@ pub enum Switch {
 /// clock, allocate nothing and do not panic.
 pub trait Controller: Send {
     /// What the sensors measure.
-    type Measurements: Copy + Default + Send + 'static;
+    type Measurements: Schema;
+    /// What the controller makes of the measurements, for those who watch.
+    type Estimate: Schema;
     /// What the controller aims for, for those who watch.
-    type Setpoints: Copy + Default + Send + 'static;
+    type Setpoints: Schema;
     /// What the actuators carry out.
-    type Outputs: Copy + Default + Send + 'static;
+    type Outputs: Schema;
     /// What may be asked of the controller from outside.
-    type Command: Copy + Send + 'static;
+    type Command: Schema;
 
     /// Follows the plant, in every state of the loop: filters and estimates,
     /// so that they are settled when the loop engages.
@@ -85,6 +88,11 @@ pub trait Controller: Send {
 
     /// Takes a command from outside; one that makes no sense now is left.
     fn command(&mut self, _command: &Self::Command) {}
+
+    /// What it makes of the measurements at present.
+    fn estimated(&self) -> Self::Estimate {
+        Self::Estimate::default()
+    }
 
     /// The present set points.
     fn setpoints(&self) -> Self::Setpoints;

@@ -2,12 +2,12 @@
 
 use super::{Controller, Event, Record};
 
-/// What a loop tells of itself: `M`, `S` and `O` are its measurements, set
-/// points and outputs, `R` what may be ordered of its controller.
+/// What a loop tells of itself: `M`, `E`, `S` and `O` are its measurements,
+/// estimate, set points and outputs, `R` what may be ordered of its controller.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Message<M, S, O, R> {
+pub enum Message<M, E, S, O, R> {
     /// One tick, whole.
-    Tick(Record<M, S, O>),
+    Tick(Record<M, E, S, O>),
     /// Something that happened. It comes before the record of its tick.
     Event(Event<R>),
 }
@@ -15,6 +15,7 @@ pub enum Message<M, S, O, R> {
 /// What a controller's loop tells of itself.
 pub type MessageOf<C> = Message<
     <C as Controller>::Measurements,
+    <C as Controller>::Estimate,
     <C as Controller>::Setpoints,
     <C as Controller>::Outputs,
     <C as Controller>::Command,

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::Tick;
+use crate::schema;
 
 /// Writes its part of the measurements `M` once a tick.
 ///
@@ -28,19 +29,26 @@ pub trait Sensor<M>: Send {
     fn name(&self) -> &'static str;
 }
 
-/// What can go wrong when a sensor is sampled.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum SensorFault {
-    /// The source has been silent for longer than it should be.
-    Silent,
-    /// The operating system refused a read, with its error number.
-    Io {
-        /// `errno`, 0 if there was none.
-        errno: i32,
-    },
-    /// What came could not be understood, and was left out.
-    Malformed,
+schema! {
+    /// What can go wrong when a sensor is sampled.
+    #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+    #[name("SensorFaultKind")]
+    #[non_exhaustive]
+    pub enum SensorFault {
+        /// The source has been silent for longer than it should be.
+        #[field(1)]
+        Silent,
+        /// The operating system refused a read, with its error number.
+        #[field(2)]
+        Io {
+            /// `errno`, 0 if there was none.
+            #[field(1)]
+            errno: i32,
+        },
+        /// What came could not be understood, and was left out.
+        #[field(3)]
+        Malformed,
+    }
 }
 
 impl fmt::Display for SensorFault {

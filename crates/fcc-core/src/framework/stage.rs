@@ -3,25 +3,26 @@
 use core::fmt;
 
 use super::StageTimes;
+use crate::schema;
 
-/// A stage of a tick, the whole of it, or the wait before it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-#[repr(u8)]
-pub enum Stage {
-    /// The wait for the deadline: it ended whole periods late.
-    Timer = 0,
-    /// Sampling the sensors.
-    Sensors = 1,
-    /// [`Controller::estimate`](super::Controller::estimate).
-    Navigation = 2,
-    /// [`Controller::guide`](super::Controller::guide).
-    Guidance = 3,
-    /// [`Controller::control`](super::Controller::control), or `failsafe`.
-    Control = 4,
-    /// Driving the actuators.
-    Actuators = 5,
-    /// All of the tick, from the wake-up to the last actuator write.
-    Tick = 6,
+schema! {
+    /// A stage of a tick, the whole of it, or the wait before it.
+    pub enum Stage {
+        /// The wait for the deadline: it ended whole periods late.
+        Timer = 0,
+        /// Sampling the sensors.
+        Sensors = 1,
+        /// [`Controller::estimate`](super::Controller::estimate).
+        Navigation = 2,
+        /// [`Controller::guide`](super::Controller::guide).
+        Guidance = 3,
+        /// [`Controller::control`](super::Controller::control), or `failsafe`.
+        Control = 4,
+        /// Driving the actuators.
+        Actuators = 5,
+        /// All of the tick, from the wake-up to the last actuator write.
+        Tick = 6,
+    }
 }
 
 impl Stage {
@@ -33,20 +34,6 @@ impl Stage {
         Self::Control,
         Self::Actuators,
     ];
-
-    /// From the number as stored; none if no stage has it.
-    pub const fn from_number(number: u8) -> Option<Self> {
-        Some(match number {
-            0 => Self::Timer,
-            1 => Self::Sensors,
-            2 => Self::Navigation,
-            3 => Self::Guidance,
-            4 => Self::Control,
-            5 => Self::Actuators,
-            6 => Self::Tick,
-            _ => return None,
-        })
-    }
 }
 
 impl StageTimes {
@@ -94,15 +81,6 @@ impl fmt::Display for Stage {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_number_is_its_stage() {
-        for number in 0..=u8::MAX {
-            assert!(Stage::from_number(number).is_none_or(|stage| stage as u8 == number));
-        }
-        assert_eq!(Stage::from_number(6), Some(Stage::Tick));
-        assert_eq!(Stage::from_number(7), None);
-    }
 
     #[test]
     fn the_longest_stage_is_not_the_whole() {

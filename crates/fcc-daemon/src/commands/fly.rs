@@ -1,11 +1,17 @@
 //! `fccd fly`: the built-in aircraft through the pattern.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use fcc_runtime::SpawnError;
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
+use crate::observers::{Announcer, Service, StatusLine};
 use crate::output;
+use crate::process::Process;
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
@@ -36,15 +42,19 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
             GuidanceSection::Hold => DEFAULT_HOLD_S,
             GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
-        quiet: args.quiet,
-        announce: true,
     };
-    conduct(&config, as_given, plan, args.json)
+    conduct(&config, as_given, plan, args.quiet, args.json)
 }
 
 /// Flies a configuration and prints how it ended.
-pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, json: bool) -> Exit {
-    let assembly = match assemble(config) {
+pub(super) fn conduct(
+    config: &Config,
+    as_given: Option<String>,
+    plan: Plan,
+    quiet: bool,
+    json: bool,
+) -> Exit {
+    let mut assembly = match assemble(config) {
         Ok(assembly) => assembly,
         Err(error) => {
             fail(&error.to_string());
@@ -56,7 +66,23 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
         }
     };
     let recording = RecordingRequest::of(config, as_given);
-    match fly_assembly(assembly, &config.tick, plan, recording) {
+    let mut observers = assembly.observers(config, plan.pace, recording);
+    observers.push(Box::new(Announcer));
+    if !quiet {
+        observers.push(Box::new(StatusLine::default()));
+    }
+    observers.push(Box::new(Service::from_environment()));
+    // In lockstep there is no time to lose: every line is waited for.
+    let printer = (plan.pace == Pace::RealTime).then(output::in_background);
+    let flown = fly_assembly(
+        assembly,
+        &config.tick,
+        plan,
+        observers,
+        &mut Process::new(config),
+    );
+    drop(printer);
+    match flown {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
@@ -71,13 +97,19 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
 }
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
+    // Whoever does not read what follows may end the program without it: the
+    // controls are released, and the recording is on the disk.
+    for signal in [SIGTERM, SIGINT] {
+        let over = Arc::new(AtomicBool::new(true));
+        let _ = signal_hook::flag::register_conditional_default(signal, over);
+    }
     if json {
-        output::json(outcome, outcome.exit);
+        output::json(outcome, outcome.conclusion.into());
     } else {
-        output::result(outcome.to_text(), outcome.exit);
+        output::result(outcome.to_text(), outcome.conclusion.into());
     }
     // A flight ends as it was flown, even if that cannot be printed.
-    outcome.exit
+    outcome.conclusion.into()
 }
 
 /// What the command line says about recording goes before the file.

@@ -17,7 +17,7 @@ use flights::{again, records};
 
 /// The outputs of a tick: 4 surfaces, 6 set points, the step's length, state,
 /// engage_inhibits, faults, and whether they were sent.
-const OUTPUTS: u64 = 15;
+const OUTPUTS: u64 = 28;
 
 /// Asserts that a recording flown again is the same in every bit, and gives
 /// the states it went through.

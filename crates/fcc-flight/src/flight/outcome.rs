@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{
-    DeniedRequest, FlightScore, Realtime, TimingReport, flight_table, timing_table,
+    DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport, flight_table, timing_table,
 };
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
-use crate::exit::Exit;
+use super::plan::Pace;
 
 /// The scheduling of a loop without a thread of its own.
 const NOT_ASKED: &str = "not asked for";
@@ -22,6 +22,8 @@ pub struct Outcome {
     pub timing: TimingReport,
     /// How well the pattern was flown; none without a pattern.
     pub flight: Option<FlightScore>,
+    /// What that was scored by.
+    pub scored_by: ScoredBy,
     /// What happened, in order.
     pub events: Vec<EventEntry>,
     /// Why the loop ended.
@@ -36,12 +38,34 @@ pub struct Outcome {
     pub records_dropped: u64,
     /// What of the flight got onto the disk; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
+    /// How fast time passed.
+    #[serde(skip)]
+    pub pace: Pace,
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
-    /// What the program's exit code says.
+    /// What it means for whoever flew it.
     #[serde(skip)]
-    pub exit: Exit,
+    pub conclusion: Conclusion,
+}
+
+/// What a flight's end means for whoever flew it; of several the worst.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Conclusion {
+    /// It was flown as it should.
+    Completed,
+    /// It was flown as it should, but not recorded, or not as a whole.
+    NotRecorded,
+    /// It was not flown as it should: the timer failed, or engaging was refused.
+    Failed,
+    /// It fell into failsafe.
+    Failsafe,
+    /// A part of the loop panicked; the controls were released.
+    Panicked,
+    /// The loop hung; its watchdog released the controls.
+    Hung,
+    /// The controls may still be held.
+    NotReleased,
 }
 
 /// Something that happened once.
@@ -72,20 +96,14 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(
-        timer: &'static str,
-        report: LoopReport,
-        events: Vec<EventEntry>,
-        flight: Option<FlightScore>,
-        recording: Option<RecordingOutcome>,
-    ) -> Self {
-        let exit = match report.ending {
-            _ if !report.released => Exit::NotReleased,
-            Ending::Panicked(_) => Exit::Panicked,
-            Ending::Hung => Exit::Hung,
-            Ending::TimerFailed(_) => Exit::Failure,
-            _ if report.failsafes > 0 => Exit::Failsafe,
-            _ => Exit::Success,
+    pub(super) fn new(timer: &'static str, pace: Pace, report: LoopReport) -> Self {
+        let conclusion = match report.ending {
+            _ if !report.released => Conclusion::NotReleased,
+            Ending::Panicked(_) => Conclusion::Panicked,
+            Ending::Hung => Conclusion::Hung,
+            Ending::TimerFailed(_) => Conclusion::Failed,
+            _ if report.failsafes > 0 => Conclusion::Failsafe,
+            _ => Conclusion::Completed,
         };
         Self {
             timing: TimingReport {
@@ -98,16 +116,26 @@ impl Outcome {
             }
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
-            flight,
-            events,
+            flight: None,
+            scored_by: ScoredBy::Measurement,
+            events: Vec::new(),
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
             overruns: report.overruns,
             released: report.released,
             records_dropped: report.records_dropped,
-            recording,
+            recording: None,
+            pace,
             interrupted: false,
-            exit,
+            conclusion,
+        }
+    }
+
+    /// What was to be recorded is not, or not as a whole: that does not end a
+    /// flight, but its end says so.
+    pub(super) fn was_not_recorded(&mut self) {
+        if self.conclusion == Conclusion::Completed {
+            self.conclusion = Conclusion::NotRecorded;
         }
     }
 
@@ -118,20 +146,28 @@ impl Outcome {
             "interrupted by a signal".clone_into(&mut self.ending);
         } else if refused {
             "engaging was refused; the last event says why".clone_into(&mut self.ending);
-            if self.exit == Exit::Success {
-                self.exit = Exit::Failure;
+            if matches!(
+                self.conclusion,
+                Conclusion::Completed | Conclusion::NotRecorded
+            ) {
+                self.conclusion = Conclusion::Failed;
             }
         }
     }
 
     /// Tables for people.
     pub fn to_text(&self) -> String {
-        let mut text = timing_table(std::slice::from_ref(&self.timing));
-        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+        let mut text = String::new();
+        // In lockstep no time passes that could be kept.
+        if self.pace == Pace::RealTime {
+            text = timing_table(std::slice::from_ref(&self.timing));
             text.push_str("\n\n");
-            text.push_str(&flight_table(flight));
         }
-        let _ = write!(text, "\n\nended: {}", self.ending);
+        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+            text.push_str(&flight_table(flight, self.scored_by));
+            text.push_str("\n\n");
+        }
+        let _ = write!(text, "ended: {}", self.ending);
         if self.failsafes > 0 {
             let _ = write!(text, "; failsafe {} times", self.failsafes);
         }
@@ -147,6 +183,9 @@ impl Outcome {
             }
             if recording.not_recorded > 0 {
                 let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+            }
+            if let Some(why) = &recording.stopped {
+                let _ = write!(text, "\nTHE END IS NOT RECORDED: {why}");
             }
         }
         text

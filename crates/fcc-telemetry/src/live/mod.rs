@@ -12,12 +12,12 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/record/v1` | a [`FlightRecord`](crate::FlightRecord) for each tick | 1 |
-//! | `fcc/INSTANCE/event/v1` | [`Event`]: what happened once | 64 |
-//! | `fcc/INSTANCE/status/v1` | [`Status`]: each second, how the run stands | 1 |
+//! | `fcc/INSTANCE/record/v2` | a [`FlightRecord`](crate::FlightRecord) for each tick | 1 |
+//! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
+//! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands come in the other way: a [`Commander`] asks by the service
-//! `fcc/INSTANCE/command/v1`, and learns what became of it.
+//! `fcc/INSTANCE/command/v2`, and learns what became of it.
 //!
 //! The layout of `info` never changes, so that a reader of another version can
 //! say what it found. Everything else bears a version: [`LAYOUT`].
@@ -38,7 +38,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, Verdict,
+    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, OutsideLimits,
+    Quantity, Unflyable, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
@@ -52,4 +53,4 @@ pub use watcher::Watcher;
 
 /// The version of all layouts but [`Info`]'s. Whoever changes one of them,
 /// a field's meaning included, counts this up.
-pub const LAYOUT: u32 = 1;
+pub const LAYOUT: u32 = 2;

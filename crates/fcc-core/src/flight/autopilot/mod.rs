@@ -73,11 +73,6 @@ impl Autopilot {
         &self.config
     }
 
-    /// What navigation makes of the measurements.
-    pub const fn estimated(&self) -> &Estimate {
-        self.navigation.estimate()
-    }
-
     fn schedule(&self) -> Schedule {
         Schedule::at(
             self.navigation.estimate().airspeed_mps,
@@ -117,6 +112,7 @@ impl Autopilot {
 
 impl Controller for Autopilot {
     type Measurements = Measurements;
+    type Estimate = Estimate;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
     type Command = AutopilotCommand;
@@ -333,6 +329,10 @@ impl Controller for Autopilot {
         }
         self.targets = targets;
         self.change_mode(ModeInput::SetPoint);
+    }
+
+    fn estimated(&self) -> Estimate {
+        *self.navigation.estimate()
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -8,20 +8,26 @@ use super::Autopilot;
 use crate::flight::AutopilotCommand;
 use crate::flight::Surfaces;
 use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Progress, Targets};
+use crate::schema;
 
-/// What was flown when a flight was cut off. Ordered right after engaging, it
-/// puts the autopilot where it was.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Resume {
-    /// What was aimed for; of a pattern, what it had captured. The heading is
-    /// on the compass, 0..2π.
-    pub targets: Targets,
-    /// For how long the configured pattern had been flown by now, s; none if
-    /// the targets are to be held.
-    pub pattern_s: Option<f64>,
-    /// The surfaces that flew the aircraft: whoever gave the controls back may
-    /// have centred them since.
-    pub surfaces: Surfaces,
+schema! {
+    /// What was flown when a flight was cut off. Ordered right after engaging, it
+    /// puts the autopilot where it was.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Resume {
+        /// What was aimed for; of a pattern, what it had captured. The heading is
+        /// on the compass, 0..2π.
+        #[field(1)]
+        pub targets: Targets,
+        /// For how long the configured pattern had been flown by now, s; none (not
+        /// a number) if the targets are to be held.
+        #[field(2)]
+        pub pattern_s: Option<f64>,
+        /// The surfaces that flew the aircraft: whoever gave the controls back may
+        /// have centred them since.
+        #[field(3)]
+        pub surfaces: Surfaces,
+    }
 }
 
 impl Resume {

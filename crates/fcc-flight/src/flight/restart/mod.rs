@@ -10,6 +10,7 @@
 mod boot_clock;
 mod flown;
 mod keeper;
+mod observer;
 mod state_file;
 mod taking_up;
 
@@ -27,6 +28,7 @@ use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use flown::{Flown, Matter};
 use keeper::Keeper;
+pub(super) use observer::RestartKeeper;
 use state_file::{Saved, StateFileError};
 use taking_up::{Next, TakingUp};
 
