@@ -1,6 +1,5 @@
 //! Commands between two programs on one machine: who gives them, and who flies.
 #![cfg(test)]
-#![cfg(feature = "live")]
 
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};

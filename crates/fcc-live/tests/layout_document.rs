@@ -1,7 +1,6 @@
 //! The layouts in `docs/telemetry.md` are those of the structs: programs in
 //! other languages are written from that page.
 #![cfg(test)]
-#![cfg(feature = "live")]
 
 use std::fmt::Write as _;
 use std::mem::offset_of;

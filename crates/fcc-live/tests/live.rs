@@ -1,6 +1,5 @@
 //! A publisher and its watchers, as two programs on one machine see them.
 #![cfg(test)]
-#![cfg(feature = "live")]
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
