@@ -1,5 +1,7 @@
 //! What the autopilot aims for.
 
+use super::guidance::Progress;
+
 /// What the autopilot aims for: guidance's set points, and those that the
 /// outer loops hand to the inner ones.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -17,4 +19,7 @@ pub struct Setpoints {
     pub climb_rate_mps: f64,
     /// Pitch that the climb-rate loop asks for, rad, nose up.
     pub pitch_rad: f64,
+    /// The mode that guidance flies, and how far it has come; its captured
+    /// heading is 0..2π.
+    pub guidance: Progress,
 }

@@ -181,10 +181,9 @@ impl Controller for Autopilot {
             AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
             AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
             AutopilotCommand::Altitude(m) => write!(f, "altitude {m:.1} m"),
-            AutopilotCommand::Resume(Resume { pattern_s, .. }) => match pattern_s {
-                Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
-                None => f.write_str("go on with what was flown"),
-            },
+            AutopilotCommand::Resume(Resume { progress, .. }) => {
+                write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
+            }
         }
     }
 
@@ -258,6 +257,7 @@ impl Controller for Autopilot {
             roll_rad: lateral.roll_rad,
             climb_rate_mps: vertical.climb_rate_mps,
             pitch_rad: vertical.pitch_rad,
+            ..self.setpoints
         };
         Surfaces {
             throttle,
@@ -336,7 +336,12 @@ impl Controller for Autopilot {
     }
 
     fn setpoints(&self) -> Setpoints {
-        self.setpoints
+        let mut guidance = self.guidance.progress();
+        guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
+        Setpoints {
+            guidance,
+            ..self.setpoints
+        }
     }
 
     fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {

@@ -5,51 +5,19 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
-use crate::flight::AutopilotCommand;
 use crate::flight::Surfaces;
-use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Progress, Targets};
+use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
 
 /// What was flown when a flight was cut off. Ordered right after engaging, it
 /// puts the autopilot where it was.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Resume {
-    /// What was aimed for; of a pattern, what it had captured. The heading is
-    /// on the compass, 0..2π.
-    pub targets: Targets,
-    /// For how long the configured pattern had been flown by now, s; none if
-    /// the targets are to be held.
-    pub pattern_s: Option<f64>,
+    /// How far guidance had come, as the record has it: the captured heading
+    /// is on the compass, 0..2π.
+    pub progress: Progress,
     /// The surfaces that flew the aircraft: whoever gave the controls back may
     /// have centred them since.
     pub surfaces: Surfaces,
-}
-
-impl Resume {
-    /// How far guidance had come.
-    fn progress(&self) -> Progress {
-        let mode = match self.pattern_s {
-            Some(_) => Mode::TimedPattern,
-            None => Mode::Hold,
-        };
-        Progress {
-            mode,
-            elapsed_s: self.pattern_s.unwrap_or(0.0),
-            captured: self.targets,
-            ..Progress::default()
-        }
-    }
-}
-
-impl AutopilotCommand {
-    /// Whether it ends a pattern that is flown.
-    pub fn ends_pattern(&self) -> bool {
-        match *self {
-            Self::Airspeed(value) | Self::Heading(value) | Self::Altitude(value) => {
-                value.is_finite()
-            }
-            Self::Resume(_) => false,
-        }
-    }
 }
 
 impl Autopilot {
@@ -57,7 +25,7 @@ impl Autopilot {
     /// aircraft has turned about: the heading that is aimed for now is taken
     /// within half a turn of where the nose points.
     pub(super) fn resume(&mut self, resume: &Resume) {
-        let (config, mut progress) = (&self.config.guidance, resume.progress());
+        let (config, mut progress) = (&self.config.guidance, resume.progress);
         if !progress.is_valid() || !resume.surfaces.is_valid() {
             return;
         }

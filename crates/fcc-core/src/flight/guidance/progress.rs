@@ -1,5 +1,7 @@
 //! How far a mode has come.
 
+use core::fmt;
+
 use super::{Mode, Targets};
 
 /// How far a mode has come: what an observer needs to know of it, and all that
@@ -32,5 +34,15 @@ impl Progress {
             && self.captured.is_finite()
             && self.elapsed_s.is_finite()
             && self.elapsed_s >= 0.0
+    }
+}
+
+impl fmt::Display for Progress {
+    /// The mode, and where it is: `timed-pattern leg 3`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.mode {
+            Mode::None | Mode::Hold => write!(f, "{}", self.mode),
+            Mode::TimedPattern => write!(f, "{} leg {}", self.mode, self.item),
+        }
     }
 }

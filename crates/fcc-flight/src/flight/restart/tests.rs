@@ -1,17 +1,23 @@
 //! What is made of a state file that is found at the start.
 
-use fcc_core::flight::Surfaces;
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{Setpoints, Surfaces};
+use fcc_core::framework::{Event, Tick, Time};
 use tempfile::TempDir;
 
 use super::*;
 
 const FLOWN: Resume = Resume {
-    targets: Targets {
-        airspeed_mps: 50.0,
-        heading_rad: 1.0,
-        altitude_m: 900.0,
+    progress: Progress {
+        mode: Mode::Hold,
+        item: 0,
+        elapsed_s: 20.0,
+        captured: Targets {
+            airspeed_mps: 50.0,
+            heading_rad: 1.0,
+            altitude_m: 900.0,
+        },
     },
-    pattern_s: None,
     surfaces: Surfaces {
         throttle: 0.6,
         elevator: 0.0,
@@ -33,7 +39,6 @@ impl CommandServer {
             max_age: Duration::from_secs(60),
             path: folder.path().join("fccd.flight"),
             fingerprint: 7,
-            pattern: None,
         };
         Self { folder, wish }
     }
@@ -119,7 +124,7 @@ fn what_cannot_be_trusted_is_not_taken_up() {
 #[test]
 fn a_damaged_file_is_said_and_a_foreign_one_is_left_alone() {
     let desk = CommandServer::new(RestartMode::Warm);
-    fs::write(&desk.wish.path, "fccd-flight 1 0\n{").unwrap();
+    fs::write(&desk.wish.path, "fccd-flight 2 0\n{").unwrap();
     let (taken, said) = desk.found();
     assert!(!taken && said.contains("damaged"), "{said}");
 
@@ -151,4 +156,51 @@ fn a_place_that_cannot_be_is_said() {
         said.unwrap()
             .contains("a restart would not know of this flight")
     );
+}
+
+fn event(kind: EventKind<AutopilotCommand>) -> FlightMessage {
+    Message::Event(Event {
+        tick: 0,
+        time: Time::from_nanos(0),
+        kind,
+    })
+}
+
+/// A tick in which this is flown.
+fn engaged(resume: &Resume) -> FlightMessage {
+    Message::Tick(FlightRecord {
+        setpoints: Setpoints {
+            guidance: resume.progress,
+            ..Setpoints::default()
+        },
+        outputs: resume.surfaces,
+        ..FlightRecord::new(Tick::default(), State::Engaged)
+    })
+}
+
+const ENDS: EventKind<AutopilotCommand> = EventKind::StateChanged {
+    from: State::Engaged,
+    to: State::Stopped,
+};
+
+/// Mode and progress come from the record; the file has what was flown last.
+#[test]
+fn what_the_record_says_is_kept_until_the_flight_ends_as_it_should() {
+    let mut pattern = FLOWN;
+    pattern.progress.mode = Mode::TimedPattern;
+    pattern.progress.elapsed_s = 45.0;
+    for (broken, is_left) in [(false, false), (true, true)] {
+        let desk = Desk::new(RestartMode::Warm);
+        let (restart, _) = Restart::begin(desk.wish.clone());
+        let mut restart = restart.unwrap();
+        restart.take(&engaged(&FLOWN));
+        restart.take(&engaged(&pattern));
+        if broken {
+            restart.take(&event(EventKind::Panicked));
+        }
+        restart.take(&event(ENDS));
+        restart.end();
+        let left = state_file::read(&desk.wish.path).unwrap();
+        assert_eq!(left.map(|saved| saved.resume), is_left.then_some(pattern));
+    }
 }
