@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import os
 import sys
 import time
 from collections.abc import Iterator
@@ -246,8 +247,13 @@ class Watcher:
     def __init__(self, instance: str = "fccd", patience_s: float = 1.0) -> None:
         """Find the daemon, and refuse one that speaks another layout."""
         iox2.set_log_level(iox2.LogLevel.Error)
+        config = iox2.config.default()
+        # Each user has a folder: only the daemon's own user can watch it.
+        config.global_cfg.root_path = iox2.Path.new(f"/dev/shm/fccd-{os.geteuid()}")
+        config.global_cfg.prefix = iox2.FileName.new(f"fccd-{os.geteuid()}_")
         self._node = (
             iox2.NodeBuilder.new()
+            .config(config)
             .signal_handling_mode(iox2.SignalHandlingMode.Disabled)
             .create(iox2.ServiceType.Ipc)
         )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import fcc
 import numpy as np
@@ -24,6 +26,29 @@ def test_the_standard_atmosphere(
     assert fcc.pressure_pa(altitude_m) == pytest.approx(pressure_pa, rel=1e-5)
     assert 1.225 * fcc.density_ratio(altitude_m) == pytest.approx(density_kgpm3, rel=1e-5)
     assert fcc.pressure_altitude_m(pressure_pa) == pytest.approx(altitude_m, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        fcc.pressure_pa,
+        fcc.density_ratio,
+        lambda angle_rad: fcc.pressure_altitude_m(angle_rad + 101_325.0),
+        lambda mps: fcc.true_airspeed_mps(mps, 0.0),
+        fcc.wrap_pi,
+        fcc.wrap_two_pi,
+    ],
+)
+def test_a_number_gives_a_number_and_an_array_an_array(formula: Callable[[Any], Any]) -> None:
+    for number in (1.5, 2, np.float64(1.5), np.int32(2), np.array(1.5)):
+        assert type(formula(number)) is float
+    for array in ([1.5], np.array([1.5]), np.array([[2]]), []):
+        result = formula(np.asarray(array))
+        assert isinstance(result, np.ndarray)
+        assert result.shape == np.shape(array)
+    # What is not stored row by row keeps its places.
+    columns = np.array([[1.0, 2.0, 3.0], [0.1, 0.2, 0.3]]).T
+    assert formula(columns)[2, 1] == formula(0.3)
 
 
 def test_a_formula_takes_arrays_of_any_shape() -> None:

@@ -7,9 +7,11 @@ import itertools
 import json
 import math
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -50,6 +52,50 @@ def watch(instance: str, daemon: DaemonUnderTest) -> live.Watcher:
 def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
     words: list[str | Path] = [fccd, "top", "--instance", instance, "--json"]
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may become another user")
+def test_users_do_not_meet_in_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
+    """Two daemons of one name, of two users: each is watched by its own."""
+    uid = 65_534 - os.getpid() % 1_000
+    with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
+        theirs = Path(folder)
+        program = theirs / "fccd"
+        shutil.copy(fccd, program)
+        os.chown(theirs, uid, uid)
+
+        def as_user(*words: str) -> subprocess.CompletedProcess[str]:
+            return subprocess.run(
+                ["setpriv", f"--reuid={uid}", f"--regid={uid}", "--clear-groups", *words],
+                cwd=theirs,
+                capture_output=True,
+                text=True,
+                check=False,
+                timeout=PATIENCE_S,
+            )
+
+        top = (str(program), "top", "--json", "--instance", instance)
+        with fly(fccd, tmp_path, instance) as daemon:
+            daemon.wait_for("standby -> engaged")
+            nobody = as_user(*top)
+            assert nobody.returncode == FAILURE
+            assert f"sudo -u root fccd top --instance {instance}" in nobody.stderr
+            flown = as_user(
+                *(str(program), "fly", "--instance", instance, "--seconds", "0.5", "--quiet")
+            )
+            assert flown.returncode == SUCCESS, flown.stderr
+            assert "no live telemetry" not in flown.stderr
+            assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
+
+        place = Path(f"/dev/shm/fccd-{uid}")
+        assert (place.stat().st_uid, place.stat().st_mode & 0o777) == (uid, 0o700)
+        # What somebody else has put there is named, and the flight goes on.
+        shutil.rmtree(place)
+        place.mkdir()
+        flown = as_user(*(str(program), "fly", "--seconds", "0.5", "--quiet"))
+        place.rmdir()
+        assert flown.returncode == SUCCESS
+        assert f"{place} belongs to user root and not to user #{uid}" in flown.stderr
 
 
 def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> None:

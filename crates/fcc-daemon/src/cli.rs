@@ -275,6 +275,10 @@ pub struct CheckArgs {
 /// `fccd doctor`.
 #[derive(Args, Debug)]
 pub struct DoctorArgs {
+    /// Configuration of the loop that is to run here; without one, that of
+    /// `fccd fly`
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
     /// Folder that the machine's files are under: the disk of another one, with
     /// its /proc and /sys copied
     #[arg(long, value_name = "DIR", default_value = "/")]

@@ -54,7 +54,8 @@ pub(crate) fn numbers(name: &str, from: &Bound<'_, PyAny>) -> PyResult<(Vec<usiz
         let dtype = array.getattr("dtype")?.str()?;
         return Err(refused(&format_args!("its dtype is {dtype}")));
     }
-    let array = numpy.call_method1("ascontiguousarray", (&array, "float64"))?;
+    // Not `ascontiguousarray`, which makes an array of one of a single number.
+    let array = numpy.call_method1("asarray", (&array, "float64", "C"))?;
     let array = array.cast::<PyArrayDyn<f64>>()?;
     let values = array.readonly().as_slice()?.to_vec();
     Ok((array.shape().to_vec(), values))

@@ -1,6 +1,8 @@
 //! Formulas: standard atmosphere, orientation, angles. Each is the core's own.
 //!
-//! Those of one or two numbers take numbers or arrays, and give the same shape.
+//! Those of one or two numbers take a number and give a `float`, or take an
+//! array and give one of its shape. As in numpy, an array of no dimensions is a
+//! number.
 
 use fcc_core::blocks;
 use fcc_core::flight::atmosphere;

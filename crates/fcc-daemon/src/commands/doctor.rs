@@ -1,13 +1,24 @@
 //! `fccd doctor`: what the machine offers and what it lacks.
 
+use fcc_flight::config::{Config, RealtimeSection};
+use fcc_timer::RealtimeRequest;
+
 use crate::cli::DoctorArgs;
 use crate::doctor::Diagnosis;
 use crate::exit::Exit;
 use crate::output;
 
-/// Looks at the machine.
+/// Looks at the machine, for the loop that is configured.
 pub(super) fn doctor(args: &DoctorArgs) -> Exit {
-    let diagnosis = Diagnosis::of(&args.root);
+    let configured = args.config.as_ref().map(|file| Config::load(file));
+    let realtime = match configured.transpose() {
+        Ok(config) => config.map_or_else(RealtimeSection::default, |config| config.realtime),
+        Err(error) => {
+            output::message(error);
+            return Exit::Usage;
+        }
+    };
+    let diagnosis = Diagnosis::of(&args.root, &RealtimeRequest::from(&realtime));
     let exit = if diagnosis.lacks_something() {
         Exit::MachineLacks
     } else {

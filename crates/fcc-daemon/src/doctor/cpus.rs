@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use fcc_timer::realtime::cpus::Cpus;
-
 use super::board::{Board, not_told};
+use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
-use super::{Finding, Grade};
+use super::{CONFIGURATION, Finding, Grade};
 
 const FOLDER: &str = "sys/devices/system/cpu";
 /// Waking from a state takes this long at most, or it shows: half of what a
@@ -43,43 +42,63 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
 }
 
 /// Whether a CPU is kept for the loop.
-pub(super) fn isolation(machine: &Machine, board: &Board) -> Finding {
+pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
     const ID: &str = "isolated_cpus";
     const NAME: &str = "Isolated CPUs";
-    let cpus = Cpus::read(machine.root());
+    let cpus = &loop_cpu.cpus;
     if !cpus.isolated.is_empty() {
-        let mut finding = Finding::new(ID, NAME, Grade::Ok, list(&cpus.isolated));
+        let mut found = list(&cpus.isolated);
         if cpus.tickless.is_disjoint(&cpus.isolated) {
-            finding.found.push_str(", with the kernel's tick");
+            found.push_str(", with the kernel's tick");
         }
-        return finding.remedy("fccd's configuration, [realtime]", "cpu = \"auto\"");
+        return Finding::new(ID, NAME, Grade::Ok, found);
     }
-    match cpus.online.last() {
-        None => not_told(ID, NAME, "the kernel does not say"),
-        Some(0) => Finding::new(ID, NAME, Grade::Ok, "none: there is one CPU only"),
-        Some(last) => board.kernel_option(
-            Finding::new(
-                ID,
-                NAME,
-                Grade::CouldBeBetter,
-                format!("none of {}", cpus.online.len()),
-            )
-            .because("other programs run where the loop is to run"),
-            &isolating(*last),
-        ),
+    match (cpus.online.len(), loop_cpu.cpu) {
+        (1, _) => Finding::new(ID, NAME, Grade::Ok, "none: there is one CPU only"),
+        (several, Some(cpu)) if cpus.online.contains(&cpu) => {
+            let found = format!("none of {several}");
+            let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found);
+            if cpus.online.first() == Some(&cpu) {
+                // It has to keep the kernel's time.
+                finding.because(format!(
+                    "other programs run on CPU {cpu} too, where the loop is to run, and it cannot \
+                     be isolated: configured for another CPU, fccd doctor says how to isolate that"
+                ))
+            } else {
+                let finding = finding.because("other programs run where the loop is to run");
+                board.kernel_option(finding, &isolating(cpu, &cpus.online))
+            }
+        }
+        _ => not_told(ID, NAME, "the kernel does not say"),
     }
 }
 
-/// What keeps threads, the kernel's own work and interrupts off the last CPU;
-/// the first one has to keep the time.
-fn isolating(last: usize) -> String {
-    let others = match last {
-        1 => "0".to_owned(),
-        _ => format!("0-{}", last.saturating_sub(1)),
-    };
+/// What keeps threads, the kernel's own work and interrupts off a CPU.
+fn isolating(cpu: usize, online: &BTreeSet<usize>) -> String {
+    let others: BTreeSet<usize> = online.iter().copied().filter(|c| *c != cpu).collect();
     format!(
-        "isolcpus=managed_irq,domain,{last} nohz_full={last} rcu_nocbs={last} irqaffinity={others}"
+        "isolcpus=managed_irq,domain,{cpu} nohz_full={cpu} rcu_nocbs={cpu} irqaffinity={}",
+        ranges(&others)
     )
+}
+
+/// A list of CPUs as the kernel takes it: `0-1,3`.
+fn ranges(cpus: &BTreeSet<usize>) -> String {
+    let mut ranges: Vec<(usize, usize)> = Vec::new();
+    for cpu in cpus {
+        match ranges.last_mut() {
+            Some((_, last)) if *last + 1 == *cpu => *last = *cpu,
+            _ => ranges.push((*cpu, *cpu)),
+        }
+    }
+    let words = ranges.iter().map(|(first, last)| {
+        if first == last {
+            first.to_string()
+        } else {
+            format!("{first}-{last}")
+        }
+    });
+    words.collect::<Vec<_>>().join(",")
 }
 
 /// How deep the CPUs sleep.
@@ -112,7 +131,7 @@ pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
                 format!("{name}, {latency_us} µs to wake"),
             )
             .because("a CPU that sleeps deeply wakes late; not to let it costs power")
-            .remedy("fccd's configuration, [realtime]", "cpu_dma_latency_us = 0");
+            .remedy(CONFIGURATION, "cpu_dma_latency_us = 0");
             if machine.exists("dev/cpu_dma_latency") {
                 finding.remedy(
                     "/etc/udev/rules.d/99-fccd.rules",

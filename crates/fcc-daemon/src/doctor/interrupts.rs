@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use fcc_timer::realtime::cpus::{Cpus, DeviceInterrupt, parse_devices, parse_list};
 
-use super::board::Board;
 use super::board::not_told;
+use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
 use super::{Finding, Grade};
 
@@ -26,60 +26,45 @@ struct Busy {
 }
 
 /// Where the interrupts go.
-pub(super) fn interrupts(machine: &Machine, _: &Board) -> Finding {
+pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
     const ID: &str = "interrupts";
     const NAME: &str = "Interrupts";
-    let cpus = Cpus::read(machine.root());
+    let cpus = &loop_cpu.cpus;
     let counts = &cpus.device_interrupts;
-    let total = counts
-        .iter()
-        .fold(0_u64, |sum, (_, count)| sum.saturating_add(*count));
     if counts.is_empty() {
         return not_told(ID, NAME, "the kernel does not say");
     }
     if counts.len() == 1 {
         return Finding::new(ID, NAME, Grade::Ok, "there is one CPU only");
     }
+    let total = total(cpus);
     if total == 0 {
         return Finding::new(ID, NAME, Grade::Ok, "no device has interrupted yet");
     }
     let busy = busy_devices(machine, total);
     let found = words(&busy, total);
-    let on = |cpu: usize| busy.get(&cpu).map_or(&[][..], Vec::as_slice);
-
-    let best = cpus.for_a_loop();
-    if let Some(cpu) = best
-        && on(cpu).is_empty()
-    {
-        return Finding::new(ID, NAME, Grade::Ok, found)
-            .because(format!("each holds a loop up; CPU {cpu} has none of them"))
-            .remedy("fccd's configuration, [realtime]", "cpu = \"auto\"");
-    }
-    // Where to have them, and where the loop: the CPU that has the fewest.
-    let weight = |cpu: &usize| on(*cpu).iter().map(|device| device.count).sum::<u64>();
-    let all = || counts.iter().map(|(cpu, _)| *cpu);
-    let Some(cpu) = best.or_else(|| all().rev().min_by_key(weight)) else {
+    let Some(cpu) = loop_cpu.cpu else {
         return not_told(ID, NAME, "the kernel does not say");
     };
-    let others: Vec<usize> = all().filter(|other| *other != cpu).collect();
-    let (kept, ordinary): (Vec<usize>, _) = others
-        .iter()
-        .partition(|other| cpus.isolated.contains(other));
+    let on_it = busy.get(&cpu).map_or(&[][..], Vec::as_slice);
+    if on_it.is_empty() {
+        let finding = Finding::new(ID, NAME, Grade::Ok, found)
+            .because(format!("each holds a loop up; CPU {cpu} has none of them"));
+        return loop_cpu.remedy(finding);
+    }
+    let others = || counts.iter().map(|(cpu, _)| *cpu).filter(|c| *c != cpu);
+    let (kept, ordinary): (Vec<usize>, Vec<usize>) =
+        others().partition(|other| cpus.isolated.contains(other));
     let others = list(if ordinary.is_empty() {
         &kept
     } else {
         &ordinary
     });
-    let mut finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found);
-    if on(cpu).is_empty() {
-        finding = finding.because(format!("each holds a loop up; CPU {cpu} has none now"));
-    } else {
-        finding = finding.because(format!(
-            "each holds a loop up by some 10 µs: move those of CPU {cpu} away (a disk that \
-             refuses has one for each CPU and keeps it)"
-        ));
-    }
-    for device in on(cpu) {
+    let mut finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(format!(
+        "each holds a loop up by some 10 µs: move those of CPU {cpu} away (a disk that refuses has \
+         one for each CPU and keeps it)"
+    ));
+    for device in on_it {
         let line = format!(
             "w /proc/irq/{}/smp_affinity_list - - - - {others}",
             device.number
@@ -92,7 +77,26 @@ pub(super) fn interrupts(machine: &Machine, _: &Board) -> Finding {
             format!("IRQBALANCE_BANNED_CPULIST={cpu}"),
         );
     }
-    finding.remedy("fccd's configuration, [realtime]", format!("cpu = {cpu}"))
+    loop_cpu.remedy(finding)
+}
+
+/// The CPU that devices interrupt least now, the last of several; not the first
+/// one, which keeps the kernel's time, if there is another.
+pub(super) fn fewest_interrupts(machine: &Machine, cpus: &Cpus) -> Option<usize> {
+    let busy = busy_devices(machine, total(cpus));
+    let weight = |cpu: &usize| {
+        let devices = busy.get(cpu).into_iter().flatten();
+        devices.fold(0_u64, |sum, device| sum.saturating_add(device.count))
+    };
+    let online = cpus.online.iter().copied();
+    let others = usize::from(cpus.online.len() > 1);
+    online.skip(others).rev().min_by_key(weight)
+}
+
+/// All interrupts of devices.
+fn total(cpus: &Cpus) -> u64 {
+    let counts = cpus.device_interrupts.iter();
+    counts.fold(0, |sum, (_, count)| sum.saturating_add(*count))
 }
 
 /// The devices that interrupt often, by the CPU on which they do now, the

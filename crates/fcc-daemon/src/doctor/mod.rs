@@ -11,6 +11,7 @@
 //! | `board` | which board this is, and where its kernel's command line is kept |
 //! | `kernel` | preemption, timers, clock, real-time throttling |
 //! | `rights` | what the program may ask of the kernel |
+//! | `loop_cpu` | which CPU the loop is on, by its own choice or as configured |
 //! | `cpus` | clock speed, sleep, isolation |
 //! | `interrupts` | which devices interrupt which CPU |
 //! | `host_environment` | power and heat, memory, virtual machine, container |
@@ -21,16 +22,22 @@ mod cpus;
 mod host_environment;
 mod interrupts;
 mod kernel;
+mod loop_cpu;
 mod machine;
 mod rights;
 mod show;
 
 use std::path::Path;
 
+use fcc_timer::RealtimeRequest;
 use serde::Serialize;
 
 use board::Board;
+use loop_cpu::LoopCpu;
 use machine::Machine;
+
+/// Where what the loop asks for is said.
+const CONFIGURATION: &str = "fccd's configuration, [realtime]";
 
 /// How good something is for a real-time loop.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
@@ -110,35 +117,39 @@ pub struct Diagnosis {
 }
 
 impl Diagnosis {
-    /// Looks at the machine whose files are under `root`.
-    pub fn of(root: &Path) -> Self {
+    /// Looks at the machine whose files are under `root`, for a loop that asks
+    /// this of it.
+    pub fn of(root: &Path, request: &RealtimeRequest) -> Self {
         let machine = Machine::under(root);
         let board = Board::of(&machine);
-        let checks: [fn(&Machine, &Board) -> Finding; 19] = [
-            kernel::preemption,
-            rights::realtime_priority,
-            rights::locked_memory,
-            kernel::realtime_throttling,
-            kernel::high_resolution_timers,
-            kernel::clock_source,
-            cpus::governor,
-            cpus::isolation,
-            interrupts::interrupts,
-            cpus::idle_states,
-            cpus::hyper_threads,
-            kernel::timer_slack,
-            host_environment::power,
-            host_environment::heat,
-            host_environment::swap,
-            host_environment::compaction,
-            host_environment::virtual_machine,
-            host_environment::container,
-            host_environment::cpu_quota,
+        let loop_cpu = LoopCpu::of(&machine, request.cpu);
+        let (m, b) = (&machine, &board);
+        let findings = vec![
+            kernel::preemption(m, b),
+            rights::realtime_priority(m, request.priority),
+            rights::locked_memory(m, b),
+            kernel::realtime_throttling(m, b),
+            kernel::high_resolution_timers(m, b),
+            kernel::clock_source(m, b),
+            cpus::governor(m, b),
+            loop_cpu.finding(),
+            cpus::isolation(&loop_cpu, b),
+            interrupts::interrupts(m, &loop_cpu),
+            cpus::idle_states(m, b),
+            cpus::hyper_threads(m, b),
+            kernel::timer_slack(m, b),
+            host_environment::power(m, b),
+            host_environment::heat(m, b),
+            host_environment::swap(m, b),
+            host_environment::compaction(m, b),
+            host_environment::virtual_machine(m, b),
+            host_environment::container(m, b),
+            host_environment::cpu_quota(m, b),
         ];
         Self {
             machine: board.name.clone(),
             kernel: machine.kernel(),
-            findings: checks.iter().map(|check| check(&machine, &board)).collect(),
+            findings,
         }
     }
 

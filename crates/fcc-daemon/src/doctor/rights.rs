@@ -7,17 +7,18 @@ use super::{Finding, Grade};
 /// The bits of a set of capabilities.
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
-/// What `realtime.priority` is unless configured.
-const PRIORITY: u64 = 80;
 /// Where rights of a login are given.
 const LIMITS: &str = "/etc/security/limits.d/fccd.conf";
 /// Where those of the service are.
 const UNIT: &str = "fccd.service, [Service]";
 
 /// Whether the loop's thread may be real-time.
-pub(super) fn realtime_priority(machine: &Machine, _: &Board) -> Finding {
+pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Finding {
     const ID: &str = "realtime_priority";
     const NAME: &str = "Real-time right";
+    let Some(priority) = priority else {
+        return Finding::new(ID, NAME, Grade::Ok, "not asked for: realtime.priority = 0");
+    };
     if has_capability(machine, CAP_SYS_NICE) {
         return Finding::new(ID, NAME, Grade::Ok, "CAP_SYS_NICE");
     }
@@ -33,9 +34,9 @@ pub(super) fn realtime_priority(machine: &Machine, _: &Board) -> Finding {
     let graded = match limit {
         Limit::Number(0) => Finding::new(ID, NAME, Grade::Lacks, found)
             .because("the loop would run under the ordinary scheduler, milliseconds late"),
-        Limit::Number(most) if most < PRIORITY => {
+        Limit::Number(most) if most < u64::from(priority) => {
             Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-                .because(format!("fccd asks for {PRIORITY} unless configured"))
+                .because(format!("the loop asks for {priority} (realtime.priority)"))
         }
         _ => return Finding::new(ID, NAME, Grade::Ok, found),
     };

@@ -3,12 +3,29 @@
 
 mod machines;
 
+use std::path::Path;
+
 use fcc_daemon::doctor::{Diagnosis, Finding, Grade};
+use fcc_timer::{CpuRequest, RealtimeRequest};
 use machines::{BEAGLEBONE, PI_4, VIRTUAL, machine, put};
 use proptest::prelude::*;
 
 fn examined(files: &[(&str, &str)]) -> Diagnosis {
-    Diagnosis::of(machine(files).path())
+    looked_at(machine(files).path())
+}
+
+/// For a loop that is configured like this.
+fn looked_at_for(root: &Path, cpu: Option<CpuRequest>) -> Diagnosis {
+    let request = RealtimeRequest {
+        priority: Some(80),
+        cpu,
+        ..RealtimeRequest::default()
+    };
+    Diagnosis::of(root, &request)
+}
+
+fn looked_at(root: &Path) -> Diagnosis {
+    looked_at_for(root, None)
 }
 
 fn finding<'d>(diagnosis: &'d Diagnosis, id: &str) -> &'d Finding {
@@ -139,7 +156,7 @@ fn the_kernels_command_line_is_where_the_board_keeps_it() {
         let root = machine(files);
         put(root.path(), "sys/devices/system/cpu/online", "0-3\n");
         put(root.path(), "sys/devices/system/cpu/isolated", "\n");
-        let found = Diagnosis::of(root.path());
+        let found = looked_at(root.path());
         let [(file, line)] = lines(finding(&found, "isolated_cpus"))[..] else {
             panic!("one line");
         };
@@ -166,7 +183,7 @@ fn a_pi_with_plain_debian_is_told_where_that_keeps_it() {
         "proc/sys/kernel/version",
         "#1 SMP Debian 6.1.140-1 (2025-05-22)\n",
     );
-    let found = Diagnosis::of(root.path());
+    let found = looked_at(root.path());
     assert_eq!(
         lines(finding(&found, "isolated_cpus"))[0].0,
         "/etc/default/raspi-extra-cmdline"
@@ -185,7 +202,7 @@ fn a_pi_with_plain_debian_is_told_where_that_keeps_it() {
 fn the_preemption_mode_is_what_is_in_force_or_what_the_kernel_began_with() {
     const MODES: &str = "sys/kernel/debug/sched/preempt";
     let root = machine(VIRTUAL);
-    let of = |root: &std::path::Path| finding(&Diagnosis::of(root), "preemption").clone();
+    let of = |root: &Path| finding(&looked_at(root), "preemption").clone();
     assert!(of(root.path()).found.ends_with("mode: full"));
     std::fs::remove_file(root.path().join(MODES)).unwrap();
     assert!(of(root.path()).found.ends_with("mode: none"));
@@ -218,7 +235,7 @@ const DISK_ON_CPU_1: &str = "           CPU0       CPU1\n\
 fn a_device_that_interrupts_often_is_named_with_its_cpu() {
     let root = machine(VIRTUAL);
     put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
-    let found = Diagnosis::of(root.path());
+    let found = looked_at(root.path());
     let interrupts = finding(&found, "interrupts");
     assert_eq!(interrupts.grade, Grade::Ok);
     assert_eq!(interrupts.found, "CPU 1: virtio1-req.0 100 %");
@@ -241,7 +258,7 @@ fn a_device_that_interrupts_an_isolated_cpu_is_to_be_moved() {
     put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
     put(root.path(), "sys/devices/system/cpu/isolated", "1\n");
     put(root.path(), "etc/default/irqbalance", "");
-    let of = |root: &std::path::Path| finding(&Diagnosis::of(root), "interrupts").clone();
+    let of = |root: &Path| finding(&looked_at(root), "interrupts").clone();
     let there = of(root.path());
     assert_eq!(there.grade, Grade::CouldBeBetter);
     assert_eq!(
@@ -255,7 +272,7 @@ fn a_device_that_interrupts_an_isolated_cpu_is_to_be_moved() {
                 "/etc/default/irqbalance, or it moves them back",
                 "IRQBALANCE_BANNED_CPULIST=1"
             ),
-            ("fccd's configuration, [realtime]", "cpu = 1"),
+            ("fccd's configuration, [realtime]", "cpu = \"auto\""),
         ]
     );
     // Where it comes now counts, and not where it came before.
@@ -265,12 +282,86 @@ fn a_device_that_interrupts_an_isolated_cpu_is_to_be_moved() {
     assert_eq!(moved.found, "CPU 0: virtio1-req.0 100 %");
 }
 
+/// What each finding tells to do about a CPU is about the one that the loop is
+/// on: the CPUs named in all remedies.
+fn cpus_named(diagnosis: &Diagnosis) -> Vec<String> {
+    let all = diagnosis.findings.iter().flat_map(lines);
+    let of_isolation = |line: &str| {
+        let (_, rest) = line.split_once("nohz_full=")?;
+        Some(rest.split_whitespace().next()?.to_owned())
+    };
+    let named = |line: &str| {
+        let number = line.strip_prefix("cpu = ").map(str::to_owned);
+        let banned = line.strip_prefix("IRQBALANCE_BANNED_CPULIST=");
+        number.or(banned.map(str::to_owned)).or(of_isolation(line))
+    };
+    let mut cpus: Vec<String> = all.filter_map(|(_, line)| named(line)).collect();
+    cpus.dedup();
+    cpus
+}
+
+const EVEN: &str = "           CPU0       CPU1\n\
+     \x2034:     700000          0 PCI-MSIX-0000:00:05.0   1-edge      virtio4-input\n\
+     \x2036:          0     800000 PCI-MSIX-0000:00:02.0   1-edge      virtio1-req.0\n";
+
+#[test]
+fn all_findings_are_about_the_cpu_that_the_loop_would_be_on() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "etc/default/irqbalance", "");
+    for (interrupts, request, expected) in [
+        // None is better by far, and the first one keeps the time.
+        (EVEN, None, &["1"][..]),
+        (EVEN, Some(CpuRequest::Auto), &["1"]),
+        (EVEN, Some(CpuRequest::Number(1)), &["1"]),
+        (EVEN, Some(CpuRequest::Number(0)), &["0"]),
+        // The first one is good as it is, and cannot be isolated.
+        (DISK_ON_CPU_1, Some(CpuRequest::Auto), &[]),
+        (DISK_ON_CPU_1, Some(CpuRequest::Number(0)), &[]),
+    ] {
+        put(root.path(), "proc/interrupts", interrupts);
+        let found = looked_at_for(root.path(), request);
+        assert_eq!(cpus_named(&found), expected, "{request:?}");
+    }
+    let isolation = finding(&looked_at(root.path()), "isolated_cpus").clone();
+    assert!(
+        isolation.why.contains("cannot be isolated"),
+        "{}",
+        isolation.why
+    );
+}
+
+#[test]
+fn the_loops_own_choice_is_what_the_doctor_says() {
+    let root = machine(PI_4);
+    let of = |cpu| finding(&looked_at_for(root.path(), cpu), "loop_cpu").clone();
+    let chosen = of(Some(CpuRequest::Auto));
+    assert!(
+        chosen
+            .found
+            .starts_with("CPU 3, by cpu = \"auto\": it is isolated")
+    );
+    assert_eq!(lines(&chosen), []);
+    assert_eq!(of(Some(CpuRequest::Number(3))).grade, Grade::Ok);
+
+    let worse = of(Some(CpuRequest::Number(0)));
+    assert_eq!(worse.grade, Grade::CouldBeBetter);
+    assert!(worse.why.contains("CPU 3 is better"), "{}", worse.why);
+    let none = of(Some(CpuRequest::Number(9)));
+    assert_eq!(none.grade, Grade::Lacks);
+
+    // A service or a container that may use some of the CPUs only.
+    put(root.path(), "sys/devices/system/cpu/isolated", "\n");
+    put(root.path(), "proc/self/status", "Cpus_allowed_list:\t0-1\n");
+    let allowed = of(Some(CpuRequest::Auto));
+    assert!(allowed.found.starts_with("CPU 1"), "{}", allowed.found);
+}
+
 #[test]
 fn cpus_without_interrupts_of_devices_are_not_called_one() {
     let root = machine(VIRTUAL);
     let quiet = "           CPU0       CPU1\nLOC:    3461567    3545716   Local timer interrupts\n";
     put(root.path(), "proc/interrupts", quiet);
-    let found = Diagnosis::of(root.path());
+    let found = looked_at(root.path());
     assert_eq!(
         finding(&found, "interrupts").found,
         "no device has interrupted yet"
@@ -284,7 +375,7 @@ fn the_firmware_of_a_pi_5_is_asked_too() {
     let driver = "sys/bus/platform/drivers/raspberrypi-firmware";
     let file = format!("{driver}/soc@107c000000:firmware/get_throttled");
     put(root.path(), &file, "50005\n");
-    let found = Diagnosis::of(root.path());
+    let found = looked_at(root.path());
     assert_eq!(finding(&found, "power").grade, Grade::Lacks);
 }
 
@@ -309,7 +400,7 @@ fn a_weak_power_supply_is_found_out() {
         let root = machine(PI_4);
         let file = "sys/devices/platform/soc/soc:firmware/get_throttled";
         put(root.path(), file, bits);
-        let found = Diagnosis::of(root.path());
+        let found = looked_at(root.path());
         let power = finding(&found, "power");
         assert_eq!(power.grade, grade, "{bits}");
         assert!(power.found.contains(words), "{bits}: {}", power.found);
@@ -337,7 +428,7 @@ fn what_stops_a_loop_is_lacking() {
     ] {
         let root = machine(PI_4);
         put(root.path(), file, text);
-        let found = Diagnosis::of(root.path());
+        let found = looked_at(root.path());
         assert_eq!(ids(&found, Grade::Lacks), [id]);
         assert!(found.lacks_something());
     }
@@ -368,7 +459,7 @@ fn the_table_says_what_is_wrong_and_what_to_do() {
 /// Whatever this machine is, it can be looked at.
 #[test]
 fn this_machine_is_told_about() {
-    let here = Diagnosis::of(std::path::Path::new("/"));
+    let here = looked_at(Path::new("/"));
     assert!(!here.kernel.is_empty());
     let json = serde_json::to_value(&here).unwrap();
     assert_eq!(
@@ -390,7 +481,7 @@ fn any_file_may_hold_anything() {
     proptest!(ProptestConfig::with_cases(100), |(words in any_words, file in one_of_them)| {
         let (path, usual) = file;
         std::fs::write(root.path().join(path), words).unwrap();
-        let found = Diagnosis::of(root.path());
+        let found = looked_at(root.path());
         prop_assert!(!found.to_text().is_empty());
         prop_assert!(serde_json::to_string(&found).is_ok());
         put(root.path(), path, usual);

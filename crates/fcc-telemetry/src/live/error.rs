@@ -31,9 +31,20 @@ pub enum WatchError {
     /// No daemon of this name publishes on this machine.
     #[error(
         "no fccd named '{0}' runs here: start one, for example with `fccd fly --instance {0}`, or \
-         give another's name with --instance. A daemon of another user cannot be watched"
+         give another's name with --instance"
     )]
     NotRunning(Instance),
+    /// This user has no daemon of this name, but others have daemons, or had.
+    #[error(
+        "no fccd named '{instance}' runs here for this user. A daemon of another user can be \
+         watched by that user alone: sudo -u {user} fccd top --instance {instance}"
+    )]
+    PerhapsAnothers {
+        /// The daemon.
+        instance: Instance,
+        /// The other user; the first of several.
+        user: String,
+    },
     /// The daemon is of a version with another layout.
     #[error(
         "fccd '{instance}' is version {software} and publishes in layout {layout}; this program \

@@ -27,6 +27,7 @@ mod error;
 mod event;
 mod info;
 mod lateness;
+mod place;
 mod publisher;
 mod record;
 mod services;

@@ -96,7 +96,8 @@ impl Publisher {
             }),
             Ok(Err(error)) => Err(error),
             Err(RecvTimeoutError::Timeout) => Err(PublishError::NoSharedMemory(
-                "it does not answer: remove what iceoryx2 left in /dev/shm and /tmp/iceoryx2"
+                "it does not answer: end all programs of this user that fly or watch, then remove \
+                 what they left, /dev/shm/fccd-*"
                     .to_owned(),
             )),
             Err(RecvTimeoutError::Disconnected) => Err(PublishError::NoSharedMemory(

@@ -2,16 +2,16 @@
 
 use std::fmt::Debug;
 
-use iceoryx2::config::Config;
-use iceoryx2::node::{Node, NodeBuilder, NodeCreationFailure};
+use iceoryx2::node::{Node, NodeBuilder};
 use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
 use iceoryx2::prelude::{BackpressureStrategy, SignalHandlingMode, ZeroCopySend, ipc_threadsafe};
 use iceoryx2::service::builder::publish_subscribe::{
-    PublishSubscribeCreateError, PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
 };
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use iceoryx2::service::service_name::ServiceName;
 
+use super::place::Place;
 use super::{LAYOUT, PublishError, WatchError};
 use crate::Instance;
 
@@ -133,7 +133,7 @@ impl Topic {
                 PublisherCreateError::ExceedsMaxSupportedPublishers => {
                     PublishError::NameTaken(instance.clone())
                 }
-                error => PublishError::NoSharedMemory(format!("{error:?}")),
+                error => PublishError::NoSharedMemory(explained(&error)),
             })?;
         Ok((service, publisher))
     }
@@ -159,13 +159,12 @@ impl Topic {
                 Open::ExceedsMaxNumberOfNodes => WatchError::TooMany(instance.clone()),
                 Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()),
                 Open::IncompatibleTypes => WatchError::Damaged(instance.clone()),
-                error => WatchError::NoSharedMemory(format!("{error:?}")),
+                error => WatchError::NoSharedMemory(explained(&error)),
             })
     }
 }
 
 fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> PublishError {
-    use PublishSubscribeCreateError as Create;
     use PublishSubscribeOpenError as Open;
     use PublishSubscribeOpenOrCreateError as Refused;
     match error {
@@ -181,36 +180,30 @@ fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> Pub
             | Open::DoesNotSupportRequestedAmountOfNodes
             | Open::VersionMismatch,
         ) => PublishError::HeldByOthers(instance.clone()),
-        Refused::PublishSubscribeOpenError(Open::InsufficientPermissions)
-        | Refused::PublishSubscribeCreateError(Create::InsufficientPermissions) => {
-            PublishError::NoSharedMemory(not_permitted())
-        }
-        error => PublishError::NoSharedMemory(format!("{error:?}")),
+        error => PublishError::NoSharedMemory(explained(&error)),
     }
 }
 
-fn not_permitted() -> String {
-    format!(
-        "permission denied in /dev/shm or {}: another user made that folder; only one user of a \
-         machine can use it",
-        Config::global_config().global.root_path()
-    )
+/// A failure of iceoryx2 in words: files of another user among this one's, which
+/// it calls an internal error, or else what it says itself.
+pub(super) fn explained(error: &impl Debug) -> String {
+    let foreign = Place::of_this_user().foreign_file();
+    foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}"))
 }
 
-/// This process' access to the services of all daemons; `name` is who it is.
-/// Cleans up after processes that were killed.
+/// This process' access to the services of all daemons of its user. Cleans up
+/// after processes that were killed.
 ///
 /// # Errors
 /// Why there is no shared memory, in words.
 pub(super) fn access() -> Result<Access, String> {
+    let config = Place::of_this_user().prepare()?;
     let access = NodeBuilder::new()
+        .config(&config)
         // The daemon and its commands have ways of their own with signals.
         .signal_handling_mode(SignalHandlingMode::Disabled)
         .create::<Ipc>()
-        .map_err(|error| match error {
-            NodeCreationFailure::InsufficientPermissions => not_permitted(),
-            error => format!("{error:?}"),
-        })?;
+        .map_err(|error| explained(&error))?;
     // Whatever the global configuration says of cleaning up.
     access.try_cleanup_dead_nodes();
     Ok(access)

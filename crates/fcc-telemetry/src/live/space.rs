@@ -5,7 +5,7 @@ use std::path::Path;
 use nix::sys::statvfs::statvfs;
 
 /// Where Linux keeps shared memory.
-const SHARED_MEMORY: &str = "/dev/shm";
+pub(super) const SHARED_MEMORY: &str = "/dev/shm";
 
 /// Room that publishing may need at any time: all records, events and watchers'
 /// connections there can be come to some 3 MiB.

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
 use iceoryx2::prelude::{PortFactory, ZeroCopySend};
 
+use super::place::Place;
 use super::record::Found;
 use super::services::{self, Access, EVENT, INFO, Ipc, RECORD, STATUS, Service};
 use super::space;
@@ -155,6 +156,18 @@ pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), Watch
 
 /// What a daemon says of itself.
 pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
+    find_info(access, instance).map_err(|error| match error {
+        WatchError::NotRunning(instance) => {
+            match Place::of_this_user().other_users().into_iter().next() {
+                Some(user) => WatchError::PerhapsAnothers { instance, user },
+                None => WatchError::NotRunning(instance),
+            }
+        }
+        error => error,
+    })
+}
+
+fn find_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
     let service = INFO.watch::<Info>(access, instance)?;
     let infos = subscribe(&service, instance)?;
     let deadline = Instant::now() + PATIENCE;
@@ -185,7 +198,7 @@ fn subscribe<T: std::fmt::Debug + ZeroCopySend + 'static>(
             SubscriberCreateError::ExceedsMaxSupportedSubscribers => {
                 WatchError::TooMany(instance.clone())
             }
-            error => WatchError::NoSharedMemory(format!("{error:?}")),
+            error => WatchError::NoSharedMemory(services::explained(&error)),
         })
 }
 
@@ -194,6 +207,6 @@ fn next<T: std::fmt::Debug + ZeroCopySend + Copy + 'static>(
 ) -> Result<Option<T>, WatchError> {
     match from.receive() {
         Ok(sample) => Ok(sample.map(|sample| *sample)),
-        Err(error) => Err(WatchError::NoSharedMemory(format!("{error:?}"))),
+        Err(error) => Err(WatchError::NoSharedMemory(services::explained(&error))),
     }
 }

@@ -18,9 +18,11 @@ const MUCH_LESS: u64 = 4;
 
 /// A CPU, and why it is the best.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub(super) struct Choice {
-    pub(super) cpu: usize,
-    pub(super) because: String,
+pub struct BestCpu {
+    /// Its number, from 0.
+    pub cpu: usize,
+    /// Why a loop is best kept there, in words.
+    pub because: String,
 }
 
 /// What a machine tells of its CPUs.
@@ -54,20 +56,17 @@ impl Cpus {
         }
     }
 
-    /// The CPU that a loop is best kept on, where it may have any; none where
-    /// none is better than the others.
-    pub fn for_a_loop(&self) -> Option<usize> {
-        let online: Vec<usize> = self.online.iter().copied().collect();
-        self.best(&online, |_| true).ok().map(|choice| choice.cpu)
-    }
-
     /// The best CPU for a thread that may run on `allowed`; an isolated one
     /// may be asked for even so. What the kernel refuses is asked of `may_use`.
-    pub(super) fn best(
+    /// This is what [`CpuRequest::Auto`](super::CpuRequest::Auto) chooses.
+    ///
+    /// # Errors
+    /// Why none is better than the others, in words.
+    pub fn best(
         &self,
         allowed: &[usize],
         may_use: impl Fn(usize) -> bool,
-    ) -> Result<Choice, String> {
+    ) -> Result<BestCpu, String> {
         let is_tickless = |cpu: &usize| self.tickless.contains(cpu);
         let of_isolated = || self.isolated.iter().rev().copied();
         if let Some(cpu) = of_isolated()
@@ -76,7 +75,7 @@ impl Cpus {
             .filter(|cpu| self.online.is_empty() || self.online.contains(cpu))
             .find(|&cpu| may_use(cpu))
         {
-            return Ok(Choice {
+            return Ok(BestCpu {
                 cpu,
                 because: "it is isolated: no other thread runs there".to_owned(),
             });
@@ -90,7 +89,7 @@ impl Cpus {
                 .rev()
                 .find(|cpu| !self.interrupted_by_default.contains(cpu))
         {
-            return Ok(Choice {
+            return Ok(BestCpu {
                 cpu,
                 because: "interrupts are kept off it (default_smp_affinity)".to_owned(),
             });
@@ -106,7 +105,7 @@ impl Cpus {
             (Some((busy, most)), Some((calm, least)))
                 if least.saturating_mul(MUCH_LESS) < *most =>
             {
-                Ok(Choice {
+                Ok(BestCpu {
                     cpu: *calm,
                     because: format!(
                         "it took {least} interrupts of devices since the start, CPU {busy} {most}"

@@ -9,7 +9,7 @@ use iceoryx2::prelude::BackpressureStrategy;
 use iceoryx2::service::service_name::ServiceName;
 
 use super::super::PublishError;
-use super::super::services::{Access, Ipc};
+use super::super::services::{Access, Ipc, explained};
 use super::wire::{Answer, Request};
 use super::{Asked, COMMANDS_VERSION, Verdict};
 use crate::Instance;
@@ -76,12 +76,12 @@ impl CommandServer {
             .max_response_buffer_size(1)
             .enable_fire_and_forget_requests(false)
             .open_or_create()
-            .map_err(|error| unavailable(format!("commands: {error:?}")))?;
+            .map_err(|error| unavailable(format!("commands: {}", explained(&error))))?;
         let server = service
             .server_builder()
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
-            .map_err(|error| unavailable(format!("commands: {error:?}")))?;
+            .map_err(|error| unavailable(format!("commands: {}", explained(&error))))?;
         Ok(Self {
             server,
             waiting: Vec::new(),

@@ -91,7 +91,7 @@ impl Commander {
         let pending = self
             .client
             .send_copy(Request::from(command))
-            .map_err(|error| WatchError::NoSharedMemory(format!("{error:?}")))?;
+            .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
         let deadline = Instant::now() + PATIENCE;
         loop {
             // Asked before looking: an answer given before the end counts.
@@ -105,7 +105,9 @@ impl Commander {
                 }
                 Ok(None) if !connected => return Err(gone()),
                 Ok(None) => {}
-                Err(error) => return Err(WatchError::NoSharedMemory(format!("{error:?}")).into()),
+                Err(error) => {
+                    return Err(WatchError::NoSharedMemory(services::explained(&error)).into());
+                }
             }
             if Instant::now() > deadline {
                 return Err(CommandError::NoAnswer(
@@ -131,6 +133,6 @@ fn refused(
         | Open::IncompatibleRequestOrResponseType => takes_none(),
         Open::ExceedsMaxNumberOfNodes => CommandError::TooMany(instance.clone()),
         Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()).into(),
-        error => WatchError::NoSharedMemory(format!("{error:?}")).into(),
+        error => WatchError::NoSharedMemory(services::explained(&error)).into(),
     }
 }
