@@ -136,6 +136,9 @@ pub struct ListArgs {
     /// Folder of recordings
     #[arg(value_name = "DIR", default_value = "recordings")]
     pub folder: PathBuf,
+    /// Look at the two ends of each file only: damage between them is not seen
+    #[arg(long)]
+    pub quick: bool,
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,

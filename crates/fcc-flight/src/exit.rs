@@ -33,6 +33,8 @@ pub enum Exit {
     Refused = 11,
     /// Another program has what is asked for: the simulator, or the local port.
     Taken = 12,
+    /// A recording is damaged or cut off: what is said is of the rest of it.
+    Incomplete = 13,
 }
 
 /// For `--help`.
@@ -50,7 +52,9 @@ Exit codes:
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
  11  the daemon refused the command
- 12  another program has the simulator or the local port";
+ 12  another program has the simulator or the local port
+ 13  a recording is damaged or cut off: the result is of the rest (report,
+     replay), or a part of it is lost (list, recover)";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -193,6 +193,7 @@ pub fn recordings_table(entries: &[Entry]) -> String {
             entry.state.clone(),
             match entry.file {
                 Wholeness::Whole => "whole",
+                Wholeness::Damaged => "damaged: fccd recover",
                 Wholeness::Cut => "cut: fccd recover",
                 Wholeness::BeingWritten => "being written",
             }
@@ -238,6 +239,7 @@ mod tests {
             ending: "stopped by command".to_owned(),
             not_recorded: 0,
             file: Wholeness::Whole,
+            damages: Vec::new(),
         };
         let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
         for words in [

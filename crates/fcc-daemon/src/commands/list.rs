@@ -24,7 +24,12 @@ pub(super) fn list(args: &ListArgs) -> Exit {
     let mut entries: Vec<Entry> = Vec::new();
     let mut refused = Vec::new();
     for path in &files {
-        match recording::entry(path) {
+        let entry = if args.quick {
+            recording::glance(path)
+        } else {
+            recording::entry(path)
+        };
+        match entry {
             Ok(entry) => entries.push(entry),
             Err(error) => refused.push(error),
         }
@@ -34,13 +39,24 @@ pub(super) fn list(args: &ListArgs) -> Exit {
     for error in refused {
         output::message(error);
     }
+    let is_damaged = |entry: &Entry| !entry.damages.is_empty();
+    let exit = if entries.iter().any(is_damaged) {
+        Exit::Incomplete
+    } else {
+        Exit::Success
+    };
     if args.json {
-        return output::json(&entries, Exit::Success);
+        return output::json(&entries, exit);
+    }
+    for entry in &entries {
+        for damage in &entry.damages {
+            output::message(format!("{}: is {damage}", entry.path.display()));
+        }
     }
     let text = if entries.is_empty() {
         format!("{}: no recordings", args.folder.display())
     } else {
         recordings_table(&entries)
     };
-    output::result(text, Exit::Success)
+    output::result(text, exit)
 }

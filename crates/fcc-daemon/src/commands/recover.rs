@@ -1,39 +1,59 @@
 //! `fccd recover FILE`.
 
-use std::fmt::Write as _;
 use std::fs;
 
-use fcc_telemetry::recording;
+use fcc_telemetry::recording::{self, Recovered};
 
 use super::{fail, progress};
 use crate::cli::RecoverArgs;
 use crate::exit::Exit;
 use crate::output;
 
-/// Makes a whole recording of one that was cut off.
+/// Makes a whole recording of one that was cut off or damaged.
 pub(super) fn recover(args: &RecoverArgs) -> Exit {
     let bytes = fs::metadata(&args.file).map_or(0, |metadata| metadata.len());
     let bar = progress::bar(bytes, "recovering");
     let recovered = recording::recover(&args.file, |read| bar.set_position(read));
     bar.finish_and_clear();
-    match recovered {
-        Err(error) => fail(&error.to_string()),
-        Ok(recovered) if args.json => output::json(&recovered, Exit::Success),
-        Ok(recovered) => {
-            let file = recovered.path.display();
-            let ticks = recovered.ticks;
-            let mut text = match recovered.cut {
-                None => format!("{file}: is whole: {ticks} ticks"),
-                Some(cut) => format!("{file}: was {cut}; is whole now: {ticks} ticks"),
-            };
-            if let Some(kept) = recovered.kept {
-                let _ = write!(
-                    text,
-                    "\n{}: the file as it was, as there may be more behind the damage",
-                    kept.display()
-                );
-            }
-            output::result(text, Exit::Success)
-        }
+    let recovered = match recovered {
+        Err(error) => return fail(&error.to_string()),
+        Ok(recovered) => recovered,
+    };
+    let exit = if recovered.damages.is_empty() {
+        Exit::Success
+    } else {
+        Exit::Incomplete
+    };
+    if args.json {
+        return output::json(&recovered, exit);
     }
+    output::result(words(&recovered), exit)
+}
+
+fn words(recovered: &Recovered) -> String {
+    let file = recovered.path.display();
+    let ticks = recovered.ticks;
+    if recovered.was_whole {
+        return format!("{file}: is whole: {ticks} ticks");
+    }
+    let cut = recovered
+        .cut
+        .as_ref()
+        .map(|cut| format!("{file}: was {cut}"));
+    let damages = recovered
+        .damages
+        .iter()
+        .map(|damage| format!("{file}: was {damage}"));
+    let now = format!("{file}: what could be read is a whole recording now: {ticks} ticks");
+    let kept = recovered
+        .kept
+        .as_ref()
+        .map(|kept| format!("{}: the file as it was", kept.display()));
+    let lines: Vec<String> = cut
+        .into_iter()
+        .chain(damages)
+        .chain([now])
+        .chain(kept)
+        .collect();
+    lines.join("\n")
 }

@@ -25,6 +25,8 @@ struct Flown {
     run: Run,
     /// Where files ended before their recording did.
     cuts: Vec<String>,
+    /// What in the files is damaged.
+    damages: Vec<String>,
     /// How long it took, s.
     took_s: f64,
     /// The recorded time over that.
@@ -120,7 +122,7 @@ fn fly(
     let began = Instant::now();
     let mut watched = Watched::new(chain);
     let run = run(replay, &mut watched, compare);
-    let cuts = watched.finish();
+    let messages = watched.finish();
     let took_s = began.elapsed().as_secs_f64();
     let about = chain.about().cloned().unwrap_or_default();
     let own = format!("fccd {}", env!("CARGO_PKG_VERSION"));
@@ -135,7 +137,8 @@ fn fly(
         recorded_by: format!("{} ({})", about.software, about.git_hash),
         times_real_time: run.span_s / took_s,
         run,
-        cuts,
+        cuts: messages.cuts().to_vec(),
+        damages: messages.damages().to_vec(),
         took_s,
         found: Found::Identity(Identity::default()),
         remarks,
@@ -155,6 +158,8 @@ impl Flown {
         match &self.found {
             Found::Identity(identity) if !identity.is_identical() => Exit::Differs,
             _ if self.run.unflown.is_some() || !self.cuts.is_empty() => Exit::NotReplayed,
+            // All ticks are there.
+            _ if !self.damages.is_empty() => Exit::Incomplete,
             _ => Exit::Success,
         }
     }
@@ -175,10 +180,20 @@ impl Flown {
                 (Some(first), Some(last)) => format!("{} ticks, {first} to {last}", unflown.ticks),
                 _ => "what follows".to_owned(),
             };
-            lines.push(format!("\nNOT flown again: {which}: {}", unflown.why));
+            let compared = self.run.last_tick.map_or_else(
+                || "nothing was compared".to_owned(),
+                |last| format!("compared up to tick {last}"),
+            );
+            lines.push(format!(
+                "\nNOT flown again: {which}: {}; {compared}",
+                unflown.why
+            ));
         }
         for cut in &self.cuts {
             lines.push(format!("\nthe recording is not whole: {cut}"));
+        }
+        for damage in &self.damages {
+            lines.push(format!("\nthe recording is not whole: {damage}"));
         }
         for remark in &self.remarks {
             lines.push(format!("\n{remark}"));
@@ -207,10 +222,10 @@ impl<'a> Watched<'a> {
         }
     }
 
-    /// Takes the bar away; gives where files ended early.
-    fn finish(self) -> Vec<String> {
+    /// Takes the bar away; gives what was read.
+    fn finish(self) -> ChainMessages<'a> {
         self.bar.finish_and_clear();
-        self.messages.cuts().to_vec()
+        self.messages
     }
 }
 

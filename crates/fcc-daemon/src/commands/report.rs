@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_telemetry::recording::{Item, Recording};
+use fcc_telemetry::recording::{self, Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
 use super::{fail, progress};
@@ -19,10 +19,20 @@ const BAR_EVERY: u64 = 4_096;
 
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Exit {
-    match read(args).and_then(|report| write_page(args, &report).map(|()| report)) {
-        Ok(report) if args.json => output::json(&report, Exit::Success),
-        Ok(report) => output::result(report.to_text(), Exit::Success),
-        Err(message) => fail(&message),
+    let made = read(args).and_then(|report| write_page(args, &report).map(|()| report));
+    let report = match made {
+        Ok(report) => report,
+        Err(message) => return fail(&message),
+    };
+    let exit = if report.is_complete() || recording::is_being_written(&args.file) {
+        Exit::Success
+    } else {
+        Exit::Incomplete
+    };
+    if args.json {
+        output::json(&report, exit)
+    } else {
+        output::result(report.to_text(), exit)
     }
 }
 
@@ -54,16 +64,14 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
     let bar = progress::bar(recording.bytes(), "reading");
     let mut taken = 0_u64;
     while let Some(item) = items.next() {
-        match &item {
-            Item::Message(message) => survey
-                .take(message)
-                .map_err(|error| format!("{}: {error}", args.file.display()))?,
-            Item::Remark(remark) => survey.take_remark(remark),
-        }
+        survey
+            .take_item(&item)
+            .map_err(|error| format!("{}: {error}", args.file.display()))?;
         if let Some(csv) = &mut csv {
             match &item {
                 Item::Message(message) => csv.take(message),
                 Item::Remark(remark) => csv.take_remark(remark),
+                Item::Damage(damage) => csv.take_remark(&damage.remark()),
             }
             .map_err(csv_failed)?;
         }

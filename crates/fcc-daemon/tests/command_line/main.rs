@@ -1,6 +1,9 @@
 //! The program as a shell sees it: what it prints, where that fails, and how it
 //! ends.
 
+#![cfg(test)]
+
+mod damaged;
 mod output;
 mod top;
 

@@ -66,7 +66,9 @@ fn a_cut_file_is_reported_up_to_its_cut() {
     let file = Plan::seconds(150).record(folder.path());
     let whole = fs::read(&file).unwrap();
     fs::write(&file, &whole[..whole.len() * 9 / 10]).unwrap();
-    let text = printed(&fccd(&[file.to_str().unwrap()]));
+    let output = fccd(&[file.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(13));
+    let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("The recording was not finished"), "{text}");
     assert!(text.contains("25.0000 ms"), "{text}");
 }

@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use fcc_core::framework::Message;
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, Messages, OpenError, Recording};
+use fcc_telemetry::recording::{About, Item, Items, OpenError, Recording};
 
 use crate::config::{Config, ConfigError};
 
@@ -105,6 +106,7 @@ impl Chain {
             present: None,
             bytes_before: 0,
             cuts: Vec::new(),
+            damages: Vec::new(),
         }
     }
 }
@@ -134,16 +136,17 @@ fn follows(before: &Recording, next: &Recording) -> Result<(), ChainError> {
 /// All records and events of a recording, file by file.
 pub struct ChainMessages<'a> {
     waiting: std::slice::Iter<'a, Recording>,
-    present: Option<(&'a Path, Messages)>,
+    present: Option<(&'a Path, Items)>,
     bytes_before: u64,
     cuts: Vec<String>,
+    damages: Vec<String>,
 }
 
 impl ChainMessages<'_> {
     /// Bytes read so far, of [`Chain::bytes`].
     pub fn bytes_read(&self) -> u64 {
         let present = self.present.as_ref();
-        self.bytes_before + present.map_or(0, |(_, messages)| messages.bytes_read())
+        self.bytes_before + present.map_or(0, |(_, items)| items.bytes_read())
     }
 
     /// Where and why files read so far ended before their recording did.
@@ -151,10 +154,15 @@ impl ChainMessages<'_> {
         &self.cuts
     }
 
+    /// What in the files read so far is damaged.
+    pub fn damages(&self) -> &[String] {
+        &self.damages
+    }
+
     fn leave(&mut self) {
-        if let Some((path, messages)) = self.present.take() {
-            self.bytes_before += messages.bytes_read();
-            if let Some(cut) = messages.cut() {
+        if let Some((path, items)) = self.present.take() {
+            self.bytes_before += items.bytes_read();
+            if let Some(cut) = items.cut() {
                 self.cuts.push(format!("{}: {cut}", path.display()));
             }
         }
@@ -166,15 +174,26 @@ impl Iterator for ChainMessages<'_> {
 
     fn next(&mut self) -> Option<FlightMessage> {
         loop {
-            if let Some((_, messages)) = &mut self.present
-                && let Some(message) = messages.next()
+            while let Some((path, items)) = &mut self.present
+                && let Some(item) = items.next()
             {
-                return Some(message);
+                match item {
+                    Item::Message(message) => return Some(message),
+                    Item::Remark(_) => {}
+                    Item::Damage(damage) => {
+                        self.damages.push(format!("{}: {damage}", path.display()));
+                        // What was lost there is lost as if it had never been
+                        // recorded.
+                        if let Some(gap) = damage.event() {
+                            return Some(Message::Event(gap));
+                        }
+                    }
+                }
             }
             self.leave();
             let recording = self.waiting.next()?;
-            match recording.messages() {
-                Ok(messages) => self.present = Some((recording.path(), messages)),
+            match recording.items() {
+                Ok(items) => self.present = Some((recording.path(), items)),
                 Err(error) => self.cuts.push(error.to_string()),
             }
         }

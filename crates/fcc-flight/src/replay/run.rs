@@ -88,6 +88,8 @@ impl Replay {
 pub struct Run {
     /// Ticks flown again.
     pub ticks: u64,
+    /// The last of them; none if there is none.
+    pub last_tick: Option<u64>,
     /// From the first of them to the last, s.
     pub span_s: f64,
     /// What was not flown again; none if all was.
@@ -126,6 +128,7 @@ pub fn run(
                 let at_ns = recorded.tick.scheduled.as_nanos();
                 run.span_s = at_ns.saturating_sub(*began_ns.get_or_insert(at_ns)) as f64 * 1e-9;
                 run.ticks += 1;
+                run.last_tick = Some(recorded.tick.number);
                 compare(recorded, again);
             }
             (Ok(_), _) => {}

@@ -12,7 +12,7 @@ use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{Chain, Deviation, Identity, Replay, Run, run};
-use fcc_telemetry::recording::{self, Recording};
+use fcc_telemetry::recording::{self, Item, Recording};
 use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -50,8 +50,8 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
     json::to_python(py, &listed.map_err(|words| errors::RECORDING.say(words))?)
 }
 
-/// Makes a whole recording of one that was cut off, in its place; a whole one
-/// is left alone. What came of it is a dict.
+/// Makes a whole recording of one that was cut off or damaged, in its place; a
+/// whole one is left alone. What came of it is a dict.
 #[pyfunction]
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py
@@ -98,19 +98,24 @@ fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
         .transpose()
         .map_err(refused)?;
     let mut survey = Survey::new(origin, pattern(&recording));
-    let mut messages = recording.messages().map_err(|error| error.to_string())?;
-    for message in &mut messages {
+    let mut items = recording.items().map_err(|error| error.to_string())?;
+    for item in &mut items {
         survey
-            .take(&message)
+            .take_item(&item)
             .map_err(|error| format!("{}: {error}", path.display()))?;
         if let Some(tables) = &mut tables {
-            tables.take(&message).map_err(refused)?;
+            match &item {
+                Item::Message(message) => tables.take(message),
+                Item::Remark(remark) => tables.take_remark(remark),
+                Item::Damage(damage) => tables.take_remark(&damage.remark()),
+            }
+            .map_err(refused)?;
         }
     }
     if let Some(tables) = tables {
         tables.finish().map_err(refused)?;
     }
-    Ok(survey.finish(FileEnd::of(&recording, messages.cut())))
+    Ok(survey.finish(FileEnd::of(&recording, items.cut())))
 }
 
 /// The pattern that was to be flown; a configuration of another version may
@@ -150,6 +155,7 @@ pub(crate) fn replay<'py>(
         #[serde(flatten)]
         run: Run,
         cuts: Vec<String>,
+        damages: Vec<String>,
         identical: Option<bool>,
         identity: Option<Identity>,
         deviation: Option<Deviation>,
@@ -181,6 +187,7 @@ pub(crate) fn replay<'py>(
         Ok(Flown {
             run,
             cuts: messages.cuts().to_vec(),
+            damages: messages.damages().to_vec(),
             identical: same.then(|| identity.is_identical()),
             identity: same.then_some(identity),
             deviation: (!same).then_some(deviation),

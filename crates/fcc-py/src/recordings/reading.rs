@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::{About, End, Recording};
+use fcc_telemetry::recording::{About, Damage, End, Recording};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -13,6 +13,7 @@ use super::frame;
 use crate::config::{PyConfig, refused};
 use crate::errors;
 use crate::events::PyEvent;
+use crate::json;
 use crate::structured::{self, RecordRow};
 
 /// Rows that are asked room for at most before they are there: an hour at
@@ -35,6 +36,15 @@ struct Contents {
     records: Py<PyArray1<RecordRow>>,
     events: Vec<PyEvent>,
     cut: Option<String>,
+    damages: Vec<Damage>,
+}
+
+/// What is in a file.
+struct Read {
+    rows: Vec<RecordRow>,
+    events: Vec<PyEvent>,
+    cut: Option<String>,
+    damages: Vec<Damage>,
 }
 
 #[pymethods]
@@ -72,6 +82,13 @@ impl PyRecording {
         Ok(self.contents(py)?.cut.clone())
     }
 
+    /// What is damaged inside, each as a dict: bytes, why, which ticks are
+    /// missing. Empty for a whole one.
+    #[getter]
+    fn damages<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &self.contents(py)?.damages)
+    }
+
     /// What is known of the flight: program, machine, loop, sensors.
     #[getter]
     fn about<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -96,7 +113,8 @@ impl PyRecording {
         account(py, &end)
     }
 
-    /// Whether the file ends as it should; if not, see `recover`.
+    /// Whether the file ends as it should; if not, see `recover`. Whether it is
+    /// damaged before its end, `damages` says.
     #[getter]
     fn is_whole(&self) -> bool {
         self.recording.is_whole()
@@ -133,16 +151,17 @@ impl PyRecording {
 impl PyRecording {
     fn contents(&self, py: Python<'_>) -> PyResult<&Contents> {
         self.contents.get_or_try_init(py, || {
-            let (rows, events, cut) = py.detach(|| self.read())?;
+            let read = py.detach(|| self.read())?;
             Ok(Contents {
-                records: structured::records(py, rows).unbind(),
-                events,
-                cut,
+                records: structured::records(py, read.rows).unbind(),
+                events: read.events,
+                cut: read.cut,
+                damages: read.damages,
             })
         })
     }
 
-    fn read(&self) -> PyResult<(Vec<RecordRow>, Vec<PyEvent>, Option<String>)> {
+    fn read(&self) -> PyResult<Read> {
         let about = self.recording.about();
         let said = self.recording.end().map_or(0, |end| end.ticks);
         let mut rows = Vec::with_capacity(said.min(ROOM) as usize);
@@ -159,7 +178,12 @@ impl PyRecording {
                 }
             }
         }
-        Ok((rows, events, messages.cut().map(str::to_owned)))
+        Ok(Read {
+            rows,
+            events,
+            cut: messages.cut().map(str::to_owned),
+            damages: messages.damages().to_vec(),
+        })
     }
 }
 

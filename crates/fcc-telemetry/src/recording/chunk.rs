@@ -4,7 +4,7 @@ use std::io::{self, Read};
 
 use mcap::records::ChunkHeader;
 
-use super::raw::MAX_RECORD_BYTES;
+use super::framing::MAX_RECORD_BYTES;
 
 /// Looking back further than this is more than our chunks are long; the memory
 /// for it is bounded by this and not by what a file claims.

@@ -96,7 +96,7 @@ pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
 }
 
 /// Whether somebody is writing a file right now.
-pub(super) fn is_being_written(path: &Path) -> bool {
+pub fn is_being_written(path: &Path) -> bool {
     File::open(path)
         .is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
 }

@@ -1,11 +1,15 @@
 //! What is in a recording, read one by one: memory does not grow with the file.
 
-use fcc_core::framework::{Message, Time};
+use std::collections::VecDeque;
+
+use fcc_core::framework::{Message, Tick, Time};
 use mcap::records::{MessageHeader, Record};
 use prost::Message as _;
 
+use super::damage::Damage;
+use super::end::End;
 use super::foxglove::REMARK;
-use super::raw::RawReader;
+use super::raw::{DamagedBytes, Found, RawReader};
 use super::schema::{self, Topic};
 use super::wire::{self, fcc, foxglove};
 use crate::FlightMessage;
@@ -21,6 +25,8 @@ pub enum Item {
     Message(FlightMessage),
     /// Words that are no event of the loop.
     Remark(Remark),
+    /// What is here is damaged, and what was here is missing.
+    Damage(Damage),
 }
 
 /// Words that are no event of the loop: of the recorder, or of who watches over
@@ -33,28 +39,44 @@ pub struct Remark {
     pub text: String,
 }
 
-/// The records, events and remarks of a recording.
+/// So many items are held back at most until it is known which ticks are
+/// missing before them.
+const MOST_HELD_BACK: usize = 1_024;
+
+/// The records, events and remarks of a recording. What is damaged is passed
+/// over, and said in its place.
 pub struct Items {
     raw: RawReader,
     channels: Channels,
     clock_offset_ns: i64,
+    /// What the file says of itself.
+    end: Option<End>,
+    last_tick: Option<Tick>,
+    /// Damage behind which no tick was found yet.
+    damage: Option<Damage>,
+    /// What was read behind it.
+    held_back: VecDeque<Item>,
     over: bool,
     cut: Option<String>,
 }
 
 impl Items {
-    pub(super) fn new(raw: RawReader, clock_offset_ns: i64) -> Self {
+    pub(super) fn new(raw: RawReader, clock_offset_ns: i64, end: Option<End>) -> Self {
         Self {
             raw,
             channels: Channels::default(),
             clock_offset_ns,
+            end,
+            last_tick: None,
+            damage: None,
+            held_back: VecDeque::new(),
             over: false,
             cut: None,
         }
     }
 
     /// Where and why reading ended before the recording did; none while there
-    /// is more to read, and after a whole file.
+    /// is more to read, and after a file that ends as it should.
     pub fn cut(&self) -> Option<&str> {
         self.cut.as_deref()
     }
@@ -64,15 +86,64 @@ impl Items {
         self.raw.bytes_read()
     }
 
-    fn read(&mut self) -> Result<Option<Item>, String> {
+    fn read(&mut self) -> Option<Result<Item, DamagedBytes>> {
         loop {
             let (channels, offset_ns) = (&mut self.channels, self.clock_offset_ns);
-            let found = self.raw.next(|record| channels.item(&record, offset_ns));
-            match found.map_err(|cut| cut.to_string())? {
-                None => return Ok(None),
-                Some(Some(item)) => return item.map(Some),
-                Some(None) => {}
+            match self.raw.next(|record| channels.item(&record, offset_ns)) {
+                Err(cut) => {
+                    self.cut = Some(cut.to_string());
+                    return None;
+                }
+                Ok(Found::End) => return None,
+                Ok(Found::Damage(damaged)) => return Some(Err(damaged)),
+                Ok(Found::Record(Some(Ok(item)))) => return Some(Ok(item)),
+                Ok(Found::Record(Some(Err(why)))) => {
+                    return Some(Err(DamagedBytes {
+                        bytes: self.raw.last_bytes(),
+                        why,
+                        messages: true,
+                    }));
+                }
+                Ok(Found::Record(None)) => {}
             }
+        }
+    }
+
+    /// Takes what was read next; gives it back if nothing is to come before it.
+    fn take(&mut self, read: Option<Result<Item, DamagedBytes>>) -> Option<Item> {
+        match read {
+            Some(Ok(item)) => {
+                let tick = match &item {
+                    Item::Message(Message::Tick(record)) => Some(record.tick),
+                    _ => None,
+                };
+                if tick.is_some() || self.held_back.len() >= MOST_HELD_BACK {
+                    self.locate_damage(tick.as_ref());
+                }
+                self.last_tick = tick.or(self.last_tick);
+                if self.damage.is_none() && self.held_back.is_empty() {
+                    return Some(item);
+                }
+                self.held_back.push_back(item);
+            }
+            Some(Err(damaged)) => match &mut self.damage {
+                Some(damage) => damage.join(&damaged),
+                None => self.damage = Some(Damage::of(damaged)),
+            },
+            None => {
+                self.over = true;
+                self.locate_damage(None);
+            }
+        }
+        None
+    }
+
+    fn locate_damage(&mut self, next: Option<&Tick>) {
+        if let Some(mut damage) = self.damage.take() {
+            // What the file says of its end says nothing of the middle.
+            let end = self.end.as_ref().filter(|_| next.is_some() || self.over);
+            damage.locate(self.last_tick.as_ref(), next, end);
+            self.held_back.push_front(Item::Damage(damage));
         }
     }
 }
@@ -81,30 +152,54 @@ impl Iterator for Items {
     type Item = Item;
 
     fn next(&mut self) -> Option<Item> {
-        if self.over {
-            return None;
+        loop {
+            if self.damage.is_none()
+                && let Some(item) = self.held_back.pop_front()
+            {
+                return Some(item);
+            }
+            if self.over {
+                return None;
+            }
+            let read = self.read();
+            if let Some(item) = self.take(read) {
+                return Some(item);
+            }
         }
-        let item = self.read().unwrap_or_else(|cut| {
-            self.cut = Some(cut);
-            None
-        });
-        self.over = item.is_none();
-        item
     }
 }
 
 /// The records and events of a recording.
-pub struct Messages(pub(super) Items);
+pub struct Messages {
+    items: Items,
+    damages: Vec<Damage>,
+}
 
 impl Messages {
+    pub(super) const fn new(items: Items) -> Self {
+        Self {
+            items,
+            damages: Vec::new(),
+        }
+    }
+
     /// As [`Items::cut`].
     pub fn cut(&self) -> Option<&str> {
-        self.0.cut()
+        self.items.cut()
+    }
+
+    /// What was passed over so far.
+    pub fn damages(&self) -> &[Damage] {
+        &self.damages
+    }
+
+    pub(super) fn into_damages(self) -> Vec<Damage> {
+        self.damages
     }
 
     /// As [`Items::bytes_read`].
     pub const fn bytes_read(&self) -> u64 {
-        self.0.bytes_read()
+        self.items.bytes_read()
     }
 }
 
@@ -112,10 +207,14 @@ impl Iterator for Messages {
     type Item = FlightMessage;
 
     fn next(&mut self) -> Option<FlightMessage> {
-        self.0.find_map(|item| match item {
-            Item::Message(message) => Some(message),
-            Item::Remark(_) => None,
-        })
+        for item in self.items.by_ref() {
+            match item {
+                Item::Message(message) => return Some(message),
+                Item::Damage(damage) => self.damages.push(damage),
+                Item::Remark(_) => {}
+            }
+        }
+        None
     }
 }
 
@@ -123,8 +222,8 @@ impl Iterator for Messages {
 #[derive(Default)]
 pub(super) struct Channels {
     record: Option<u16>,
-    event: Option<u16>,
-    log: Option<u16>,
+    pub(super) event: Option<u16>,
+    pub(super) log: Option<u16>,
 }
 
 impl Channels {

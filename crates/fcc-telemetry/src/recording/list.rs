@@ -5,7 +5,8 @@ use std::{fs, io};
 
 use serde::Serialize;
 
-use super::reader::{OpenError, Recording};
+use super::damage::Damage;
+use super::reader::{OpenError, Recording, Verified};
 use super::{disk, name, utc};
 
 /// One recording at a glance.
@@ -31,16 +32,20 @@ pub struct Entry {
     pub ending: String,
     /// Records and events that came to the recorder and not into the file.
     pub not_recorded: u64,
-    /// How the file ends.
+    /// Whether the file is whole.
     pub file: Wholeness,
+    /// What is damaged in it.
+    pub damages: Vec<Damage>,
 }
 
-/// How a file ends.
+/// Whether a file is whole.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Wholeness {
-    /// As it should.
+    /// It ends as it should.
     Whole,
+    /// Something in it is damaged: `fccd recover` makes the rest whole.
+    Damaged,
     /// It was cut off: `fccd recover` makes it whole.
     Cut,
     /// Not yet: it is being written.
@@ -60,33 +65,60 @@ pub fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// One recording at a glance. A whole one is read at its two ends only, a cut
-/// one from the first message to the last.
+/// One recording at a glance, read through and verified.
 ///
 /// # Errors
 /// When the file cannot be read or is something else.
 pub fn entry(path: &Path) -> Result<Entry, OpenError> {
     let recording = Recording::open(path)?;
-    let end = recording.account()?;
+    let verified = recording.verify()?;
+    Ok(describe(&recording, verified))
+}
+
+/// As [`entry`], but a file that ends as it should is read at its two ends
+/// only: damage before its end is not seen.
+///
+/// # Errors
+/// When the file cannot be read or is something else.
+pub fn glance(path: &Path) -> Result<Entry, OpenError> {
+    let recording = Recording::open(path)?;
+    match recording.end() {
+        Some(end) => {
+            let believed = Verified {
+                account: end.clone(),
+                ..Verified::default()
+            };
+            Ok(describe(&recording, believed))
+        }
+        None => entry(path),
+    }
+}
+
+fn describe(recording: &Recording, verified: Verified) -> Entry {
     let about = recording.about();
-    let file = if recording.is_whole() {
-        Wholeness::Whole
-    } else if disk::is_being_written(path) {
+    let path = recording.path();
+    let file = if verified.cut.is_some() && disk::is_being_written(path) {
         Wholeness::BeingWritten
+    } else if !verified.damages.is_empty() {
+        Wholeness::Damaged
+    } else if recording.is_whole() {
+        Wholeness::Whole
     } else {
         Wholeness::Cut
     };
-    Ok(Entry {
+    let account = verified.account;
+    Entry {
         path: path.to_owned(),
         started: utc::timestamp(about.started_unix_ns),
         part: about.part,
         aircraft: about.aircraft.clone(),
-        duration_s: end.duration_ns as f64 * 1e-9,
-        ticks: end.ticks,
-        worst_lateness_us: end.worst_lateness_ns as f64 * 1e-3,
-        state: end.state,
-        ending: end.ending,
-        not_recorded: end.not_recorded,
+        duration_s: account.duration_ns as f64 * 1e-9,
+        ticks: account.ticks,
+        worst_lateness_us: account.worst_lateness_ns as f64 * 1e-3,
+        state: account.state,
+        ending: account.ending,
+        not_recorded: account.not_recorded,
         file,
-    })
+        damages: verified.damages,
+    }
 }

@@ -19,6 +19,9 @@
 //!   synced.
 //!   An ordinary sequential reader reads such a file up to its cut;
 //!   [`recover`] makes it a finished file.
+//! - What is damaged inside a file is noticed by its checksums. Readers pass
+//!   over it, say which bytes and which ticks that is ([`Damage`]), and go on
+//!   behind it.
 //! - What the disk is too slow for is dropped, counted, and told in the file
 //!   as [`NotRecorded`](fcc_core::framework::EventKind::NotRecorded) with its
 //!   span. A disk that is full stops the recording and not the flight; it is
@@ -32,11 +35,13 @@
 mod about;
 mod chunk;
 mod crash;
+mod damage;
 mod disk;
 mod end;
 mod file;
 mod folder;
 mod foxglove;
+mod framing;
 mod items;
 mod list;
 mod lost;
@@ -58,11 +63,12 @@ mod writing;
 
 pub use about::{About, Realtime};
 pub use crash::repair_last;
-pub use disk::{Disk, DiskFile, FileSystem};
+pub use damage::Damage;
+pub use disk::{Disk, DiskFile, FileSystem, is_being_written};
 pub use end::End;
 pub use items::{Item, Items, Messages, Remark};
-pub use list::{Entry, Wholeness, entry, files};
-pub use reader::{OpenError, Recording};
+pub use list::{Entry, Wholeness, entry, files, glance};
+pub use reader::{OpenError, Recording, Verified};
 pub use recorder::Recorder;
 pub use recover::{RecoverError, Recovered, recover};
 pub use settings::{Compression, RecorderSettings, RecordingPace};

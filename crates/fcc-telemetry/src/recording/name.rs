@@ -41,9 +41,15 @@ pub(super) fn unfinished(path: &Path) -> PathBuf {
     with_ending(path, ".unfinished")
 }
 
-/// Where a file is kept that was damaged, once it is replaced.
+/// Where a file is kept that was damaged, once it is replaced: where none is
+/// kept yet.
 pub(super) fn damaged(path: &Path) -> PathBuf {
-    with_ending(path, ".damaged")
+    let first = with_ending(path, ".damaged");
+    let more = (2..1_000).map(|number| with_ending(path, &format!(".damaged-{number}")));
+    std::iter::once(first.clone())
+        .chain(more)
+        .find(|kept| !kept.exists())
+        .unwrap_or(first)
 }
 
 fn with_ending(path: &Path, ending: &str) -> PathBuf {

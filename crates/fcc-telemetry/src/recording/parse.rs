@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use mcap::records::{
-    AttachmentHeader, Channel, ChunkHeader, Footer, Header, MessageHeader, Metadata, MetadataIndex,
-    Record, SchemaHeader, op,
+    AttachmentHeader, Channel, ChunkHeader, ChunkIndex, DataEnd, Footer, Header, MessageHeader,
+    Metadata, MetadataIndex, Record, SchemaHeader, op,
 };
 
 /// A record without its opcode and length. Kinds that no reader here asks for
@@ -16,6 +16,72 @@ use mcap::records::{
 /// What is wrong with it, in words.
 pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str> {
     record(opcode, &mut Fields(body)).ok_or("a record is shorter than it claims")
+}
+
+/// As [`parse`], of a record outside of the chunks, where no checksum holds it
+/// together: its lengths must add up to its own, and its kind be one of those.
+///
+/// # Errors
+/// What is wrong with it, in words.
+pub(super) fn parse_outside(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str> {
+    let fields = &mut Fields(body);
+    let record = match opcode {
+        op::HEADER | op::CHUNK | op::METADATA | op::ATTACHMENT | op::SCHEMA | op::CHANNEL => {
+            record(opcode, fields)
+        }
+        op::MESSAGE_INDEX => message_index(fields),
+        op::DATA_END => fields
+            .u32()
+            .map(|data_section_crc| Record::DataEnd(DataEnd { data_section_crc })),
+        _ => return Err("a record of a kind that does not belong here"),
+    };
+    let record = record.ok_or("a record is shorter than it claims")?;
+    if !fields.0.is_empty() {
+        return Err("a record is longer than what is in it");
+    }
+    match &record {
+        Record::Attachment { crc, .. } if *crc != 0 => {
+            let (covered, _) = body.split_at(body.len().saturating_sub(4));
+            if crc32fast::hash(covered) != *crc {
+                return Err("an attachment's checksum does not hold");
+            }
+        }
+        _ => {}
+    }
+    Ok(record)
+}
+
+/// Its lengths alone: nobody here asks for more.
+fn message_index<'a>(fields: &mut Fields<'a>) -> Option<Record<'a>> {
+    fields.u16()?;
+    let length = fields.u32()?;
+    let data = Cow::Borrowed(fields.take(length.into())?);
+    (length % 16 == 0).then_some(Record::Unknown {
+        opcode: op::MESSAGE_INDEX,
+        data,
+    })
+}
+
+/// Whether the beginning of a chunk says that it is `length` bytes long, and
+/// compressed in a way that is known.
+pub(super) fn is_chunk_of(beginning: &[u8], length: u64) -> bool {
+    let fields = &mut Fields(beginning);
+    chunk_header(fields).is_some_and(|header| {
+        let header_bytes = (beginning.len() - fields.0.len()) as u64;
+        matches!(header.compression.as_str(), "" | "lz4" | "zstd")
+            && header.compressed_size.checked_add(header_bytes) == Some(length)
+    })
+}
+
+fn chunk_header(fields: &mut Fields<'_>) -> Option<ChunkHeader> {
+    Some(ChunkHeader {
+        message_start_time: fields.u64()?,
+        message_end_time: fields.u64()?,
+        uncompressed_size: fields.u64()?,
+        uncompressed_crc: fields.u32()?,
+        compression: fields.string()?,
+        compressed_size: fields.u64()?,
+    })
 }
 
 fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
@@ -57,14 +123,7 @@ fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
             data: Cow::Borrowed(fields.0),
         },
         op::CHUNK => {
-            let header = ChunkHeader {
-                message_start_time: fields.u64()?,
-                message_end_time: fields.u64()?,
-                uncompressed_size: fields.u64()?,
-                uncompressed_crc: fields.u32()?,
-                compression: fields.string()?,
-                compressed_size: fields.u64()?,
-            };
+            let header = chunk_header(fields)?;
             let data = Cow::Borrowed(fields.take(header.compressed_size)?);
             Record::Chunk { header, data }
         }
@@ -85,6 +144,18 @@ fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
         op::METADATA => Record::Metadata(Metadata {
             name: fields.string()?,
             metadata: fields.map()?,
+        }),
+        op::CHUNK_INDEX => Record::ChunkIndex(ChunkIndex {
+            message_start_time: fields.u64()?,
+            message_end_time: fields.u64()?,
+            chunk_start_offset: fields.u64()?,
+            chunk_length: fields.u64()?,
+            // Nobody here asks for the rest.
+            message_index_offsets: BTreeMap::new(),
+            message_index_length: 0,
+            compression: String::new(),
+            compressed_size: 0,
+            uncompressed_size: 0,
         }),
         op::METADATA_INDEX => Record::MetadataIndex(MetadataIndex {
             offset: fields.u64()?,

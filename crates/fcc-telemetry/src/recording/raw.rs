@@ -1,24 +1,25 @@
 //! MCAP records one after the other, from a file of which nothing is believed:
 //! no length it claims is allocated before it is known to be there, and nothing
-//! of a chunk is handed on before its checksum holds.
+//! of a chunk is handed on before its checksum holds. What is damaged is
+//! reported and passed over: reading goes on at the next record that is known
+//! by its beginning.
 //!
 //! The `mcap` crate's own reader (0.26) panics on some lengths that no writer
 //! writes, and allocates what a file claims: it is used for files of our own
 //! making only, in tests.
 
+use std::cell::OnceCell;
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufRead as _, BufReader, Read, Seek as _, SeekFrom};
+use std::mem;
+use std::ops::Range;
 
 use mcap::records::{Record, op};
 
 use super::chunk;
-use super::parse::parse;
-
-/// No record of ours is longer: a chunk is 1 MiB, a configuration less.
-pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
-
-/// Opcode and length.
-const HEAD_BYTES: usize = 1 + 8;
+use super::framing::{self, FOOTER_BYTES, HEAD_BYTES, MAGIC_BYTES, MAX_RECORD_BYTES};
+use super::parse::{parse, parse_outside};
+use super::summary::{self, Summary};
 
 /// Where and why there is no more to read in a file that did not say it was
 /// over.
@@ -27,14 +28,9 @@ pub(super) enum Cut {
     /// The file ends here: whoever wrote it got no further.
     #[error("cut off after {0} bytes")]
     Off(u64),
-    /// What is here is not what was written.
-    #[error("damaged before byte {before}: {why}")]
-    Damaged {
-        /// Where the damage ends.
-        before: u64,
-        /// What is wrong.
-        why: String,
-    },
+    /// It does not begin like one of ours.
+    #[error("it is no MCAP file")]
+    NotMcap,
     /// The system could not read what is here.
     #[error("unreadable after {after} bytes: {source}")]
     Unreadable {
@@ -45,8 +41,31 @@ pub(super) enum Cut {
     },
 }
 
+/// What comes next in a file.
+pub(super) enum Found<T> {
+    /// A record.
+    Record(T),
+    /// Bytes that are not what was written; what follows them comes next.
+    Damage(DamagedBytes),
+    /// Nothing: the file says that it is over.
+    End,
+}
+
+/// Bytes that are not what was written.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct DamagedBytes {
+    /// From the first to the one after the last.
+    pub(super) bytes: Range<u64>,
+    /// What is wrong with them.
+    pub(super) why: String,
+    /// Whether there may have been messages in them, and not only an index or
+    /// what is said of the flight as a whole.
+    pub(super) messages: bool,
+}
+
 /// Reads the records of a file one after the other, with those of its chunks,
-/// from the header to the footer. Indexes are passed over.
+/// from the header to the end of the data. Indexes are verified and passed
+/// over.
 pub(super) struct RawReader {
     file: BufReader<File>,
     /// How long the file was at first: what is appended later is left.
@@ -54,9 +73,15 @@ pub(super) struct RawReader {
     position: u64,
     /// The record at hand, without its opcode and length.
     body: Vec<u8>,
-    /// The chunk at hand, and how far it is read.
+    /// The chunk at hand, where it is in the file, and how far it is read.
     chunk: Vec<u8>,
+    chunk_bytes: Range<u64>,
     chunk_position: usize,
+    /// Over all that was read; none once something was passed over.
+    checksum: Option<crc32fast::Hasher>,
+    /// What the index says, once it was looked for.
+    summary: OnceCell<Option<Summary>>,
+    over: bool,
 }
 
 impl RawReader {
@@ -67,7 +92,11 @@ impl RawReader {
             position: 0,
             body: Vec::new(),
             chunk: Vec::new(),
+            chunk_bytes: 0..0,
             chunk_position: 0,
+            checksum: Some(crc32fast::Hasher::new()),
+            summary: OnceCell::new(),
+            over: false,
         })
     }
 
@@ -76,119 +105,277 @@ impl RawReader {
         self.position
     }
 
-    /// Hands the next record to `take`; none after the footer of a whole file.
+    /// Where in the file the last record was, or the chunk that it was in.
+    pub(super) fn last_bytes(&self) -> Range<u64> {
+        self.chunk_bytes.clone()
+    }
+
+    /// Hands the next record to `take`.
     ///
     /// # Errors
-    /// Where the file is cut or damaged; there is no use in going on then.
-    pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Option<T>, Cut> {
-        if self.position == 0 {
-            self.read_magic()?;
+    /// Where the file is cut; there is no use in going on then.
+    pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Found<T>, Cut> {
+        if self.position == 0
+            && let Some(damage) = self.read_magic()?
+        {
+            return Ok(Found::Damage(damage));
         }
         loop {
+            if self.over {
+                return Ok(Found::End);
+            }
             if self.chunk_position < self.chunk.len() {
-                let (opcode, body, end) = framed(&self.chunk, self.chunk_position)
-                    .ok_or_else(|| self.damaged("a chunk's records overlap its end"))?;
-                self.chunk_position = end;
-                let record = parse(opcode, body).map_err(|why| self.damaged(why))?;
-                return Ok(Some(take(record)));
+                let parsed = framed(&self.chunk, self.chunk_position)
+                    .ok_or("a chunk's records overlap its end")
+                    .and_then(|(opcode, body, end)| {
+                        self.chunk_position = end;
+                        parse(opcode, body)
+                    });
+                match parsed {
+                    Ok(record) => return Ok(Found::Record(take(record))),
+                    Err(why) => {
+                        // Where its next record begins is not known.
+                        self.chunk_position = self.chunk.len();
+                        return Ok(Found::Damage(DamagedBytes {
+                            bytes: self.chunk_bytes.clone(),
+                            why: why.to_owned(),
+                            messages: true,
+                        }));
+                    }
+                }
             }
-            let opcode = self.read_record()?;
-            match opcode {
-                op::CHUNK => self.open_chunk()?,
-                op::FOOTER => {
-                    self.read_magic()?;
-                    return Ok(None);
+            let start = self.position;
+            let checksum_before = self.checksum.clone();
+            let opcode = match self.read_record()? {
+                Ok(opcode) => opcode,
+                Err(why) => return self.pass_over(start, why),
+            };
+            if opcode == op::FOOTER {
+                self.over = true;
+                return Ok(Found::End);
+            }
+            self.chunk_bytes = start..self.position;
+            let damage = match parse_outside(opcode, &self.body) {
+                Ok(Record::Chunk { header, data }) => {
+                    self.chunk.clear();
+                    self.chunk_position = 0;
+                    match chunk::open(&header, &data, &mut self.chunk) {
+                        Ok(()) => None,
+                        Err(why) => Some(self.damaged_chunk(why)?),
+                    }
                 }
-                op::HEADER
-                | op::SCHEMA
-                | op::CHANNEL
-                | op::MESSAGE
-                | op::ATTACHMENT
-                | op::METADATA => {
-                    let record = parse(opcode, &self.body).map_err(|why| self.damaged(why))?;
-                    return Ok(Some(take(record)));
+                Ok(Record::DataEnd(end)) => {
+                    let computed = checksum_before.map(crc32fast::Hasher::finalize);
+                    self.end_of_data(start, computed, end.data_section_crc)?
                 }
-                _ => {}
+                // An index of what is in the chunk before it.
+                Ok(Record::Unknown { .. }) => None,
+                Ok(record) => return Ok(Found::Record(take(record))),
+                Err(why) => return self.pass_over(start, why),
+            };
+            if let Some(damage) = damage {
+                return Ok(Found::Damage(damage));
             }
         }
     }
 
-    fn read_magic(&mut self) -> Result<(), Cut> {
-        self.read_body(mcap::MAGIC.len() as u64)?;
+    fn read_magic(&mut self) -> Result<Option<DamagedBytes>, Cut> {
+        if self.length < MAGIC_BYTES {
+            return Err(Cut::Off(self.length));
+        }
+        self.read_body(MAGIC_BYTES)?;
         if self.body == mcap::MAGIC {
-            Ok(())
-        } else {
-            Err(self.damaged("it is no MCAP file"))
+            return Ok(None);
+        }
+        // It may be one of ours, if what comes next is right.
+        let next = self
+            .file
+            .fill_buf()
+            .map(framing::head)
+            .map_err(|source| Cut::Unreadable { after: 0, source })?;
+        match next {
+            Some((op::HEADER, length)) if length < MOST_HEADER_BYTES => Ok(Some(DamagedBytes {
+                bytes: 0..MAGIC_BYTES,
+                why: "the magic number is another".to_owned(),
+                messages: false,
+            })),
+            _ => Err(Cut::NotMcap),
         }
     }
 
-    /// Reads the next record of the file; gives its opcode.
-    fn read_record(&mut self) -> Result<u8, Cut> {
+    /// Reads the next record of the file; gives its opcode, or what is wrong
+    /// with its length.
+    fn read_record(&mut self) -> Result<Result<u8, &'static str>, Cut> {
+        if self.left() < HEAD_BYTES as u64 {
+            return Ok(Err(TOO_LONG));
+        }
         self.read_body(HEAD_BYTES as u64)?;
-        let head = self
-            .body
-            .split_first_chunk::<1>()
-            .and_then(|(opcode, rest)| {
-                let length = rest.first_chunk::<8>()?;
-                Some((opcode[0], u64::from_le_bytes(*length)))
-            });
-        let Some((opcode, length)) = head else {
-            return Err(self.cut_off());
+        let Some((opcode, length)) = framing::head(&self.body) else {
+            return Ok(Err(TOO_LONG));
         };
+        if length > self.left() {
+            return Ok(Err(TOO_LONG));
+        }
         if length > MAX_RECORD_BYTES {
-            return Err(self.damaged(&format!("a record claims {length} bytes")));
+            return Ok(Err("a record claims more bytes than any has"));
+        }
+        let is_footer =
+            length + HEAD_BYTES as u64 == FOOTER_BYTES && length + MAGIC_BYTES == self.left();
+        if opcode == op::FOOTER && !is_footer {
+            return Ok(Err("a footer that is not at the end"));
         }
         self.read_body(length)?;
-        Ok(opcode)
+        Ok(Ok(opcode))
     }
 
+    const fn left(&self) -> u64 {
+        self.length.saturating_sub(self.position)
+    }
+
+    /// Reads so many bytes, which the file has.
     fn read_body(&mut self, length: u64) -> Result<(), Cut> {
-        let end = self.position.saturating_add(length);
-        if end > self.length {
-            return Err(self.cut_off());
-        }
         self.body.resize(length as usize, 0);
-        self.file
-            .read_exact(&mut self.body)
-            .map_err(|source| Cut::Unreadable {
-                after: self.position,
-                source,
-            })?;
-        self.position = end;
-        Ok(())
+        match self.file.read_exact(&mut self.body) {
+            Ok(()) => {
+                self.position += length;
+                if let Some(checksum) = &mut self.checksum {
+                    checksum.update(&self.body);
+                }
+                Ok(())
+            }
+            Err(error) => Err(self.unreadable(error)),
+        }
     }
 
-    fn open_chunk(&mut self) -> Result<(), Cut> {
-        self.chunk.clear();
-        self.chunk_position = 0;
-        let opened = match parse(op::CHUNK, &self.body) {
-            Ok(Record::Chunk { header, data }) => chunk::open(&header, &data, &mut self.chunk),
-            Ok(_) => Ok(()),
-            Err(why) => Err(why.to_owned()),
-        };
-        opened.map_err(|why| {
-            self.chunk.clear();
-            self.damaged(&why)
+    /// A chunk whose length is right, and what is in it is not.
+    fn damaged_chunk(&mut self, why: String) -> Result<DamagedBytes, Cut> {
+        self.checksum = None;
+        self.repeat_declarations();
+        self.seek()?;
+        Ok(DamagedBytes {
+            bytes: self.chunk_bytes.clone(),
+            why,
+            messages: true,
         })
     }
 
-    fn cut_off(&self) -> Cut {
-        Cut::Off(self.length)
+    /// Goes on after a record at `start` that does not say where it ends.
+    fn pass_over<T>(&mut self, start: u64, why: &str) -> Result<Found<T>, Cut> {
+        self.checksum = None;
+        // Where it says that it ends, if a record is there.
+        let claimed = self.position;
+        let next = self
+            .seek_next(start, claimed)
+            .map_err(|error| self.unreadable(error))?;
+        if next.is_none() && why == TOO_LONG {
+            return Err(Cut::Off(self.length));
+        }
+        self.position = next.unwrap_or(self.length);
+        let bytes = start..self.position;
+        let messages = self
+            .summary()
+            .is_none_or(|summary| summary.has_chunk_in(&bytes));
+        if messages {
+            self.repeat_declarations();
+        }
+        self.seek()?;
+        Ok(Found::Damage(DamagedBytes {
+            bytes,
+            why: why.to_owned(),
+            messages,
+        }))
     }
 
-    fn damaged(&self, why: &str) -> Cut {
-        Cut::Damaged {
-            before: self.position,
+    fn seek_next(&mut self, start: u64, claimed: u64) -> io::Result<Option<u64>> {
+        let file = self.file.get_mut();
+        if claimed > start + HEAD_BYTES as u64 && framing::is_at(file, claimed, self.length)? {
+            return Ok(Some(claimed));
+        }
+        framing::find(file, start + 1, self.length)
+    }
+
+    fn seek(&mut self) -> Result<(), Cut> {
+        self.file
+            .seek(SeekFrom::Start(self.position))
+            .map(drop)
+            .map_err(|error| self.unreadable(error))
+    }
+
+    /// What the index says; none where that is damaged or missing. Leaves the
+    /// file at another place.
+    fn summary(&mut self) -> Option<&mut Summary> {
+        let (file, length) = (&mut self.file, self.length);
+        self.summary.get_or_init(|| {
+            let file = file.get_mut();
+            let index = summary::read_footer(file, length)?;
+            summary::read(file, &index).ok()
+        });
+        self.summary.get_mut()?.as_mut()
+    }
+
+    /// Hands out, once, what the index repeats of the topics: the chunk that said it
+    /// may be the damaged one.
+    fn repeat_declarations(&mut self) {
+        let summary = self.summary();
+        let declarations = summary.map(|summary| mem::take(&mut summary.declarations));
+        self.chunk = declarations.unwrap_or_default();
+        self.chunk_position = 0;
+    }
+
+    /// Verifies what follows the data: the index, which ends the file.
+    fn end_of_data(
+        &mut self,
+        start: u64,
+        computed: Option<u32>,
+        checksum: u32,
+    ) -> Result<Option<DamagedBytes>, Cut> {
+        let index = self.position..self.length;
+        let file = self.file.get_mut();
+        let why = match summary::read_footer(file, self.length) {
+            Some(at) if at.start != 0 && at.start != index.start => {
+                Some("the footer does not say where the index is")
+            }
+            Some(at) => summary::read(file, &at).err(),
+            None if summary::has_end(file, self.length) => Some("the footer is damaged"),
+            None => return Err(Cut::Off(self.length)),
+        };
+        self.over = true;
+        self.position = self.length;
+        let damaged = |bytes, why: &str| DamagedBytes {
+            bytes,
             why: why.to_owned(),
+            messages: false,
+        };
+        if let Some(why) = why {
+            return Ok(Some(damaged(index, why)));
+        }
+        let differs = checksum != 0 && computed.is_some_and(|computed| computed != checksum);
+        Ok(differs.then(|| {
+            let why = "somewhere between the chunks, something is not what was written: the \
+                       checksum of the data does not hold";
+            damaged(0..start, why)
+        }))
+    }
+
+    fn unreadable(&self, source: io::Error) -> Cut {
+        Cut::Unreadable {
+            after: self.position,
+            source,
         }
     }
 }
 
+/// A profile and the name of a program.
+const MOST_HEADER_BYTES: u64 = 1_024;
+
+/// Either the file was cut off, or a length is damaged.
+const TOO_LONG: &str = "a record claims more bytes than there are";
+
 /// The record at a place in a chunk: opcode, body, and where it ends.
 fn framed(chunk: &[u8], position: usize) -> Option<(u8, &[u8], usize)> {
-    let (head, rest) = chunk.get(position..)?.split_first_chunk::<HEAD_BYTES>()?;
-    let [opcode, length @ ..] = *head;
-    let length = usize::try_from(u64::from_le_bytes(length)).ok()?;
-    let body = rest.get(..length)?;
+    let bytes = chunk.get(position..)?;
+    let (opcode, length) = framing::head(bytes)?;
+    let length = usize::try_from(length).ok()?;
+    let body = bytes.get(HEAD_BYTES..)?.get(..length)?;
     Some((opcode, body, position + HEAD_BYTES + length))
 }

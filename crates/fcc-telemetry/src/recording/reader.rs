@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use mcap::records::Record;
 
 use super::about::About;
+use super::damage::Damage;
 use super::end::{End, RunStatistics};
 use super::items::{Items, Messages};
-use super::raw::RawReader;
+use super::raw::{Found, RawReader};
 use super::schema;
-use super::summary::{read_end, read_footer};
+use super::summary;
 
 /// A recording, opened: what is known of the flight, and its messages.
 ///
@@ -29,6 +30,9 @@ use super::summary::{read_end, read_footer};
 /// }
 /// if let Some(cut) = messages.cut() {
 ///     println!("the recording is not whole: {cut}");
+/// }
+/// for damage in messages.damages() {
+///     println!("the recording is {damage}");
 /// }
 /// # Ok::<(), fcc_telemetry::recording::OpenError>(())
 /// ```
@@ -63,6 +67,20 @@ pub enum OpenError {
     },
 }
 
+/// What is in a file, once it was read through.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Verified {
+    /// The account of what can be read.
+    pub account: End,
+    /// What is damaged.
+    pub damages: Vec<Damage>,
+    /// Where and why the file ends before the recording did.
+    pub cut: Option<String>,
+}
+
+/// Ticks read between two looks at the clock.
+const CHECK_EVERY: u64 = 1_024;
+
 impl Recording {
     /// Opens a recording, whole or cut.
     ///
@@ -76,8 +94,11 @@ impl Recording {
         };
         let mut file = File::open(&path).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
-        let index = read_footer(&mut file, bytes);
-        let end = index.as_ref().and_then(|at| read_end(&mut file, at));
+        let index = summary::read_footer(&mut file, bytes);
+        let end = index.as_ref().and_then(|at| {
+            let summary = summary::read(&mut file, at).ok()?;
+            summary::read_end(&mut file, &summary)
+        });
         file.seek(SeekFrom::Start(0)).map_err(refused)?;
         let raw = RawReader::new(file).map_err(refused)?;
         let about = read_about(raw).map_err(|why| OpenError::NotARecording {
@@ -100,11 +121,13 @@ impl Recording {
 
     /// Whether the file ends as it should. If not, the recorder was killed, the
     /// power was lost or the disk was full: see [`recover`](super::recover).
+    /// Whether it is damaged before its end is known once it was read through:
+    /// see [`verify`](Self::verify).
     pub const fn is_whole(&self) -> bool {
         self.whole
     }
 
-    /// The account at the end of the file; none where it is cut. See
+    /// The account at the end of the file; none where it is cut or damaged. See
     /// [`account`](Self::account).
     pub const fn end(&self) -> Option<&End> {
         self.end.as_ref()
@@ -116,15 +139,72 @@ impl Recording {
     /// # Errors
     /// When the file cannot be read any more.
     pub fn account(&self) -> Result<End, OpenError> {
-        if let Some(end) = &self.end {
-            return Ok(end.clone());
+        match &self.end {
+            Some(end) => Ok(end.clone()),
+            None => Ok(self.verify()?.account),
         }
+    }
+
+    /// Reads all of the file, and says what in it is damaged.
+    ///
+    /// # Errors
+    /// When the file cannot be read any more.
+    pub fn verify(&self) -> Result<Verified, OpenError> {
+        self.verify_while(|_| true).map(Option::unwrap_or_default)
+    }
+
+    /// As [`verify`](Self::verify), unless `go_on`, told how many bytes are
+    /// read, says no: then there is nothing to say.
+    pub(super) fn verify_while(
+        &self,
+        mut go_on: impl FnMut(u64) -> bool,
+    ) -> Result<Option<Verified>, OpenError> {
+        match &self.end {
+            // Without damage there is no need to understand every message.
+            Some(end) if self.is_undamaged(&mut go_on)? => Ok(Some(Verified {
+                account: end.clone(),
+                ..Verified::default()
+            })),
+            _ => self.count(go_on),
+        }
+    }
+
+    /// Whether every checksum holds, up to an end that is as it should be.
+    fn is_undamaged(&self, go_on: &mut impl FnMut(u64) -> bool) -> Result<bool, OpenError> {
+        let mut raw = self.raw()?;
+        let mut records = 0_u64;
+        loop {
+            match raw.next(|_| ()) {
+                Ok(Found::Record(())) => records += 1,
+                Ok(Found::End) => return Ok(true),
+                Ok(Found::Damage(_)) | Err(_) => return Ok(false),
+            }
+            if records.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Reads message by message.
+    fn count(&self, mut go_on: impl FnMut(u64) -> bool) -> Result<Option<Verified>, OpenError> {
         let mut run_statistics = RunStatistics::default();
         let mut messages = self.messages()?;
-        for message in &mut messages {
+        while let Some(message) = messages.next() {
             run_statistics.take(&message);
+            if run_statistics.ticks().is_multiple_of(CHECK_EVERY) && !go_on(messages.bytes_read()) {
+                return Ok(None);
+            }
         }
-        Ok(run_statistics.end(messages.cut().unwrap_or("")))
+        let cut = messages.cut().map(str::to_owned);
+        let ending = match &self.end {
+            Some(end) => end.ending.clone(),
+            None => cut.clone().unwrap_or_default(),
+        };
+        Ok(Some(Verified {
+            account: run_statistics.end(&ending),
+            damages: messages.into_damages(),
+            cut,
+        }))
     }
 
     /// Where the file is.
@@ -143,7 +223,7 @@ impl Recording {
     /// # Errors
     /// When the file cannot be opened any more.
     pub fn messages(&self) -> Result<Messages, OpenError> {
-        self.items().map(Messages)
+        self.items().map(Messages::new)
     }
 
     /// Records, events and remarks from the first, in the order of their log
@@ -152,9 +232,13 @@ impl Recording {
     /// # Errors
     /// When the file cannot be opened any more.
     pub fn items(&self) -> Result<Items, OpenError> {
+        self.raw()
+            .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
+    }
+
+    fn raw(&self) -> Result<RawReader, OpenError> {
         File::open(&self.path)
             .and_then(RawReader::new)
-            .map(|raw| Items::new(raw, self.about.clock_offset_ns))
             .map_err(|source| OpenError::Io {
                 path: self.path.clone(),
                 source,
@@ -164,37 +248,37 @@ impl Recording {
 
 /// Reads what stands before the first message.
 fn read_about(mut raw: RawReader) -> Result<About, String> {
-    enum Found {
-        Header(bool),
-        Metadata(bool),
+    enum Said {
+        Profile(bool),
+        Flight(bool),
         Other,
         Messages,
     }
     let mut about = About::default();
-    let mut known = false;
+    let (mut is_ours, mut known) = (false, false);
     loop {
-        let found = raw.next(|record| match record {
-            Record::Header(header) => Found::Header(header.profile == schema::PROFILE),
+        let said = raw.next(|record| match record {
+            Record::Header(header) => Said::Profile(header.profile == schema::PROFILE),
             Record::Metadata(metadata) => {
-                Found::Metadata(about.take_metadata(&metadata.name, metadata.metadata))
+                Said::Flight(about.take_metadata(&metadata.name, metadata.metadata))
             }
             Record::Attachment { header, data, .. } => {
                 about.take_attachment(&header.name, &data);
-                Found::Other
+                Said::Other
             }
-            Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => Found::Messages,
-            _ => Found::Other,
+            Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => Said::Messages,
+            _ => Said::Other,
         });
-        let found = found.map_err(|cut| cut.to_string())?;
-        match found {
-            Some(Found::Header(false)) => {
+        match said.map_err(|cut| cut.to_string())? {
+            Found::Record(Said::Profile(ours)) => is_ours = ours,
+            Found::Record(Said::Flight(taken)) => known |= taken,
+            Found::Record(Said::Other) | Found::Damage(_) => {}
+            // Either may be what is damaged.
+            Found::Record(Said::Messages) if is_ours || known => return Ok(about),
+            Found::End if known => return Ok(about),
+            Found::End if is_ours => return Err("it does not say what flew".to_owned()),
+            Found::Record(Said::Messages) | Found::End => {
                 return Err("another program wrote it".to_owned());
-            }
-            Some(Found::Metadata(taken)) => known |= taken,
-            Some(Found::Header(true) | Found::Other) => {}
-            Some(Found::Messages) | None if known => return Ok(about),
-            Some(Found::Messages) | None => {
-                return Err("it does not say what flew".to_owned());
             }
         }
     }

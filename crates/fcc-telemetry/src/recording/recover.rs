@@ -1,4 +1,4 @@
-//! Makes a finished file of one that was cut off.
+//! Makes a finished file of one that was cut off or damaged.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -6,22 +6,27 @@ use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use mcap::records::{Metadata, Record};
+use mcap::records::{MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
 use serde::Serialize;
 
+use super::damage::Damage;
 use super::disk;
-use super::end::{END, RunStatistics};
+use super::end::{END, End, RunStatistics};
 use super::file::options;
+use super::foxglove;
 use super::items::{Channels, Item};
 use super::name::{damaged, unfinished};
-use super::raw::{Cut, RawReader};
-use super::reader::{OpenError, Recording};
+use super::raw::{Cut, Found, RawReader};
+use super::reader::{OpenError, Recording, Verified};
 use super::settings::Compression;
+use super::wire::encode_event;
+use super::wire::foxglove::log::Level;
+use crate::{FlightMessage, event_words};
 
 /// What came of recovering a file.
-#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+#[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Recovered {
     /// The file, under its own name.
     pub path: PathBuf,
@@ -29,8 +34,10 @@ pub struct Recovered {
     pub was_whole: bool,
     /// Records in it.
     pub ticks: u64,
-    /// Where and why it was cut; none if it was whole.
+    /// Where and why it was cut; none if it ended as it should.
     pub cut: Option<String>,
+    /// What was damaged in it, and what is missing for it.
+    pub damages: Vec<Damage>,
     /// Where the file as it was is kept, if it was damaged; none if all that
     /// was in it is in the recovered one.
     pub kept: Option<PathBuf>,
@@ -59,15 +66,16 @@ pub enum RecoverError {
     TooLong(PathBuf),
 }
 
-/// Makes a finished file of one that was cut off: all of its messages, and the
-/// account and index that it lacks. `progress` is told how many of its bytes
-/// are read.
+/// Makes a finished file of one that was cut off or damaged: all of its
+/// messages that can be read, and the account and index that it lacks. Where
+/// ticks are missing, the finished file has an event that says which.
+/// `progress` is told how many of its bytes are read.
 ///
 /// The finished file is put together beside the cut one and takes its place in
 /// one step once it is safe on the disk: at no moment is there less than
-/// before. A file that is damaged before its end is kept beside it, as
-/// [`kept`](Recovered::kept) says: behind the damage there may be more. A whole
-/// file is left alone, and so is one that cannot be read to its end.
+/// before. A file that is damaged is kept beside it, as [`kept`](Recovered::kept)
+/// says. A whole file is left alone, and so is one that the system cannot read
+/// to its end.
 ///
 /// # Errors
 /// When it cannot be read or written; it is as it was then.
@@ -93,41 +101,61 @@ fn attempt(
         source,
     };
     // Nobody else may recover it meanwhile: two would write one file beside it.
-    let _lock = match disk::lock(path).map_err(unread)? {
-        Some(lock) => lock,
-        None if Recording::open(path)?.is_whole() => return was_whole(path),
-        None => return Err(RecoverError::BeingWritten(path.to_owned())),
-    };
+    let lock = disk::lock(path).map_err(unread)?;
     // By its name, as another may just have recovered it.
-    if Recording::open(path)?.is_whole() {
-        return was_whole(path);
+    let recording = Recording::open(path)?;
+    if lock.is_none() && !recording.is_whole() {
+        return Err(RecoverError::BeingWritten(path.to_owned()));
+    }
+    let mut go_on = |read| {
+        // It is read twice.
+        progress(read / 2);
+        deadline.is_none_or(|deadline| Instant::now() < deadline)
+    };
+    let Some(Verified {
+        account,
+        damages,
+        cut,
+    }) = recording.verify_while(&mut go_on)?
+    else {
+        return Err(RecoverError::TooLong(path.to_owned()));
+    };
+    if damages.is_empty() && cut.is_none() {
+        return Ok(Recovered {
+            path: path.to_owned(),
+            was_whole: true,
+            ticks: account.ticks,
+            cut,
+            damages,
+            kept: None,
+        });
+    }
+    if lock.is_none() {
+        return Err(RecoverError::BeingWritten(path.to_owned()));
     }
     let beside = unfinished(path);
     let failed = |source| RecoverError::Write {
         path: beside.clone(),
         source,
     };
-    let rewritten = rewrite(path, &beside, |read| {
-        progress(read);
+    let half = recording.bytes() / 2;
+    let rewritten = rewrite(path, &beside, &damages, |read| {
+        progress(half + read / 2);
         deadline.is_none_or(|deadline| Instant::now() < deadline)
     });
     let result = match rewritten {
-        Ok(Some(Rewritten {
-            cut: Cut::Unreadable { source, .. },
-            ..
-        })) => Err(unread(source).into()),
-        Ok(Some(Rewritten { ticks, cut })) => {
-            replace(path, &beside, &cut)
-                .map_err(failed)
-                .map(|kept| Recovered {
-                    path: path.to_owned(),
-                    was_whole: false,
-                    ticks,
-                    cut: Some(cut.to_string()),
-                    kept,
-                })
-        }
-        Ok(None) => Err(RecoverError::TooLong(path.to_owned())),
+        Ok(Rewritten::Whole { ticks }) => replace(path, &beside, !damages.is_empty())
+            .map_err(failed)
+            .map(|kept| Recovered {
+                path: path.to_owned(),
+                was_whole: false,
+                ticks,
+                cut,
+                damages,
+                kept,
+            }),
+        Ok(Rewritten::Unreadable(source)) => Err(unread(source).into()),
+        Ok(Rewritten::TooLong) => Err(RecoverError::TooLong(path.to_owned())),
         Err(error) => Err(failed(error)),
     };
     if result.is_err() {
@@ -136,20 +164,10 @@ fn attempt(
     result
 }
 
-fn was_whole(path: &Path) -> Result<Recovered, RecoverError> {
-    Ok(Recovered {
-        path: path.to_owned(),
-        was_whole: true,
-        ticks: Recording::open(path)?.account()?.ticks,
-        cut: None,
-        kept: None,
-    })
-}
-
 /// Puts a finished file in the place of another; gives where that one is kept,
-/// if there may be more in it.
-fn replace(path: &Path, finished: &Path, cut: &Cut) -> io::Result<Option<PathBuf>> {
-    let kept = matches!(cut, Cut::Damaged { .. }).then(|| damaged(path));
+/// if it is to be.
+fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBuf>> {
+    let kept = keep.then(|| damaged(path));
     if let Some(kept) = &kept {
         // Without links it is away for a moment, and never gone.
         fs::hard_link(path, kept).or_else(|_| fs::rename(path, kept))?;
@@ -159,40 +177,48 @@ fn replace(path: &Path, finished: &Path, cut: &Cut) -> io::Result<Option<PathBuf
     Ok(kept)
 }
 
-struct Rewritten {
-    ticks: u64,
-    cut: Cut,
+/// What came of writing the finished file.
+enum Rewritten {
+    Whole { ticks: u64 },
+    Unreadable(io::Error),
+    TooLong,
 }
 
-/// Copies record after record until `go_on` says no, which gives none.
+/// Writes a finished file with all records that can be read, `damages` being
+/// what cannot, unless `go_on`, told how many bytes are read, says no.
 fn rewrite(
     from: &Path,
     to: &Path,
+    damages: &[Damage],
     mut go_on: impl FnMut(u64) -> bool,
-) -> io::Result<Option<Rewritten>> {
+) -> io::Result<Rewritten> {
     let mut raw = RawReader::new(File::open(from)?)?;
     let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
-    let cut = loop {
-        match raw.next(|record| copy.take(&record)) {
-            Ok(Some(copied)) => copied.map_err(to_io)?,
-            // It says that it is over, and goes on.
-            Ok(None) => {
-                break Cut::Damaged {
-                    before: raw.bytes_read(),
-                    why: "more follows its end".to_owned(),
-                };
+    let mut damages = damages.iter().peekable();
+    let ending = loop {
+        let damaged_at = match raw.next(|record| copy.take(&record)) {
+            Ok(Found::Record(taken)) => {
+                let understood = taken.map_err(to_io)?;
+                (!understood).then(|| raw.last_bytes().start)
             }
-            Err(cut) => break cut,
+            Ok(Found::Damage(damaged)) => Some(damaged.bytes.start),
+            Ok(Found::End) => break "not known: the recording was damaged".to_owned(),
+            Err(Cut::Unreadable { source, .. }) => return Ok(Rewritten::Unreadable(source)),
+            Err(cut) => break format!("not known: the recording was {cut}"),
+        };
+        // Some damages are put together.
+        if let Some(at) = damaged_at
+            && let Some(damage) = damages.next_if(|damage| damage.from_byte <= at)
+        {
+            copy.gap(damage).map_err(to_io)?;
         }
         if copy.records % CHECK_EVERY == 0 && !go_on(raw.bytes_read()) {
-            return Ok(None);
+            return Ok(Rewritten::TooLong);
         }
     };
     let ticks = copy.run_statistics.ticks();
-    if !matches!(cut, Cut::Unreadable { .. }) {
-        copy.finish(&format!("not known: the recording was {cut}"))?;
-    }
-    Ok(Some(Rewritten { ticks, cut }))
+    copy.finish(&ending)?;
+    Ok(Rewritten::Whole { ticks })
 }
 
 /// Records copied between two looks at the clock.
@@ -206,6 +232,9 @@ struct Copy {
     channels: Channels,
     run_statistics: RunStatistics,
     records: u64,
+    /// Why the recording ended, if it says so.
+    ending: Option<String>,
+    last: MessageHeader,
 }
 
 impl Copy {
@@ -216,18 +245,35 @@ impl Copy {
             channels: Channels::default(),
             run_statistics: RunStatistics::default(),
             records: 0,
+            ending: None,
+            last: MessageHeader {
+                channel_id: 0,
+                sequence: 0,
+                log_time: 0,
+                publish_time: 0,
+            },
         })
     }
 
-    fn take(&mut self, record: &Record<'_>) -> Result<(), McapError> {
+    /// Copies a record, unless it is a message that cannot be understood.
+    fn take(&mut self, record: &Record<'_>) -> Result<bool, McapError> {
         self.records += 1;
-        if let Some(Ok(Item::Message(message))) = self.channels.item(record, 0) {
-            self.run_statistics.take(&message);
+        match self.channels.item(record, 0) {
+            Some(Ok(Item::Message(message))) => self.run_statistics.take(&message),
+            Some(Err(_)) => return Ok(false),
+            _ => {}
         }
+        self.copy(record).map(|()| true)
+    }
+
+    fn copy(&mut self, record: &Record<'_>) -> Result<(), McapError> {
         match record {
-            Record::Metadata(metadata) if metadata.name != END => {
-                self.writer.write_metadata(metadata)
+            // It is written anew, of what is there.
+            Record::Metadata(metadata) if metadata.name == END => {
+                self.ending = Some(End::from_fields(&metadata.metadata).ending);
+                Ok(())
             }
+            Record::Metadata(metadata) => self.writer.write_metadata(metadata),
             Record::Attachment { header, data, .. } => self.writer.attach(&Attachment {
                 log_time: header.log_time,
                 create_time: header.create_time,
@@ -249,12 +295,45 @@ impl Copy {
                     &channel.metadata,
                 )
                 .map(drop),
-            Record::Message { header, data } => self.writer.write_to_known_channel(header, data),
+            Record::Message { header, data } => {
+                self.last = *header;
+                self.writer.write_to_known_channel(header, data)
+            }
             _ => Ok(()),
         }
     }
 
+    /// Says where something is missing: as an event, for programs, and as a
+    /// line of the log, for people.
+    fn gap(&mut self, damage: &Damage) -> Result<(), McapError> {
+        if let Some(event) = damage.event() {
+            self.run_statistics.take(&FlightMessage::Event(event));
+            let text = event_words(&event, &[], &[]);
+            self.write(self.channels.event, &encode_event(&event, text))?;
+        }
+        let text = damage.remark().text;
+        let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
+        self.write(self.channels.log, &line)
+    }
+
+    fn write(
+        &mut self,
+        channel: Option<u16>,
+        message: &impl prost::Message,
+    ) -> Result<(), McapError> {
+        let Some(channel_id) = channel else {
+            return Ok(());
+        };
+        let header = MessageHeader {
+            channel_id,
+            ..self.last
+        };
+        self.writer
+            .write_to_known_channel(&header, &message.encode_to_vec())
+    }
+
     fn finish(mut self, ending: &str) -> io::Result<()> {
+        let ending = self.ending.as_deref().unwrap_or(ending);
         let metadata: BTreeMap<_, _> = self.run_statistics.end(ending).to_fields();
         let end = Metadata {
             name: END.to_owned(),

@@ -4,54 +4,118 @@ use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::ops::Range;
 
-use mcap::records::Record;
+use mcap::records::{Record, op};
 
 use super::end::{END, End};
+use super::framing::{FOOTER_BYTES, HEAD_BYTES, MAGIC_BYTES, head};
 use super::parse::parse;
 
-/// The magic number that begins and ends a file.
-const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
-/// Opcode, length, two offsets and a checksum.
-const FOOTER_BYTES: u64 = 1 + 8 + 8 + 8 + 4;
 /// No summary of ours is longer: an hour's is 400 kB.
 const MAX_SUMMARY_BYTES: u64 = 64 << 20;
 /// Nor an account.
 const MAX_METADATA_BYTES: u64 = 1 << 20;
+/// The checksum at the footer's end, which is of all before it.
+const CHECKSUM_BYTES: u64 = 4;
+
+/// What the index of a file says.
+#[derive(Debug, Default)]
+pub(super) struct Summary {
+    /// Where the chunks are.
+    chunks: Vec<Range<u64>>,
+    /// The records that declare schemas and channels, one after the other.
+    pub(super) declarations: Vec<u8>,
+    /// Where the account of the flight is.
+    end: Option<Range<u64>>,
+}
+
+impl Summary {
+    /// Whether any of these bytes are of a chunk.
+    pub(super) fn has_chunk_in(&self, bytes: &Range<u64>) -> bool {
+        self.chunks
+            .iter()
+            .any(|chunk| chunk.start < bytes.end && bytes.start < chunk.end)
+    }
+}
 
 /// Where the index of a whole file is; none if the file is cut.
 pub(super) fn read_footer(file: &mut File, bytes: u64) -> Option<Range<u64>> {
     let footer_at = bytes.checked_sub(FOOTER_BYTES + MAGIC_BYTES)?;
     let tail = read_at(file, footer_at, FOOTER_BYTES + MAGIC_BYTES)?;
     let (footer, magic) = tail.split_at_checked(FOOTER_BYTES as usize)?;
-    if magic != mcap::MAGIC {
+    if magic != mcap::MAGIC || head(footer) != Some(FOOTER_HEAD) {
         return None;
     }
-    let Some((Some(Record::Footer(footer)), _)) = split_record(footer) else {
-        return None;
-    };
-    Some(footer.summary_start..footer_at)
+    match split_record(footer) {
+        Some((Some(Record::Footer(footer)), _)) => Some(footer.summary_start..footer_at),
+        _ => None,
+    }
+}
+
+const FOOTER_HEAD: (u8, u64) = (op::FOOTER, FOOTER_BYTES - HEAD_BYTES as u64);
+
+/// Whether there is at least a part of what ends a file.
+pub(super) fn has_end(file: &mut File, bytes: u64) -> bool {
+    let length = FOOTER_BYTES + MAGIC_BYTES;
+    bytes
+        .checked_sub(length)
+        .and_then(|at| read_at(file, at, length))
+        .is_some_and(|tail| tail.ends_with(mcap::MAGIC) || head(&tail) == Some(FOOTER_HEAD))
+}
+
+/// What the index of a whole file says.
+///
+/// # Errors
+/// What is wrong with it, in words.
+pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'static str> {
+    let length = index.end.checked_sub(index.start).unwrap_or(u64::MAX);
+    if index.start == 0 {
+        return Ok(Summary::default());
+    }
+    if length > MAX_SUMMARY_BYTES {
+        return Err("the index is longer than any is");
+    }
+    let bytes = read_at(file, index.start, length + FOOTER_BYTES).ok_or("it cannot be read")?;
+    let (covered, checksum) = bytes
+        .split_last_chunk::<{ CHECKSUM_BYTES as usize }>()
+        .ok_or("the index is too short")?;
+    let checksum = u32::from_le_bytes(*checksum);
+    if checksum != 0 && crc32fast::hash(covered) != checksum {
+        return Err("the index's checksum does not hold");
+    }
+    let mut summary = Summary::default();
+    let mut rest = bytes.get(..length as usize).unwrap_or_default();
+    while !rest.is_empty() {
+        let (record, after) = split_record(rest).ok_or("a record of the index has no end")?;
+        match record {
+            Some(Record::ChunkIndex(chunk)) => summary.chunks.push(
+                chunk.chunk_start_offset
+                    ..chunk.chunk_start_offset.saturating_add(chunk.chunk_length),
+            ),
+            Some(Record::Schema { .. } | Record::Channel(_)) => {
+                let length = rest.len() - after.len();
+                summary.declarations.extend(rest.iter().take(length));
+            }
+            Some(Record::MetadataIndex(index)) if index.name == END => {
+                summary.end = Some(index.offset..index.offset.saturating_add(index.length));
+            }
+            _ => {}
+        }
+        rest = after;
+    }
+    Ok(summary)
 }
 
 /// The account that an index points to.
-pub(super) fn read_end(file: &mut File, index: &Range<u64>) -> Option<End> {
-    let length = index.end.checked_sub(index.start)?;
-    if index.start == 0 || length > MAX_SUMMARY_BYTES {
+pub(super) fn read_end(file: &mut File, summary: &Summary) -> Option<End> {
+    let at = summary.end.clone()?;
+    let length = at.end - at.start;
+    if length > MAX_METADATA_BYTES {
         return None;
     }
-    let summary = read_at(file, index.start, length)?;
-    let mut rest = summary.as_slice();
-    let index = loop {
-        let (record, after) = split_record(rest)?;
-        match record {
-            Some(Record::MetadataIndex(index)) if index.name == END => break index,
-            _ => rest = after,
+    match split_record(&read_at(file, at.start, length)?)?.0 {
+        Some(Record::Metadata(metadata)) if metadata.name == END => {
+            Some(End::from_fields(&metadata.metadata))
         }
-    };
-    if index.length > MAX_METADATA_BYTES {
-        return None;
-    }
-    match split_record(&read_at(file, index.offset, index.length)?)?.0 {
-        Some(Record::Metadata(metadata)) => Some(End::from_fields(&metadata.metadata)),
         _ => None,
     }
 }
@@ -59,11 +123,10 @@ pub(super) fn read_end(file: &mut File, index: &Range<u64>) -> Option<End> {
 /// The record that bytes begin with, if it can be understood, and what follows
 /// it.
 fn split_record(bytes: &[u8]) -> Option<(Option<Record<'_>>, &[u8])> {
-    let (opcode, rest) = bytes.split_first()?;
-    let (length, rest) = rest.split_first_chunk::<8>()?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
-    let (body, after) = rest.split_at_checked(length)?;
-    Some((parse(*opcode, body).ok(), after))
+    let (opcode, length) = head(bytes)?;
+    let rest = bytes.get(HEAD_BYTES..)?;
+    let (body, after) = rest.split_at_checked(usize::try_from(length).ok()?)?;
+    Some((parse(opcode, body).ok(), after))
 }
 
 fn read_at(file: &mut File, offset: u64, length: u64) -> Option<Vec<u8>> {

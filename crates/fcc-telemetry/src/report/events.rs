@@ -57,6 +57,11 @@ impl Events {
         self.push(time_s, tick, Weight::Minor, || text.to_owned());
     }
 
+    /// Takes what is damaged in the recording, behind a tick.
+    pub(super) fn damage(&mut self, time_s: f64, tick: u64, text: &str) {
+        self.push(time_s, tick, Weight::Wrong, || text.to_owned());
+    }
+
     fn push(&mut self, time_s: f64, tick: u64, weight: Weight, text: impl FnOnce() -> String) {
         self.count += 1;
         if self.lines.len() < MOST_EVENTS {

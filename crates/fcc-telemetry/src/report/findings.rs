@@ -12,9 +12,11 @@ pub(super) fn findings(report: &Report) -> Vec<String> {
             "There is no tick in this recording: nothing can be said of the flight.".to_owned(),
         );
         said.extend(end(report));
+        said.extend(damages(report));
         return said;
     }
     said.extend(end(report));
+    said.extend(damages(report));
     said.extend(gaps(report));
     said.extend(timing(report));
     said.extend(states(report));
@@ -29,6 +31,25 @@ fn end(report: &Report) -> Option<String> {
         )),
         FileEnd::Finished(_) | FileEnd::Unknown => None,
     }
+}
+
+/// As many damages are named one by one.
+const MOST_DAMAGES: usize = 5;
+
+fn damages(report: &Report) -> Vec<String> {
+    let mut said: Vec<String> = report
+        .damages
+        .iter()
+        .take(MOST_DAMAGES)
+        .map(|damage| format!("The recording is {damage}."))
+        .collect();
+    if report.damages.len() > MOST_DAMAGES {
+        said.push(format!(
+            "It is damaged in {} places in all.",
+            report.damages.len()
+        ));
+    }
+    said
 }
 
 fn gaps(report: &Report) -> Vec<String> {

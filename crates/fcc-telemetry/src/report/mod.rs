@@ -51,6 +51,7 @@ pub use states::StateSpan;
 pub use survey::Survey;
 pub use thesis::ThesisFigures;
 
+use crate::recording::Damage;
 use crate::{FlightScore, TimingReport};
 use lines::Lines;
 use track::TrackPoint;
@@ -63,6 +64,8 @@ pub struct Report {
     pub origin: Origin,
     /// How the file ends.
     pub end: FileEnd,
+    /// What in it is damaged.
+    pub damages: Vec<Damage>,
     /// First tick to last, s.
     pub duration_s: f64,
     /// What is worth saying first, in words.
@@ -95,6 +98,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// Whether all that was recorded could be read.
+    pub fn is_complete(&self) -> bool {
+        self.damages.is_empty() && !matches!(self.end, FileEnd::Cut(_))
+    }
+
     /// Whether any measurement was older than its tick.
     fn has_ages(&self) -> bool {
         self.sensor_ages.iter().any(|row| row.of.max_us > 0.0)

@@ -103,6 +103,8 @@ impl FileEnd {
         match (cut, recording.end()) {
             (Some(cut), _) => Self::Cut(cut.to_owned()),
             (None, Some(end)) if recording.is_whole() => Self::Finished(end.ending.clone()),
+            // The index that leads there is damaged.
+            (None, None) if recording.is_whole() => Self::Unknown,
             (None, _) => Self::Cut("its end is missing".to_owned()),
         }
     }

@@ -19,7 +19,7 @@ use super::states::States;
 use super::thesis::ThesisFigures;
 use super::track::Track;
 use super::{Report, Timing};
-use crate::recording::Remark;
+use crate::recording::{Damage, Item, Remark};
 use crate::{FlightEvent, FlightMessage, FlightRecord, TimingReport};
 
 /// Takes the messages of a flight in the order they were recorded, and keeps
@@ -36,6 +36,7 @@ pub struct Survey {
     durations: Durations,
     states: States,
     events: Events,
+    damages: Vec<Damage>,
     failsafes: u64,
     lines: Lines,
     track: Track,
@@ -56,6 +57,7 @@ impl Survey {
             durations: Durations::default(),
             states: States::default(),
             events: Events::default(),
+            damages: Vec::new(),
             failsafes: 0,
             lines: Lines::default(),
             track: Track::default(),
@@ -122,6 +124,28 @@ impl Survey {
         Ok(())
     }
 
+    /// Takes whatever is in a recording.
+    ///
+    /// # Errors
+    /// As for [`take`](Self::take).
+    pub fn take_item(&mut self, item: &Item) -> Result<(), TimerError> {
+        match item {
+            Item::Message(message) => self.take(message)?,
+            Item::Remark(remark) => self.take_remark(remark),
+            Item::Damage(damage) => self.take_damage(damage),
+        }
+        Ok(())
+    }
+
+    /// Takes what is damaged in the recording: no line leads across.
+    pub fn take_damage(&mut self, damage: &Damage) {
+        let remark = damage.remark();
+        let time_s = self.seconds(remark.time);
+        self.events
+            .damage(time_s, self.continuity.last_tick, &remark.text);
+        self.damages.push(damage.clone());
+    }
+
     /// Takes words that are no event of the loop.
     pub fn take_remark(&mut self, remark: &Remark) {
         let time_s = self.seconds(remark.time);
@@ -165,6 +189,7 @@ impl Survey {
         let mut report = Report {
             origin: self.origin,
             end,
+            damages: self.damages,
             duration_s: self.last_s,
             findings: Vec::new(),
             continuity: self.continuity,

@@ -14,9 +14,9 @@ use proptest::prelude::*;
 use crate::flight::{about, flight, only_file, record_all, settings};
 
 /// A flight of several chunks.
-const TICKS: u64 = 6_000;
+pub(crate) const TICKS: u64 = 6_000;
 
-fn whole(folder: &Path, compression: Compression) -> PathBuf {
+pub(crate) fn whole(folder: &Path, compression: Compression) -> PathBuf {
     let settings = RecorderSettings {
         compression,
         ..settings(folder)
@@ -26,7 +26,7 @@ fn whole(folder: &Path, compression: Compression) -> PathBuf {
 }
 
 /// All messages, and where the file was found to be cut.
-fn read(path: &Path) -> (Vec<FlightMessage>, Option<String>) {
+pub(crate) fn read(path: &Path) -> (Vec<FlightMessage>, Option<String>) {
     let mut messages = Recording::open(path).unwrap().messages().unwrap();
     let all = messages.by_ref().collect();
     (all, messages.cut().map(str::to_owned))
@@ -119,47 +119,6 @@ fn what_is_being_written_is_not_recovered() {
     assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
     recorder.finish("stopped by command");
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
-}
-
-/// The bytes of a flight with a bit flipped in the second of four chunks, and
-/// not in the index behind it.
-fn with_a_flipped_bit(path: &Path) -> Vec<u8> {
-    let mut bytes = fs::read(path).unwrap();
-    let place = bytes.len() / 3;
-    bytes[place] ^= 0x10;
-    bytes
-}
-
-#[test]
-fn a_flipped_bit_is_noticed() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = whole(folder.path(), Compression::None);
-    fs::write(&path, with_a_flipped_bit(&path)).unwrap();
-    let (some, cut) = read(&path);
-    assert!((some.len() as u64) < TICKS + 1);
-    assert!(cut.unwrap().contains("damaged"));
-}
-
-#[test]
-fn what_lies_behind_damage_is_kept_when_a_file_is_made_whole() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = whole(folder.path(), Compression::None);
-    let undamaged = fs::read(&path).unwrap();
-    let mut bytes = with_a_flipped_bit(&path);
-    bytes.truncate(bytes.len() * 9 / 10);
-    fs::write(&path, &bytes).unwrap();
-    let (some, _) = read(&path);
-    let recovered = recover(&path, |_| {}).unwrap();
-    let cut = recovered.cut.unwrap();
-    assert!(cut.starts_with("damaged before byte "), "{cut}");
-    let kept = recovered.kept.unwrap();
-    assert_eq!(kept.extension().unwrap(), "damaged");
-    assert_eq!(fs::read(&kept).unwrap(), bytes);
-    assert!(Recording::open(&path).unwrap().is_whole());
-    assert_eq!(read(&path), (some, None));
-    // Of a file that was only cut off, all that can be read is in the new one.
-    fs::write(&path, &undamaged[..undamaged.len() / 2]).unwrap();
-    assert_eq!(recover(&path, |_| {}).unwrap().kept, None);
 }
 
 /// Two programs that start at once in one folder repair one file.

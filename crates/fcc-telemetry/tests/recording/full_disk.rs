@@ -206,7 +206,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
         .unwrap()
         .filter_map(|item| match item {
             Item::Remark(remark) => Some(remark.text),
-            Item::Message(_) => None,
+            Item::Message(_) | Item::Damage(_) => None,
         })
         .collect();
     assert!(told[0].starts_with("recording stopped: "), "{told:?}");

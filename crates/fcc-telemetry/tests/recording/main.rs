@@ -3,6 +3,7 @@
 
 mod any;
 mod cut;
+mod damage;
 mod disks;
 mod flight;
 mod folder;

@@ -1,0 +1,155 @@
+//! What each command says of a recording that is damaged inside, and its exit
+//! code.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// The exit code for it, as `fccd --help` has it.
+const INCOMPLETE: Option<i32> = Some(13);
+/// Kinds of records (MCAP's specification), and the length of what a file
+/// begins and ends with.
+const CHUNK: u8 = 6;
+const CHUNK_INDEX: u8 = 8;
+const MAGIC_BYTES: usize = 8;
+const NOT_REPLAYED: Option<i32> = Some(8);
+
+fn fccd(arguments: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_fccd"))
+        .args(arguments)
+        .output();
+    output.unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn json(output: &Output) -> Value {
+    let said = String::from_utf8_lossy(&output.stderr);
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {said}"))
+}
+
+/// Flies for 150 s in lockstep: some megabytes, in several chunks.
+fn recorded(folder: &Path) -> PathBuf {
+    let output = fccd(&[
+        "fly",
+        "--lockstep",
+        "--seconds",
+        "150",
+        "--recordings",
+        text(folder),
+    ]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let mut files = fs::read_dir(folder).unwrap();
+    files.next().unwrap().unwrap().path()
+}
+
+/// Where the records of a kind are, and how long.
+fn records(bytes: &[u8], opcode: u8) -> Vec<(usize, usize)> {
+    let mut at = MAGIC_BYTES;
+    let mut found = Vec::new();
+    while at < bytes.len() - MAGIC_BYTES {
+        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+        if bytes[at] == opcode {
+            found.push((at, 9 + length));
+        }
+        at += 9 + length;
+    }
+    found
+}
+
+#[test]
+fn every_command_says_what_is_damaged_and_goes_on_behind_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = recorded(folder.path());
+    let ticks = json(&fccd(&["list", text(folder.path()), "--json"]))[0]["ticks"].clone();
+    let ticks = ticks.as_u64().unwrap();
+    let mut bytes = fs::read(&file).unwrap();
+    let chunks = records(&bytes, CHUNK);
+    assert!(chunks.len() >= 4, "{}", chunks.len());
+    let (at, length) = chunks[2];
+    bytes[at + length / 2] ^= 0x40;
+    fs::write(&file, &bytes).unwrap();
+
+    let output = fccd(&["list", text(folder.path()), "--json"]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    let entry = &json(&output)[0];
+    assert_eq!(entry["file"], "damaged");
+    let damage = &entry["damages"][0];
+    assert_eq!(damage["from_byte"], at);
+    assert_eq!(damage["to_byte"], at + length);
+    let missing = damage["ticks"].as_u64().unwrap();
+    let first = damage["first_tick"].as_u64().unwrap();
+    let last = damage["last_tick"].as_u64().unwrap();
+    assert_eq!(last - first + 1, missing);
+    assert_eq!(entry["ticks"], ticks - missing);
+    let output = fccd(&["list", text(folder.path())]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("damaged: fccd recover"));
+    let words = format!("ticks {first} to {last} are missing");
+    assert!(String::from_utf8_lossy(&output.stderr).contains(&words));
+    let quick = fccd(&["list", "--quick", text(folder.path())]);
+    assert_eq!(quick.status.code(), Some(0));
+
+    let page = folder.path().join("page.html");
+    let output = fccd(&["report", text(&file), "--html", text(&page)]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    assert!(String::from_utf8_lossy(&output.stdout).contains(&words));
+    assert!(fs::read_to_string(&page).unwrap().contains(&words));
+    let output = fccd(&["report", text(&file), "--json"]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    assert_eq!(json(&output)["continuity"]["lost"], missing);
+    assert_eq!(json(&output)["continuity"]["last_tick"], ticks);
+
+    let output = fccd(&["replay", text(&file), "--json"]);
+    assert_eq!(output.status.code(), NOT_REPLAYED);
+    let replayed = json(&output);
+    assert_eq!(replayed["last_tick"], first - 1);
+    assert_eq!(replayed["identity"]["differing"], 0);
+    assert_eq!(replayed["unflown"]["first"], last + 1);
+    assert_eq!(replayed["unflown"]["last"], ticks);
+    let output = fccd(&["replay", text(&file)]);
+    let compared = format!("compared up to tick {}", first - 1);
+    assert!(String::from_utf8_lossy(&output.stdout).contains(&compared));
+
+    let output = fccd(&["recover", text(&file), "--json"]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    let recovered = json(&output);
+    assert_eq!(recovered["was_whole"], false);
+    assert_eq!(recovered["ticks"], ticks - missing);
+    let kept = recovered["kept"].as_str().unwrap();
+    assert_eq!(fs::read(kept).unwrap(), bytes);
+    let output = fccd(&["list", text(folder.path()), "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(json(&output)[0]["file"], "whole");
+    assert_eq!(json(&output)[0]["not_recorded"], missing);
+    // It still says what is missing, and replays up to there.
+    let output = fccd(&["replay", text(&file), "--json"]);
+    assert_eq!(output.status.code(), NOT_REPLAYED);
+    assert_eq!(json(&output)["last_tick"], first - 1);
+}
+
+/// The index of a chunk is no part of a flight.
+#[test]
+fn a_damaged_index_costs_nothing_of_the_flight() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = recorded(folder.path());
+    let ticks = json(&fccd(&["list", text(folder.path()), "--json"]))[0]["ticks"].clone();
+    let mut bytes = fs::read(&file).unwrap();
+    let (at, _) = records(&bytes, CHUNK_INDEX)[1];
+    bytes[at + 12] ^= 1;
+    fs::write(&file, &bytes).unwrap();
+    let output = fccd(&["replay", text(&file), "--json"]);
+    assert_eq!(output.status.code(), INCOMPLETE);
+    let replayed = json(&output);
+    assert_eq!(replayed["unflown"], Value::Null);
+    assert_eq!(replayed["ticks"], ticks);
+    assert_eq!(replayed["identity"]["differing"], 0);
+    let recovered = json(&fccd(&["recover", text(&file), "--json"]));
+    assert_eq!(recovered["ticks"], ticks);
+    assert_eq!(recovered["damages"][0]["ticks"], 0);
+}

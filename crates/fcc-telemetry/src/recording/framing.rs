@@ -1,0 +1,108 @@
+//! Where the records of a file begin, when a damaged one does not say where it
+//! ends.
+
+use std::fs::File;
+use std::io::{self, Read as _, Seek as _, SeekFrom};
+
+use mcap::records::op;
+
+use super::parse::is_chunk_of;
+
+/// Opcode and length.
+pub(super) const HEAD_BYTES: usize = 1 + 8;
+
+/// No record of ours is longer: a chunk is 1 MiB, a configuration less.
+pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
+
+/// The footer: its opcode and length, two offsets and a checksum.
+pub(super) const FOOTER_BYTES: u64 = HEAD_BYTES as u64 + 8 + 8 + 4;
+
+/// The magic number that begins and ends a file.
+pub(super) const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
+
+/// As much of a record is looked at to know it by its beginning.
+const SIGNATURE_BYTES: usize = 256;
+
+/// As much is searched at once.
+const BLOCK_BYTES: usize = 256 << 10;
+
+/// The opcode and length that bytes begin with.
+pub(super) fn head(bytes: &[u8]) -> Option<(u8, u64)> {
+    let ([opcode, length @ ..], _) = bytes.split_first_chunk::<HEAD_BYTES>()?;
+    Some((*opcode, u64::from_le_bytes(*length)))
+}
+
+/// Whether a record at `position` of a file of `file_bytes` is known by its
+/// beginning: its lengths agree with one another, which happens by chance in
+/// one of some billion places.
+fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
+    let Some((opcode, length)) = head(bytes) else {
+        return false;
+    };
+    let end = position.saturating_add(HEAD_BYTES as u64 + length);
+    if length > MAX_RECORD_BYTES || end > file_bytes {
+        return false;
+    }
+    let body = bytes.get(HEAD_BYTES..).unwrap_or_default();
+    let u32_at = |at: usize| -> Option<u64> {
+        let bytes = body.get(at..)?.first_chunk()?;
+        Some(u32::from_le_bytes(*bytes).into())
+    };
+    match opcode {
+        op::CHUNK => is_chunk_of(body, length),
+        // A channel, and an array of pairs of numbers.
+        op::MESSAGE_INDEX => u32_at(2).is_some_and(|bytes| bytes + 6 == length && bytes % 16 == 0),
+        // A name, and a map.
+        op::METADATA => u32_at(0)
+            .and_then(|name| Some((name, u32_at(usize::try_from(name).ok()?.checked_add(4)?)?)))
+            .is_some_and(|(name, map)| name + map + 8 == length),
+        // Two times, a name, a media type, the data and a checksum.
+        op::ATTACHMENT => u32_at(16)
+            .and_then(|name| {
+                let media = u32_at(20 + usize::try_from(name).ok()?)?;
+                let data_at = 24 + usize::try_from(name + media).ok()?;
+                let data = u64::from_le_bytes(*body.get(data_at..)?.first_chunk()?);
+                (data_at as u64 + 12).checked_add(data)
+            })
+            .is_some_and(|bytes| bytes == length),
+        op::DATA_END => length == 4,
+        op::FOOTER => end + MAGIC_BYTES == file_bytes && length + HEAD_BYTES as u64 == FOOTER_BYTES,
+        _ => false,
+    }
+}
+
+/// Whether a record that is known by its beginning is at `position`.
+pub(super) fn is_at(file: &mut File, position: u64, file_bytes: u64) -> io::Result<bool> {
+    let mut bytes = Vec::new();
+    read_at(file, position, SIGNATURE_BYTES, &mut bytes)?;
+    Ok(is_known(&bytes, position, file_bytes))
+}
+
+/// The first record from `start` on that is known by its beginning.
+pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<Option<u64>> {
+    let mut bytes = Vec::new();
+    let mut at = start;
+    while at < file_bytes {
+        read_at(file, at, BLOCK_BYTES + SIGNATURE_BYTES, &mut bytes)?;
+        let found = (at..file_bytes)
+            .take(BLOCK_BYTES)
+            .enumerate()
+            .find(|&(offset, position)| {
+                let record = bytes.get(offset..).unwrap_or_default();
+                is_known(record, position, file_bytes)
+            });
+        if let Some((_, position)) = found {
+            return Ok(Some(position));
+        }
+        at += BLOCK_BYTES as u64;
+    }
+    Ok(None)
+}
+
+/// What is at `position`, up to `length` bytes of it.
+fn read_at(file: &mut File, position: u64, length: usize, into: &mut Vec<u8>) -> io::Result<()> {
+    into.clear();
+    file.seek(SeekFrom::Start(position))?;
+    file.take(length as u64).read_to_end(into)?;
+    Ok(())
+}
