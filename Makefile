@@ -141,7 +141,7 @@ bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what 
 	cargo build --locked --release -p bench-tick
 	$(TARGET)/release/costs
 	$(TARGET)/release/latency --fccd $(FCCD)
-	$(TARGET)/release/latency --fccd $(FCCD) --with 'early_wake = { enabled = true }'
+	$(TARGET)/release/latency --fccd $(FCCD) --with 'early_wake = { enabled = false }'
 
 bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their peers, idle and under stress (22 minutes; TIMING=)
 	$(BENCH_TIMING) -p copper --features copper/high-precision

@@ -1,4 +1,4 @@
-//! Compiles the schemas in `proto/` without a protoc: into Rust types, and into
+//! Compiles the schemas in `proto/foxglove` without a protoc: into Rust types, and into
 //! the descriptors that each recording carries.
 
 use std::error::Error;
@@ -10,9 +10,7 @@ use prost::Message as _;
 const PROTO: &str = "../../proto";
 
 /// The file of each topic's schema, and what its descriptors are called here.
-const SCHEMAS: [(&str, &str); 5] = [
-    ("fcc/v1/record.proto", "record"),
-    ("fcc/v1/event.proto", "event"),
+const SCHEMAS: [(&str, &str); 3] = [
     ("foxglove/LocationFix.proto", "location_fix"),
     ("foxglove/PoseInFrame.proto", "pose_in_frame"),
     ("foxglove/Log.proto", "log"),

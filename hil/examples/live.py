@@ -16,7 +16,7 @@ from typing import Any
 
 import iceoryx2 as iox2
 
-LAYOUT = 1
+LAYOUT = 2
 """The layout that this program was written for."""
 NEVER_NS = -(2**63)
 """The time of what has not happened."""
@@ -54,8 +54,8 @@ class Stages(ctypes.Structure):
 
     _fields_ = (
         ("sensors_ns", ctypes.c_uint64),
-        ("navigation_ns", ctypes.c_uint64),
-        ("guidance_ns", ctypes.c_uint64),
+        ("estimate_ns", ctypes.c_uint64),
+        ("guide_ns", ctypes.c_uint64),
         ("control_ns", ctypes.c_uint64),
         ("actuators_ns", ctypes.c_uint64),
         ("total_ns", ctypes.c_uint64),
@@ -144,6 +144,43 @@ class Measurements(ctypes.Structure):
     )
 
 
+class Estimate(ctypes.Structure):
+    """What navigation makes of the measurements."""
+
+    _fields_ = (
+        ("roll_rad", ctypes.c_double),
+        ("pitch_rad", ctypes.c_double),
+        ("heading_rad", ctypes.c_double),
+        ("body_rates", BodyRates),
+        ("airspeed_mps", ctypes.c_double),
+        ("true_airspeed_mps", ctypes.c_double),
+        ("altitude_m", ctypes.c_double),
+        ("climb_rate_mps", ctypes.c_double),
+        ("side_force_mps2", ctypes.c_double),
+    )
+
+
+class Targets(ctypes.Structure):
+    """What guidance asks of control."""
+
+    _fields_ = (
+        ("airspeed_mps", ctypes.c_double),
+        ("heading_rad", ctypes.c_double),
+        ("altitude_m", ctypes.c_double),
+    )
+
+
+class Progress(ctypes.Structure):
+    """The mode that guidance flies, and how far it has come."""
+
+    _fields_ = (
+        ("mode", ctypes.c_uint8),
+        ("item", ctypes.c_uint32),
+        ("elapsed_s", ctypes.c_double),
+        ("captured", Targets),
+    )
+
+
 class Setpoints(ctypes.Structure):
     """What the autopilot aims for."""
 
@@ -154,6 +191,7 @@ class Setpoints(ctypes.Structure):
         ("roll_rad", ctypes.c_double),
         ("climb_rate_mps", ctypes.c_double),
         ("pitch_rad", ctypes.c_double),
+        ("guidance", Progress),
     )
 
 
@@ -174,6 +212,7 @@ class Record(ctypes.Structure):
         ("tick", Tick),
         ("stages", Stages),
         ("measurements", Measurements),
+        ("estimate", Estimate),
         ("setpoints", Setpoints),
         ("outputs", Surfaces),
         ("sensor_faults", ctypes.c_uint64),
@@ -191,7 +230,7 @@ class Record(ctypes.Structure):
     @staticmethod
     def type_name() -> str:
         """Return what the daemon calls this type."""
-        return "fcc.v1.Record"
+        return "fcc.v2.Record"
 
 
 class Event(ctypes.Structure):
@@ -209,7 +248,7 @@ class Event(ctypes.Structure):
     @staticmethod
     def type_name() -> str:
         """Return what the daemon calls this type."""
-        return "fcc.v1.Event"
+        return "fcc.v2.Event"
 
 
 class Info(ctypes.Structure):

@@ -104,19 +104,21 @@ def assert_flown_again(fccd: Path, flown: Flown) -> None:
 
 def seconds(later: Any, earlier: Any) -> float:
     """Return the time between two records, by the loop's clock."""
-    return float((later.woke_ns - earlier.woke_ns) * NS)
+    return float((later.tick.woke_ns - earlier.tick.woke_ns) * NS)
 
 
 def assert_in_the_same_tick(flown: Flown, place: int, after_s: float) -> None:
     """Assert that what a part does so long after engaging is answered in that very tick."""
-    engaged_ns = next(r.woke_ns for r in flown.records if r.state.phase == ENGAGED)
+    engaged_ns = next(r.tick.woke_ns for r in flown.records if r.state.phase == ENGAGED)
     last, record = flown.records[place - 1 : place + 1]
-    assert last.woke_ns - engaged_ns < after_s / NS <= record.woke_ns - engaged_ns
+    assert last.tick.woke_ns - engaged_ns < after_s / NS <= record.tick.woke_ns - engaged_ns
 
 
 def assert_regular(records: Iterable[Any], period_ns: int) -> None:
     """No tick is left out but those said to be missed, and the phase never moved."""
     records = list(records)
     for last, record in itertools.pairwise(records):
-        assert record.tick == last.tick + 1 + record.missed
-        assert record.scheduled_ns - last.scheduled_ns == (record.tick - last.tick) * period_ns
+        assert record.tick.number == last.tick.number + 1 + record.tick.missed
+        assert record.tick.scheduled_ns - last.tick.scheduled_ns == (
+            record.tick.number - last.tick.number
+        ) * period_ns

@@ -76,7 +76,7 @@ def _until_cut(reader: StreamReader) -> Iterator[McapRecord]:
 
 def ticks(messages: list[Seen]) -> list[int]:
     """Return the numbers of the ticks recorded."""
-    return [message.content.tick for message in messages if message.topic == RECORD]
+    return [message.content.tick.number for message in messages if message.topic == RECORD]
 
 
 def is_in_log_time_order(messages: list[Seen]) -> bool:

@@ -83,6 +83,19 @@ def test_timing_as_json(fccd: Path, timer: str) -> None:
     assert timing["ticks"] + timing["missed"] >= 100
 
 
+@pytest.mark.parametrize("when", ["auto", "on", "off"])
+def test_timing_wakes_early_where_it_may(fccd: Path, when: str) -> None:
+    words = [fccd, "timing", "--rate", "100", "--seconds", "0.2", "--early-wake", when, "--json"]
+    ended = run(words)
+    assert ended.returncode == 0, ended.stderr
+    (timing,) = json.loads(ended.stdout)
+    granted = timing["realtime"]["priority"] > 0
+    expected = {"auto": granted, "on": True, "off": False}[when]
+    assert (timing["early_wake"] is not None) == expected
+    refused = [one["request"] for one in timing["realtime"]["refused"]]
+    assert ("early wake" in refused) == (when == "auto" and not granted)
+
+
 def test_timing_measures_each_rate(fccd: Path) -> None:
     words = ["timing", "--rate", "100", "--rate", "200", "--seconds", "0.2", "--json"]
     ended = run([fccd, *words])

@@ -103,7 +103,7 @@ def first_engaged_ns(ending: Ending) -> int:
     """Return when the loop first woke up engaged, by the machine's monotonic clock."""
     (path,) = ending.report["recording"]["files"]
     return next(
-        int(seen.content.woke_ns)
+        int(seen.content.tick.woke_ns)
         for seen in in_sequence(Path(path))
         if seen.topic == RECORD and seen.content.state.phase == ENGAGED
     )
@@ -225,11 +225,12 @@ def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:
         ) as guard:
             assert guard.stdin is not None
             assert guard.stderr is not None
-            guard.stdin.write(json.dumps({"simulator": address}) + f"\nheld {address}\n")
+            config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
+            guard.stdin.write(f"{config}\nheld X-Plane at {address}\n")
             guard.stdin.close()
             assert simulator.recv(600), "it releases"
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as relief:
-                relief.connect(f"\0fccd-guard-{address}")
+                relief.connect(f"\0fccd-guard-X-Plane at {address}")
                 relief.settimeout(15.0)
                 assert relief.recv(1) == b"", "it is gone"
             assert "another has taken" in guard.stderr.read()

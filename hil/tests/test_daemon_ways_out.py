@@ -37,7 +37,7 @@ def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signa
     assert ending.report["failsafes"] == 0
     assert "Accept incoming connections" not in ending.said
     events = Flown.of(ending, tmp_path / "recordings").events
-    heard = next(event for event in events if event.WhichOneof("kind") == "stop_requested")
+    heard = next(event for event in events if event.kind.WhichOneof("kind") == "stop_requested")
     assert (heard.time_ns - told_ns) * NS < AT_ONCE_S
 
 

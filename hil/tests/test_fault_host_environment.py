@@ -167,7 +167,7 @@ def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
     assert "all before is safe" in recording["stopped"]
     (name,) = recording["files"]
     seen = in_sequence(Path(name))
-    ticks = [message.content.tick for message in seen if message.topic == RECORD]
+    ticks = [message.content.tick.number for message in seen if message.topic == RECORD]
     assert len(ticks) == recording["ticks"] > 0
     # At the next write. What has gathered for it is lost.
     last_s = (ticks[-1] - ticks[0]) / NORMAL_HZ
@@ -197,7 +197,7 @@ def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> No
     flown = flights["ring"]
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == SUCCESS
-    kinds = [event.WhichOneof("kind") for event in flown.events]
+    kinds = [event.kind.WhichOneof("kind") for event in flown.events]
     gap = flown.events[kinds.index("records_dropped")].records_dropped
     assert gap.count == flown.records[-1].records_dropped > 0
     ticks = [record.tick for record in flown.records]

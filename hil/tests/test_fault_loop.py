@@ -34,6 +34,8 @@ HUNG = 9
 RATE_HZ = 40
 ENGAGED_S = 6.0
 PERIOD_NS = 1_000_000_000 // RATE_HZ
+CONTROL = 4
+"""The stage, as the recording calls it."""
 HOLD = '[guidance]\nmode = "hold"\n[telemetry]\nenabled = false\n'
 NEVER_FAILSAFE = "[budget]\nfailsafe_after = 0\n"
 QUICK_WATCHDOG = "[watchdog]\nhang_after_ms = 500\n"
@@ -142,7 +144,7 @@ def phases(flight: Flown) -> set[int]:
 
 
 def missed(flight: Flown) -> list[Any]:
-    return [record for record in flight.records if record.missed > 0]
+    return [record for record in flight.records if record.tick.missed > 0]
 
 
 @pytest.mark.parametrize(("name", "least"), [("late by one", 1), ("late by many", 10)])
@@ -153,7 +155,7 @@ def test_a_late_timer_is_counted_told_and_flown_through(
     assert flight.ending.exit_code == SUCCESS
     assert FAILSAFE not in phases(flight)
     # The tick that took so long, and what was due meanwhile.
-    assert sum(record.missed for record in missed(flight)) >= least
+    assert sum(record.tick.missed for record in missed(flight)) >= least
     assert flight.records[-1].overruns >= 1
     assert any("tick overran its budget" in text for text in flight.texts())
     assert any("ticks overran or were missed" in text for text in flight.texts())
@@ -166,7 +168,7 @@ def test_as_many_missed_as_half_a_second_has_are_failsafe(flights: dict[str, Flo
     (place,) = flight.failsafes
     record = flight.records[place]
     assert record.state.cause == OVERRUN
-    assert record.missed >= RATE_HZ // 2
+    assert record.tick.missed >= RATE_HZ // 2
     assert record.sent, "wings level at once"
     assert_regular(flight.records, PERIOD_NS)
 
@@ -178,9 +180,9 @@ def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     record = flight.records[place]
     assert record.state.cause == OVERRUN
     # Told once, of the stage, and each counted: in its own record.
-    told = [event.overrun for event in flight.events if event.WhichOneof("kind") == "overrun"]
+    told = [event.kind.overrun for event in flight.events if event.kind.WhichOneof("kind") == "overrun"]
     assert 1 <= len(told) <= 2
-    assert told[-1].longest == told[-1].CONTROL
+    assert told[-1].longest == CONTROL
     assert told[-1].took_ns > 30_000_000
     assert told[-1].budget_ns == PERIOD_NS
     before = [r.stages.total_ns > PERIOD_NS for r in flight.records[: place + 1]]
@@ -190,8 +192,8 @@ def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     for record in reversed(flight.records[:place]):
         if record.stages.total_ns <= PERIOD_NS:
             break
-        row += 1 + record.missed
-    assert row + flight.records[place].missed >= RATE_HZ // 2
+        row += 1 + record.tick.missed
+    assert row + flight.records[place].tick.missed >= RATE_HZ // 2
     assert row <= 2 * RATE_HZ // 2
     assert_regular(flight.records, PERIOD_NS)
 
@@ -207,7 +209,7 @@ def test_a_process_that_was_stopped_goes_on_where_it_is(flights: dict[str, Flown
     """Its own watchdog was stopped with it, and takes nobody's life for that."""
     flight = flights["stopped"]
     assert flight.ending.exit_code == SUCCESS
-    assert max(record.missed for record in flight.records) >= 1.5 * RATE_HZ
+    assert max(record.tick.missed for record in flight.records) >= 1.5 * RATE_HZ
     assert flight.records[-2].state.phase == ENGAGED
     assert any("the timer woke" in text for text in flight.texts())
     assert_regular(flight.records, PERIOD_NS)
@@ -221,7 +223,7 @@ def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> N
     assert flight.ending.exit_code == SUCCESS
     assert flight.failsafes == []
     assert_regular(flight.records, PERIOD_NS)
-    times = [record.woke_ns for record in flight.records]
+    times = [record.tick.woke_ns for record in flight.records]
     assert times == sorted(times)
     assert (times[-1] - times[0]) * NS == pytest.approx(7.5, abs=1.0)
     assert flight.ending.report["recording"]["stopped"] is None
@@ -236,12 +238,12 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     assert flight.ending.report["ending"] == "the loop hung"
     assert flight.ending.report["released"] is True
     last = flight.events[-1]
-    assert last.WhichOneof("kind") == "hung"
+    assert last.kind.WhichOneof("kind") == "hung"
     # It looks ten times in that time, and counts two looks at most for one.
     assert HANG_AFTER_NS <= last.hung.silent_ns < 1.2 * HANG_AFTER_NS
     assert "the watchdog gave the controls back" in flight.ending.said
     # All up to the tick that hangs, which has no end and so no record.
-    assert [record.tick for record in flight.records][-1] == last.tick
+    assert [record.tick.number for record in flight.records][-1] == last.tick
     assert flight.records[-1].state.phase == ENGAGED
     assert_regular(flight.records, PERIOD_NS)
 

@@ -71,7 +71,9 @@ def _one(name: str) -> Callable[[Any], tuple[float, ...]]:
 
 
 def _three(name: str, *axes: str) -> Callable[[Any], tuple[float, ...]]:
-    return lambda record: tuple(getattr(getattr(record.measurements, name), axis) for axis in axes)
+    return lambda record: tuple(
+        getattr(getattr(record.measurements, name).value, axis) for axis in axes
+    )
 
 
 SENSED: dict[str, Sensor] = {
@@ -251,7 +253,7 @@ def last_good(flown: Flown, name: str, fault: str) -> int:
             place -= 1
         return place
     taken = _taken_ns(flown.records[failsafe_of(flown, fault)], name)
-    while flown.records[place].woke_ns > taken:
+    while flown.records[place].tick.woke_ns > taken:
         place -= 1
     return place
 
@@ -289,7 +291,7 @@ def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
     # A second of hold, a bank within three, a climb within ten.
     assert after_s < 15.0
     # It came all the time: by its age nothing is wrong with it.
-    assert (last.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
+    assert (last.tick.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
 
 
 @pytest.mark.parametrize("name", SENSED)

@@ -36,10 +36,10 @@ def test_every_number_is_what_another_reader_finds(recording: Path) -> None:
     assert records.dtype == fcc.RECORD
     assert len(found) == len(records) == len(expected) > SECONDS * 40
     columns: dict[str, Callable[[Any], Any]] = {
-        "tick": lambda r: r.tick,
-        "woke_ns": lambda r: r.woke_ns,
+        "tick": lambda r: r.tick.number,
+        "woke_ns": lambda r: r.tick.woke_ns,
         "total_time_ns": lambda r: r.stages.total_ns,
-        "pitch_rad": lambda r: r.measurements.attitude.pitch_rad,
+        "pitch_rad": lambda r: r.measurements.attitude.value.pitch_rad,
         "commanded_elevator": lambda r: r.outputs.elevator,
         "desired_altitude_m": lambda r: r.setpoints.altitude_m,
     }

@@ -97,7 +97,21 @@ impl<B: ActuatorBench> Run<B> {
         self.bench.live(&tick);
         self.number += 1;
         let outputs = B::outputs(self.number);
+        // Without effect: every promise holds with a warm-up as without.
+        let others = B::outputs(self.number + 1);
+        self.bench.actuator().warm_up(&tick, &others);
         (self.bench.actuator().apply(&tick, &outputs), outputs)
+    }
+
+    /// With other outputs than were applied, and without a tick between.
+    fn warm_up(&mut self, times: u32) {
+        let before = self.bench.messages();
+        let tick = self.ticks.next_tick();
+        for number in 1..=times {
+            let outputs = B::outputs(self.number + number);
+            self.bench.actuator().warm_up(&tick, &outputs);
+        }
+        assert_eq!(self.bench.messages(), before, "a warm-up sends");
     }
 
     fn assert_applies(&mut self) {
@@ -126,6 +140,7 @@ impl<B: ActuatorBench> Run<B> {
             self.bench.live(&tick);
             let outputs = B::outputs(number);
             total += count(&mut self.bench, &mut |actuator| {
+                actuator.warm_up(&tick, &outputs);
                 let _ = if matches!(number % 40, 0 | 38 | 39) {
                     actuator.release()
                 } else {
@@ -160,6 +175,19 @@ pub fn the_first_apply_takes_control_and_each_is_followed<B: ActuatorBench>() {
         run.assert_applies();
         assert!(run.bench.is_held());
     }
+}
+
+/// A warm-up takes no control, and sends the plant nothing.
+pub fn a_warm_up_has_no_effect<B: ActuatorBench>() {
+    let mut run = Run::<B>::new();
+    run.warm_up(100);
+    assert!(!run.bench.is_held(), "a warm-up takes control");
+
+    let mut run = Run::<B>::holding();
+    let (applied, outputs) = run.apply();
+    assert_eq!(applied, Ok(()));
+    run.warm_up(100);
+    assert!(run.bench.follows(&outputs), "a warm-up moves the plant");
 }
 
 /// A release gives control back for good.

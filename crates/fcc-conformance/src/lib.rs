@@ -131,6 +131,7 @@ macro_rules! actuator_conformance {
             a_second_release_does_nothing
             a_release_before_any_apply_does_nothing
             an_apply_after_a_release_takes_control_again
+            a_warm_up_has_no_effect
             applying_and_releasing_never_wait
             applying_and_releasing_allocate_nothing
             an_actuator_runs_in_a_thread_it_was_not_made_in

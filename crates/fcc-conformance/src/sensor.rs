@@ -89,6 +89,8 @@ impl<B: SensorBench> Run<B> {
     }
 
     fn sample_at(&mut self, tick: &Tick) -> Result<(), SensorFault> {
+        // Without effect: every promise holds with a warm-up as without.
+        self.bench.sensor().warm_up(tick);
         self.bench.sensor().sample(tick, &mut self.measured)
     }
 

@@ -26,6 +26,8 @@ mod defect {
     pub(crate) const TAKES_ONCE: u8 = 12;
     pub(crate) const WRITES_TO_NOBODY: u8 = 13;
     pub(crate) const FORGETS_A_RELEASE: u8 = 14;
+    pub(crate) const SENDS_IN_A_WARM_UP: u8 = 15;
+    pub(crate) const TAKES_IN_A_WARM_UP: u8 = 16;
 }
 
 /// What runs between a device and what it is connected to.
@@ -90,6 +92,12 @@ impl<const DEFECT: u8> Sensor<Measured> for Device<DEFECT> {
         Err(SensorFault::Silent)
     }
 
+    fn warm_up(&self, _: &Tick) {
+        if DEFECT == defect::TAKES_IN_A_WARM_UP {
+            self.wire().value = None;
+        }
+    }
+
     fn name(&self) -> &'static str {
         "device"
     }
@@ -138,6 +146,10 @@ impl<const DEFECT: u8> Actuator<f64> for Device<DEFECT> {
             wire.outputs = None;
         }
         Ok(())
+    }
+
+    fn warm_up(&self, _: &Tick, _: &f64) {
+        self.wire().messages += u64::from(DEFECT == defect::SENDS_IN_A_WARM_UP);
     }
 
     fn name(&self) -> &'static str {
@@ -248,6 +260,8 @@ broken! {
     STAYS_AWAY sensor silence_is_reported_and_ends "Err(Silent)"
     SETS_BACK_TO_NOTHING sensor nothing_is_measured_before_the_source_is_there "left == right"
     FAILS_AFTER_A_MISSED_TICK sensor a_tick_after_missed_ones_is_sampled_like_any "Err(Silent)"
+    TAKES_IN_A_WARM_UP sensor every_reading_comes_and_none_is_of_the_future "Err(Silent)"
+    SENDS_IN_A_WARM_UP actuator a_warm_up_has_no_effect "a warm-up sends"
     DOES_NOTHING actuator the_first_apply_takes_control_and_each_is_followed "does not do as 2.0"
     HOLDS_ON actuator release_gives_control_back "is still held"
     RELEASES_WHAT_IT_NEVER_TOOK actuator a_release_before_any_apply_does_nothing "left == right"

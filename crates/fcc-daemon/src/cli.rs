@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use fcc_flight::config::{CpuChoice, GustsChoice};
+use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
@@ -174,20 +174,43 @@ pub struct TimingArgs {
     /// The CPU that the loop's thread is bound to
     #[arg(long, value_name = "auto|N")]
     pub cpu: Option<CpuChoice>,
-    /// Wake a margin before each deadline and spin the rest of the time
-    #[arg(long)]
-    pub early_wake: bool,
+    /// Whether to wake a margin before each deadline and spin the rest of the
+    /// time; auto: if a real-time priority is granted
+    #[arg(long, value_name = "auto|on|off", value_enum, default_value_t = EarlyWakeArg::Auto,
+          default_missing_value = "on", num_args = 0..=1)]
+    pub early_wake: EarlyWakeArg,
     /// The longest margin
-    #[arg(long, value_name = "US", value_parser = margin_us, requires = "early_wake",
+    #[arg(long, value_name = "US", value_parser = margin_us,
           allow_negative_numbers = true)]
     pub max_margin: Option<f64>,
     /// The largest share of a core to spend on spinning
-    #[arg(long, value_name = "PERCENT", value_parser = cpu_cap_percent, requires = "early_wake",
+    #[arg(long, value_name = "PERCENT", value_parser = cpu_cap_percent,
           allow_negative_numbers = true)]
     pub cpu_cap: Option<f64>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Whether `fccd timing` wakes early.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
+pub enum EarlyWakeArg {
+    /// If the kernel grants a real-time priority.
+    Auto,
+    /// Always.
+    On,
+    /// Never.
+    Off,
+}
+
+impl From<EarlyWakeArg> for EarlyWakeChoice {
+    fn from(argument: EarlyWakeArg) -> Self {
+        match argument {
+            EarlyWakeArg::Auto => Self::Auto,
+            EarlyWakeArg::On => Self::On,
+            EarlyWakeArg::Off => Self::Off,
+        }
+    }
 }
 
 /// `fccd replay`.

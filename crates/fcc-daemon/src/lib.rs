@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
 //! | [`doctor`] | says what the machine offers a real-time loop, and what it lacks |
+//! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
 //! | `output` | prints, and never panics where that fails |
 //!
 //! What they do, a flight is put together and flown by, is in [`fcc_flight`].
@@ -11,5 +12,7 @@
 pub mod cli;
 pub mod commands;
 pub mod doctor;
-pub use fcc_flight::exit;
+pub mod exit;
+mod observers;
 mod output;
+mod process;

@@ -8,6 +8,5 @@
 //! | [`replay`] | flies a recording again and compares |
 
 pub mod config;
-pub mod exit;
 pub mod flight;
 pub mod replay;

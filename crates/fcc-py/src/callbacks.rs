@@ -3,6 +3,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick};
 use pyo3::prelude::*;
@@ -84,6 +85,7 @@ const NO_OUTPUT: Surfaces = Surfaces {
 
 impl Controller for CallbackController {
     type Measurements = Measurements;
+    type Estimate = Estimate;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
     type Command = AutopilotCommand;
@@ -146,6 +148,10 @@ impl Controller for CallbackController {
 
     fn command(&mut self, command: &AutopilotCommand) {
         self.autopilot.command(command);
+    }
+
+    fn estimated(&self) -> Estimate {
+        self.autopilot.estimated()
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Message, Sensor, State};
 use fcc_flight::config::{Aircraft, Config};
@@ -204,6 +205,7 @@ fn conduct<C>(
 where
     C: Controller<
             Measurements = Measurements,
+            Estimate = Estimate,
             Setpoints = Setpoints,
             Outputs = Surfaces,
             Command = AutopilotCommand,
@@ -230,6 +232,7 @@ fn run<C>(
 where
     C: Controller<
             Measurements = Measurements,
+            Estimate = Estimate,
             Setpoints = Setpoints,
             Outputs = Surfaces,
             Command = AutopilotCommand,

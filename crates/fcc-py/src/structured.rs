@@ -6,8 +6,10 @@
     reason = "numpy asks for a promise that a dtype says how a type is laid out"
 )]
 
+use fcc_core::framework::schema::Kind;
 use fcc_sim::Truth;
-use fcc_telemetry::{FIELDS, FieldKind, FlightRecord, RECORD_BYTES, RecordWords, words_of};
+use fcc_telemetry::schema::columns;
+use fcc_telemetry::{FlightRecord, FlightWords};
 use numpy::{Element, PyArray1, PyArrayDescr};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -18,11 +20,11 @@ use crate::values::TruthRow;
 /// A record, as a row of an array.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(crate) struct RecordRow(RecordWords);
+pub(crate) struct RecordRow(FlightWords);
 
 impl From<&FlightRecord> for RecordRow {
     fn from(record: &FlightRecord) -> Self {
-        Self(words_of(record))
+        Self(FlightWords::of(record))
     }
 }
 
@@ -43,10 +45,10 @@ static TRUTH: PyOnceLock<Py<PyArrayDescr>> = PyOnceLock::new();
 /// The dtype of records.
 pub(crate) fn record_dtype(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
     let made = RECORD.get_or_try_init(py, || {
-        let columns = FIELDS
-            .iter()
-            .map(|field| (field.name, format_of(field.kind), field.offset));
-        make(py, columns, RECORD_BYTES)
+        let columns = columns::<FlightRecord>()
+            .into_iter()
+            .map(|column| (column.name, format_of(column.kind), column.offset));
+        make(py, columns, size_of::<FlightRecord>())
     })?;
     Ok(made.bind(py).clone())
 }
@@ -57,7 +59,7 @@ pub(crate) fn truth_dtype(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
         let columns = Truth::NAMES
             .iter()
             .enumerate()
-            .map(|(at, name)| (*name, "f8", at * size_of::<f64>()));
+            .map(|(at, name)| ((*name).to_owned(), "f8".to_owned(), at * size_of::<f64>()));
         make(py, columns, size_of::<TruthRow>())
     })?;
     Ok(made.bind(py).clone())
@@ -80,19 +82,18 @@ pub(crate) fn truths(py: Python<'_>, rows: Vec<TruthRecord>) -> Bound<'_, PyArra
     PyArray1::from_vec(py, rows)
 }
 
-const fn format_of(kind: FieldKind) -> &'static str {
-    match kind {
-        FieldKind::U8 => "u1",
-        FieldKind::U32 => "u4",
-        FieldKind::U64 => "u8",
-        FieldKind::I64 => "i8",
-        FieldKind::F64 => "f8",
-    }
+fn format_of(kind: Kind) -> String {
+    let letter = match kind {
+        Kind::Bool | Kind::Code(_) | Kind::Flags | Kind::Count(_) => 'u',
+        Kind::Signed(_) | Kind::Instant => 'i',
+        Kind::Number => 'f',
+    };
+    format!("{letter}{}", kind.bytes())
 }
 
 fn make(
     py: Python<'_>,
-    columns: impl Iterator<Item = (&'static str, &'static str, usize)>,
+    columns: impl Iterator<Item = (String, String, usize)>,
     bytes: usize,
 ) -> PyResult<Py<PyArrayDescr>> {
     let (mut names, mut formats, mut offsets) = (Vec::new(), Vec::new(), Vec::new());

@@ -40,6 +40,10 @@ pub struct LoopConfig {
     /// How many ticks' records may wait to be fetched; at least 1. 4,096 by
     /// default: 102 s at 40 Hz. Events have slots of their own beside these.
     pub messages_capacity: usize,
+    /// Whether a timer that wakes early does so only if the kernel grants the
+    /// loop's thread a real-time priority. No by default: it wakes as it was
+    /// built. Concerns [`Loop::spawn`](crate::Loop::spawn) alone.
+    pub early_wake_needs_priority: bool,
     /// What [`Loop::spawn`](crate::Loop::spawn) asks of the kernel for its
     /// thread.
     pub realtime: RealtimeRequest,
@@ -55,6 +59,7 @@ impl Default for LoopConfig {
             budget: Budget::default(),
             commands_capacity: 64,
             messages_capacity: 4_096,
+            early_wake_needs_priority: false,
             realtime: RealtimeRequest::default(),
         }
     }

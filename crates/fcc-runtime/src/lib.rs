@@ -51,6 +51,7 @@
 //!
 //! impl Controller for Drain {
 //!     type Measurements = Reading<f64>;
+//!     type Estimate = ();
 //!     type Setpoints = ();
 //!     type Outputs = f64;
 //!     type Command = ();

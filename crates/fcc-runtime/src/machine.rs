@@ -237,7 +237,7 @@ impl<C: Controller> Machine<C> {
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);
-        self.record.stages.navigation_ns = stopwatch.lap(&*self.timer);
+        self.record.stages.estimate_ns = stopwatch.lap(&*self.timer);
 
         self.decide(tick, command);
 
@@ -253,6 +253,7 @@ impl<C: Controller> Machine<C> {
             stopwatch.lap(&*self.timer);
         }
         self.record.stages.total_ns = stopwatch.since(tick.woke.as_nanos());
+        self.record.estimate = self.controller.estimated();
         self.record.setpoints = self.controller.setpoints();
     }
 
@@ -261,7 +262,7 @@ impl<C: Controller> Machine<C> {
     fn compute_outputs(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
         if self.state == State::Engaged {
             self.controller.guide(tick, &self.measurements);
-            self.record.stages.guidance_ns = stopwatch.lap(&*self.timer);
+            self.record.stages.guide_ns = stopwatch.lap(&*self.timer);
             let outputs = self.controller.control(tick, &self.measurements);
             if self.controller.outputs_are_valid(&outputs) {
                 return Some(outputs);

@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 use std::{io, panic};
 
 use fcc_core::framework::{Controller, State};
-use fcc_timer::{RealtimeDenied, RealtimeGranted, RealtimeRequest, TimerError};
+use fcc_timer::{DeniedRequest, RealtimeDenied, RealtimeGranted, RealtimeRequest, TimerError};
 
 use crate::config::{LoopConfig, Parts};
 use crate::link::{Link, StopHandle};
@@ -25,6 +25,7 @@ pub const THREAD_NAME: &str = "fcc-loop";
 pub struct Loop<C: Controller> {
     machine: Machine<C>,
     realtime: RealtimeRequest,
+    early_wake_needs_priority: bool,
     stop: StopHandle,
 }
 
@@ -38,6 +39,7 @@ impl<C: Controller> Loop<C> {
         let this = Self {
             machine,
             realtime: config.realtime.clone(),
+            early_wake_needs_priority: config.early_wake_needs_priority,
             stop: link.stop.clone(),
         };
         Ok((this, link))
@@ -88,7 +90,8 @@ impl<C: Controller> Loop<C> {
             .realtime
             .apply()
             .map_err(SpawnError::Realtime)
-            .and_then(|granted| {
+            .and_then(|mut granted| {
+                self.decide_early_wake(&mut granted);
                 self.machine.start().map_err(SpawnError::Timer)?;
                 Ok(granted)
             });
@@ -101,6 +104,26 @@ impl<C: Controller> Loop<C> {
         LoopReport {
             granted,
             ..run(self.machine)
+        }
+    }
+}
+
+impl<C: Controller> Loop<C> {
+    /// Disables early wake if the thread has no real-time priority and that is
+    /// required; reported as denied if the priority was requested.
+    fn decide_early_wake(&mut self, granted: &mut RealtimeGranted) {
+        if !self.early_wake_needs_priority || granted.priority > 0 {
+            return;
+        }
+        self.machine.timer.disable_early_wake();
+        if self.realtime.priority.is_some() {
+            granted.denied.push(DeniedRequest {
+                request: "early wake".to_owned(),
+                reason: "the loop's thread has no real-time priority".to_owned(),
+                remedy: "see SCHED_FIFO above; without it the kernel's lateness of 30 to 100 µs \
+                         remains"
+                    .to_owned(),
+            });
         }
     }
 }

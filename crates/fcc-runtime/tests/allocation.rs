@@ -14,12 +14,19 @@ use fcc_timer::ManualTimer;
 /// A plant that goes through everything by the tick's number alone.
 struct Plant;
 
-#[derive(Clone, Copy, Default)]
-struct Measured {
-    value: [f64; 16],
-    switch: Reading<Switch>,
-    faults: Flags,
-    engage_inhibits: Flags,
+fcc_core::schema! {
+    /// What the plant measures.
+    #[derive(Clone, Copy, Default)]
+    struct Measured {
+        #[field(1)]
+        value: f64,
+        #[field(2)]
+        switch: Reading<Switch>,
+        #[field(3)]
+        faults: Flags,
+        #[field(4)]
+        engage_inhibits: Flags,
+    }
 }
 
 /// Whether tick `number` lies in the first part of a cycle.
@@ -30,7 +37,7 @@ fn within(number: u64, part: u64, of: u64) -> bool {
 impl Sensor<Measured> for Plant {
     fn sample(&mut self, tick: &Tick, into: &mut Measured) -> Result<(), SensorFault> {
         let n = tick.number;
-        into.value = [n as f64; 16];
+        into.value = n as f64;
         let position = if within(n, 40, 100) {
             Switch::Off
         } else {
@@ -55,7 +62,7 @@ struct Steady;
 
 impl Sensor<Measured> for Steady {
     fn sample(&mut self, tick: &Tick, into: &mut Measured) -> Result<(), SensorFault> {
-        into.value = [tick.number as f64; 16];
+        into.value = tick.number as f64;
         Ok(())
     }
 
@@ -64,8 +71,8 @@ impl Sensor<Measured> for Steady {
     }
 }
 
-impl Actuator<[f64; 4]> for Plant {
-    fn apply(&mut self, tick: &Tick, _: &[f64; 4]) -> Result<(), ActuatorFault> {
+impl Actuator<f64> for Plant {
+    fn apply(&mut self, tick: &Tick, _: &f64) -> Result<(), ActuatorFault> {
         if within(tick.number, 5, 90) {
             return Err(ActuatorFault::Unconfirmed);
         }
@@ -88,8 +95,9 @@ struct Copying {
 
 impl Controller for Copying {
     type Measurements = Measured;
-    type Setpoints = [f64; 6];
-    type Outputs = [f64; 4];
+    type Estimate = f64;
+    type Setpoints = f64;
+    type Outputs = f64;
     type Command = u64;
 
     fn estimate(&mut self, tick: &Tick, _: &Measured) {
@@ -110,27 +118,27 @@ impl Controller for Copying {
 
     fn engage(&mut self, _: &Tick, _: &Measured) {}
 
-    fn control(&mut self, _: &Tick, measured: &Measured) -> [f64; 4] {
+    fn control(&mut self, _: &Tick, measured: &Measured) -> f64 {
         if within(self.number, 1, self.invalid_every) {
-            return [f64::NAN; 4];
+            return f64::NAN;
         }
-        [measured.value[0]; 4]
+        measured.value
     }
 
-    fn failsafe(&mut self, _: &Tick, _: &Measured) -> [f64; 4] {
-        [0.0; 4]
+    fn failsafe(&mut self, _: &Tick, _: &Measured) -> f64 {
+        0.0
     }
 
     fn command(&mut self, command: &u64) {
         self.number = *command;
     }
 
-    fn setpoints(&self) -> [f64; 6] {
-        [0.0; 6]
+    fn setpoints(&self) -> f64 {
+        0.0
     }
 
-    fn outputs_are_valid(&self, outputs: &[f64; 4]) -> bool {
-        outputs.iter().all(|output| output.is_finite())
+    fn outputs_are_valid(&self, outputs: &f64) -> bool {
+        outputs.is_finite()
     }
 
     fn switch(&self, measured: &Measured) -> Reading<Switch> {

@@ -10,7 +10,7 @@ use std::time::Duration;
 use bench::{Puppet, Stage, parts};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_runtime::{
-    Ending, Link, Loop, LoopCommand, LoopConfig, LoopHandle, Message, Parts, SpawnError,
+    Ending, Link, Loop, LoopCommand, LoopConfig, LoopHandle, LoopReport, Message, Parts, SpawnError,
 };
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, TimerKind};
 
@@ -222,4 +222,54 @@ fn the_margin_of_an_early_timer_is_in_the_record() {
     assert_eq!(margin_ns, 250_000);
     assert_eq!(timing.early_wake_max_us, 250.0);
     assert!(timing.early_wake_us >= 20.0);
+}
+
+/// Runs a loop on a timer that wakes early if the thread has a real-time
+/// priority; its longest margin, µs, and its report.
+fn margin_with(priority: Option<u8>) -> (f64, LoopReport) {
+    let stage = Stage::default();
+    let early = EarlyWake::default();
+    let timed = Parts {
+        timer: TimerKind::Timerfd.build_early(PERIOD, &early).unwrap(),
+        ..parts(&stage)
+    };
+    let config = LoopConfig {
+        early_wake_needs_priority: true,
+        realtime: RealtimeRequest {
+            priority,
+            ..RealtimeRequest::default()
+        },
+        ..LoopConfig::default()
+    };
+    let (this, link) = Loop::new(timed, &config).unwrap();
+    let handle = this.spawn().unwrap();
+    thread::sleep(5 * PERIOD);
+    link.stop.stop();
+    let report = handle.join();
+    (report.timing.early_wake_max_us, report)
+}
+
+#[test]
+fn early_wake_that_needs_a_priority_is_off_without_one_and_reported() {
+    let denied = |report: &LoopReport| -> Vec<String> {
+        let granted = report.granted.as_ref().unwrap();
+        granted
+            .denied
+            .iter()
+            .map(|one| one.request.clone())
+            .collect()
+    };
+    // Nobody asked for a priority: nothing is denied.
+    let (margin_us, report) = margin_with(None);
+    assert_eq!(margin_us, 0.0);
+    assert!(denied(&report).is_empty());
+
+    let (margin_us, report) = margin_with(Some(10));
+    if report.granted.as_ref().unwrap().priority > 0 {
+        assert_eq!(margin_us, 250.0);
+        assert!(denied(&report).is_empty());
+    } else {
+        assert_eq!(margin_us, 0.0);
+        assert_eq!(denied(&report), ["SCHED_FIFO priority 10", "early wake"]);
+    }
 }

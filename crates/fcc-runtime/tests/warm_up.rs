@@ -64,6 +64,7 @@ impl Noting {
 
 impl Controller for Noting {
     type Measurements = u64;
+    type Estimate = ();
     type Setpoints = ();
     type Outputs = u64;
     type Command = ();

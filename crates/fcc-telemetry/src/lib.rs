@@ -6,12 +6,12 @@
 
 mod flight;
 mod instance;
-mod layout;
 #[cfg(feature = "live")]
 pub mod live;
 mod message;
 pub mod recording;
 pub mod report;
+pub mod schema;
 mod score;
 mod table;
 mod timing;
@@ -19,8 +19,7 @@ pub mod units;
 
 pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};
-pub use layout::{FIELDS, Field, FieldKind, RECORD_BYTES, RecordWords, words_of};
-pub use message::{FlightEvent, FlightMessage, FlightRecord, event_words};
+pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords, event_words};
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
 pub use table::{flight_table, recordings_table, timing_table};
 pub use timing::{DeniedRequest, Lateness, Period, Realtime, TimingReport};

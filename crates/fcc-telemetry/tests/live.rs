@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventKind, State, Tick, Time};
 use fcc_telemetry::live::{
-    Event, EventCode, Info, MAX_WATCHERS, PublishError, Publisher, RecorderState, RecorderStatus,
-    Text, WatchError, Watcher,
+    Event, EventCode, Info, LAYOUT, MAX_WATCHERS, PublishError, Publisher, RecorderState,
+    RecorderStatus, Text, WatchError, Watcher,
 };
 use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
 
@@ -168,7 +168,7 @@ fn a_daemon_with_another_layout_is_refused_in_words() {
     let instance = instance("layout");
     let mut publisher = Publisher::start(&instance).unwrap();
     publisher.describe(Info {
-        layout: 2,
+        layout: LAYOUT + 1,
         software: Text::new("9.0.0"),
         ..Info::default()
     });
@@ -176,7 +176,8 @@ fn a_daemon_with_another_layout_is_refused_in_words() {
     let words = error.to_string();
     assert!(words.contains("version 9.0.0"), "{words}");
     assert!(
-        words.contains("layout 2") && words.contains("layout 1"),
+        words.contains(&format!("layout {}", LAYOUT + 1))
+            && words.contains(&format!("layout {LAYOUT}:")),
         "{words}"
     );
 }

@@ -73,6 +73,10 @@ impl Timer for Nanosleep {
         }
     }
 
+    fn disable_early_wake(&mut self) {
+        self.early = None;
+    }
+
     fn period(&self) -> Duration {
         self.period.duration()
     }

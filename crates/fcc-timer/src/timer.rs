@@ -38,6 +38,11 @@ pub trait Timer: Send {
         self.wait().map(Wake::Deadline)
     }
 
+    /// Makes a timer that wakes early wake at its deadlines, from the next
+    /// [`start`](Self::start) on. For a thread that has no real-time priority:
+    /// others interrupt its spin, so it costs CPU time and gains nothing.
+    fn disable_early_wake(&mut self) {}
+
     /// The time between deadlines.
     fn period(&self) -> Duration;
 

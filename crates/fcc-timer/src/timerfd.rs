@@ -76,6 +76,10 @@ impl Timer for TimerFd {
         }
     }
 
+    fn disable_early_wake(&mut self) {
+        self.early = None;
+    }
+
     fn period(&self) -> Duration {
         self.period.duration()
     }

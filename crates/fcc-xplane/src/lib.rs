@@ -30,6 +30,7 @@
 //! | `inbox`, `values` | from datagrams to measurements |
 //! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
 //! | `controls`, `confirmation`, `release_monitor`, `release` | writing, whether it takes effect, giving back |
+//! | `authority`, `status` | who has control, and how the connection is, seen from outside the loop |
 //! | `port`, `discovery` | sockets and the beacon |
 //!
 //! # What may go wrong out there
@@ -46,6 +47,7 @@
 #![forbid(unsafe_code)]
 
 mod actuator;
+mod authority;
 mod config;
 mod confirmation;
 mod controls;
@@ -70,15 +72,16 @@ mod units;
 mod values;
 
 pub use actuator::XPlaneActuator;
+pub use authority::XPlaneAuthority;
 pub use config::{
     DataRows, Input, Output, RowsVersion, Simulator, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
+pub use fcc_core::framework::Released;
 pub use link::Control;
 pub use missing::Missing;
 pub use open::{OpenError, XPlane};
 pub use port::{Errno, Port, UdpPort};
-pub use release::Released;
 pub use sensor::XPlaneSensor;
 pub use simulator::SimulatorState;
 pub use status::{Counts, Trouble, XPlaneStatus};

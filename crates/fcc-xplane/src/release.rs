@@ -5,26 +5,14 @@ use std::io::ErrorKind;
 use std::net::{SocketAddrV4, UdpSocket};
 use std::time::{Duration, Instant};
 
+use fcc_core::framework::Released;
+
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane};
 use crate::port::Errno;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
-
-/// How a release that was waited for ended.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Released {
-    /// X-Plane shows its overrides as released.
-    Confirmed,
-    /// Nothing listens at X-Plane's address any more.
-    Gone,
-    /// X-Plane said nothing, or goes on showing an override: it hangs, cannot
-    /// be reached, or somebody else holds the override.
-    Unconfirmed,
-    /// The release was called off before X-Plane showed it.
-    CalledOff,
-}
 
 /// Between one letting go and the next.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);

@@ -4,7 +4,7 @@ use fcc_conformance::{ActuatorBench, SensorBench, actuator_conformance, sensor_c
 use fcc_core::framework::{Actuator, Sensor, Time};
 
 use crate::room::{Heater, Thermometer};
-use crate::thermostat::Measured;
+use crate::thermostat::{Heating, Measured};
 
 struct Room {
     thermometer: Thermometer,
@@ -44,26 +44,28 @@ impl SensorBench for Room {
 }
 
 impl ActuatorBench for Room {
-    type Outputs = f64;
+    type Outputs = Heating;
 
     fn new() -> Self {
         room()
     }
 
-    fn actuator(&mut self) -> &mut dyn Actuator<f64> {
+    fn actuator(&mut self) -> &mut dyn Actuator<Heating> {
         &mut self.heater
     }
 
-    fn outputs(number: u32) -> f64 {
-        f64::from(number % 10 + 1) * 0.1
+    fn outputs(number: u32) -> Heating {
+        Heating {
+            power: f64::from(number % 10 + 1) * 0.1,
+        }
     }
 
     fn is_held(&mut self) -> bool {
         self.thermometer.heater.power() > 0.0
     }
 
-    fn follows(&mut self, power: &f64) -> bool {
-        self.thermometer.heater.power() == *power
+    fn follows(&mut self, heating: &Heating) -> bool {
+        self.thermometer.heater.power() == heating.power
     }
 }
 

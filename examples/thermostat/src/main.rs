@@ -82,7 +82,7 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
                 record.state,
                 record.measurements.room_c.value,
-                record.outputs * room::HEATER_W
+                record.outputs.power * room::HEATER_W
             );
         }
     }
@@ -98,12 +98,13 @@ mod tests {
 
     use super::*;
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
+    use thermostat::Heating;
 
     /// After one time constant a first-order room has come 1 - 1/e of the way.
     #[test]
     fn the_room_is_the_textbooks() {
         let mut heater = Heater::default();
-        Actuator::apply(&mut heater, &Tick::default(), &0.5).unwrap();
+        Actuator::apply(&mut heater, &Tick::default(), &Heating { power: 0.5 }).unwrap();
         let mut thermometer = Thermometer {
             room_c: OUTSIDE_C,
             heater,

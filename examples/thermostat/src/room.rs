@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Tick};
 
-use crate::thermostat::Measured;
+use crate::thermostat::{Heating, Measured};
 
 /// How much faster time passes in the room than outside it: 1.8 s for an hour.
 pub(crate) const TIME_SCALE: f64 = 2_000.0;
@@ -33,9 +33,9 @@ impl Heater {
     }
 }
 
-impl Actuator<f64> for Heater {
-    fn apply(&mut self, _: &Tick, power: &f64) -> Result<(), ActuatorFault> {
-        self.set(*power);
+impl Actuator<Heating> for Heater {
+    fn apply(&mut self, _: &Tick, heating: &Heating) -> Result<(), ActuatorFault> {
+        self.set(heating.power);
         Ok(())
     }
 

@@ -3,13 +3,40 @@
 use std::time::Duration;
 
 use fcc_core::blocks::{Pid, PidConfig};
+use fcc_core::framework::schema::in_range;
 use fcc_core::framework::{Controller, Flags, Reading, Tick};
+use fcc_core::schema;
 
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Measured {
-    pub(crate) room_c: Reading<f64>,
+schema! {
+    /// What is measured of a room.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub(crate) struct Measured {
+        /// Temperature of its air.
+        #[field(1)]
+        pub(crate) room_c: Reading<f64>,
+    }
+}
+
+schema! {
+    /// What is to become of a room.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub(crate) struct Wanted {
+        /// Temperature of its air.
+        #[field(1)]
+        pub(crate) room_c: f64,
+    }
+}
+
+schema! {
+    /// What is done about it.
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub(crate) struct Heating {
+        /// Power of the heater: 0 off, 1 full.
+        #[field(1, range = 0.0..=1.0)]
+        pub(crate) power: f64,
+    }
 }
 
 /// How fast the room shall follow, s of its own time.
@@ -41,8 +68,9 @@ impl Thermostat {
 
 impl Controller for Thermostat {
     type Measurements = Measured;
-    type Setpoints = f64;
-    type Outputs = f64;
+    type Estimate = ();
+    type Setpoints = Wanted;
+    type Outputs = Heating;
     /// Another temperature, °C.
     type Command = f64;
 
@@ -66,25 +94,29 @@ impl Controller for Thermostat {
         self.pid.engage(0.0, room_c, room_c, 0.0, 1.0);
     }
 
-    fn control(&mut self, tick: &Tick, measured: &Measured) -> f64 {
+    fn control(&mut self, tick: &Tick, measured: &Measured) -> Heating {
         let dt_s = tick.dt_s * TIME_SCALE;
-        self.pid.step(self.wanted_c, measured.room_c.value, dt_s)
+        Heating {
+            power: self.pid.step(self.wanted_c, measured.room_c.value, dt_s),
+        }
     }
 
     /// Off: a cold room is safer than a burnt one.
-    fn failsafe(&mut self, _: &Tick, _: &Measured) -> f64 {
-        0.0
+    fn failsafe(&mut self, _: &Tick, _: &Measured) -> Heating {
+        Heating { power: 0.0 }
     }
 
     fn command(&mut self, wanted_c: &f64) {
         self.wanted_c = *wanted_c;
     }
 
-    fn setpoints(&self) -> f64 {
-        self.wanted_c
+    fn setpoints(&self) -> Wanted {
+        Wanted {
+            room_c: self.wanted_c,
+        }
     }
 
-    fn outputs_are_valid(&self, power: &f64) -> bool {
-        (0.0..=1.0).contains(power)
+    fn outputs_are_valid(&self, heating: &Heating) -> bool {
+        in_range(heating)
     }
 }

@@ -1,126 +1,233 @@
 //! What an aircraft's sensors measure.
 
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
 use super::Surfaces;
 use crate::framework::{Reading, Switch};
+use crate::schema;
 
-/// What an aircraft's sensors measure, each with the time it was taken.
-///
-/// Control needs attitude, heading, body rates, specific force, airspeed and
-/// altitude, as in the thesis; position and ground velocity are for navigation
-/// where there is a source, and never needed to fly.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Measurements {
-    /// Pitch and roll.
-    pub attitude: Reading<Attitude>,
-    /// Magnetic heading in rad, clockwise from magnetic north, 0..2π.
-    pub heading_rad: Reading<f64>,
-    /// Turn rates about the body axes.
-    pub body_rates: Reading<BodyRates>,
-    /// What accelerometers feel.
-    pub specific_force: Reading<SpecificForce>,
-    /// Indicated airspeed in m/s.
-    pub airspeed_mps: Reading<f64>,
-    /// Barometric altitude in m above the standard pressure level.
-    pub altitude_m: Reading<f64>,
-    /// Angle of attack in rad, positive when the air comes from below the nose.
-    pub angle_of_attack_rad: Reading<f64>,
-    /// Where the aircraft is; for navigation.
-    pub position: Reading<Position>,
-    /// How it moves over the ground; for navigation.
-    pub velocity: Reading<Velocity>,
-    /// Where throttle and surfaces stand, if the plant tells: for taking over
-    /// without a bump.
-    pub surfaces: Reading<Surfaces>,
-    /// The engage switch.
-    pub engage_switch: Reading<Switch>,
-    /// A simulated plant's own clock and condition; never read on a real one.
-    pub plant: Reading<Plant>,
+schema! {
+    /// What an aircraft's sensors measure, each with the time it was taken.
+    ///
+    /// Control needs attitude, heading, body rates, specific force, airspeed and
+    /// altitude, as in the thesis; position and ground velocity are for navigation
+    /// where there is a source, and never needed to fly.
+    ///
+    /// ```
+    /// use core::time::Duration;
+    /// use fcc_core::flight::Measurements;
+    /// use fcc_core::framework::{Reading, Time};
+    ///
+    /// let now = Time::from_nanos(1_000_000_000);
+    /// let measured = Measurements {
+    ///     airspeed_mps: Reading::new(51.4, now),
+    ///     ..Measurements::default()
+    /// };
+    /// assert!(measured.airspeed_mps.is_fresh(now, Duration::from_millis(250)));
+    /// assert!(measured.position.is_never());
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Measurements {
+        /// Pitch and roll.
+        #[field(1)]
+        pub attitude: Reading<Attitude>,
+        /// Magnetic heading in rad, clockwise from magnetic north.
+        #[field(2, range = 0.0..=TAU)]
+        pub heading_rad: Reading<f64>,
+        /// Turn rates about the body axes.
+        #[field(3)]
+        pub body_rates: Reading<BodyRates>,
+        /// What accelerometers feel.
+        #[field(4, column = "specific_force_*")]
+        pub specific_force: Reading<SpecificForce>,
+        /// Indicated airspeed in m/s.
+        #[field(5)]
+        pub airspeed_mps: Reading<f64>,
+        /// Barometric altitude in m above the standard pressure level.
+        #[field(6)]
+        pub altitude_m: Reading<f64>,
+        /// Angle of attack in rad, positive when the air comes from below the nose.
+        #[field(7)]
+        pub angle_of_attack_rad: Reading<f64>,
+        /// Where the aircraft is; for navigation.
+        #[field(8)]
+        pub position: Reading<Position>,
+        /// How it moves over the ground; for navigation.
+        #[field(9)]
+        pub velocity: Reading<Velocity>,
+        /// Where throttle and surfaces stand, if the plant tells: for taking over
+        /// without a bump.
+        #[field(10, column = "measured_*")]
+        pub surfaces: Reading<Surfaces>,
+        /// The engage switch.
+        #[field(11)]
+        pub engage_switch: Reading<Switch>,
+        /// A simulated plant's own clock and condition; never read on a real one.
+        #[field(12, column = "plant_*")]
+        pub plant: Reading<Plant>,
+    }
 }
 
-/// Pitch and roll, rad.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Attitude {
-    /// Nose above the horizon, -π/2..π/2.
-    pub pitch_rad: f64,
-    /// Right wing down, -π..π.
-    pub roll_rad: f64,
+schema! {
+    /// Pitch and roll, rad.
+    ///
+    /// ```
+    /// use fcc_core::flight::Attitude;
+    ///
+    /// let climbing = Attitude { pitch_rad: 10.0_f64.to_radians(), ..Attitude::default() };
+    /// assert_eq!(climbing.roll_rad, 0.0);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Attitude {
+        /// Nose above the horizon.
+        #[field(1, range = -FRAC_PI_2..=FRAC_PI_2)]
+        pub pitch_rad: f64,
+        /// Right wing down.
+        #[field(2, range = -PI..=PI)]
+        pub roll_rad: f64,
+    }
 }
 
-/// Turn rates about the body axes, rad/s.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct BodyRates {
-    /// P, about x: right wing down.
-    pub roll_radps: f64,
-    /// Q, about y: nose up.
-    pub pitch_radps: f64,
-    /// R, about z: nose right.
-    pub yaw_radps: f64,
+schema! {
+    /// Turn rates about the body axes, rad/s.
+    ///
+    /// ```
+    /// use fcc_core::flight::BodyRates;
+    ///
+    /// // A standard rate turn is 3 °/s: two minutes for a full one.
+    /// let turn = BodyRates { yaw_radps: 3.0_f64.to_radians(), ..BodyRates::default() };
+    /// assert!((core::f64::consts::TAU / turn.yaw_radps - 120.0).abs() < 1e-9);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct BodyRates {
+        /// P, about x: right wing down.
+        #[field(1, column = "roll_rate_radps")]
+        pub roll_radps: f64,
+        /// Q, about y: nose up.
+        #[field(2, column = "pitch_rate_radps")]
+        pub pitch_radps: f64,
+        /// R, about z: nose right.
+        #[field(3, column = "yaw_rate_radps")]
+        pub yaw_radps: f64,
+    }
 }
 
-/// Acceleration less gravity, along the body axes, m/s²: what an accelerometer
-/// reads. Level and unaccelerated, z is -9.81.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct SpecificForce {
-    /// Forward.
-    pub x_mps2: f64,
-    /// Right.
-    pub y_mps2: f64,
-    /// Down.
-    pub z_mps2: f64,
+schema! {
+    /// Acceleration less gravity, along the body axes, m/s²: what an accelerometer
+    /// reads. Level and unaccelerated, z is -9.81.
+    ///
+    /// ```
+    /// use fcc_core::flight::SpecificForce;
+    ///
+    /// // A level turn at 60° of bank weighs twice as much.
+    /// let turn = SpecificForce { z_mps2: -2.0 * 9.806_65, ..SpecificForce::default() };
+    /// assert!(turn.z_mps2 < -19.6);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct SpecificForce {
+        /// Forward.
+        #[field(1)]
+        pub x_mps2: f64,
+        /// Right.
+        #[field(2)]
+        pub y_mps2: f64,
+        /// Down.
+        #[field(3)]
+        pub z_mps2: f64,
+    }
 }
 
-/// A place on the WGS 84 ellipsoid.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Position {
-    /// North of the equator, -π/2..π/2.
-    pub latitude_rad: f64,
-    /// East of Greenwich, -π..π.
-    pub longitude_rad: f64,
-    /// Above mean sea level, m.
-    pub altitude_m: f64,
+schema! {
+    /// A place on the WGS 84 ellipsoid.
+    ///
+    /// ```
+    /// use fcc_core::flight::Position;
+    ///
+    /// // The threshold of runway 25L at Milwaukee (KMKE), 723 ft.
+    /// let position = Position {
+    ///     latitude_rad: 42.95_f64.to_radians(),
+    ///     longitude_rad: -87.88_f64.to_radians(),
+    ///     altitude_m: 220.4,
+    /// };
+    /// assert!(position.longitude_rad < 0.0, "west of Greenwich");
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Position {
+        /// North of the equator.
+        #[field(1, range = -FRAC_PI_2..=FRAC_PI_2)]
+        pub latitude_rad: f64,
+        /// East of Greenwich.
+        #[field(2, range = -PI..=PI)]
+        pub longitude_rad: f64,
+        /// Above mean sea level, m.
+        #[field(3, column = "position_altitude_m")]
+        pub altitude_m: f64,
+    }
 }
 
-/// Velocity over the ground, m/s.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Velocity {
-    /// Towards true north.
-    pub north_mps: f64,
-    /// Towards east.
-    pub east_mps: f64,
-    /// Down.
-    pub down_mps: f64,
+schema! {
+    /// Velocity over the ground, m/s.
+    ///
+    /// ```
+    /// use fcc_core::flight::Velocity;
+    ///
+    /// // Climbing 500 ft/min: down is negative.
+    /// let climb = Velocity { down_mps: -2.54, ..Velocity::default() };
+    /// assert!((climb.down_mps * -196.85 - 500.0).abs() < 0.1);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Velocity {
+        /// Towards true north.
+        #[field(1)]
+        pub north_mps: f64,
+        /// Towards east.
+        #[field(2)]
+        pub east_mps: f64,
+        /// Down.
+        #[field(3)]
+        pub down_mps: f64,
+    }
 }
 
-/// A simulated plant's own clock and condition.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Plant {
-    /// The plant's own time in s. The loop integrates with it where there is
-    /// one: a simulator whose frame rate falls slows its time.
-    pub time_s: f64,
-    /// What the plant is doing.
-    pub state: PlantState,
+schema! {
+    /// A simulated plant's own clock and condition.
+    ///
+    /// ```
+    /// use fcc_core::flight::{Plant, PlantState};
+    ///
+    /// let plant = Plant { time_s: 12.5, state: PlantState::Paused };
+    /// assert_ne!(plant.state, PlantState::Running);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Plant {
+        /// The plant's own time in s. The loop integrates with it where there is
+        /// one: a simulator whose frame rate falls slows its time.
+        #[field(1)]
+        pub time_s: f64,
+        /// What the plant is doing.
+        #[field(2)]
+        pub state: PlantState,
+    }
 }
 
-/// What a simulated plant is doing.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[repr(u8)]
-pub enum PlantState {
-    /// Time runs.
-    #[default]
-    Running = 0,
-    /// Halted by its user: outputs are held, nothing integrates.
-    Paused = 1,
-    /// It speaks, but its clock stands still and it does not say paused.
-    Stalled = 2,
-    /// Time runs, slower than the wall clock or at a low frame rate.
-    Slow = 3,
-    /// Its clock jumped: it was restarted, reloaded or put somewhere else.
-    Jumped = 4,
+schema! {
+    /// What a simulated plant is doing.
+    ///
+    /// ```
+    /// use fcc_core::flight::PlantState;
+    ///
+    /// assert_eq!(PlantState::from_number(1), Some(PlantState::Paused));
+    /// ```
+    pub enum PlantState {
+        /// Time runs.
+        Running = 0,
+        /// Halted by its user: outputs are held, nothing integrates.
+        Paused = 1,
+        /// It speaks, but its clock stands still and it does not say paused.
+        Stalled = 2,
+        /// Time runs, slower than the wall clock or at a low frame rate.
+        Slow = 3,
+        /// Its clock jumped: it was restarted, reloaded or put somewhere else.
+        Jumped = 4,
+    }
 }

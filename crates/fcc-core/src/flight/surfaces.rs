@@ -1,25 +1,38 @@
 //! What the autopilot commands.
 
-/// What the autopilot commands: throttle and control surfaces.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Surfaces {
-    /// 0 idle ..= 1 full.
-    pub throttle: f64,
-    /// -1..=1; positive raises the nose.
-    pub elevator: f64,
-    /// -1..=1; positive rolls right.
-    pub aileron: f64,
-    /// -1..=1; positive yaws right.
-    pub rudder: f64,
+use crate::framework::schema::in_range;
+use crate::schema;
+
+schema! {
+    /// What the autopilot commands: throttle and control surfaces.
+    ///
+    /// ```
+    /// use fcc_core::flight::Surfaces;
+    ///
+    /// let climb = Surfaces { throttle: 1.0, elevator: 0.2, ..Surfaces::default() };
+    /// assert!(climb.is_valid());
+    /// assert!(!Surfaces { throttle: f64::NAN, ..climb }.is_valid());
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Surfaces {
+        /// 0 idle, 1 full.
+        #[field(1, range = 0.0..=1.0)]
+        pub throttle: f64,
+        /// Positive raises the nose.
+        #[field(2, range = -1.0..=1.0)]
+        pub elevator: f64,
+        /// Positive rolls right.
+        #[field(3, range = -1.0..=1.0)]
+        pub aileron: f64,
+        /// Positive yaws right.
+        #[field(4, range = -1.0..=1.0)]
+        pub rudder: f64,
+    }
 }
 
 impl Surfaces {
     /// Whether every value is finite and in its range.
     pub fn is_valid(&self) -> bool {
-        (0.0..=1.0).contains(&self.throttle)
-            && [self.elevator, self.aileron, self.rudder]
-                .iter()
-                .all(|surface| (-1.0..=1.0).contains(surface))
+        in_range(self)
     }
 }

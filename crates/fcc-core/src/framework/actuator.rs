@@ -3,8 +3,35 @@
 use core::fmt;
 
 use super::Tick;
+use crate::schema;
 
 /// Carries the outputs `A` of a tick to the plant.
+///
+/// ```
+/// use fcc_core::framework::{Actuator, ActuatorFault, Tick};
+///
+/// /// A heater that nobody has plugged in.
+/// struct Unplugged;
+///
+/// impl Actuator<f64> for Unplugged {
+///     fn apply(&mut self, _: &Tick, _: &f64) -> Result<(), ActuatorFault> {
+///         Err(ActuatorFault::NotConnected)
+///     }
+///
+///     fn release(&mut self) -> Result<(), ActuatorFault> {
+///         Ok(())
+///     }
+///
+///     fn name(&self) -> &'static str {
+///         "heater"
+///     }
+/// }
+///
+/// let mut heater = Unplugged;
+/// assert!(heater.apply(&Tick::default(), &0.5).is_err());
+/// // Released twice is released.
+/// assert!(heater.release().is_ok() && heater.release().is_ok());
+/// ```
 pub trait Actuator<A>: Send {
     /// Sends the outputs off and returns. Never waits, allocates, locks, logs
     /// or panics. The first call after a release takes control.
@@ -33,19 +60,32 @@ pub trait Actuator<A>: Send {
     fn name(&self) -> &'static str;
 }
 
-/// What can go wrong when an actuator is driven.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum ActuatorFault {
-    /// The operating system refused a write, with its error number.
-    Io {
-        /// `errno`, 0 if there was none.
-        errno: i32,
-    },
-    /// Writes are sent, but the plant does not follow them.
-    Unconfirmed,
-    /// Where to send is not known yet.
-    NotConnected,
+schema! {
+    /// What can go wrong when an actuator is driven.
+    ///
+    /// ```
+    /// use fcc_core::framework::ActuatorFault;
+    ///
+    /// assert_ne!(ActuatorFault::NotConnected.to_string(), "");
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+    #[name("ActuatorFaultKind")]
+    #[non_exhaustive]
+    pub enum ActuatorFault {
+        /// The operating system refused a write, with its error number.
+        #[field(2)]
+        Io {
+            /// `errno`, 0 if there was none.
+            #[field(1)]
+            errno: i32,
+        },
+        /// Writes are sent, but the plant does not follow them.
+        #[field(4)]
+        Unconfirmed,
+        /// Where to send is not known yet.
+        #[field(5)]
+        NotConnected,
+    }
 }
 
 impl fmt::Display for ActuatorFault {

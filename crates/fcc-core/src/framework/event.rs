@@ -5,134 +5,239 @@ use core::fmt;
 use super::{
     ActuatorFault, Cause, Controller, Flags, LoopCommand, SensorFault, Stage, State, Time,
 };
+use crate::schema;
 
-/// Something that happened once, unlike a [`Record`](super::Record), of which
-/// there is one per tick; `O` is what may be ordered of the controller.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Event<O> {
-    /// The tick it happened in; before the first tick, 0.
-    pub tick: u64,
-    /// That tick's wake-up, on the loop's clock.
-    pub time: Time,
-    /// What it was.
-    pub kind: EventKind<O>,
+schema! {
+    /// Something that happened once, unlike a record, of which there is one per
+    /// tick; it comes before the record of its tick.
+    ///
+    /// `O` is what may be ordered of the controller.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Event, EventKind, Time};
+    ///
+    /// let event: Event<f64> = Event {
+    ///     tick: 40,
+    ///     time: Time::from_nanos(1_000_000_000),
+    ///     kind: EventKind::StopRequested,
+    /// };
+    /// assert_eq!(event.kind, EventKind::StopRequested);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+    pub struct Event<O> {
+        /// The tick it happened in; before the first tick, 0.
+        #[field(1)]
+        pub tick: u64,
+        /// That tick's wake-up, on the loop's clock.
+        #[field(2)]
+        pub time: Time,
+        /// What it was.
+        #[field(4)]
+        pub kind: EventKind<O>,
+    }
 }
 
 /// The event of a controller's loop.
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::{EventKind, EventOf, LoopCommand, Time};
+///
+/// let event: EventOf<Heating> = EventOf::<Heating> {
+///     tick: 1,
+///     time: Time::from_nanos(0),
+///     // A thermostat's own commands are temperatures.
+///     kind: EventKind::CommandReceived(LoopCommand::Controller(21.0)),
+/// };
+/// assert_eq!(event.tick, 1);
+/// ```
 pub type EventOf<C> = Event<<C as Controller>::Command>;
 
-/// What can happen in a loop. Sensors and actuators go by their place in the
-/// loop, the first being 0.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum EventKind<O> {
-    /// The loop's state changed.
-    StateChanged {
-        /// The state before.
-        from: State,
-        /// The state now.
-        to: State,
-    },
-    /// A command was read, in the sequence they were sent in: with these and the
-    /// measurements of its records a run can be replayed.
-    CommandReceived(LoopCommand<O>),
-    /// The loop was told to end by its stop flag, as a signal does; this too
-    /// comes from outside, and is needed to replay a run.
-    StopRequested,
-    /// Somebody wanted to engage, and must ask again.
-    EngageRefused {
-        /// Why; empty if control was let go in the same tick, or if as many
-        /// ticks in a row overrun as lead to failsafe.
-        engage_inhibits: Flags,
-    },
-    /// A sensor went wrong, or goes wrong in another way than before.
-    SensorFault {
-        /// Which sensor.
-        index: u16,
-        /// What goes wrong.
-        fault: SensorFault,
-    },
-    /// A sensor that went wrong works again.
-    SensorRecovered {
-        /// Which sensor.
-        index: u16,
-    },
-    /// An actuator went wrong, or goes wrong in another way than before.
-    ActuatorFault {
-        /// Which actuator.
-        index: u16,
-        /// What goes wrong.
-        fault: ActuatorFault,
-    },
-    /// An actuator that went wrong works again.
-    ActuatorRecovered {
-        /// Which actuator.
-        index: u16,
-    },
-    /// Records that found no room in the ring are lost.
-    RecordsDropped {
-        /// How many.
-        count: u64,
-        /// The first lost tick.
-        first: u64,
-        /// The last lost tick.
-        last: u64,
-    },
-    /// Events that found no room are lost.
-    EventsDropped {
-        /// How many.
-        count: u64,
-        /// The tick of the first.
-        first: u64,
-        /// The tick of the last.
-        last: u64,
-    },
-    /// Messages that reached the recorder and not its file are lost: the disk
-    /// was too slow for them, or full.
-    NotRecorded {
-        /// How many.
-        count: u64,
-        /// The first lost tick.
-        first: u64,
-        /// The last lost tick.
-        last: u64,
-    },
-    /// The actuators were told to give control back.
-    Released {
-        /// Whether all of them did. If not, the loop asks again.
-        ok: bool,
-    },
-    /// A part panicked; its words are in the loop's report.
-    Panicked,
-    /// The timer failed; why is in the loop's report.
-    TimerFailed,
-    /// Ticks begin to overrun. Told once, however many follow:
-    /// [`OverrunsOver`](Self::OverrunsOver) says how many it became.
-    Overrun {
-        /// Whose budget was overrun; the timer's is one period.
-        of: Stage,
-        /// How long it took, or how late the timer woke, ns.
-        took_ns: u64,
-        /// How long it might have taken, ns.
-        budget_ns: u64,
-        /// The stage that took longest in that tick.
-        longest: Stage,
-    },
-    /// No tick has overrun for a second.
-    OverrunsOver {
-        /// How many ticks overran or were missed.
-        count: u64,
-        /// The first of them.
-        first: u64,
-        /// The last of them.
-        last: u64,
-    },
-    /// The loop hung, and its watchdog ended it: told by the watchdog, after
-    /// the last tick.
-    Hung {
-        /// How long the loop had shown no progress, ns.
-        silent_ns: u64,
-    },
+schema! {
+    /// What can happen in a loop. Sensors and actuators go by their place in the
+    /// loop, the first being 0.
+    ///
+    /// ```
+    /// use fcc_core::framework::{EventKind, State};
+    ///
+    /// let taken_over: EventKind<f64> = EventKind::StateChanged {
+    ///     from: State::Standby,
+    ///     to: State::Engaged,
+    /// };
+    /// assert_ne!(taken_over, EventKind::StopRequested);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+    #[non_exhaustive]
+    pub enum EventKind<O> {
+        /// The loop's state changed.
+        #[field(10)]
+        StateChanged {
+            /// The state before.
+            #[field(1)]
+            from: State,
+            /// The state now.
+            #[field(2)]
+            to: State,
+        },
+        /// A command was read, in the sequence they were sent in: with these and the
+        /// measurements of its records a run can be replayed.
+        #[field(11)]
+        CommandReceived(command: LoopCommand<O>),
+        /// The loop was told to end by its stop flag, as a signal does; this too
+        /// comes from outside, and is needed to replay a run.
+        #[field(23)]
+        StopRequested,
+        /// Somebody wanted to engage, and must ask again.
+        #[field(12)]
+        EngageRefused {
+            /// Why; empty if control was let go in the same tick, or if as many
+            /// ticks in a row overrun as lead to failsafe.
+            #[field(1)]
+            engage_inhibits: Flags,
+        },
+        /// A sensor went wrong, or goes wrong in another way than before.
+        #[field(13)]
+        SensorFault {
+            /// Which sensor.
+            #[field(1)]
+            index: u16,
+            /// What goes wrong.
+            #[field(2)]
+            fault: SensorFault,
+        },
+        /// A sensor that went wrong works again.
+        #[field(15)]
+        SensorRecovered {
+            /// Which sensor.
+            #[field(1)]
+            index: u16,
+        },
+        /// An actuator went wrong, or goes wrong in another way than before.
+        #[field(14)]
+        ActuatorFault {
+            /// Which actuator.
+            #[field(1)]
+            index: u16,
+            /// What goes wrong.
+            #[field(2)]
+            fault: ActuatorFault,
+        },
+        /// An actuator that went wrong works again.
+        #[field(16)]
+        ActuatorRecovered {
+            /// Which actuator.
+            #[field(1)]
+            index: u16,
+        },
+        /// Records that found no room in the ring are lost.
+        #[field(17)]
+        RecordsDropped {
+            /// How many.
+            #[field(1)]
+            count: u64,
+            /// The first lost tick.
+            #[field(2)]
+            first: u64,
+            /// The last lost tick.
+            #[field(3)]
+            last: u64,
+        },
+        /// Events that found no room are lost.
+        #[field(18)]
+        EventsDropped {
+            /// How many.
+            #[field(1)]
+            count: u64,
+            /// The tick of the first.
+            #[field(2)]
+            first: u64,
+            /// The tick of the last.
+            #[field(3)]
+            last: u64,
+        },
+        /// Messages that reached the recorder and not its file are lost: the disk
+        /// was too slow for them, or full.
+        #[field(19)]
+        NotRecorded {
+            /// How many.
+            #[field(1)]
+            count: u64,
+            /// The first lost tick.
+            #[field(2)]
+            first: u64,
+            /// The last lost tick.
+            #[field(3)]
+            last: u64,
+        },
+        /// The actuators were told to give control back.
+        #[field(20)]
+        Released {
+            /// Whether all of them did. If not, the loop asks again.
+            #[field(1)]
+            ok: bool,
+        },
+        /// A part panicked; its words are in the loop's report.
+        #[field(21)]
+        Panicked,
+        /// The timer failed; why is in the loop's report.
+        #[field(22)]
+        TimerFailed,
+        /// Ticks begin to overrun. Told once, however many follow:
+        /// `OverrunsOver` says how many it became.
+        #[field(24)]
+        Overrun {
+            /// Whose budget was overrun; the timer's is one period.
+            #[field(1)]
+            of: Stage,
+            /// How long it took, or how late the timer woke, ns.
+            #[field(2)]
+            took_ns: u64,
+            /// How long it might have taken, ns.
+            #[field(3)]
+            budget_ns: u64,
+            /// The stage that took longest in that tick.
+            #[field(4)]
+            longest: Stage,
+        },
+        /// No tick has overrun for a second.
+        #[field(25)]
+        OverrunsOver {
+            /// How many ticks overran or were missed.
+            #[field(1)]
+            count: u64,
+            /// The first of them.
+            #[field(2)]
+            first: u64,
+            /// The last of them.
+            #[field(3)]
+            last: u64,
+        },
+        /// The loop hung, and its watchdog ended it: told by the watchdog, after
+        /// the last tick.
+        #[field(26)]
+        Hung {
+            /// How long the loop had shown no progress, ns.
+            #[field(1)]
+            silent_ns: u64,
+        },
+    }
 }
 
 impl<O: Copy> EventKind<O> {
@@ -144,6 +249,31 @@ impl<O: Copy> EventKind<O> {
 }
 
 /// An event in words for people; see [`EventKind::words`].
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::EventKind;
+///
+/// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
+/// assert!(refused.words::<Heating>().to_string().ends_with("the door is open"));
+/// ```
 pub struct EventWords<C: Controller> {
     kind: EventKind<C::Command>,
 }

@@ -8,13 +8,16 @@
 //! `fcc-runtime`; here are the parts it holds and the words they exchange.
 
 mod actuator;
+mod authority;
 mod command;
 mod controller;
 mod event;
 mod flags;
 mod message;
+mod plant_id;
 mod reading;
 mod record;
+pub mod schema;
 mod sensor;
 mod stage;
 mod state;
@@ -23,11 +26,13 @@ mod tick;
 mod time;
 
 pub use actuator::{Actuator, ActuatorFault};
+pub use authority::{ControlAuthority, Released};
 pub use command::LoopCommand;
 pub use controller::{Controller, Switch};
 pub use event::{Event, EventKind, EventOf, EventWords};
 pub use flags::Flags;
 pub use message::{Message, MessageOf};
+pub use plant_id::PlantId;
 pub use reading::Reading;
 pub use record::{Record, RecordOf, StageTimes};
 pub use sensor::{Sensor, SensorFault};

@@ -1,57 +1,111 @@
 //! All that is known of one tick.
 
 use super::{Controller, Flags, State, StateCode, Tick};
+use crate::schema;
 
-/// All that is known of one tick of a loop with measurements `M`, set points
-/// `S` and outputs `O`.
-///
-/// Plain `repr(C)` data of a fixed size: the same struct goes through the
-/// loop's ring, shared memory and a recording.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Record<M, S, O> {
-    /// The tick and its times.
-    pub tick: Tick,
-    /// How long the stages took.
-    pub stages: StageTimes,
-    /// What the sensors had measured by then, each reading with its time.
-    pub measurements: M,
-    /// The controller's set points.
-    pub setpoints: S,
-    /// What was handed to the actuators; the default if nothing was.
-    pub outputs: O,
-    /// Failed samples of sensors since the loop's start.
-    pub sensor_faults: u64,
-    /// Failed writes and releases of actuators since the loop's start.
-    pub actuator_faults: u64,
-    /// Records that found no room in the ring since the loop's start.
-    pub records_dropped: u64,
-    /// Ticks that took longer than their budget since the loop's start, this
-    /// one included; missed periods are counted in `tick.missed`.
-    pub overruns: u64,
-    /// Page faults of the loop's thread since the loop's start.
-    pub page_faults: u64,
-    /// How long before the deadline the timer asked to be woken, ns; 0 where
-    /// it does not wake early.
-    pub early_wake_ns: u64,
-    /// The loop's state at the tick's end.
-    pub state: StateCode,
-    /// Why the loop may not engage; empty while engaged.
-    pub engage_inhibits: Flags,
-    /// What makes going on unsafe; empty in standby.
-    pub faults: Flags,
-    /// Whether outputs were handed to the actuators.
-    pub sent: bool,
+schema! {
+    /// All that is known of one tick of a loop with measurements `M`, estimate
+    /// `E`, set points `S` and outputs `O`.
+    ///
+    /// Plain `repr(C)` data of a fixed size: the same struct goes through the
+    /// loop's ring, shared memory and a recording.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Record, State, Tick};
+    ///
+    /// let tick = Tick { number: 7, ..Tick::default() };
+    /// let record = Record::<f64, (), f64, f64>::new(tick, State::Engaged);
+    /// assert_eq!((record.tick.number, record.sent), (7, false));
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Record<M, E, S, O> {
+        /// The tick and its times.
+        #[field(1)]
+        pub tick: Tick,
+        /// How long the stages took.
+        #[field(2)]
+        pub stages: StageTimes,
+        /// What the sensors had measured by then, each reading with its time.
+        #[field(3)]
+        pub measurements: M,
+        /// What the controller makes of them.
+        #[field(4, column = "estimated_*")]
+        pub estimate: E,
+        /// The controller's set points.
+        #[field(5, column = "desired_*")]
+        pub setpoints: S,
+        /// What was handed to the actuators; the default if nothing was.
+        #[field(6, column = "commanded_*")]
+        pub outputs: O,
+        /// Failed samples of sensors since the loop's start.
+        #[field(11)]
+        pub sensor_faults: u64,
+        /// Failed writes and releases of actuators since the loop's start.
+        #[field(12)]
+        pub actuator_faults: u64,
+        /// Records that found no room in the ring since the loop's start.
+        #[field(13)]
+        pub records_dropped: u64,
+        /// Ticks that took longer than their budget since the loop's start, this
+        /// one included; missed periods are counted in `tick.missed`.
+        #[field(14)]
+        pub overruns: u64,
+        /// Page faults of the loop's thread since the loop's start.
+        #[field(15)]
+        pub page_faults: u64,
+        /// How long before the deadline the timer asked to be woken, ns; 0 where
+        /// it does not wake early.
+        #[field(16)]
+        pub early_wake_ns: u64,
+        /// The loop's state at the tick's end.
+        #[field(7)]
+        pub state: StateCode,
+        /// Why the loop may not engage; empty while engaged.
+        #[field(8)]
+        pub engage_inhibits: Flags,
+        /// What makes going on unsafe; empty in standby.
+        #[field(9)]
+        pub faults: Flags,
+        /// Whether outputs were handed to the actuators.
+        #[field(10)]
+        pub sent: bool,
+    }
 }
 
 /// The record of a controller's loop.
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::{RecordOf, State};
+///
+/// let record = RecordOf::<Heating>::new(Tick::default(), State::Standby);
+/// assert_eq!(record.measurements, 0.0);
+/// ```
 pub type RecordOf<C> = Record<
     <C as Controller>::Measurements,
+    <C as Controller>::Estimate,
     <C as Controller>::Setpoints,
     <C as Controller>::Outputs,
 >;
 
-impl<M: Default, S: Default, O: Default> Record<M, S, O> {
+impl<M: Default, E: Default, S: Default, O: Default> Record<M, E, S, O> {
     /// The record of a tick of which nothing is known yet.
     pub fn new(tick: Tick, state: State) -> Self {
         Self {
@@ -62,21 +116,36 @@ impl<M: Default, S: Default, O: Default> Record<M, S, O> {
     }
 }
 
-/// How long each stage of a tick took, ns; 0 for one that was left out.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-#[repr(C)]
-pub struct StageTimes {
-    /// Sampling the sensors.
-    pub sensors_ns: u64,
-    /// [`Controller::estimate`].
-    pub navigation_ns: u64,
-    /// [`Controller::guide`].
-    pub guidance_ns: u64,
-    /// [`Controller::control`], or `failsafe`, and the check of what they give.
-    pub control_ns: u64,
-    /// Driving the actuators.
-    pub actuators_ns: u64,
-    /// All of the tick, from the wake-up to the last actuator write: the
-    /// stages above, and commands, decisions and releases between them.
-    pub total_ns: u64,
+schema! {
+    /// How long each stage of a tick took, ns; 0 for one that was left out.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Stage, StageTimes};
+    ///
+    /// let stages = StageTimes { control_ns: 900, total_ns: 1_500, ..StageTimes::default() };
+    /// assert_eq!(stages.of(Stage::Control), 900);
+    /// assert_eq!(stages.longest(), Stage::Control);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+    pub struct StageTimes {
+        /// Sampling the sensors.
+        #[field(1, column = "sensors_time_ns")]
+        pub sensors_ns: u64,
+        /// [`Controller::estimate`].
+        #[field(2, column = "estimate_time_ns")]
+        pub estimate_ns: u64,
+        /// [`Controller::guide`].
+        #[field(3, column = "guide_time_ns")]
+        pub guide_ns: u64,
+        /// [`Controller::control`], or `failsafe`, and the check of what they give.
+        #[field(4, column = "control_time_ns")]
+        pub control_ns: u64,
+        /// Driving the actuators.
+        #[field(5, column = "actuators_time_ns")]
+        pub actuators_ns: u64,
+        /// All of the tick, from the wake-up to the last actuator write: the
+        /// stages above, and commands, decisions and releases between them.
+        #[field(6, column = "total_time_ns")]
+        pub total_ns: u64,
+    }
 }

@@ -3,12 +3,36 @@
 use core::fmt;
 
 use super::Tick;
+use crate::schema;
 
 /// Writes its part of the measurements `M` once a tick.
 ///
 /// The loop holds sensors as `Box<dyn Sensor<M>>`: a simulated plant and a
 /// board's own sensors differ in configuration and in no line of the loop. A sensor that has nothing new leaves `into` as it is: each
 /// [`Reading`](super::Reading) carries its own time, and grows old by itself.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::framework::{Reading, Sensor, SensorFault, Tick};
+///
+/// /// A thermometer that always says 19 °C.
+/// struct Thermometer;
+///
+/// impl Sensor<Reading<f64>> for Thermometer {
+///     fn sample(&mut self, tick: &Tick, into: &mut Reading<f64>) -> Result<(), SensorFault> {
+///         *into = Reading::new(19.0, tick.woke);
+///         Ok(())
+///     }
+///
+///     fn name(&self) -> &'static str {
+///         "thermometer"
+///     }
+/// }
+///
+/// let (tick, mut measured) = (Tick::default(), Reading::default());
+/// assert!(Thermometer.sample(&tick, &mut measured).is_ok());
+/// assert_eq!(measured.value, 19.0);
+/// ```
 pub trait Sensor<M>: Send {
     /// Takes what is there and returns. Never waits, allocates, locks, logs or
     /// panics.
@@ -28,19 +52,32 @@ pub trait Sensor<M>: Send {
     fn name(&self) -> &'static str;
 }
 
-/// What can go wrong when a sensor is sampled.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[non_exhaustive]
-pub enum SensorFault {
-    /// The source has been silent for longer than it should be.
-    Silent,
-    /// The operating system refused a read, with its error number.
-    Io {
-        /// `errno`, 0 if there was none.
-        errno: i32,
-    },
-    /// What came could not be understood, and was left out.
-    Malformed,
+schema! {
+    /// What can go wrong when a sensor is sampled.
+    ///
+    /// ```
+    /// use fcc_core::framework::SensorFault;
+    ///
+    /// assert_ne!(SensorFault::Silent.to_string(), "");
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+    #[name("SensorFaultKind")]
+    #[non_exhaustive]
+    pub enum SensorFault {
+        /// The source has been silent for longer than it should be.
+        #[field(1)]
+        Silent,
+        /// The operating system refused a read, with its error number.
+        #[field(2)]
+        Io {
+            /// `errno`, 0 if there was none.
+            #[field(1)]
+            errno: i32,
+        },
+        /// What came could not be understood, and was left out.
+        #[field(3)]
+        Malformed,
+    }
 }
 
 impl fmt::Display for SensorFault {

@@ -2,58 +2,92 @@
 
 use core::fmt;
 
+use super::schema::{Field, Schema, Sink, Source, Type, Unknown};
 use super::{Cause, Flags, State};
+use crate::schema;
 
-/// A [`State`] as plain numbers of a fixed layout, for records: they go through
-/// shared memory and files, where an enum that carries data has no place.
-///
-/// ```
-/// use fcc_core::framework::{Cause, Flags, State, StateCode};
-///
-/// let failsafe = State::Failsafe(Cause::Faults(Flags::bit(4)));
-/// let code = StateCode::from(failsafe);
-/// assert_eq!((code.phase(), code.cause(), code.flags()), (2, 1, Flags::bit(4)));
-/// assert_eq!(code.state(), failsafe);
-/// assert_eq!(StateCode::from_parts(9, 0, Flags::NONE), None);
-/// ```
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-#[repr(C)]
-pub struct StateCode {
-    phase: u8,
-    cause: u8,
-    flags: Flags,
+schema! {
+    /// What the loop is doing.
+    enum Phase {
+        /// Watching; the controls are somebody else's.
+        Standby = 0,
+        /// In control.
+        Engaged = 1,
+        /// In control of what is left, for a while.
+        Failsafe = 2,
+        /// Over.
+        Stopped = 3,
+    }
 }
 
-const STANDBY: u8 = 0;
-const ENGAGED: u8 = 1;
-const FAILSAFE: u8 = 2;
-const STOPPED: u8 = 3;
+schema! {
+    /// Why the loop fell into failsafe.
+    #[name("Cause")]
+    enum CauseCode {
+        /// It did not.
+        None = 0,
+        /// By faults.
+        Faults = 1,
+        /// By an invalid output.
+        InvalidOutput = 2,
+        /// Too many ticks in a row overran their budget.
+        Overrun = 3,
+    }
+}
 
-const NO_CAUSE: u8 = 0;
-const FAULTS: u8 = 1;
-const INVALID_OUTPUT: u8 = 2;
-const OVERRUN: u8 = 3;
+schema! {
+    /// A [`State`] as plain numbers of a fixed layout, for records: they go through
+    /// shared memory and files, where an enum that carries data has no place.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Cause, Flags, State, StateCode};
+    ///
+    /// let failsafe = State::Failsafe(Cause::Faults(Flags::bit(4)));
+    /// let code = StateCode::from(failsafe);
+    /// assert_eq!((code.phase(), code.cause(), code.flags()), (2, 1, Flags::bit(4)));
+    /// assert_eq!(code.state(), failsafe);
+    /// assert_eq!(StateCode::from_parts(9, 0, Flags::NONE), None);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+    #[name("State")]
+    #[check(Self::is_state)]
+    pub struct StateCode {
+        /// What the loop is doing.
+        #[field(1, column = "state")]
+        phase: Phase,
+        /// Why it fell into failsafe.
+        #[field(2, column = "state_cause")]
+        cause: CauseCode,
+        /// The faults that led there.
+        #[field(3, column = "state_flags")]
+        flags: Flags,
+    }
+}
 
 impl StateCode {
     /// From the numbers as stored; none if no state has these.
     pub fn from_parts(phase: u8, cause: u8, flags: Flags) -> Option<Self> {
         let code = Self {
-            phase,
-            cause,
+            phase: Phase::from_number(phase)?,
+            cause: CauseCode::from_number(cause)?,
             flags,
         };
-        (Self::from(code.state()) == code).then_some(code)
+        code.is_state().then_some(code)
+    }
+
+    fn is_state(&self) -> bool {
+        Self::from(self.state()) == *self
     }
 
     /// 0 standby, 1 engaged, 2 failsafe, 3 stopped.
     pub const fn phase(self) -> u8 {
-        self.phase
+        self.phase as u8
     }
 
     /// Why it fell into failsafe: 1 by faults, 2 by an invalid output, 3 by
     /// overruns; 0 in every other state.
     pub const fn cause(self) -> u8 {
-        self.cause
+        self.cause as u8
     }
 
     /// The faults that led to failsafe, if they did.
@@ -64,25 +98,44 @@ impl StateCode {
     /// The state.
     pub const fn state(self) -> State {
         match (self.phase, self.cause) {
-            (STANDBY, _) => State::Standby,
-            (ENGAGED, _) => State::Engaged,
-            (FAILSAFE, FAULTS) => State::Failsafe(Cause::Faults(self.flags)),
-            (FAILSAFE, OVERRUN) => State::Failsafe(Cause::Overrun),
-            (FAILSAFE, _) => State::Failsafe(Cause::InvalidOutput),
-            _ => State::Stopped,
+            (Phase::Standby, _) => State::Standby,
+            (Phase::Engaged, _) => State::Engaged,
+            (Phase::Failsafe, CauseCode::Faults) => State::Failsafe(Cause::Faults(self.flags)),
+            (Phase::Failsafe, CauseCode::Overrun) => State::Failsafe(Cause::Overrun),
+            (Phase::Failsafe, _) => State::Failsafe(Cause::InvalidOutput),
+            (Phase::Stopped, _) => State::Stopped,
         }
+    }
+}
+
+/// A state's values are those of its code.
+impl Schema for State {
+    const TYPE: Type = StateCode::TYPE;
+    const FIELDS: &'static [Field] = StateCode::FIELDS;
+
+    fn write<W: Sink>(&self, field: &'static Field, sink: &mut W) {
+        StateCode::from(*self).write(field, sink);
+    }
+
+    fn read<R: Source>(&mut self, field: &'static Field, source: &mut R) -> Result<(), Unknown> {
+        let mut code = StateCode::from(*self);
+        code.read(field, source)?;
+        *self = code.state();
+        Ok(())
     }
 }
 
 impl From<State> for StateCode {
     fn from(state: State) -> Self {
         let (phase, cause, flags) = match state {
-            State::Standby => (STANDBY, NO_CAUSE, Flags::NONE),
-            State::Engaged => (ENGAGED, NO_CAUSE, Flags::NONE),
-            State::Failsafe(Cause::Faults(flags)) => (FAILSAFE, FAULTS, flags),
-            State::Failsafe(Cause::InvalidOutput) => (FAILSAFE, INVALID_OUTPUT, Flags::NONE),
-            State::Failsafe(Cause::Overrun) => (FAILSAFE, OVERRUN, Flags::NONE),
-            State::Stopped => (STOPPED, NO_CAUSE, Flags::NONE),
+            State::Standby => (Phase::Standby, CauseCode::None, Flags::NONE),
+            State::Engaged => (Phase::Engaged, CauseCode::None, Flags::NONE),
+            State::Failsafe(Cause::Faults(flags)) => (Phase::Failsafe, CauseCode::Faults, flags),
+            State::Failsafe(Cause::InvalidOutput) => {
+                (Phase::Failsafe, CauseCode::InvalidOutput, Flags::NONE)
+            }
+            State::Failsafe(Cause::Overrun) => (Phase::Failsafe, CauseCode::Overrun, Flags::NONE),
+            State::Stopped => (Phase::Stopped, CauseCode::None, Flags::NONE),
         };
         Self {
             phase,

@@ -5,7 +5,9 @@ use fcc_runtime::SpawnError;
 use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
+use crate::observers::{Announcer, Service, StatusLine};
 use crate::output;
+use crate::process::Process;
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
@@ -36,15 +38,19 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
             GuidanceSection::Hold => DEFAULT_HOLD_S,
             GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         })),
-        quiet: args.quiet,
-        announce: true,
     };
-    conduct(&config, as_given, plan, args.json)
+    conduct(&config, as_given, plan, args.quiet, args.json)
 }
 
 /// Flies a configuration and prints how it ended.
-pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, json: bool) -> Exit {
-    let assembly = match assemble(config) {
+pub(super) fn conduct(
+    config: &Config,
+    as_given: Option<String>,
+    plan: Plan,
+    quiet: bool,
+    json: bool,
+) -> Exit {
+    let mut assembly = match assemble(config) {
         Ok(assembly) => assembly,
         Err(error) => {
             fail(&error.to_string());
@@ -56,7 +62,19 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
         }
     };
     let recording = RecordingRequest::of(config, as_given);
-    match fly_assembly(assembly, &config.tick, plan, recording) {
+    let mut observers = assembly.observers(config, plan.pace, recording);
+    observers.push(Box::new(Announcer));
+    if !quiet {
+        observers.push(Box::new(StatusLine::default()));
+    }
+    observers.push(Box::new(Service::from_environment()));
+    match fly_assembly(
+        assembly,
+        &config.tick,
+        plan,
+        observers,
+        &mut Process::new(config),
+    ) {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
@@ -72,12 +90,12 @@ pub(super) fn conduct(config: &Config, as_given: Option<String>, plan: Plan, jso
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
     if json {
-        output::json(outcome, outcome.exit);
+        output::json(outcome, outcome.conclusion.into());
     } else {
-        output::result(outcome.to_text(), outcome.exit);
+        output::result(outcome.to_text(), outcome.conclusion.into());
     }
     // A flight ends as it was flown, even if that cannot be printed.
-    outcome.exit
+    outcome.conclusion.into()
 }
 
 /// What the command line says about recording goes before the file.

@@ -2,13 +2,13 @@
 
 use std::io;
 
-use fcc_xplane::Released;
+use fcc_core::framework::Released;
 use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 
 use super::fail;
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::flight::run_release_helper;
+use crate::process::run_release_helper;
 
 /// Waits until the daemon that started this is gone.
 pub(super) fn guard() -> Exit {
@@ -21,27 +21,24 @@ pub(super) fn guard() -> Exit {
             return fail(&format!("guard: signals cannot be caught: {error}"));
         }
     }
-    match run_release_helper(io::stdin().lock()) {
-        Ok(None | Some((_, Released::Gone))) => Exit::Success,
-        Ok(Some((simulator, Released::CalledOff))) => {
-            output::message(format!(
-                "fccd guard: the daemon is gone; another has taken X-Plane at {simulator} over"
-            ));
-            Exit::Success
-        }
-        Ok(Some((simulator, Released::Confirmed))) => {
-            output::message(format!(
-                "fccd guard: the daemon is gone; X-Plane at {simulator} was released"
-            ));
-            Exit::Success
-        }
-        Ok(Some((simulator, Released::Unconfirmed))) => {
-            output::message(format!(
-                "fccd guard: the daemon is gone, and X-Plane at {simulator} does not show that it \
-                 has its controls back: switch off override_joystick and override_throttles there"
-            ));
-            Exit::NotReleased
-        }
-        Err(error) => fail(&format!("guard: {error}")),
-    }
+    let given_back = match run_release_helper(io::stdin().lock()) {
+        Ok(Some(given_back)) => given_back,
+        Ok(None) => return Exit::Success,
+        Err(error) => return fail(&format!("guard: {error}")),
+    };
+    let plant = given_back.plant;
+    let (words, exit) = match given_back.released {
+        Released::Gone => return Exit::Success,
+        Released::CalledOff => (format!("; another has taken {plant} over"), Exit::Success),
+        Released::Confirmed => (format!("; {plant} was released"), Exit::Success),
+        Released::Unconfirmed => (
+            format!(
+                ", and {plant} does not show that it has its controls back: {}",
+                given_back.by_hand
+            ),
+            Exit::NotReleased,
+        ),
+    };
+    output::message(format!("fccd guard: the daemon is gone{words}"));
+    exit
 }

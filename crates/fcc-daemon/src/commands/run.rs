@@ -18,10 +18,8 @@ pub(super) fn run(args: &RunArgs) -> Exit {
             let plan = Plan {
                 pace: Pace::RealTime,
                 length: Length::Open,
-                quiet: args.quiet,
-                announce: true,
             };
-            conduct(&config, Some(text), plan, args.json)
+            conduct(&config, Some(text), plan, args.quiet, args.json)
         }
         Err(error) => {
             output::message(error);

@@ -13,6 +13,7 @@ use super::fail;
 use crate::cli::TimingArgs;
 use crate::exit::Exit;
 use crate::output;
+use crate::process::Process;
 use fcc_flight::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSection, LoopSection};
 use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
 
@@ -50,11 +51,16 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
     let plan = Plan {
         pace: Pace::RealTime,
         length: Length::Whole(args.seconds),
-        quiet: true,
-        announce: false,
     };
     let progress = Progress::start(rate_hz, args.seconds);
-    let outcome = fly(assembly, &config.tick, plan, None).map_err(|error| error.to_string());
+    let outcome = fly(
+        assembly,
+        &config.tick,
+        plan,
+        Vec::new(),
+        &mut Process::new(&config),
+    )
+    .map_err(|error| error.to_string());
     progress.stop();
     let outcome = outcome?;
     if outcome.interrupted {
@@ -67,7 +73,7 @@ fn early_wake(args: &TimingArgs) -> EarlyWakeSection {
     let usual = EarlyWakeSection::default();
     let max_us = args.max_margin.unwrap_or(usual.max_us);
     EarlyWakeSection {
-        enabled: args.early_wake,
+        enabled: args.early_wake.into(),
         min_us: usual.min_us.min(max_us),
         max_us,
         cpu_cap_percent: args.cpu_cap.unwrap_or(usual.cpu_cap_percent),

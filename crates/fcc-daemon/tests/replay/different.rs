@@ -113,7 +113,7 @@ fn another_rate_is_found_in_the_first_tick() {
     let mut config = rough();
     config.tick.rate_hz = 41.0;
     let first = again(&config, &messages).1.first.unwrap();
-    assert_eq!((first.tick, first.field), (1, "tick.dt_s"));
+    assert_eq!((first.tick, first.field.as_str()), (1, "tick.dt_s"));
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn all_parts_of_a_recording_are_the_same_when_flown_again() {
     assert_eq!(told["unflown"], Value::Null);
 
     let output = fccd_replay(&parts, &[]);
-    assert!(said(&output).contains("15000 outputs compared bit for bit: 0 differ"));
+    assert!(said(&output).contains("28000 outputs compared bit for bit: 0 differ"));
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn a_loop_that_stops_before_the_recorded_one_says_so() {
     let stopped = unflown.first.unwrap() - 1;
     assert_eq!(run.ticks, stopped);
     let first = identity.first.unwrap();
-    assert_eq!((first.tick, first.field), (stopped, "state"));
+    assert_eq!((first.tick, first.field.as_str()), (stopped, "state.phase"));
     assert_eq!(first.again, "stopped");
 }
 

@@ -9,6 +9,7 @@ mod autopilot;
 mod budget;
 mod built_in;
 mod cpu;
+mod early_wake;
 mod error;
 mod guidance;
 mod places;
@@ -34,6 +35,7 @@ pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use cpu::CpuChoice;
+pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
 pub use recording::{CompressionChoice, RecordingSection};
@@ -177,6 +179,7 @@ impl Config {
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
             budget: Budget::from(&self.budget),
+            early_wake_needs_priority: self.tick.early_wake.enabled == EarlyWakeChoice::Auto,
             realtime: RealtimeRequest::from(&self.realtime),
             ..LoopConfig::default()
         }

@@ -8,7 +8,7 @@ use fcc_runtime::AfterFailsafe;
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
-use super::CpuChoice;
+use super::{CpuChoice, EarlyWakeChoice};
 
 /// `[loop]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -39,7 +39,7 @@ impl LoopSection {
     /// # Errors
     /// When the operating system refuses, or a value is out of range.
     pub fn build_timer(&self) -> Result<Box<dyn Timer>, TimerError> {
-        if self.early_wake.enabled {
+        if self.early_wake.enabled != EarlyWakeChoice::Off {
             let early = EarlyWake::from(&self.early_wake);
             self.timer.build_early(self.period(), &early)
         } else {
@@ -58,7 +58,7 @@ impl LoopSection {
 #[serde(default, deny_unknown_fields)]
 pub struct EarlyWakeSection {
     /// Whether the timer wakes before the deadline and spins the rest.
-    pub enabled: bool,
+    pub enabled: EarlyWakeChoice,
     /// The shortest margin.
     pub min_us: f64,
     /// The longest margin.
@@ -75,7 +75,7 @@ impl Default for EarlyWakeSection {
     fn default() -> Self {
         let early = EarlyWake::default();
         Self {
-            enabled: false,
+            enabled: EarlyWakeChoice::Auto,
             min_us: early.min.as_secs_f64() * 1e6,
             max_us: early.max.as_secs_f64() * 1e6,
             guard_us: early.guard.as_secs_f64() * 1e6,

@@ -1,16 +1,24 @@
 //! Puts sensors, autopilot and actuators together as a configuration says.
 
 use std::io::ErrorKind;
+use std::sync::Arc;
 
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
-use fcc_core::framework::{Actuator, Sensor};
+use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
-use fcc_xplane::{OpenError, XPlane, XPlaneConfig, XPlaneStatus};
+use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
-use super::restart::RestartRequest;
+use super::event_log::EventLog;
+#[cfg(feature = "live")]
+use super::live::Live;
+use super::observer::Observer;
+use super::plan::Pace;
+use super::recording::{Recording, RecordingRequest};
+use super::restart::{RestartKeeper, RestartRequest};
+use super::scorer::Scorer;
 use super::truth_recorder::{TruthReceiver, tap};
-use crate::config::{Aircraft, Config, TelemetrySection, WatchdogSection, XPlaneSection};
+use crate::config::{Aircraft, BuiltInSection, Config, WatchdogSection, XPlaneSection};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
@@ -24,16 +32,14 @@ pub struct Assembly {
     pub loop_config: LoopConfig,
     /// When the loop hangs.
     pub(super) watchdog: WatchdogSection,
-    /// Who may watch, live.
-    pub(super) telemetry: TelemetrySection,
     /// How it is to be taken up if it is cut off; not with an aircraft that
     /// ends when the program does.
     pub(super) restart: Option<RestartRequest>,
     /// What is true of a simulated aircraft, tick by tick; none where only
     /// sensors tell.
     pub(super) truth: Option<TruthReceiver>,
-    /// X-Plane, if it is that.
-    pub(super) x_plane: Option<(XPlaneStatus, XPlaneSection)>,
+    /// Who has control of it; none of what ends when the program does.
+    pub(super) authority: Option<Arc<dyn ControlAuthority>>,
 }
 
 /// Why a flight could not be put together.
@@ -55,43 +61,99 @@ impl AssemblyError {
     }
 }
 
+/// What a flight controls: by what it is sensed and driven.
+struct Plant {
+    sensors: Vec<Box<dyn Sensor<Measurements>>>,
+    actuators: Vec<Box<dyn Actuator<Surfaces>>>,
+    truth: Option<TruthReceiver>,
+    authority: Option<Arc<dyn ControlAuthority>>,
+}
+
 /// Puts a flight together.
 ///
 /// # Errors
 /// When the aircraft cannot be had.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
-    let autopilot = Autopilot::new(config.autopilot_config());
     let loop_config = config.loop_config();
+    let plant = match config.aircraft() {
+        Aircraft::BuiltIn(section) => built_in(section, loop_config.messages_capacity)?,
+        Aircraft::XPlane(section) => x_plane(section)?,
+    };
+    Ok(Assembly {
+        sensors: plant.sensors,
+        autopilot: Autopilot::new(config.autopilot_config()),
+        actuators: plant.actuators,
+        loop_config,
+        watchdog: config.watchdog.clone(),
+        restart: plant
+            .authority
+            .is_some()
+            .then(|| RestartRequest::of(config)),
+        truth: plant.truth,
+        authority: plant.authority,
+    })
+}
+
+fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyError> {
+    let simulation = Simulation::new(&SimConfig::from(section))?;
+    let (sensor, truth) = tap(simulation.sensor, ticks);
+    Ok(Plant {
+        sensors: vec![Box::new(sensor)],
+        actuators: vec![Box::new(simulation.actuator)],
+        truth: Some(truth),
+        authority: None,
+    })
+}
+
+fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
+    let config = XPlaneConfig::from(section);
+    let (sensor, actuator) = XPlane::open(&config)?;
+    let authority = XPlaneAuthority::of(sensor.status(), &config);
+    Ok(Plant {
+        sensors: vec![Box::new(sensor)],
+        actuators: vec![Box::new(actuator)],
+        truth: None,
+        authority: Some(Arc::new(authority)),
+    })
+}
+
+/// Who has control of a configuration's plant, for a program that only gives
+/// back what another one held; none where nothing can be left held.
+pub fn authority_without_connection(config: &Config) -> Option<Arc<dyn ControlAuthority>> {
     match config.aircraft() {
-        Aircraft::BuiltIn(section) => {
-            let simulation = Simulation::new(&SimConfig::from(section))?;
-            let (sensor, truth) = tap(simulation.sensor, loop_config.messages_capacity);
-            Ok(Assembly {
-                sensors: vec![Box::new(sensor)],
-                autopilot,
-                actuators: vec![Box::new(simulation.actuator)],
-                loop_config,
-                watchdog: config.watchdog.clone(),
-                telemetry: config.telemetry.clone(),
-                restart: None,
-                truth: Some(truth),
-                x_plane: None,
-            })
+        Aircraft::BuiltIn(_) => None,
+        Aircraft::XPlane(section) => Some(Arc::new(XPlaneAuthority::without_connection(
+            &XPlaneConfig::from(section),
+        ))),
+    }
+}
+
+impl Assembly {
+    /// Who observes a flight by this configuration, whatever program flies it:
+    /// what keeps it for a restart, the recorder, the score, live telemetry and
+    /// the log of events. Each once.
+    pub fn observers(
+        &mut self,
+        config: &Config,
+        pace: Pace,
+        recording: Option<RecordingRequest>,
+    ) -> Vec<Box<dyn Observer>> {
+        let mut observers: Vec<Box<dyn Observer>> = Vec::new();
+        if let Some(request) = self.restart.take() {
+            observers.push(Box::new(RestartKeeper::new(request)));
         }
-        Aircraft::XPlane(section) => {
-            let (sensor, actuator) = XPlane::open(&XPlaneConfig::from(section))?;
-            let status = sensor.status();
-            Ok(Assembly {
-                sensors: vec![Box::new(sensor)],
-                autopilot,
-                actuators: vec![Box::new(actuator)],
-                loop_config,
-                watchdog: config.watchdog.clone(),
-                telemetry: config.telemetry.clone(),
-                restart: Some(RestartRequest::of(config)),
-                truth: None,
-                x_plane: Some((status, section.clone())),
-            })
+        if let Some(request) = recording {
+            observers.push(Box::new(Recording::new(request)));
         }
+        let guidance = &self.autopilot.config().guidance;
+        observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
+        // There is nothing to watch where time does not pass.
+        if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
+            #[cfg(feature = "live")]
+            observers.push(Box::new(Live::new(&config.telemetry)));
+        }
+        // The last, so that it has what the others report at their end.
+        observers.push(Box::new(EventLog::default()));
+        observers
     }
 }

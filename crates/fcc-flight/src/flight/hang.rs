@@ -2,26 +2,25 @@
 //! recording, end.
 //!
 //! The watchdog's thread cannot use the loop's actuator, which is in the hands
-//! of whoever hangs. It gives X-Plane's controls back by a socket of its own,
-//! as the guard process does. Then it leaves the orderly end (what is in the
-//! ring, the recording, the account) to the main thread, for a while: should
-//! that one hang too, on a terminal or on a disk, the process ends without it.
+//! of whoever hangs. It gives the controls back by a way of its own. Then it
+//! leaves the orderly end (what is in the ring, the recording, the account) to
+//! the main thread, for a while: should that one hang too, on a terminal or on
+//! a disk, the program ends without it.
 
 use std::io;
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 use std::time::Duration;
 
+use fcc_core::framework::ControlAuthority;
 use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGranted;
-use fcc_xplane::{Released, XPlane, XPlaneConfig, XPlaneStatus};
 
 use super::Pilot;
-use crate::config::{WatchdogSection, XPlaneSection};
-use crate::exit::Exit;
 
-/// How long the watchdog waits for X-Plane to show that it has its controls
-/// back. The guard process goes on where this ends.
+/// How long the watchdog waits for the plant to show that it has its controls
+/// back.
 const GIVE_BACK_WITHIN: Duration = Duration::from_secs(1);
 /// How long the main thread may take to end in good order.
 const GRACE: Duration = Duration::from_secs(3);
@@ -31,33 +30,33 @@ const GRACE: Duration = Duration::from_secs(3);
 pub(super) struct Hung {
     /// How long it had shown no progress.
     pub(super) silent: Duration,
-    /// Whether X-Plane shows that it has its controls back.
+    /// Whether the plant shows that it has its controls back.
     pub(super) released: bool,
 }
 
-/// Hears of the watchdog.
+/// Learns from the watchdog that the loop hung.
 pub(super) struct HangWatch {
     told: Receiver<Hung>,
 }
 
 impl HangWatch {
-    /// Starts the watchdog, if one is wanted. Gives also what the kernel granted
-    /// it; `at` is where controls may be held.
+    /// Starts the watchdog, if one is wanted: `hang_after`. Gives also what the
+    /// kernel granted it. `last_resort` ends the program if nobody else does.
     ///
     /// # Errors
     /// When there is no thread to be had.
     pub(super) fn start(
-        section: &WatchdogSection,
-        period: Duration,
+        hang_after: Option<Duration>,
         loop_priority: Option<u8>,
         link: &Link<Pilot>,
-        at: Option<(XPlaneStatus, XPlaneSection)>,
+        authority: Option<Arc<dyn ControlAuthority>>,
+        last_resort: Box<dyn FnOnce(bool) + Send>,
     ) -> io::Result<Option<(Self, RealtimeGranted)>> {
-        if !section.enabled {
+        let Some(hang_after) = hang_after else {
             return Ok(None);
-        }
+        };
         let config = WatchdogConfig {
-            hang_after: section.hang_after(period),
+            hang_after,
             loop_priority,
         };
         let stop = link.stop.clone();
@@ -65,18 +64,11 @@ impl HangWatch {
         let granted = watch(link.heartbeat.clone(), &config, move |Hang { silent }| {
             // Should it wake up once more, it lets go by itself.
             stop.stop();
-            let released = at.is_none_or(|(status, section)| give_back(&status, &section));
-            // If nobody listens any more, the process is about to end.
+            let released = authority.is_none_or(|authority| give_back(authority.as_ref()));
+            // If nobody listens any more, the program is about to end.
             let _ = tell.send(Hung { silent, released });
             thread::sleep(GRACE);
-            let exit = if released {
-                Exit::Hung
-            } else {
-                Exit::NotReleased
-            };
-            // At once, as a crash would: what runs at an orderly exit may wait for
-            // a thread that hangs, and has had its time.
-            signal_hook::low_level::exit(i32::from(exit as u8));
+            last_resort(released);
         })?;
         Ok(Some((Self { told }, granted)))
     }
@@ -87,12 +79,11 @@ impl HangWatch {
     }
 }
 
-/// Whether X-Plane has its controls, back or still.
-fn give_back(status: &XPlaneStatus, section: &XPlaneSection) -> bool {
-    let Some(simulator) = status.held_at() else {
-        return true;
-    };
-    let released =
-        XPlane::release_and_wait(&XPlaneConfig::from(section), simulator, GIVE_BACK_WITHIN);
-    matches!(released, Ok(Released::Confirmed | Released::Gone))
+/// Whether the plant has its controls, back or still.
+fn give_back(authority: &dyn ControlAuthority) -> bool {
+    authority.held().is_none_or(|plant| {
+        authority
+            .release(&plant, GIVE_BACK_WITHIN, &mut || false)
+            .is_ok_and(|released| released.is_over())
+    })
 }

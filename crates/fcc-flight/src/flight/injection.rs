@@ -13,6 +13,7 @@ use std::fmt;
 use std::thread;
 use std::time::Duration;
 
+use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
 
@@ -110,6 +111,7 @@ impl Faulty {
 
 impl Controller for Faulty {
     type Measurements = Measurements;
+    type Estimate = Estimate;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
     type Command = AutopilotCommand;
@@ -172,6 +174,10 @@ impl Controller for Faulty {
 
     fn command(&mut self, command: &AutopilotCommand) {
         self.autopilot.command(command);
+    }
+
+    fn estimated(&self) -> Estimate {
+        self.autopilot.estimated()
     }
 
     fn setpoints(&self) -> Setpoints {

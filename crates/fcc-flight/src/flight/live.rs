@@ -1,66 +1,57 @@
 //! Lets others watch a flight, live.
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_runtime::CommandSender;
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
-use fcc_timer::RealtimeGranted;
 
 use super::commands::Commands;
-use crate::config::{LoopSection, TelemetrySection};
+use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
+use super::outcome::Outcome;
+use crate::config::TelemetrySection;
 
 /// Lets others watch a flight and give it commands; where that cannot be, nothing
 /// comes of it.
 pub(super) struct Live {
+    section: TelemetrySection,
     publisher: Option<Publisher>,
     commands: Commands,
 }
 
 impl Live {
-    /// Nobody may watch.
-    pub(super) fn off() -> Self {
+    pub(super) fn new(section: &TelemetrySection) -> Self {
         Self {
+            section: section.clone(),
             publisher: None,
             commands: Commands::default(),
         }
     }
+}
 
-    /// Begins to publish, if that is wanted. Without shared memory the flight
-    /// goes on, and says so.
-    pub(super) fn start(section: &TelemetrySection) -> Self {
-        if !section.enabled {
-            return Self::off();
-        }
-        let start = if section.commands {
+impl Observer for Live {
+    /// Begins to publish. Without shared memory the flight
+    /// goes on, and reports it.
+    fn prepare(&mut self, reports: &mut Reports) {
+        let start = if self.section.commands {
             Publisher::start_with_commands
         } else {
             Publisher::start
         };
-        let publisher = start(&section.instance)
-            .inspect_err(|error| {
-                eprintln!("no live telemetry, so nobody can watch this flight: {error}");
-            })
-            .ok();
-        Self {
-            publisher,
-            commands: Commands::default(),
+        match start(&self.section.instance) {
+            Ok(publisher) => self.publisher = Some(publisher),
+            Err(error) => reports.mention(format!(
+                "no live telemetry, so nobody can watch this flight: {error}"
+            )),
         }
     }
 
     /// Says who flies: from here on it can be watched.
-    pub(super) fn describe(
-        &mut self,
-        tick: &LoopSection,
-        granted: &RealtimeGranted,
-        aircraft: &str,
-    ) {
-        let Some(publisher) = &mut self.publisher else {
+    fn begin(&mut self, facts: &Facts<'_>, _: &mut Reports) {
+        let Some((publisher, granted)) = self.publisher.as_mut().zip(facts.granted) else {
             return;
         };
         let refusals: Vec<_> = granted.denied.iter().map(ToString::to_string).collect();
         publisher.describe(Info {
-            rate_hz: tick.rate_hz,
-            timer: Text::new(tick.timer.name()),
+            rate_hz: facts.rate_hz,
+            timer: Text::new(facts.timer),
             software: Text::new(env!("CARGO_PKG_VERSION")),
             commit: Text::new(env!("FCCD_GIT_HASH")),
             policy: Text::new(granted.policy),
@@ -68,13 +59,13 @@ impl Live {
             memory_locked: granted.memory_locked.into(),
             requests_denied: refusals.len() as u32,
             refusals: Text::new(&refusals.join("\n")),
-            aircraft: Text::new(aircraft),
+            // By what it is sensed.
+            aircraft: Text::new(&facts.sensors.join(", ")),
             ..Info::of_this_process()
         });
     }
 
-    /// Publishes a tick.
-    pub(super) fn record(&mut self, record: &FlightRecord) {
+    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
             while let Some((id, verdict)) = self.commands.verdict(record) {
@@ -83,59 +74,64 @@ impl Live {
         }
     }
 
-    /// Publishes what happened once, told in words by `text`.
-    pub(super) fn event(&mut self, event: &FlightEvent, text: &str) {
+    fn event(&mut self, event: &FlightEvent, words: &str, _: &FlightTime) {
         if let Some(publisher) = &mut self.publisher {
-            publisher.event(Event::new(event, text));
+            publisher.event(Event::new(event, words));
             self.commands.event(event);
         }
     }
 
-    /// Publishes something that the loop itself does not know.
-    pub(super) fn remark(&mut self, tick: u64, time_ns: i64, text: &str) {
-        if let Some(publisher) = &mut self.publisher {
-            publisher.event(Event::remark(tick, time_ns, text));
-        }
-    }
-
-    /// Publishes how the recorder does.
-    pub(super) fn recorder(&mut self, now: &recording::RecorderStatus) {
+    fn report(&mut self, report: &Report, at: &FlightTime) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };
-        let name = now.file.as_ref().and_then(|file| file.file_name());
-        publisher.recorder(RecorderStatus {
-            state: match (&now.stopped, name) {
-                (None, Some(_)) => RecorderState::Recording,
-                (None, None) => RecorderState::Off,
-                (Some(_), _) => RecorderState::Stopped,
-            },
-            recorded: now.ticks,
-            not_recorded: now.not_recorded,
-            bytes: now.bytes,
-            name: match &now.stopped {
-                Some(why) => why.clone(),
-                None => name.unwrap_or_default().to_string_lossy().into_owned(),
-            },
-        });
+        match report {
+            Report::Remark(words) => {
+                publisher.event(Event::remark(at.tick, at.woke_ns, words));
+            }
+            Report::Recording(status) => publisher.recorder(recorder(status)),
+            Report::Mention(_) => {}
+        }
     }
 
-    /// Sends the loop what other programs have ordered.
-    pub(super) fn pass_commands(&mut self, to: &mut CommandSender<AutopilotCommand>) {
+    /// Sends the loop what other programs command, and publishes now what
+    /// was handed over.
+    fn poll(&mut self, access: &mut Access<'_>) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };
         while let Some(asked) = publisher.next_command() {
-            if let Some((id, verdict)) = self.commands.send(asked, to) {
+            if let Some((id, verdict)) = self.commands.send(asked, access.commands) {
                 publisher.answer(id, verdict);
             }
         }
+        publisher.flush();
+        if let Some(words) = publisher.poll() {
+            access.reports.remark(words);
+        }
     }
 
-    /// Publishes now what was handed over; gives words if there is trouble.
-    pub(super) fn poll(&mut self) -> Option<String> {
-        let publisher = self.publisher.as_mut()?;
-        publisher.flush();
-        publisher.poll()
+    /// Publishes the last, and then nothing more.
+    fn end(&mut self, _: &str, _: &mut Outcome, _: &mut Reports) {
+        self.publisher = None;
+    }
+}
+
+/// How the recorder does, for who watches.
+fn recorder(now: &recording::RecorderStatus) -> RecorderStatus {
+    let name = now.file.as_ref().and_then(|file| file.file_name());
+    RecorderStatus {
+        state: match (&now.stopped, name) {
+            (None, Some(_)) => RecorderState::Recording,
+            (None, None) => RecorderState::Off,
+            (Some(_), _) => RecorderState::Stopped,
+        },
+        recorded: now.ticks,
+        not_recorded: now.not_recorded,
+        bytes: now.bytes,
+        name: match &now.stopped {
+            Some(why) => why.clone(),
+            None => name.unwrap_or_default().to_string_lossy().into_owned(),
+        },
     }
 }

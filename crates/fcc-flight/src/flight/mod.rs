@@ -1,41 +1,41 @@
-//! Makes a loop of a configuration, flies it and watches.
+//! Makes a loop of a configuration, and flies it.
 //!
 //! The loop runs in its own thread and knows nothing of what is here. This
-//! side fetches what it tells, prints a status line each second, and gathers
-//! the outcome.
+//! side fetches its messages, hands them to each [`Observer`], and gathers the
+//! [`Outcome`]. What only the program around a flight can do is asked of its
+//! [`Host`].
 
 mod assemble;
 #[cfg(feature = "live")]
 mod commands;
-mod connection;
+mod event_log;
 mod fly;
 mod follow;
-mod guard;
 mod hang;
+mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
-mod instance_lock;
-#[cfg_attr(not(feature = "live"), path = "not_live.rs")]
+#[cfg(feature = "live")]
 mod live;
+mod monitor;
+mod observer;
+mod observers;
 mod outcome;
 mod plan;
 mod recording;
-mod relief;
 mod restart;
 mod run_statistics;
-mod service;
-mod signals;
-mod status;
+mod scorer;
 mod truth_recorder;
-mod watch;
 
-pub use assemble::{Assembly, AssemblyError, assemble};
+pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};
 pub use fly::{FlyError, fly};
-pub use guard::{ReleaseHelperError, run_release_helper};
-pub use outcome::{EventEntry, Outcome, RecordingOutcome};
+pub use host::Host;
+pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
+pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};
-pub use watch::true_sample;
+pub use scorer::true_sample;
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
 

@@ -10,8 +10,6 @@ use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
-use crate::exit::Exit;
-
 /// The scheduling of a loop without a thread of its own.
 const NOT_ASKED: &str = "not asked for";
 
@@ -39,9 +37,26 @@ pub struct Outcome {
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
-    /// What the program's exit code says.
+    /// What it means for whoever flew it.
     #[serde(skip)]
-    pub exit: Exit,
+    pub conclusion: Conclusion,
+}
+
+/// What a flight's end means for whoever flew it; of several the worst.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Conclusion {
+    /// It was flown as it should.
+    Completed,
+    /// It was not flown as it should: the timer failed, or engaging was refused.
+    Failed,
+    /// It fell into failsafe.
+    Failsafe,
+    /// A part of the loop panicked; the controls were released.
+    Panicked,
+    /// The loop hung; its watchdog released the controls.
+    Hung,
+    /// The controls may still be held.
+    NotReleased,
 }
 
 /// Something that happened once.
@@ -72,20 +87,14 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(
-        timer: &'static str,
-        report: LoopReport,
-        events: Vec<EventEntry>,
-        flight: Option<FlightScore>,
-        recording: Option<RecordingOutcome>,
-    ) -> Self {
-        let exit = match report.ending {
-            _ if !report.released => Exit::NotReleased,
-            Ending::Panicked(_) => Exit::Panicked,
-            Ending::Hung => Exit::Hung,
-            Ending::TimerFailed(_) => Exit::Failure,
-            _ if report.failsafes > 0 => Exit::Failsafe,
-            _ => Exit::Success,
+    pub(super) fn new(timer: &'static str, report: LoopReport) -> Self {
+        let conclusion = match report.ending {
+            _ if !report.released => Conclusion::NotReleased,
+            Ending::Panicked(_) => Conclusion::Panicked,
+            Ending::Hung => Conclusion::Hung,
+            Ending::TimerFailed(_) => Conclusion::Failed,
+            _ if report.failsafes > 0 => Conclusion::Failsafe,
+            _ => Conclusion::Completed,
         };
         Self {
             timing: TimingReport {
@@ -98,16 +107,16 @@ impl Outcome {
             }
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
-            flight,
-            events,
+            flight: None,
+            events: Vec::new(),
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
             overruns: report.overruns,
             released: report.released,
             records_dropped: report.records_dropped,
-            recording,
+            recording: None,
             interrupted: false,
-            exit,
+            conclusion,
         }
     }
 
@@ -118,8 +127,8 @@ impl Outcome {
             "interrupted by a signal".clone_into(&mut self.ending);
         } else if refused {
             "engaging was refused; the last event says why".clone_into(&mut self.ending);
-            if self.exit == Exit::Success {
-                self.exit = Exit::Failure;
+            if self.conclusion == Conclusion::Completed {
+                self.conclusion = Conclusion::Failed;
             }
         }
     }

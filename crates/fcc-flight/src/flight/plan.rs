@@ -28,8 +28,4 @@ pub struct Plan {
     pub pace: Pace,
     /// When it is over.
     pub length: Length,
-    /// No status lines.
-    pub quiet: bool,
-    /// Whether to print events as they happen.
-    pub announce: bool,
 }

@@ -1,16 +1,20 @@
 //! A flight's recording, as the flight sees it.
 
 use std::collections::BTreeMap;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
-use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, News, Realtime, Recorder, RecorderSettings, repair_last};
+use fcc_core::framework::Message;
+use fcc_telemetry::recording::{
+    About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last,
+};
+use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
 
-use super::outcome::RecordingOutcome;
-use super::watch::Watch;
+use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
+use super::outcome::{Outcome, RecordingOutcome};
+use super::plan::Pace;
 use crate::config::{Aircraft, Config};
 
 /// How a flight is to be recorded.
@@ -88,116 +92,108 @@ fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>
     }
 }
 
-/// The recording of a flight that is being flown.
+/// How often the others learn how the recorder does.
+const REPORT_EVERY: Duration = Duration::from_secs(1);
+
+/// Records a flight.
 pub(super) struct Recording {
-    recorder: Recorder,
-    /// When its status was last published.
-    told: Instant,
+    settings: RecorderSettings,
+    about: About,
+    recorder: Option<Recorder>,
+    /// When its status was last reported.
+    reported: Instant,
 }
 
-/// How often watchers are told how the recorder does.
-const TELL_EVERY: Duration = Duration::from_secs(1);
-
-/// What a recording has to know of its loop.
-pub(super) struct LoopFacts {
-    pub(super) timer: &'static str,
-    /// The loop's clock, read right now.
-    pub(super) now_ns: i64,
-    pub(super) sensors: Vec<String>,
-    pub(super) actuators: Vec<String>,
+impl Recording {
+    pub(super) fn new(request: RecordingRequest) -> Self {
+        Self {
+            settings: request.settings,
+            about: request.about,
+            recorder: None,
+            reported: Instant::now(),
+        }
+    }
 }
 
-impl RecordingRequest {
-    /// Takes what the loop knows of itself, and repairs what the last flight
-    /// may have left. To be called before the loop's clock matters.
-    pub(super) fn prepare(&mut self, facts: LoopFacts, watch: &mut Watch) {
-        let now_unix_ns = SystemTime::now()
-            .duration_since(UNIX_EPOCH)
-            .map_or(0, |since| since.as_nanos() as u64);
-        self.about = About {
-            timer: facts.timer.to_owned(),
-            sensors: facts.sensors,
-            actuators: facts.actuators,
-            started_unix_ns: now_unix_ns,
-            clock_offset_ns: (now_unix_ns as i64).saturating_sub(facts.now_ns),
-            ..std::mem::take(&mut self.about)
-        };
+impl Observer for Recording {
+    /// Repairs what the last flight may have left.
+    fn prepare(&mut self, reports: &mut Reports) {
         match repair_last(&self.settings.folder) {
             Ok(None) => {}
-            Ok(Some(repaired)) => watch.mention(&format!(
+            Ok(Some(repaired)) => reports.mention(format!(
                 "{}: was cut off, repaired: {} ticks",
                 repaired.path.display(),
                 repaired.ticks
             )),
-            Err(error) => watch.remark(format!("the last recording was not repaired: {error}")),
+            Err(error) => reports.remark(format!("the last recording was not repaired: {error}")),
         }
     }
 
-    /// Begins to record; without a recorder the flight goes on, and says so.
-    pub(super) fn begin(
-        self,
-        granted: Option<&RealtimeGranted>,
-        pace: fcc_telemetry::recording::RecordingPace,
-        watch: &mut Watch,
-    ) -> Option<Recording> {
-        let realtime = granted.map_or_else(Realtime::default, |granted| Realtime {
-            policy: granted.policy.to_owned(),
-            priority: granted.priority,
-            cpu: granted.cpu,
-            cpu_because: granted.cpu_reason.clone(),
-            memory_locked: granted.memory_locked,
-            stack_prefaulted: granted.stack_prefaulted,
-            timer_slack_ns: granted.timer_slack_ns,
-            cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
-            refused: granted.denied.iter().map(ToString::to_string).collect(),
-        });
+    /// Begins to record; without a recorder the flight goes on, and reports it.
+    fn begin(&mut self, facts: &Facts<'_>, reports: &mut Reports) {
         let about = About {
-            realtime,
-            ..self.about
+            timer: facts.timer.to_owned(),
+            sensors: facts.sensors.to_vec(),
+            actuators: facts.actuators.to_vec(),
+            started_unix_ns: facts.started_unix_ns,
+            clock_offset_ns: facts.clock_offset_ns,
+            realtime: facts.granted.map(realtime).unwrap_or_default(),
+            ..self.about.clone()
         };
         let settings = RecorderSettings {
-            pace,
-            ..self.settings
+            pace: match facts.pace {
+                Pace::RealTime => RecordingPace::RealTime,
+                Pace::Lockstep => RecordingPace::Lockstep,
+            },
+            ..self.settings.clone()
         };
-        Recorder::start(about, settings)
-            .inspect_err(|error| watch.remark(format!("not recorded: no thread: {error}")))
-            .ok()
-            .map(|recorder| Recording {
-                recorder,
-                told: Instant::now(),
-            })
-    }
-}
-
-impl Recording {
-    /// Records a message.
-    pub(super) fn take(&mut self, message: &FlightMessage) {
-        self.recorder.take(message);
-    }
-
-    /// Records words.
-    pub(super) fn remark(&self, text: &str) {
-        self.recorder.remark(text.to_owned());
-    }
-
-    /// Passes on what there is to say.
-    pub(super) fn tell(&mut self, watch: &mut Watch) {
-        while let Some(news) = self.recorder.news() {
-            tell(&news, watch);
+        match Recorder::start(about, settings) {
+            Ok(recorder) => self.recorder = Some(recorder),
+            Err(error) => reports.remark(format!("not recorded: no thread: {error}")),
         }
-        if self.told.elapsed() >= TELL_EVERY {
-            self.told = Instant::now();
-            watch.live.recorder(&self.recorder.status());
+    }
+
+    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.take(&Message::Tick(*record));
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent, _: &str, _: &FlightTime) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.take(&Message::Event(*event));
+        }
+    }
+
+    fn report(&mut self, report: &Report, _: &FlightTime) {
+        if let (Some(recorder), Report::Remark(words)) = (&self.recorder, report) {
+            recorder.remark(words.clone());
+        }
+    }
+
+    fn poll(&mut self, access: &mut Access<'_>) {
+        let Some(recorder) = &self.recorder else {
+            return;
+        };
+        while let Some(news) = recorder.news() {
+            pass_on(news, access.reports);
+        }
+        if self.reported.elapsed() >= REPORT_EVERY {
+            self.reported = Instant::now();
+            access.reports.recording(recorder.status());
         }
     }
 
     /// Ends the recording and waits for the disk, for a while.
-    pub(super) fn end(self, ending: &str, watch: &mut Watch) -> RecordingOutcome {
-        let (status, news) = self.recorder.finish(ending);
-        for news in &news {
-            tell(news, watch);
+    fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
+        let Some(recorder) = self.recorder.take() else {
+            return;
+        };
+        let (status, news) = recorder.finish(ending);
+        for news in news {
+            pass_on(news, reports);
         }
-        RecordingOutcome {
+        outcome.recording = Some(RecordingOutcome {
             files: status
                 .files
                 .iter()
@@ -207,14 +203,28 @@ impl Recording {
             bytes: status.bytes,
             not_recorded: status.not_recorded,
             stopped: status.stopped,
-        }
+        });
     }
 }
 
-fn tell(news: &News, watch: &mut Watch) {
+fn pass_on(news: News, reports: &mut Reports) {
     if news.is_trouble {
-        watch.remark(news.text.clone());
+        reports.remark(news.text);
     } else {
-        watch.mention(&news.text);
+        reports.mention(news.text);
+    }
+}
+
+fn realtime(granted: &RealtimeGranted) -> Realtime {
+    Realtime {
+        policy: granted.policy.to_owned(),
+        priority: granted.priority,
+        cpu: granted.cpu,
+        cpu_because: granted.cpu_reason.clone(),
+        memory_locked: granted.memory_locked,
+        stack_prefaulted: granted.stack_prefaulted,
+        timer_slack_ns: granted.timer_slack_ns,
+        cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
+        refused: granted.denied.iter().map(ToString::to_string).collect(),
     }
 }

@@ -1,109 +1,95 @@
 //! The outputs of a tick that are compared.
 
-use std::fmt;
+use std::fmt::Write as _;
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Controller, Flags, StateCode};
+use fcc_core::framework::schema::{Kind, Schema, Value, Values};
+use fcc_core::framework::{Controller, Flags};
 use fcc_telemetry::FlightRecord;
+use fcc_telemetry::schema::columns;
 
-/// One output of a tick: its name and how it is read.
-pub(super) struct Field {
-    /// As in the record.
-    pub(super) name: &'static str,
-    pub(super) value: fn(&FlightRecord) -> Value,
-}
-
-/// How many outputs a tick has.
-pub(super) const COUNT: usize = 15;
-
-const fn field(name: &'static str, value: fn(&FlightRecord) -> Value) -> Field {
-    Field { name, value }
-}
-
-/// All outputs of a tick, causes before what they lead to, so that the first
-/// that differs is the most telling.
-pub(super) const FIELDS: [Field; COUNT] = [
-    field("tick.dt_s", |r| Value::Number(r.tick.dt_s)),
-    field("engage_inhibits", |r| Value::Flags(r.engage_inhibits)),
-    field("faults", |r| Value::Flags(r.faults)),
-    field("state", |r| Value::State(r.state)),
-    field("setpoints.airspeed_mps", |r| {
-        Value::Number(r.setpoints.airspeed_mps)
-    }),
-    field("setpoints.heading_rad", |r| {
-        Value::Number(r.setpoints.heading_rad)
-    }),
-    field("setpoints.altitude_m", |r| {
-        Value::Number(r.setpoints.altitude_m)
-    }),
-    field("setpoints.roll_rad", |r| {
-        Value::Number(r.setpoints.roll_rad)
-    }),
-    field("setpoints.climb_rate_mps", |r| {
-        Value::Number(r.setpoints.climb_rate_mps)
-    }),
-    field("setpoints.pitch_rad", |r| {
-        Value::Number(r.setpoints.pitch_rad)
-    }),
-    field("outputs.throttle", |r| Value::Number(r.outputs.throttle)),
-    field("outputs.elevator", |r| Value::Number(r.outputs.elevator)),
-    field("outputs.aileron", |r| Value::Number(r.outputs.aileron)),
-    field("outputs.rudder", |r| Value::Number(r.outputs.rudder)),
-    field("sent", |r| Value::Truth(r.sent)),
+/// What of a record the loop works out, causes before what they lead to, so
+/// that the first that differs is the most telling. The rest is what came into
+/// the loop, or how long things took.
+const OUTPUTS: [&str; 8] = [
+    "tick.dt_s",
+    "estimate",
+    "engage_inhibits",
+    "faults",
+    "state",
+    "setpoints",
+    "outputs",
+    "sent",
 ];
 
-/// The value of an output.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Value {
-    Number(f64),
-    State(StateCode),
-    Flags(Flags),
-    Truth(bool),
+/// How many single values a record has.
+pub(super) const VALUES: usize = <FlightRecord as Schema>::TYPE.leaves();
+
+/// One output of a tick: its name, and which of a record's values it is.
+#[derive(Clone, Debug)]
+pub(super) struct Output {
+    /// As in the record.
+    pub(super) name: String,
+    pub(super) index: usize,
+    pub(super) kind: Kind,
 }
 
-impl Value {
-    /// Its bits: equal only for what is the same to the last of them, a NaN
-    /// and the sign of zero included.
-    pub(super) fn bits(self) -> u64 {
-        match self {
-            Self::Number(number) => number.to_bits(),
-            Self::State(state) => {
-                u64::from(state.phase())
-                    | u64::from(state.cause()) << 8
-                    | u64::from(state.flags().bits()) << 32
-            }
-            Self::Flags(flags) => flags.bits().into(),
-            Self::Truth(truth) => truth.into(),
-        }
-    }
+/// All outputs of a tick.
+pub(super) fn outputs() -> Vec<Output> {
+    let columns = columns::<FlightRecord>();
+    let is_in = |path: &str, output: &str| {
+        path.strip_prefix(output)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    let of = |output: &'static str| {
+        let all = columns.iter().enumerate();
+        all.filter(move |(_, column)| is_in(&column.path, output))
+    };
+    let found = OUTPUTS.into_iter().flat_map(of);
+    found
+        .map(|(index, column)| Output {
+            name: column.path.clone(),
+            index,
+            kind: column.kind,
+        })
+        .collect()
+}
 
-    /// How far two numbers are apart; none for what is no number.
-    pub(super) fn distance(self, other: Self) -> Option<f64> {
-        match (self, other) {
-            (Self::Number(one), Self::Number(two)) => {
-                Some((one - two).abs()).filter(|distance| distance.is_finite())
-            }
-            _ => None,
+/// The values of a record, one after another.
+pub(super) fn values(record: &FlightRecord) -> Values<VALUES> {
+    let mut values = Values::default();
+    record.visit(&mut values);
+    values
+}
+
+/// How far two numbers are apart; none for what is no number.
+pub(super) fn distance(one: Value, other: Value) -> Option<f64> {
+    match (one, other) {
+        (Value::Number(one), Value::Number(two)) => {
+            Some((one - two).abs()).filter(|distance| distance.is_finite())
         }
+        _ => None,
     }
 }
 
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            // As many digits as tell it from every other number.
-            Self::Number(number) => write!(f, "{number:?}"),
-            Self::State(state) => write!(f, "{state}"),
-            Self::Flags(flags) if flags.is_empty() => f.write_str("none"),
-            Self::Flags(flags) => {
-                for (n, bit) in flags.iter().enumerate() {
-                    let separator = if n == 0 { "" } else { ", " };
-                    write!(f, "{separator}{}", Autopilot::flag_name(bit))?;
-                }
-                Ok(())
+/// A value for people.
+pub(super) fn words(kind: Kind, value: Value) -> String {
+    match (kind, value) {
+        // As many digits as tell it from every other number.
+        (_, Value::Number(number)) => format!("{number:?}"),
+        (_, Value::Bool(truth)) => if truth { "yes" } else { "no" }.to_owned(),
+        (_, Value::Flags(0)) => "none".to_owned(),
+        (_, Value::Flags(bits)) => {
+            let mut text = String::new();
+            for bit in Flags::from_bits(bits).iter() {
+                let separator = if text.is_empty() { "" } else { ", " };
+                let _ = write!(text, "{separator}{}", Autopilot::flag_name(bit));
             }
-            Self::Truth(true) => f.write_str("yes"),
-            Self::Truth(false) => f.write_str("no"),
+            text
         }
+        (Kind::Code(of), Value::Code(number)) => {
+            fcc_telemetry::schema::words_of(of.name_of(number).unwrap_or_default())
+        }
+        (_, value) => value.bits().to_string(),
     }
 }

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use fcc_telemetry::FlightRecord;
 use serde::Serialize;
 
-use super::fields::{COUNT, FIELDS};
+use super::fields::{Output, distance, outputs, values, words};
 
 /// Whether a recording flown again gives the same outputs, bit for bit.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Identity {
-    /// Outputs compared: 15 a tick.
+    /// Outputs compared, of all ticks.
     pub outputs: u64,
     /// How many of them differ.
     pub differing: u64,
@@ -20,6 +20,8 @@ pub struct Identity {
     pub fields: Vec<FieldDifference>,
     #[serde(skip)]
     began_ns: Option<i64>,
+    #[serde(skip)]
+    compared: Vec<Output>,
 }
 
 /// One output of one tick that differs.
@@ -30,7 +32,7 @@ pub struct Difference {
     /// Milliseconds since the first tick.
     pub time_ms: i64,
     /// The output, as the record calls it.
-    pub field: &'static str,
+    pub field: String,
     /// What was recorded, in words for people.
     pub recorded: String,
     /// What it is when flown again.
@@ -45,7 +47,7 @@ pub struct Difference {
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct FieldDifference {
     /// The output, as the record calls it.
-    pub field: &'static str,
+    pub field: String,
     /// In how many ticks it differs.
     pub differing: u64,
     /// The first of them.
@@ -55,13 +57,32 @@ pub struct FieldDifference {
     pub largest: Option<f64>,
 }
 
+impl Default for Identity {
+    fn default() -> Self {
+        Self {
+            outputs: 0,
+            differing: 0,
+            first: None,
+            fields: Vec::new(),
+            began_ns: None,
+            compared: outputs(),
+        }
+    }
+}
+
 impl Identity {
     /// Compares one tick as recorded and as flown again.
     pub fn take(&mut self, recorded: &FlightRecord, again: &FlightRecord) {
         let at_ns = recorded.tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(at_ns);
-        for field in &FIELDS {
-            let (was, is) = ((field.value)(recorded), (field.value)(again));
+        let (recorded_values, again_values) = (values(recorded), values(again));
+        for output in &self.compared {
+            let (Some(was), Some(is)) = (
+                recorded_values.as_slice().get(output.index).copied(),
+                again_values.as_slice().get(output.index).copied(),
+            ) else {
+                continue;
+            };
             if was.bits() == is.bits() {
                 continue;
             }
@@ -70,28 +91,28 @@ impl Identity {
                 self.first = Some(Difference {
                     tick: recorded.tick.number,
                     time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
-                    field: field.name,
-                    recorded: was.to_string(),
-                    again: is.to_string(),
+                    field: output.name.clone(),
+                    recorded: words(output.kind, was),
+                    again: words(output.kind, is),
                     recorded_bits: format!("{:#018x}", was.bits()),
                     again_bits: format!("{:#018x}", is.bits()),
                 });
             }
-            let distance = was.distance(is);
-            match self.fields.iter_mut().find(|f| f.field == field.name) {
+            let distance = distance(was, is);
+            match self.fields.iter_mut().find(|f| f.field == output.name) {
                 Some(known) => {
                     known.differing += 1;
                     known.largest = known.largest.max_of(distance);
                 }
                 None => self.fields.push(FieldDifference {
-                    field: field.name,
+                    field: output.name.clone(),
                     differing: 1,
                     first_tick: recorded.tick.number,
                     largest: distance,
                 }),
             }
         }
-        self.outputs += COUNT as u64;
+        self.outputs += self.compared.len() as u64;
     }
 
     /// Whether nothing differs.
@@ -122,7 +143,7 @@ impl Identity {
         for field in &self.fields {
             let _ = write!(
                 text,
-                "\n{:25} differs in {:7} ticks from {} on",
+                "\n{:27} differs in {:7} ticks from {} on",
                 field.field, field.differing, field.first_tick
             );
             if let Some(largest) = field.largest {

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
-use fcc_core::framework::{LoopCommand, State, Switch};
+use fcc_core::framework::{Controller as _, LoopCommand, State, Switch};
 use fcc_runtime::{Link, Machine, Parts};
 use fcc_timer::ManualTimer;
 use numpy::PyArray1;

@@ -1,11 +1,9 @@
 //! Records as a table of pandas.
 
-use fcc_telemetry::{FIELDS, FieldKind};
+use fcc_core::framework::schema::Kind;
+use fcc_telemetry::{FlightRecord, schema};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-/// What ends the name of a reading's time.
-const TAKEN: &str = "_taken_ns";
 
 /// A table of records; what was never measured is NaN.
 pub(super) fn of<'py>(records: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -13,24 +11,20 @@ pub(super) fn of<'py>(records: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>
     let pandas = py.import("pandas")?;
     let numpy = py.import("numpy")?;
     let columns = PyDict::new(py);
-    // Values come before the time that they were taken at.
-    let mut waiting: Vec<&str> = Vec::new();
-    for field in FIELDS {
-        columns.set_item(field.name, records.get_item(field.name)?)?;
-        if field.name.ends_with(TAKEN) {
-            let never = records
-                .get_item(field.name)?
-                .call_method1("__eq__", (i64::MIN,))?;
-            for name in waiting.drain(..) {
-                let masked =
-                    numpy.call_method1("where", (&never, f64::NAN, records.get_item(name)?))?;
-                columns.set_item(name, masked)?;
-            }
-        } else if field.name.ends_with("_ns") || field.kind == FieldKind::U32 {
-            waiting.clear();
-        } else if field.kind == FieldKind::F64 {
-            waiting.push(field.name);
+    let declared = schema::columns::<FlightRecord>();
+    let taken_at = |reading: &str| {
+        let path = format!("{reading}.taken");
+        let found = declared.iter().find(|column| column.path == path);
+        found.map_or("", |column| column.name.as_str())
+    };
+    for column in &declared {
+        let mut values = records.get_item(column.name.as_str())?;
+        if let (Some(reading), Kind::Number) = (&column.reading, column.kind) {
+            let taken = records.get_item(taken_at(reading))?;
+            let never = taken.call_method1("__eq__", (i64::MIN,))?;
+            values = numpy.call_method1("where", (never, f64::NAN, values))?;
         }
+        columns.set_item(&column.name, values)?;
     }
     let settings = PyDict::new(py);
     if records.len()? > 0 {

@@ -22,8 +22,8 @@ pub(crate) struct PyEstimate {
     side_force_mps2: f64,
 }
 
-impl From<&Estimate> for PyEstimate {
-    fn from(estimate: &Estimate) -> Self {
+impl From<Estimate> for PyEstimate {
+    fn from(estimate: Estimate) -> Self {
         Self {
             roll_rad: estimate.roll_rad,
             pitch_rad: estimate.pitch_rad,

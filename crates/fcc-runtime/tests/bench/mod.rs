@@ -135,10 +135,15 @@ impl Stage {
     }
 }
 
-#[derive(Clone, Copy, Default, PartialEq, Debug)]
-pub(crate) struct Measured {
-    pub(crate) samples: u32,
-    pub(crate) switch: Reading<Switch>,
+fcc_core::schema! {
+    /// What the sensors measure.
+    #[derive(Clone, Copy, Default, PartialEq, Debug)]
+    pub(crate) struct Measured {
+        #[field(1)]
+        pub(crate) samples: u32,
+        #[field(2)]
+        pub(crate) switch: Reading<Switch>,
+    }
 }
 
 /// Deadline `number`, woken 40 µs late.

@@ -36,6 +36,7 @@ pub(crate) struct Puppet {
 
 impl Controller for Puppet {
     type Measurements = Measured;
+    type Estimate = ();
     type Setpoints = f64;
     type Outputs = f64;
     type Command = u32;

@@ -12,9 +12,9 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/record/v1` | a [`FlightRecord`](crate::FlightRecord) for each tick | 1 |
-//! | `fcc/INSTANCE/event/v1` | [`Event`]: what happened once | 64 |
-//! | `fcc/INSTANCE/status/v1` | [`Status`]: each second, how the run stands | 1 |
+//! | `fcc/INSTANCE/record/v2` | a [`FlightRecord`](crate::FlightRecord) for each tick | 1 |
+//! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
+//! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands come in the other way: a [`Commander`] asks by the service
 //! `fcc/INSTANCE/command/v1`, and learns what became of it.
@@ -52,4 +52,4 @@ pub use watcher::Watcher;
 
 /// The version of all layouts but [`Info`]'s. Whoever changes one of them,
 /// a field's meaning included, counts this up.
-pub const LAYOUT: u32 = 1;
+pub const LAYOUT: u32 = 2;

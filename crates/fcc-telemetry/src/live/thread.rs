@@ -17,7 +17,7 @@ use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
-use crate::Instance;
+use crate::{FlightWords, Instance};
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
@@ -161,7 +161,12 @@ impl Publishing {
             Item::Record(record) => {
                 self.lateness.take(&record.tick);
                 self.time_ns = record.tick.woke.as_nanos();
-                if self.paused || self.records.send_copy(Published(record)).is_err() {
+                if self.paused
+                    || self
+                        .records
+                        .send_copy(Published(FlightWords::of(&record)))
+                        .is_err()
+                {
                     self.not_published += 1;
                 }
             }

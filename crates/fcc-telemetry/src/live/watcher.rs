@@ -6,7 +6,7 @@ use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
 use iceoryx2::prelude::{PortFactory, ZeroCopySend};
 
 use super::place::Place;
-use super::record::Found;
+use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Ipc, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
@@ -39,10 +39,10 @@ type In<T> = Subscriber<Ipc, T, ()>;
 pub struct Watcher {
     instance: Instance,
     info: Info,
-    records: In<Found>,
+    records: In<Published>,
     events: In<Event>,
     statuses: In<Status>,
-    service: Service<Found>,
+    service: Service<Published>,
     // Last: it cleans up after the others.
     access: Access,
 }
@@ -61,7 +61,7 @@ impl Watcher {
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
         check_layout(&info, instance)?;
-        let service = RECORD.watch::<Found>(&access, instance)?;
+        let service = RECORD.watch::<Published>(&access, instance)?;
         Ok(Self {
             info,
             records: subscribe(&service, instance)?,
@@ -128,10 +128,11 @@ impl Watcher {
         publishes(&self.access, &self.service)
     }
 
-    fn record(&self, found: &Found) -> Result<FlightRecord, WatchError> {
+    fn record(&self, found: &Published) -> Result<FlightRecord, WatchError> {
         found
-            .record()
-            .ok_or_else(|| WatchError::Damaged(self.instance.clone()))
+            .0
+            .get()
+            .map_err(|_| WatchError::Damaged(self.instance.clone()))
     }
 }
 

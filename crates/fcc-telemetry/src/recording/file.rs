@@ -16,8 +16,8 @@ use super::foxglove::{self, Thinned};
 use super::outlet::Outlet;
 use super::schema::{self, Topic};
 use super::settings::Compression;
-use super::wire::foxglove::log::Level;
-use super::wire::{encode_event, encode_record};
+use super::wire::log::Level;
+use crate::schema::protobuf::encode;
 use crate::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// What a chunk holds at most before it is compressed: what a reader needs in
@@ -119,7 +119,7 @@ impl RecordingFile {
         let mut channels = [0; Topic::ALL.len()];
         for (channel, topic) in channels.iter_mut().zip(Topic::ALL) {
             let schema =
-                writer.add_schema(topic.schema(), schema::ENCODING, topic.descriptors())?;
+                writer.add_schema(topic.schema(), schema::ENCODING, &topic.descriptors())?;
             *channel =
                 writer.add_channel(schema, topic.name(), schema::ENCODING, &BTreeMap::new())?;
         }
@@ -140,7 +140,9 @@ impl RecordingFile {
 
     fn record(&mut self, record: &FlightRecord) -> Result<(), McapError> {
         let log_ns = self.log_time(record.tick.woke.as_nanos());
-        self.write(Topic::Record, log_ns, &encode_record(record))?;
+        self.bytes.clear();
+        encode(record, &mut self.bytes);
+        self.write_bytes(Topic::Record, log_ns)?;
         if let Some(pose) = foxglove::pose(record, &mut self.attitude, log_ns) {
             self.write(Topic::Attitude, log_ns, &pose)?;
         }
@@ -153,8 +155,9 @@ impl RecordingFile {
     fn event(&mut self, event: &FlightEvent) -> Result<(), McapError> {
         let log_ns = self.log_time(event.time.as_nanos());
         let text = self.words(event);
-        let wire = encode_event(event, text.clone());
-        self.write(Topic::Event, log_ns, &wire)?;
+        self.bytes.clear();
+        schema::encode_event(event, &text, &mut self.bytes);
+        self.write_bytes(Topic::Event, log_ns)?;
         let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
         self.write(Topic::Log, log_ns, &line)
     }
@@ -176,6 +179,10 @@ impl RecordingFile {
         message
             .encode(&mut self.bytes)
             .map_err(|error| McapError::Io(io::Error::other(error)))?;
+        self.write_bytes(topic, log_time)
+    }
+
+    fn write_bytes(&mut self, topic: Topic, log_time: u64) -> Result<(), McapError> {
         let header = MessageHeader {
             channel_id: self.channels.get(topic as usize).copied().unwrap_or(0),
             sequence: self.sequence,

@@ -10,7 +10,7 @@ use fcc_core::framework::{EventKind, Reading, State};
 use prost_types::Timestamp;
 
 use super::utc::SECOND_NS;
-use super::wire::foxglove::{LocationFix, Log, Pose, PoseInFrame, Quaternion, Vector3, log};
+use super::wire::{LocationFix, Log, Pose, PoseInFrame, Quaternion, Vector3, log};
 use crate::{FlightEvent, FlightRecord};
 
 /// The frame that attitude is given in.

@@ -11,8 +11,9 @@ use super::end::End;
 use super::foxglove::REMARK;
 use super::raw::{DamagedBytes, Found, RawReader};
 use super::schema::{self, Topic};
-use super::wire::{self, fcc, foxglove};
+use super::wire;
 use crate::FlightMessage;
+use crate::schema::protobuf::{DecodeError, decode};
 
 /// One thing in a recording.
 #[derive(Clone, PartialEq, Debug)]
@@ -264,23 +265,28 @@ impl Channels {
 }
 
 fn decode_record(data: &[u8]) -> Result<FlightMessage, String> {
-    let wire = fcc::Record::decode(data).map_err(|e| format!("a record is damaged: {e}"))?;
-    wire::decode_record(&wire)
+    decode(data)
         .map(Message::Tick)
-        .map_err(|e| format!("a record cannot be understood: {e}"))
+        .map_err(|error| refused("a record", error))
 }
 
 fn decode_event(data: &[u8]) -> Result<FlightMessage, String> {
-    let wire = fcc::Event::decode(data).map_err(|e| format!("an event is damaged: {e}"))?;
-    wire::decode_event(&wire)
+    decode(data)
         .map(Message::Event)
-        .map_err(|e| format!("an event cannot be understood: {e}"))
+        .map_err(|error| refused("an event", error))
+}
+
+fn refused(what: &str, error: DecodeError) -> String {
+    match error {
+        DecodeError::Unknown(unknown) => format!("{what} cannot be understood: {unknown}"),
+        damaged => format!("{what} is damaged: {damaged}"),
+    }
 }
 
 /// The remark in a line of the log; none where it tells of an event, which is
 /// there beside it. Words are no part of a flight: damage to them ends nothing.
 fn remark(header: &MessageHeader, data: &[u8], clock_offset_ns: i64) -> Option<Remark> {
-    let line = foxglove::Log::decode(data).ok()?;
+    let line = wire::Log::decode(data).ok()?;
     (line.name == REMARK).then(|| {
         let logged_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
         Remark {

@@ -71,5 +71,6 @@ pub use list::{Entry, Wholeness, entry, files, glance};
 pub use reader::{OpenError, Recording, Verified};
 pub use recorder::Recorder;
 pub use recover::{RecoverError, Recovered, recover};
+pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};
 pub use status::{News, RecorderStatus};

@@ -246,10 +246,20 @@ impl Recording {
     }
 }
 
+/// Which program wrote a file.
+enum Written {
+    /// This one.
+    Now,
+    /// A version of it with an earlier format, by its name.
+    Before(String),
+    /// Another.
+    ByOthers,
+}
+
 /// Reads what stands before the first message.
 fn read_about(mut raw: RawReader) -> Result<About, String> {
     enum Said {
-        Profile(bool),
+        Profile(Written),
         Flight(bool),
         Other,
         Messages,
@@ -258,7 +268,11 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
     let (mut is_ours, mut known) = (false, false);
     loop {
         let said = raw.next(|record| match record {
-            Record::Header(header) => Said::Profile(header.profile == schema::PROFILE),
+            Record::Header(header) => Said::Profile(match header.profile.as_str() {
+                schema::PROFILE => Written::Now,
+                schema::FIRST_PROFILE => Written::Before(header.library),
+                _ => Written::ByOthers,
+            }),
             Record::Metadata(metadata) => {
                 Said::Flight(about.take_metadata(&metadata.name, metadata.metadata))
             }
@@ -270,7 +284,14 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
             _ => Said::Other,
         });
         match said.map_err(|cut| cut.to_string())? {
-            Found::Record(Said::Profile(ours)) => is_ours = ours,
+            Found::Record(Said::Profile(Written::Before(library))) => {
+                return Err(format!(
+                    "{library} wrote it, in a format before {}: read it with that version, or \
+                     with Foxglove or any other program that reads MCAP",
+                    schema::PROFILE
+                ));
+            }
+            Found::Record(Said::Profile(written)) => is_ours = matches!(written, Written::Now),
             Found::Record(Said::Flight(taken)) => known |= taken,
             Found::Record(Said::Other) | Found::Damage(_) => {}
             // Either may be what is damaged.

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use mcap::records::{MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError};
+use prost::Message as _;
 use serde::Serialize;
 
 use super::damage::Damage;
@@ -20,9 +21,9 @@ use super::items::{Channels, Item};
 use super::name::{damaged, unfinished};
 use super::raw::{Cut, Found, RawReader};
 use super::reader::{OpenError, Recording, Verified};
+use super::schema::encode_event;
 use super::settings::Compression;
-use super::wire::encode_event;
-use super::wire::foxglove::log::Level;
+use super::wire::log::Level;
 use crate::{FlightMessage, event_words};
 
 /// What came of recovering a file.
@@ -309,18 +310,16 @@ impl Copy {
         if let Some(event) = damage.event() {
             self.run_statistics.take(&FlightMessage::Event(event));
             let text = event_words(&event, &[], &[]);
-            self.write(self.channels.event, &encode_event(&event, text))?;
+            let mut bytes = Vec::new();
+            encode_event(&event, &text, &mut bytes);
+            self.write(self.channels.event, &bytes)?;
         }
         let text = damage.remark().text;
         let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
-        self.write(self.channels.log, &line)
+        self.write(self.channels.log, &line.encode_to_vec())
     }
 
-    fn write(
-        &mut self,
-        channel: Option<u16>,
-        message: &impl prost::Message,
-    ) -> Result<(), McapError> {
+    fn write(&mut self, channel: Option<u16>, message: &[u8]) -> Result<(), McapError> {
         let Some(channel_id) = channel else {
             return Ok(());
         };
@@ -328,8 +327,7 @@ impl Copy {
             channel_id,
             ..self.last
         };
-        self.writer
-            .write_to_known_channel(&header, &message.encode_to_vec())
+        self.writer.write_to_known_channel(&header, message)
     }
 
     fn finish(mut self, ending: &str) -> io::Result<()> {

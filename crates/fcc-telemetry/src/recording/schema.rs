@@ -1,10 +1,37 @@
 //! The topics of a recording and their schemas.
 
-/// What says in a file that it is one of ours.
-pub(super) const PROFILE: &str = "fcc";
+use std::borrow::Cow;
+
+use fcc_core::framework::schema::Schema as _;
+
+use crate::schema::protobuf::{Extra, File, append_text, describe, encode};
+use crate::{FlightEvent, FlightRecord};
+
+/// What says in a file that it is one of ours, in this format.
+pub(super) const PROFILE: &str = "fcc.v2";
+
+/// What the first format was known by: records were laid out another way.
+pub(super) const FIRST_PROFILE: &str = "fcc";
 
 /// How messages and their schemas are encoded.
 pub(super) const ENCODING: &str = "protobuf";
+
+/// What the messages of a loop are called together.
+pub const PACKAGE: &str = "fcc.v2";
+
+/// An event in words, in its message.
+pub(super) const TEXT: Extra = Extra {
+    structure: "Event",
+    name: "text",
+    number: 3,
+    meaning: "What happened, in words for people.",
+};
+
+/// Appends an event and its words for people as a message.
+pub(super) fn encode_event(event: &FlightEvent, text: &str, into: &mut Vec<u8>) {
+    encode(event, into);
+    append_text(TEXT.number, text, into);
+}
 
 /// The topics of a recording.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -44,8 +71,8 @@ impl Topic {
     /// The full name of the message's type.
     pub(super) const fn schema(self) -> &'static str {
         match self {
-            Self::Record => "fcc.v1.Record",
-            Self::Event => "fcc.v1.Event",
+            Self::Record => "fcc.v2.Record",
+            Self::Event => "fcc.v2.Event",
             Self::Position => "foxglove.LocationFix",
             Self::Attitude => "foxglove.PoseInFrame",
             Self::Log => "foxglove.Log",
@@ -53,13 +80,20 @@ impl Topic {
     }
 
     /// The type and all it is made of, as a `FileDescriptorSet`.
-    pub(super) const fn descriptors(self) -> &'static [u8] {
-        match self {
-            Self::Record => descriptors!("record"),
-            Self::Event => descriptors!("event"),
-            Self::Position => descriptors!("location_fix"),
+    pub(super) fn descriptors(self) -> Cow<'static, [u8]> {
+        let described = match self {
+            Self::Record | Self::Event => {
+                return describe(&messages(), "fcc/v2/flight.proto", PACKAGE).into();
+            }
+            Self::Position => descriptors!("location_fix").as_slice(),
             Self::Attitude => descriptors!("pose_in_frame"),
             Self::Log => descriptors!("log"),
-        }
+        };
+        described.into()
     }
+}
+
+/// The messages of a flight: its records and events.
+pub fn messages() -> File {
+    File::of(&[FlightRecord::TYPE, FlightEvent::TYPE], &[TEXT])
 }

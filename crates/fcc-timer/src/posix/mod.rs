@@ -110,6 +110,10 @@ impl Timer for PosixTimer {
         }
     }
 
+    fn disable_early_wake(&mut self) {
+        self.early = None;
+    }
+
     fn period(&self) -> Duration {
         self.period.duration()
     }

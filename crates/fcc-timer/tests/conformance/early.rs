@@ -1,5 +1,5 @@
-//! What a timer that wakes early promises beside: its margin, its spin and its
-//! rehearsals.
+//! What a timer that wakes early also promises: its margin, its spin and its
+//! warm-up.
 
 use std::time::Duration;
 
@@ -46,6 +46,10 @@ impl<T: Timer> Timer for Early<T> {
         self.0.wait_or_warm_up()
     }
 
+    fn disable_early_wake(&mut self) {
+        self.0.disable_early_wake();
+    }
+
     fn period(&self) -> Duration {
         self.0.period()
     }
@@ -59,8 +63,8 @@ impl<T: Timer> Timer for Early<T> {
     }
 }
 
-/// What an early timer says of a wait adds up.
-pub(crate) fn the_margin_and_the_spin_are_told<T: Subject>() {
+/// Margin and spin of a wait are within their limits.
+pub(crate) fn the_margin_and_the_spin_are_reported<T: Subject>() {
     let mut timer = started::<T>();
     for _ in 0..100 {
         let expiry = timer.wait().unwrap();
@@ -73,23 +77,23 @@ pub(crate) fn the_margin_and_the_spin_are_told<T: Subject>() {
     }
 }
 
-/// A rehearsal tells which deadline comes next; then that comes, or a later one
-/// on a machine that was elsewhere meanwhile, and no other rehearsal before it.
-pub(crate) fn a_rehearsal_is_followed_by_its_deadline<T: Subject>() {
+/// A warm-up names the next deadline; then that deadline comes, or a later one if
+/// the thread was interrupted, and no second warm-up before it.
+pub(crate) fn a_warm_up_is_followed_by_its_deadline<T: Subject>() {
     let mut timer = started::<T>();
-    let mut rehearsed = 0;
+    let mut warmed_up = 0;
     let mut before = timer.wait().unwrap();
     for tick in 0..2_000 {
-        if tick >= 100 && rehearsed > 0 {
+        if tick >= 100 && warmed_up > 0 {
             break;
         }
         let mut wake = timer.wait_or_warm_up().unwrap();
         if let Wake::WarmUp(expected) = wake {
-            rehearsed += 1;
+            warmed_up += 1;
             assert!(expected.number > before.number, "{expected:?}");
             wake = timer.wait_or_warm_up().unwrap();
             let Wake::Deadline(expiry) = wake else {
-                panic!("two rehearsals of one deadline");
+                panic!("two warm-ups for one deadline");
             };
             let passed = expiry.number as i64 - expected.number as i64;
             assert!(passed >= 0, "{expected:?} {expiry:?}");
@@ -102,12 +106,12 @@ pub(crate) fn a_rehearsal_is_followed_by_its_deadline<T: Subject>() {
         before = assert_follows(expiry, before, PERIOD_NS);
     }
     // On a busy machine some wake-ups leave no time for it.
-    assert!(rehearsed > 0);
+    assert!(warmed_up > 0);
 }
 
-/// Who rehearses for longer than there is time misses what passed, as with any
-/// long tick, and who does not ask again gets the deadline by a plain wait.
-pub(crate) fn a_long_rehearsal_is_a_late_tick<T: Subject>() {
+/// A warm-up that takes longer than the time left misses the deadlines that
+/// passed, like any long tick; a plain wait after it returns the deadline.
+pub(crate) fn a_long_warm_up_is_a_late_tick<T: Subject>() {
     let mut timer = started::<T>();
     let mut before = timer.wait().unwrap();
     // On a busy machine some wake-ups leave no time for one.
@@ -123,7 +127,22 @@ pub(crate) fn a_long_rehearsal_is_a_late_tick<T: Subject>() {
             }
         }
     }
-    panic!("no rehearsal in 2000 deadlines");
+    panic!("no warm-up in 2000 deadlines");
+}
+
+/// Without early wake it is a plain timer, with deadlines as before.
+pub(crate) fn early_wake_can_be_disabled<T: Subject>() {
+    let mut timer = T::make(PERIOD).unwrap();
+    timer.disable_early_wake();
+    timer.start().unwrap();
+    let mut before = timer.wait().unwrap();
+    for _ in 0..20 {
+        let Wake::Deadline(expiry) = timer.wait_or_warm_up().unwrap() else {
+            panic!("a warm-up without early wake");
+        };
+        assert_eq!((expiry.early_wake_ns, expiry.spun_ns), (0, 0));
+        before = assert_follows(expiry, before, PERIOD_NS);
+    }
 }
 
 /// A tick that ends between an alarm and its deadline: the alarm has gone by,

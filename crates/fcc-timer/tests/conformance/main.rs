@@ -12,8 +12,9 @@ use std::thread;
 use std::time::Duration;
 
 use early::{
-    Early, a_long_rehearsal_is_a_late_tick, a_rehearsal_is_followed_by_its_deadline,
-    a_tick_that_ends_within_the_margin_loses_no_deadline, the_margin_and_the_spin_are_told,
+    Early, a_long_warm_up_is_a_late_tick, a_tick_that_ends_within_the_margin_loses_no_deadline,
+    a_warm_up_is_followed_by_its_deadline, early_wake_can_be_disabled,
+    the_margin_and_the_spin_are_reported,
 };
 use fcc_conformance::allocator_calls;
 use fcc_timer::{
@@ -266,26 +267,29 @@ conformance!(
     early_timerfd,
     super::Early<super::TimerFd>,
     signals_do_not_end_a_wait,
-    the_margin_and_the_spin_are_told,
-    a_rehearsal_is_followed_by_its_deadline,
-    a_long_rehearsal_is_a_late_tick,
+    the_margin_and_the_spin_are_reported,
+    a_warm_up_is_followed_by_its_deadline,
+    early_wake_can_be_disabled,
+    a_long_warm_up_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );
 conformance!(
     early_posix,
     super::Early<super::PosixTimer>,
     signals_do_not_end_a_wait,
-    the_margin_and_the_spin_are_told,
-    a_rehearsal_is_followed_by_its_deadline,
-    a_long_rehearsal_is_a_late_tick,
+    the_margin_and_the_spin_are_reported,
+    a_warm_up_is_followed_by_its_deadline,
+    early_wake_can_be_disabled,
+    a_long_warm_up_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );
 conformance!(
     early_nanosleep,
     super::Early<super::Nanosleep>,
     signals_do_not_end_a_wait,
-    the_margin_and_the_spin_are_told,
-    a_rehearsal_is_followed_by_its_deadline,
-    a_long_rehearsal_is_a_late_tick,
+    the_margin_and_the_spin_are_reported,
+    a_warm_up_is_followed_by_its_deadline,
+    early_wake_can_be_disabled,
+    a_long_warm_up_is_a_late_tick,
     a_tick_that_ends_within_the_margin_loses_no_deadline
 );

@@ -30,6 +30,42 @@ use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
+///
+/// ```
+/// use fcc_core::flight::guidance::GuidanceConfig;
+/// use fcc_core::flight::{
+///     Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, SpecificForce,
+/// };
+/// use fcc_core::framework::{Controller, Reading, Tick, Time};
+///
+/// let mut autopilot = Autopilot::new(AutopilotConfig {
+///     guidance: GuidanceConfig::Hold,
+///     ..AutopilotConfig::default()
+/// });
+/// // Two seconds of level flight at 100 kt and 3,000 ft, heading 30°.
+/// let mut tick = Tick { dt_s: 0.025, ..Tick::default() };
+/// let mut measured = Measurements::default();
+/// for n in 1..=80 {
+///     let now = Time::from_nanos(n * 25_000_000);
+///     (tick.scheduled, tick.woke) = (now, now);
+///     let felt = SpecificForce { z_mps2: -9.806_65, ..SpecificForce::default() };
+///     measured = Measurements {
+///         attitude: Reading::new(Attitude::default(), now),
+///         heading_rad: Reading::new(30.0_f64.to_radians(), now),
+///         body_rates: Reading::new(BodyRates::default(), now),
+///         specific_force: Reading::new(felt, now),
+///         airspeed_mps: Reading::new(51.444, now),
+///         altitude_m: Reading::new(914.4, now),
+///         ..Measurements::default()
+///     };
+///     autopilot.estimate(&tick, &measured);
+/// }
+/// assert!(autopilot.engage_inhibits(&tick, &measured).is_empty());
+/// autopilot.engage(&tick, &measured);
+/// autopilot.guide(&tick, &measured);
+/// assert!(autopilot.control(&tick, &measured).is_valid());
+/// assert!((autopilot.setpoints().heading_rad.to_degrees() - 30.0).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Autopilot {
     config: AutopilotConfig,
@@ -73,11 +109,6 @@ impl Autopilot {
         &self.config
     }
 
-    /// What navigation makes of the measurements.
-    pub const fn estimated(&self) -> &Estimate {
-        self.navigation.estimate()
-    }
-
     fn schedule(&self) -> Schedule {
         Schedule::at(
             self.navigation.estimate().airspeed_mps,
@@ -117,6 +148,7 @@ impl Autopilot {
 
 impl Controller for Autopilot {
     type Measurements = Measurements;
+    type Estimate = Estimate;
     type Setpoints = Setpoints;
     type Outputs = Surfaces;
     type Command = AutopilotCommand;
@@ -333,6 +365,10 @@ impl Controller for Autopilot {
         }
         self.targets = targets;
         self.change_mode(ModeInput::SetPoint);
+    }
+
+    fn estimated(&self) -> Estimate {
+        *self.navigation.estimate()
     }
 
     fn setpoints(&self) -> Setpoints {

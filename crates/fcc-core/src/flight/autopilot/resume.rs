@@ -7,17 +7,35 @@ use libm::round;
 use super::Autopilot;
 use crate::flight::Surfaces;
 use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
+use crate::schema;
 
-/// What was flown when a flight was cut off. Ordered right after engaging, it
-/// puts the autopilot where it was.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Resume {
-    /// How far guidance had come, as the record has it: the captured heading
-    /// is on the compass, 0..2π.
-    pub progress: Progress,
-    /// The surfaces that flew the aircraft: whoever gave the controls back may
-    /// have centred them since.
-    pub surfaces: Surfaces,
+schema! {
+    /// What was flown when a flight was cut off. Commanded right after engaging,
+    /// it puts the autopilot where it was.
+    ///
+    /// ```
+    /// use fcc_core::flight::guidance::{Mode, Progress};
+    /// use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
+    ///
+    /// // 65 s into the pattern when the power went.
+    /// let resume = Resume {
+    ///     progress: Progress { mode: Mode::TimedPattern, elapsed_s: 65.0, ..Progress::default() },
+    ///     surfaces: Surfaces { throttle: 0.7, ..Surfaces::default() },
+    /// };
+    /// let command = AutopilotCommand::Resume(resume);
+    /// assert_eq!(command, AutopilotCommand::Resume(resume));
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Resume {
+        /// How far guidance had come, as the record has it: the captured heading
+        /// is on the compass, 0..2π.
+        #[field(4)]
+        pub progress: Progress,
+        /// The surfaces that flew the aircraft: whoever gave the controls back may
+        /// have centred them since.
+        #[field(3)]
+        pub surfaces: Surfaces,
+    }
 }
 
 impl Autopilot {

@@ -22,26 +22,32 @@ pub use mode::{Mode, ModeInput};
 pub use pattern::{TimedPattern, TimedPatternConfig};
 pub use progress::Progress;
 
-/// What guidance asks of control.
-///
-/// ```
-/// use fcc_core::flight::guidance::Targets;
-///
-/// // A turn to the right from 350° to 80°: 440°, not 80°.
-/// let target = Targets { heading_rad: 440.0_f64.to_radians(), ..Targets::default() };
-/// assert!(target.is_finite() && target.heading_rad > 350.0_f64.to_radians());
-/// ```
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Targets {
-    /// Indicated airspeed, m/s.
-    pub airspeed_mps: f64,
-    /// Magnetic heading, rad, counted on through full turns: which way to turn
-    /// is said by the number, not guessed from the shorter way. Turns that
-    /// pile up while the aircraft cannot keep up never reverse.
-    pub heading_rad: f64,
-    /// Barometric altitude, m.
-    pub altitude_m: f64,
+use crate::schema;
+
+schema! {
+    /// What guidance asks of control.
+    ///
+    /// ```
+    /// use fcc_core::flight::guidance::Targets;
+    ///
+    /// // A turn to the right from 350° to 80°: 440°, not 80°.
+    /// let target = Targets { heading_rad: 440.0_f64.to_radians(), ..Targets::default() };
+    /// assert!(target.is_finite() && target.heading_rad > 350.0_f64.to_radians());
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Targets {
+        /// Indicated airspeed, m/s.
+        #[field(1)]
+        pub airspeed_mps: f64,
+        /// Magnetic heading, rad, counted on through full turns: which way to turn
+        /// is said by the number, not guessed from the shorter way. Turns that
+        /// pile up while the aircraft cannot keep up never reverse.
+        #[field(2)]
+        pub heading_rad: f64,
+        /// Barometric altitude, m.
+        #[field(3)]
+        pub altitude_m: f64,
+    }
 }
 
 impl Targets {

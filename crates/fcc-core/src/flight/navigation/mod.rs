@@ -17,6 +17,7 @@ use core::time::Duration;
 use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
+use crate::schema;
 
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
@@ -61,38 +62,48 @@ impl Default for NavigationConfig {
     }
 }
 
-/// What navigation makes of the measurements.
-///
-/// ```
-/// use fcc_core::flight::navigation::Estimate;
-///
-/// // The heading counts on: 370° is 10° after a turn to the right.
-/// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
-/// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
-/// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
-/// ```
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-#[repr(C)]
-pub struct Estimate {
-    /// Right wing down, rad.
-    pub roll_rad: f64,
-    /// Nose up, rad.
-    pub pitch_rad: f64,
-    /// Magnetic heading, rad, counted on through every full turn: 370° is 10°
-    /// after one turn to the right.
-    pub heading_rad: f64,
-    /// Turn rates about the body axes.
-    pub body_rates: BodyRates,
-    /// Indicated airspeed, m/s.
-    pub airspeed_mps: f64,
-    /// True airspeed, m/s.
-    pub true_airspeed_mps: f64,
-    /// Barometric altitude, m.
-    pub altitude_m: f64,
-    /// Climb rate, m/s, up.
-    pub climb_rate_mps: f64,
-    /// Specific force to the right, m/s²: 0 in a coordinated turn.
-    pub side_force_mps2: f64,
+schema! {
+    /// What navigation makes of the measurements.
+    ///
+    /// ```
+    /// use fcc_core::flight::navigation::Estimate;
+    ///
+    /// // The heading counts on: 370° is 10° after a turn to the right.
+    /// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
+    /// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
+    /// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug, Default)]
+    pub struct Estimate {
+        /// Right wing down, rad.
+        #[field(1)]
+        pub roll_rad: f64,
+        /// Nose up, rad.
+        #[field(2)]
+        pub pitch_rad: f64,
+        /// Magnetic heading, rad, counted on through every full turn: 370° is 10°
+        /// after one turn to the right.
+        #[field(3)]
+        pub heading_rad: f64,
+        /// Turn rates about the body axes.
+        #[field(4)]
+        pub body_rates: BodyRates,
+        /// Indicated airspeed, m/s.
+        #[field(5)]
+        pub airspeed_mps: f64,
+        /// True airspeed, m/s.
+        #[field(6)]
+        pub true_airspeed_mps: f64,
+        /// Barometric altitude, m.
+        #[field(7)]
+        pub altitude_m: f64,
+        /// Climb rate, m/s, up.
+        #[field(8)]
+        pub climb_rate_mps: f64,
+        /// Specific force to the right, m/s²: 0 in a coordinated turn.
+        #[field(9)]
+        pub side_force_mps2: f64,
+    }
 }
 
 /// Turns measurements into an [`Estimate`].

@@ -9,6 +9,7 @@
 
 mod boot_clock;
 mod keeper;
+mod observer;
 mod state_file;
 mod taking_up;
 
@@ -25,6 +26,7 @@ use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
 use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use keeper::Keeper;
+pub(super) use observer::RestartKeeper;
 use state_file::{Saved, StateFileError};
 use taking_up::{Next, TakingUp};
 

@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use fcc_flight::flight::Conclusion;
+
 /// How the program ends.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
@@ -59,5 +61,18 @@ Exit codes:
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
         Self::from(exit as u8)
+    }
+}
+
+impl From<Conclusion> for Exit {
+    fn from(conclusion: Conclusion) -> Self {
+        match conclusion {
+            Conclusion::Completed => Self::Success,
+            Conclusion::Failed => Self::Failure,
+            Conclusion::Failsafe => Self::Failsafe,
+            Conclusion::Panicked => Self::Panicked,
+            Conclusion::Hung => Self::Hung,
+            Conclusion::NotReleased => Self::NotReleased,
+        }
     }
 }

@@ -1,33 +1,40 @@
 //! A line each second for who watches.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, State};
+use fcc_flight::flight::{FlightTime, Observer};
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 
-use super::Pilot;
+use crate::output;
 
 /// Prints a line each second of the loop's time, on standard error.
 #[derive(Default)]
-pub(super) struct Printer {
+pub(crate) struct StatusLine {
     printed_s: Option<f64>,
     worst_us: f64,
     missed: u64,
 }
 
-impl Printer {
-    pub(super) fn record(&mut self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) {
+impl Observer for StatusLine {
+    fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
         self.worst_us = self
             .worst_us
             .max(record.tick.lateness().as_secs_f64() * 1e6);
         self.missed += record.tick.missed;
         // A hair early, so that a sum of ticks does not skip a second.
-        if self.printed_s.is_none_or(|last| now_s - last >= 1.0 - 1e-6) {
-            self.printed_s = Some(now_s);
-            eprintln!("{}", self.line(record, now_s, engaged_at_s));
+        if self
+            .printed_s
+            .is_none_or(|last| at.time_s - last >= 1.0 - 1e-6)
+        {
+            self.printed_s = Some(at.time_s);
+            output::message(self.line(record, at.time_s, at.engaged_at_s));
             self.worst_us = 0.0;
         }
     }
+}
 
+impl StatusLine {
     fn line(&self, record: &FlightRecord, now_s: f64, engaged_at_s: Option<f64>) -> String {
         let measured = &record.measurements;
         let timing = format!("late ≤{:6.1} µs  missed {}", self.worst_us, self.missed);
@@ -65,7 +72,7 @@ impl Printer {
                 );
                 for (n, bit) in record.engage_inhibits.iter().enumerate() {
                     line.push_str(if n == 0 { "  not ready: " } else { ", " });
-                    line.push_str(Pilot::flag_name(bit));
+                    line.push_str(Autopilot::flag_name(bit));
                 }
                 line
             }

@@ -3,27 +3,29 @@
 //! A guard goes on releasing the overrides until X-Plane shows them released,
 //! for two minutes if need be. A daemon that was started again and flies would
 //! have its controls pulled away by it. So the guard listens, while it
-//! releases, at a socket that is named after the simulator; whoever is about to
+//! releases, at a socket that is named after the plant; whoever is about to
 //! take control there connects, and the guard goes.
 //!
 //! The name is an abstract one: no file stays behind, and it reaches as far as
-//! the simulator's address does, which is one network namespace. Anybody in
+//! one network namespace. Anybody in
 //! there can connect; a guard goes for who runs as the same user, and for root.
 
 use std::io::{ErrorKind, Read};
-use std::net::SocketAddrV4;
 use std::os::linux::net::SocketAddrExt;
 use std::os::unix::net::{SocketAddr, UnixListener, UnixStream};
 use std::time::Duration;
 
+use fcc_core::framework::PlantId;
 use nix::sys::socket::{getsockopt, sockopt::PeerCredentials};
 use nix::unistd::{Uid, geteuid};
+
+use crate::output;
 
 /// How long a guard may take to go: it looks every 20 ms.
 const GOES_WITHIN: Duration = Duration::from_secs(1);
 
-fn name(simulator: SocketAddrV4) -> std::io::Result<SocketAddr> {
-    SocketAddr::from_abstract_name(format!("fccd-guard-{simulator}"))
+fn name(plant: &PlantId) -> std::io::Result<SocketAddr> {
+    SocketAddr::from_abstract_name(format!("fccd-guard-{plant}"))
 }
 
 /// Where a guard is found while it releases.
@@ -36,8 +38,8 @@ pub(super) struct Post {
 impl Post {
     /// Opens the post. Where that fails, nobody can relieve this guard, and it
     /// releases to the end.
-    pub(super) fn at(simulator: SocketAddrV4) -> Self {
-        let listener = name(simulator)
+    pub(super) fn at(plant: &PlantId) -> Self {
+        let listener = name(plant)
             .and_then(|name| UnixListener::bind_addr(&name))
             .and_then(|listener| listener.set_nonblocking(true).map(|()| listener));
         Self {
@@ -68,10 +70,10 @@ fn may_relieve(user: Uid, guard: Uid) -> bool {
     user == guard || user.is_root()
 }
 
-/// Relieves the guard that releases `simulator`, if there is one, and waits for
+/// Relieves the guard that releases `plant`, if there is one, and waits for
 /// a moment until it is gone. Whether there was one.
-pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
-    let Ok(mut stream) = name(simulator).and_then(|name| UnixStream::connect_addr(&name)) else {
+pub(super) fn relieve(plant: &PlantId) -> bool {
+    let Ok(mut stream) = name(plant).and_then(|name| UnixStream::connect_addr(&name)) else {
         return false;
     };
     let gone = stream
@@ -80,8 +82,8 @@ pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
     if let Err(error) = gone
         && matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
     {
-        eprintln!(
-            "the guard of the daemon before this one does not go: it may hold X-Plane's controls back"
+        output::message(
+            "the guard of the daemon before this one does not go: it may give the controls away",
         );
     }
     true
@@ -91,8 +93,10 @@ pub(super) fn relieve(simulator: SocketAddrV4) -> bool {
 mod tests {
     use super::*;
 
-    /// Nobody listens here, and no other test has this address.
-    const SIMULATOR: SocketAddrV4 = SocketAddrV4::new(std::net::Ipv4Addr::LOCALHOST, 9);
+    /// No other test has this one.
+    fn plant() -> PlantId {
+        PlantId::new(format_args!("the plant of a test")).unwrap()
+    }
 
     #[test]
     fn a_guard_goes_for_its_own_user_and_root_alone() {
@@ -108,15 +112,15 @@ mod tests {
 
     #[test]
     fn a_guard_is_relieved_once_somebody_comes_and_not_before() {
-        assert!(!relieve(SIMULATOR), "there is none");
-        let mut post = Post::at(SIMULATOR);
+        assert!(!relieve(&plant()), "there is none");
+        let mut post = Post::at(&plant());
         assert!(!post.is_relieved());
-        let comes = std::thread::spawn(|| relieve(SIMULATOR));
+        let comes = std::thread::spawn(|| relieve(&plant()));
         while !post.is_relieved() {
             std::thread::yield_now();
         }
         drop(post);
         assert!(comes.join().unwrap());
-        assert!(!relieve(SIMULATOR), "it is gone");
+        assert!(!relieve(&plant()), "it is gone");
     }
 }

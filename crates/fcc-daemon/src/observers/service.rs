@@ -10,11 +10,11 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{Controller, Flags, Message, State, StateCode};
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_core::flight::Autopilot;
+use fcc_core::framework::{Controller, Flags, State, StateCode};
+use fcc_flight::flight::{Access, FlightTime, Observer};
+use fcc_telemetry::FlightRecord;
 use sd_notify::NotifyState;
-
-use super::Pilot;
 
 /// Signs per time-out of the watchdog: one may be late, or two.
 const SIGNS_PER_TIMEOUT: u32 = 4;
@@ -25,7 +25,7 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Tells systemd how the flight goes; where nobody listens, nothing comes of
 /// it.
-pub(super) struct Service {
+pub(crate) struct Service {
     teller: Option<Teller>,
     sign_every: Option<Duration>,
     signed: Option<Instant>,
@@ -43,7 +43,7 @@ struct Condition {
 
 impl Service {
     /// Speaks with whoever the environment names.
-    pub(super) fn from_environment() -> Self {
+    pub(crate) fn from_environment() -> Self {
         Self {
             teller: std::env::var_os("NOTIFY_SOCKET").and_then(|_| Teller::start()),
             sign_every: sd_notify::watchdog_enabled().map(|within| within / SIGNS_PER_TIMEOUT),
@@ -52,16 +52,15 @@ impl Service {
             told: None,
         }
     }
+}
 
-    /// Takes what the loop tells.
-    pub(super) fn take(&mut self, message: &FlightMessage) {
-        if let Message::Tick(record) = message {
-            self.news = Some(Condition::of(record));
-        }
+impl Observer for Service {
+    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+        self.news = Some(Condition::of(record));
     }
 
     /// Passes on what is new: nothing if no tick came since the last time.
-    pub(super) fn tell(&mut self) {
+    fn poll(&mut self, _: &mut Access<'_>) {
         let (Some(now), Some(teller)) = (self.news.take(), &self.teller) else {
             return;
         };
@@ -84,7 +83,7 @@ impl Service {
     }
 
     /// The loop is over, and what is left may take its time.
-    pub(super) fn stopping(&mut self) {
+    fn stopping(&mut self) {
         if let Some(teller) = self.teller.take() {
             teller.tell(News::Stopping);
             teller.end();
@@ -150,7 +149,7 @@ impl Condition {
         };
         for (n, bit) in because.iter().enumerate() {
             words.push_str(if n == 0 { ": " } else { ", " });
-            words.push_str(Pilot::flag_name(bit));
+            words.push_str(Autopilot::flag_name(bit));
         }
         words
     }

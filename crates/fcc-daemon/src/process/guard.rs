@@ -1,24 +1,24 @@
-//! A second process that outlives this one by a moment, to give X-Plane's
+//! A second process that outlives this one by a moment, to give the
 //! controls back if this one is killed.
 //!
-//! X-Plane never takes an override back by itself, and a process that is
+//! A simulator never takes its controls back by itself, and a process that is
 //! killed can do nothing more. So before a flight, this program starts itself
 //! again as `fccd guard`, which waits at the end of a pipe. The pipe tells it
 //! where control is held, and closes when this process ends, however it does;
-//! if control was held by then, the guard centres the surfaces and releases
-//! the overrides, until X-Plane shows that it did, or until a daemon that takes
+//! if control was held by then, the guard gives it back, until the
+//! plant shows that it has it, or until a daemon that takes
 //! control itself [relieves](super::relief) it.
 
 use std::io::{self, BufRead, Write};
-use std::net::SocketAddrV4;
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use fcc_xplane::{OpenError, Released, XPlane, XPlaneConfig};
+use fcc_core::framework::{ActuatorFault, PlantId, Released};
+use fcc_flight::config::{Config, ConfigError};
+use fcc_flight::flight::authority_without_connection;
 
 use super::relief::Post;
-use crate::config::XPlaneSection;
 
 /// Begins a line that says where control is held.
 const HELD: &str = "held ";
@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// The guard, as the process that it guards sees it.
 pub(super) struct Guard {
     child: Child,
-    held: Option<SocketAddrV4>,
+    held: Option<PlantId>,
 }
 
 impl Guard {
@@ -39,7 +39,7 @@ impl Guard {
     ///
     /// # Errors
     /// When this program cannot be started a second time.
-    pub(super) fn start(section: &XPlaneSection) -> io::Result<Self> {
+    pub(super) fn start(config: &Config) -> io::Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
             .arg("guard")
             // A group of its own: Ctrl-C is not for it.
@@ -47,7 +47,7 @@ impl Guard {
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .spawn()?;
-        let line = serde_json::to_string(section)?;
+        let line = in_one_line(config)?;
         if let Some(pipe) = &mut child.stdin {
             writeln!(pipe, "{line}")?;
         }
@@ -56,14 +56,14 @@ impl Guard {
 
     /// Says where control is held, if it is. A guard that is gone is no reason
     /// to stop.
-    pub(super) fn tell(&mut self, held: Option<SocketAddrV4>) {
+    pub(super) fn tell(&mut self, held: Option<PlantId>) {
         if self.held == held {
             return;
         }
         self.held = held;
         if let Some(pipe) = &mut self.child.stdin {
             let _ = match held {
-                Some(simulator) => writeln!(pipe, "{HELD}{simulator}"),
+                Some(plant) => writeln!(pipe, "{HELD}{plant}"),
                 None => writeln!(pipe, "{FREE}"),
             };
         }
@@ -77,51 +77,75 @@ impl Guard {
     }
 }
 
-/// Stands guard: reads `from` until it ends, and then gives back what is held.
-/// Returns where, and how that ended.
+/// A configuration file as one line: a string of JSON.
+fn in_one_line(config: &Config) -> io::Result<String> {
+    let text = toml::to_string(config).map_err(io::Error::other)?;
+    Ok(serde_json::to_string(&text)?)
+}
+
+/// What a guard had to give back.
+#[derive(Debug)]
+pub(crate) struct GivenBack {
+    /// The plant.
+    pub(crate) plant: PlantId,
+    /// How that ended.
+    pub(crate) released: Released,
+    /// What a person does there if it did not succeed.
+    pub(crate) by_hand: &'static str,
+}
+
+/// Stands guard: reads `from` until it ends, and then gives back what is held;
+/// none if nothing is.
 ///
 /// # Errors
-/// When what is read makes no sense, or there is no socket to be had.
-pub fn run_release_helper(
+/// When what is read makes no sense, or nothing can be sent.
+pub(crate) fn run_release_helper(
     from: impl BufRead,
-) -> Result<Option<(SocketAddrV4, Released)>, ReleaseHelperError> {
+) -> Result<Option<GivenBack>, ReleaseHelperError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
-    let section: XPlaneSection = serde_json::from_str(&first)?;
-    let mut held: Option<SocketAddrV4> = None;
+    let text: String = serde_json::from_str(&first)?;
+    let config = Config::parse(&text, "standard input")?;
+    let mut held: Option<PlantId> = None;
     // A pipe that breaks is a pipe that ends.
     for line in lines.map_while(Result::ok) {
         if line == FREE {
             held = None;
-        } else if let Some(address) = line.strip_prefix(HELD) {
-            held = address.parse().ok().or(held);
+        } else if let Some(plant) = line.strip_prefix(HELD) {
+            held = PlantId::new(format_args!("{plant}")).or(held);
         }
     }
-    let Some(simulator) = held else {
+    let Some((plant, authority)) = held.zip(authority_without_connection(&config)) else {
         return Ok(None);
     };
-    let mut post = Post::at(simulator);
-    let config = XPlaneConfig::from(&section);
-    let released = XPlane::release_unless(&config, simulator, PATIENCE, || post.is_relieved())?;
-    Ok(Some((simulator, released)))
+    let mut post = Post::at(&plant);
+    let released = authority.release(&plant, PATIENCE, &mut || post.is_relieved())?;
+    Ok(Some(GivenBack {
+        plant,
+        released,
+        by_hand: authority.by_hand(),
+    }))
 }
 
 /// Why a guard could not do its work.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
-pub enum ReleaseHelperError {
+pub(crate) enum ReleaseHelperError {
     /// Nothing came through the pipe.
     #[error("fccd guard is started by fccd itself, which tells it what to guard")]
     Nothing,
     /// The pipe broke before it said anything.
     #[error("standard input: {0}")]
     Input(#[from] io::Error),
-    /// The first line is not a configuration.
-    #[error("the first line is no [x-plane] section as JSON: {0}")]
-    Section(#[from] serde_json::Error),
-    /// There is no socket to be had.
+    /// The first line is not a string.
+    #[error("the first line is no configuration as a string of JSON: {0}")]
+    Line(#[from] serde_json::Error),
+    /// The string is not a configuration.
     #[error(transparent)]
-    Release(#[from] OpenError),
+    Config(#[from] ConfigError),
+    /// Nothing can be sent to the plant.
+    #[error("the controls cannot be given back: {0}")]
+    Release(#[from] ActuatorFault),
 }
 
 #[cfg(test)]
@@ -129,12 +153,18 @@ mod tests {
     use std::net::UdpSocket;
     use std::time::Duration;
 
+    use fcc_flight::config::XPlaneSection;
+
     use super::*;
 
     fn script(simulator: &UdpSocket, last: &str) -> String {
-        let section = serde_json::to_string(&XPlaneSection::default()).unwrap();
+        let config = Config {
+            x_plane: Some(XPlaneSection::default()),
+            ..Config::default()
+        };
+        let config = in_one_line(&config).unwrap();
         let at = simulator.local_addr().unwrap();
-        format!("{section}\nheld {at}\n{last}")
+        format!("{config}\nheld X-Plane at {at}\n{last}")
     }
 
     fn simulator() -> UdpSocket {
@@ -182,7 +212,7 @@ mod tests {
             let script = script(&simulator, "");
             let guard = std::thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
             assert!(answer(&simulator, deaf_for).abs() < 0.5);
-            let (_, released) = guard.join().unwrap().unwrap();
+            let released = guard.join().unwrap().unwrap().released;
             assert_eq!(released, Released::Confirmed);
         }
     }
@@ -191,7 +221,7 @@ mod tests {
     fn what_is_free_is_left_alone() {
         let simulator = simulator();
         let told = run_release_helper(script(&simulator, "free\n").as_bytes()).unwrap();
-        assert_eq!(told, None);
+        assert!(told.is_none());
         assert!(simulator.recv(&mut [0; 600]).is_err(), "something was sent");
     }
 
@@ -200,14 +230,17 @@ mod tests {
         let simulator = simulator();
         let script = script(&simulator, "");
         drop(simulator);
-        let (_, released) = run_release_helper(script.as_bytes()).unwrap().unwrap();
+        let released = run_release_helper(script.as_bytes())
+            .unwrap()
+            .unwrap()
+            .released;
         assert_eq!(released, Released::Gone);
     }
 
     #[test]
     fn nonsense_is_refused_in_words() {
         let error = run_release_helper("what?\n".as_bytes()).unwrap_err();
-        assert!(error.to_string().contains("[x-plane]"), "{error}");
+        assert!(error.to_string().contains("no configuration"), "{error}");
         assert!(matches!(
             run_release_helper(&b""[..]),
             Err(ReleaseHelperError::Nothing)

@@ -1,0 +1,89 @@
+//! Where a flight is in its time, and whether it is over.
+
+use fcc_core::framework::{EventKind, Message, State};
+use fcc_telemetry::FlightMessage;
+
+use super::observer::FlightTime;
+use super::plan::Length;
+
+/// Sees from the loop's messages where the flight is.
+#[derive(Default)]
+pub(super) struct Monitor {
+    start_ns: Option<i64>,
+    at: FlightTime,
+    failed: bool,
+    refused: bool,
+}
+
+impl Monitor {
+    /// Takes a message of the loop; when it was.
+    pub(super) fn take(&mut self, message: &FlightMessage) -> FlightTime {
+        match message {
+            Message::Tick(record) => {
+                let woke_ns = record.tick.woke.as_nanos();
+                let time_s = self.seconds(record.tick.scheduled.as_nanos());
+                let since = self.at.engaged_at_s.unwrap_or(time_s);
+                self.at = FlightTime {
+                    time_s,
+                    tick: record.tick.number,
+                    woke_ns,
+                    engaged_at_s: (record.state == State::Engaged).then_some(since),
+                };
+                self.at
+            }
+            Message::Event(event) => {
+                self.failed |= matches!(
+                    event.kind,
+                    EventKind::StateChanged {
+                        to: State::Failsafe(_),
+                        ..
+                    }
+                );
+                self.refused |= matches!(event.kind, EventKind::EngageRefused { .. });
+                FlightTime {
+                    time_s: self.seconds(event.time.as_nanos()),
+                    tick: event.tick,
+                    woke_ns: event.time.as_nanos(),
+                    ..self.at
+                }
+            }
+        }
+    }
+
+    /// When the last tick was.
+    pub(super) const fn at(&self) -> FlightTime {
+        self.at
+    }
+
+    /// Whether a flight of this length is over: its time is up, or it cannot be
+    /// flown.
+    pub(super) fn is_over(&self, length: Length) -> bool {
+        // Sums of ticks end this close to a whole second.
+        const ROUNDING_S: f64 = 1e-6;
+        let time_s = self.at.time_s;
+        let time_is_up = match length {
+            Length::Open => return false,
+            Length::Engaged(seconds) => self
+                .at
+                .engaged_at_s
+                .is_some_and(|at_s| time_s - at_s >= seconds - ROUNDING_S),
+            Length::Whole(seconds) => time_s >= seconds - ROUNDING_S,
+        };
+        time_is_up || self.failed || self.refused
+    }
+
+    /// Whether engaging was refused.
+    pub(super) const fn was_refused(&self) -> bool {
+        self.refused
+    }
+
+    /// Seconds since the first thing the loop reported; an event before the
+    /// first tick is at 0.
+    fn seconds(&mut self, nanos: i64) -> f64 {
+        if nanos == i64::MIN {
+            return 0.0;
+        }
+        let start = *self.start_ns.get_or_insert(nanos);
+        (nanos - start) as f64 * 1e-9
+    }
+}

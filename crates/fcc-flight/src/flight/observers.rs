@@ -1,0 +1,127 @@
+//! All who observe a flight.
+
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::Message;
+use fcc_runtime::CommandSender;
+use fcc_telemetry::{FlightMessage, event_words};
+
+use super::assemble::Assembly;
+use super::host::Host;
+use super::monitor::Monitor;
+use super::observer::{Access, Facts, Observer, Reports};
+use super::outcome::Outcome;
+
+/// All who observe a flight, each handed the same in turn.
+pub(super) struct Observers {
+    all: Vec<Box<dyn Observer>>,
+    names: Names,
+    pub(super) monitor: Monitor,
+    reports: Reports,
+}
+
+impl Observers {
+    pub(super) fn new(all: Vec<Box<dyn Observer>>, names: Names) -> Self {
+        Self {
+            all,
+            names,
+            monitor: Monitor::default(),
+            reports: Reports::default(),
+        }
+    }
+
+    pub(super) fn prepare(&mut self) {
+        self.each(|observer, reports| observer.prepare(reports));
+    }
+
+    pub(super) fn begin(&mut self, facts: &Facts<'_>) {
+        self.each(|observer, reports| observer.begin(facts, reports));
+    }
+
+    /// Hands over a message of the loop.
+    pub(super) fn take(&mut self, message: &FlightMessage) {
+        let at = self.monitor.take(message);
+        match message {
+            Message::Tick(record) => {
+                for observer in &mut self.all {
+                    observer.record(record, &at);
+                }
+            }
+            Message::Event(event) => {
+                let words = event_words(event, &self.names.sensors, &self.names.actuators);
+                for observer in &mut self.all {
+                    observer.event(event, &words, &at);
+                }
+            }
+        }
+    }
+
+    /// Lets each do what there is to do.
+    pub(super) fn poll(
+        &mut self,
+        commands: &mut CommandSender<AutopilotCommand>,
+        host: &mut dyn Host,
+    ) {
+        self.each(|observer, reports| {
+            observer.poll(&mut Access {
+                commands,
+                reports,
+                before_control: &mut || host.before_control(),
+            });
+        });
+    }
+
+    /// Hands over something that no observer reports.
+    pub(super) fn remark(&mut self, words: impl Into<String>) {
+        self.reports.remark(words);
+        self.deliver(None);
+    }
+
+    pub(super) fn stopping(&mut self) {
+        self.each(|observer, _| observer.stopping());
+    }
+
+    /// Ends each; in their order, so that what one reports at its end the next
+    /// still get.
+    pub(super) fn end(mut self, ending: &str, outcome: &mut Outcome) {
+        self.each(|observer, reports| observer.end(ending, outcome, reports));
+    }
+
+    fn each(&mut self, mut act: impl FnMut(&mut dyn Observer, &mut Reports)) {
+        for number in 0..self.all.len() {
+            if let Some(observer) = self.all.get_mut(number) {
+                act(observer.as_mut(), &mut self.reports);
+            }
+            self.deliver(Some(number));
+        }
+    }
+
+    /// Hands over what was reported, but to its own reporter.
+    fn deliver(&mut self, reporter: Option<usize>) {
+        let at = self.monitor.at();
+        for report in self.reports.take() {
+            for (number, observer) in self.all.iter_mut().enumerate() {
+                if Some(number) != reporter {
+                    observer.report(&report, &at);
+                }
+            }
+        }
+    }
+}
+
+/// What sensors and actuators are called: the loop knows them by their places.
+#[derive(Clone)]
+pub(super) struct Names {
+    pub(super) sensors: Vec<String>,
+    pub(super) actuators: Vec<String>,
+}
+
+impl Names {
+    pub(super) fn of(assembly: &Assembly) -> Self {
+        let sensors = assembly.sensors.iter().map(|s| s.name().to_owned());
+        let actuators = assembly.actuators.iter().map(|a| a.name().to_owned());
+        Self {
+            sensors: sensors.collect(),
+            actuators: actuators.collect(),
+        }
+    }
+}

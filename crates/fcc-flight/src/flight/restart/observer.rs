@@ -1,0 +1,62 @@
+//! Restart in the air as an observer of the flight.
+
+use fcc_core::framework::Message;
+use fcc_telemetry::{FlightEvent, FlightRecord};
+
+use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
+use super::super::outcome::Outcome;
+use super::{Restart, RestartRequest};
+
+/// Keeps what is flown from the flight's beginning to its end, and takes up
+/// what was.
+pub(in crate::flight) struct RestartKeeper {
+    request: Option<RestartRequest>,
+    restart: Option<Restart>,
+}
+
+impl RestartKeeper {
+    pub(in crate::flight) const fn new(request: RestartRequest) -> Self {
+        Self {
+            request: Some(request),
+            restart: None,
+        }
+    }
+}
+
+impl Observer for RestartKeeper {
+    fn begin(&mut self, _: &Facts<'_>, reports: &mut Reports) {
+        if let Some(request) = self.request.take() {
+            let (restart, words) = Restart::begin(request);
+            self.restart = restart;
+            if let Some(words) = words {
+                reports.remark(words);
+            }
+        }
+    }
+
+    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+        if let Some(restart) = &mut self.restart {
+            restart.take(&Message::Tick(*record));
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent, _: &str, _: &FlightTime) {
+        if let Some(restart) = &mut self.restart {
+            restart.take(&Message::Event(*event));
+        }
+    }
+
+    fn poll(&mut self, access: &mut Access<'_>) {
+        if let Some(restart) = &mut self.restart
+            && let Some(words) = restart.poll(access.commands, &mut *access.before_control)
+        {
+            access.reports.remark(words);
+        }
+    }
+
+    fn end(&mut self, _: &str, _: &mut Outcome, _: &mut Reports) {
+        if let Some(restart) = self.restart.take() {
+            restart.end();
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The single values of a struct as columns.
+
+use fcc_core::framework::schema::{Field, Kind, Schema, Structure, Type};
+
+/// A single value of a struct.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Column {
+    /// What it is called in tables and arrays, its unit at the end.
+    pub name: String,
+    /// Where it stands in the struct: `measurements.attitude.value.pitch_rad`.
+    pub path: String,
+    /// Where the reading stands that it is a part of, if it is of one.
+    pub reading: Option<String>,
+    /// Bytes from the struct's beginning.
+    pub offset: usize,
+    /// What kind of value it is.
+    pub kind: Kind,
+    /// What it means.
+    pub meaning: String,
+    /// Its unit; empty if it has none.
+    pub unit: &'static str,
+    /// The least and the greatest that it can be.
+    pub range: Option<(f64, f64)>,
+}
+
+/// The single values of a struct, in their order.
+pub fn columns<T: Schema>() -> Vec<Column> {
+    collect::<T>(false)
+}
+
+/// The same, and what is worked out from the values of a struct after them.
+pub(super) fn columns_and_derived<T: Schema>() -> Vec<Column> {
+    collect::<T>(true)
+}
+
+fn collect<T: Schema>(derived: bool) -> Vec<Column> {
+    let mut found = Vec::new();
+    let root = Around {
+        path: String::new(),
+        offset: 0,
+        field: T::ROOT,
+        outer: None,
+        quantity: "",
+    };
+    root.collect(derived, &mut found);
+    found
+}
+
+/// A field, and what it is in.
+struct Around<'a> {
+    path: String,
+    offset: usize,
+    field: &'static Field,
+    outer: Option<&'a Self>,
+    /// Of a reading's parts: the name of the reading.
+    quantity: &'static str,
+}
+
+impl Around<'_> {
+    fn collect(&self, derived: bool, found: &mut Vec<Column>) {
+        match self.field.of {
+            Type::Leaf(kind) => found.push(self.column(kind)),
+            Type::Struct(of) | Type::Choice(of) => {
+                let more: &[Field] = if derived { of.derived } else { &[] };
+                for field in of.fields.iter().chain(more) {
+                    self.inner(of, field).collect(derived, found);
+                }
+            }
+        }
+    }
+
+    fn inner(&self, of: &'static Structure, field: &'static Field) -> Around<'_> {
+        let dot = if self.path.is_empty() { "" } else { "." };
+        Around {
+            path: format!("{}{dot}{}", self.path, field.name),
+            offset: self.offset + field.offset,
+            field,
+            outer: Some(self),
+            quantity: if of.is_reading { self.field.name } else { "" },
+        }
+    }
+
+    fn column(&self, kind: Kind) -> Column {
+        // The value of a reading is what the reading is of.
+        let told_by = match self.outer {
+            Some(reading) if self.is_value() => reading.field,
+            _ => self.field,
+        };
+        let mut named = *told_by;
+        named.of = Type::Leaf(kind);
+        Column {
+            name: self.name(),
+            path: self.path.clone(),
+            reading: self.reading(),
+            offset: self.offset,
+            kind,
+            meaning: super::meaning(told_by.meaning),
+            unit: named.unit(),
+            range: told_by.range,
+        }
+    }
+
+    fn reading(&self) -> Option<String> {
+        let mut around = self.outer;
+        while let Some(outer) = around {
+            if let Type::Struct(of) = outer.field.of
+                && of.is_reading
+            {
+                return Some(outer.path.clone());
+            }
+            around = outer.outer;
+        }
+        None
+    }
+
+    fn is_value(&self) -> bool {
+        !self.quantity.is_empty() && self.field.name == "value"
+    }
+
+    /// Its own name, as each struct around it wants it.
+    fn name(&self) -> String {
+        let own = self.field.column.unwrap_or(self.field.name);
+        let mut around = self.outer;
+        let mut name = match self.field.of {
+            // A reading's time is named after the reading, and its value is it.
+            Type::Leaf(Kind::Instant) if !self.quantity.is_empty() => {
+                let reading = around;
+                around = reading.and_then(|reading| reading.outer);
+                let quantity = reading.map_or("", |reading| reading.field.quantity());
+                format!("{quantity}_{own}_ns")
+            }
+            Type::Leaf(Kind::Instant) => format!("{own}_ns"),
+            _ if self.is_value() => self.quantity.to_owned(),
+            _ => own.replace('*', self.field.name),
+        };
+        while let Some(outer) = around {
+            if let Some(wanted) = outer.field.column {
+                name = wanted.replace('*', &name);
+            }
+            around = outer.outer;
+        }
+        name
+    }
+}

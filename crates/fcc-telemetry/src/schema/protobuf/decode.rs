@@ -1,0 +1,152 @@
+//! From bytes, of which nothing is believed.
+
+use fcc_core::framework::schema::{Field, Kind, Schema, Source, Type, Unknown, Value};
+use prost::encoding::{WireType, decode_key, decode_varint};
+
+/// Why bytes are no message of a type.
+#[derive(thiserror::Error, Clone, Copy, PartialEq, Debug)]
+#[non_exhaustive]
+pub enum DecodeError {
+    /// They are no message at all, or a field of it is of another type.
+    #[error("its bytes are no message")]
+    Damaged,
+    /// A value is none of those that are declared.
+    #[error(transparent)]
+    Unknown(#[from] Unknown),
+}
+
+/// The struct in a message.
+///
+/// # Errors
+/// When the bytes are no message of this type.
+pub fn decode<T: Schema>(bytes: &[u8]) -> Result<T, DecodeError> {
+    let mut decoder = Decoder {
+        fields: Vec::with_capacity(64),
+        open: Vec::with_capacity(8),
+        root: bytes,
+        damaged: false,
+    };
+    let value = T::from_source(&mut decoder);
+    if decoder.damaged {
+        return Err(DecodeError::Damaged);
+    }
+    Ok(value?)
+}
+
+#[derive(Clone, Copy)]
+enum Wire<'a> {
+    Varint(u64),
+    Fixed64(u64),
+    Fixed32(u32),
+    Bytes(&'a [u8]),
+}
+
+struct Decoder<'a> {
+    /// The fields of the messages that have begun and not ended.
+    fields: Vec<(u32, Wire<'a>)>,
+    /// Where in it those of each begin; none for a message that is not there.
+    open: Vec<Option<usize>>,
+    root: &'a [u8],
+    damaged: bool,
+}
+
+impl<'a> Decoder<'a> {
+    /// A field of the message that is being read; the last, if there are
+    /// several.
+    fn find(&self, number: u32) -> Option<Wire<'a>> {
+        let first = (*self.open.last()?)?;
+        let fields = self.fields.get(first..)?;
+        let found = fields.iter().rfind(|(known, _)| *known == number);
+        found.map(|(_, wire)| *wire)
+    }
+
+    /// Takes a message apart.
+    fn take(&mut self, mut bytes: &'a [u8]) -> Option<()> {
+        while !bytes.is_empty() {
+            let (number, wire_type) = decode_key(&mut bytes).ok()?;
+            let wire = match wire_type {
+                WireType::Varint => Wire::Varint(decode_varint(&mut bytes).ok()?),
+                WireType::SixtyFourBit => {
+                    let (taken, rest) = bytes.split_first_chunk()?;
+                    bytes = rest;
+                    Wire::Fixed64(u64::from_le_bytes(*taken))
+                }
+                WireType::ThirtyTwoBit => {
+                    let (taken, rest) = bytes.split_first_chunk()?;
+                    bytes = rest;
+                    Wire::Fixed32(u32::from_le_bytes(*taken))
+                }
+                WireType::LengthDelimited => {
+                    let length = usize::try_from(decode_varint(&mut bytes).ok()?).ok()?;
+                    let (taken, rest) = bytes.split_at_checked(length)?;
+                    bytes = rest;
+                    Wire::Bytes(taken)
+                }
+                WireType::StartGroup | WireType::EndGroup => return None,
+            };
+            self.fields.push((number, wire));
+        }
+        Some(())
+    }
+}
+
+impl Source for Decoder<'_> {
+    fn begin(&mut self, field: &'static Field) {
+        let bytes = if self.open.is_empty() {
+            Some(self.root)
+        } else {
+            match self.find(field.number) {
+                None => None,
+                Some(Wire::Bytes(bytes)) => Some(bytes),
+                Some(_) => {
+                    self.damaged = true;
+                    None
+                }
+            }
+        };
+        let first = self.fields.len();
+        self.open.push(bytes.map(|_| first));
+        if bytes.is_some_and(|bytes| self.take(bytes).is_none()) {
+            self.damaged = true;
+        }
+    }
+
+    fn end(&mut self, _: &'static Field) {
+        if let Some(Some(first)) = self.open.pop() {
+            self.fields.truncate(first);
+        }
+    }
+
+    fn value(&mut self, field: &'static Field) -> Option<Value> {
+        // Of a message that is not there, every value is the default.
+        (*self.open.last()?)?;
+        let Type::Leaf(kind) = field.of else {
+            return None;
+        };
+        let found = self.find(field.number);
+        let value = match (kind, found) {
+            (Kind::Number | Kind::Instant, None) => return None,
+            (kind, None) => Value::from_bits(kind, 0),
+            (Kind::Number, Some(Wire::Fixed64(bits))) => Some(Value::Number(f64::from_bits(bits))),
+            (Kind::Instant, Some(Wire::Fixed64(bits))) => Some(Value::Instant(bits as i64)),
+            (Kind::Flags, Some(Wire::Fixed32(bits))) => Some(Value::Flags(bits)),
+            (Kind::Bool, Some(Wire::Varint(value))) => Some(Value::Bool(value != 0)),
+            (Kind::Code(_), Some(Wire::Varint(value))) => {
+                Some(Value::Code(u8::try_from(value).unwrap_or(u8::MAX)))
+            }
+            (Kind::Count(_), Some(Wire::Varint(value))) => Some(Value::Count(value)),
+            (Kind::Signed(_), Some(Wire::Varint(value))) => {
+                let size = (value >> 1) as i64;
+                Some(Value::Signed(size ^ -((value & 1) as i64)))
+            }
+            _ => None,
+        };
+        self.damaged |= value.is_none();
+        value
+    }
+
+    fn variant(&mut self, _: &'static Field) -> Option<u32> {
+        let first = (*self.open.last()?)?;
+        self.fields.get(first..)?.last().map(|(number, _)| *number)
+    }
+}

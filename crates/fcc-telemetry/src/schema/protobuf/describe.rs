@@ -1,0 +1,108 @@
+//! What a recording carries so that any program can read it.
+
+use fcc_core::framework::schema::{Enumeration, Kind};
+use prost::Message as _;
+use prost_types::field_descriptor_proto::{Label, Type};
+use prost_types::{
+    DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto,
+    FileDescriptorProto, FileDescriptorSet, OneofDescriptorProto,
+};
+
+use super::model::{FieldType, File, Message, MessageField, snake};
+
+/// A file as a serialized `FileDescriptorSet`.
+pub fn describe(file: &File, name: &str, package: &str) -> Vec<u8> {
+    let described = FileDescriptorProto {
+        name: Some(name.to_owned()),
+        package: Some(package.to_owned()),
+        message_type: file.messages.iter().map(|m| message(m, package)).collect(),
+        enum_type: file.enums.iter().map(|of| enumeration(of)).collect(),
+        syntax: Some("proto3".to_owned()),
+        ..FileDescriptorProto::default()
+    };
+    FileDescriptorSet {
+        file: vec![described],
+    }
+    .encode_to_vec()
+}
+
+/// What the choice between the fields of a message is called.
+pub(super) const ONEOF: &str = "kind";
+
+fn message(of: &Message, package: &str) -> DescriptorProto {
+    let mut described = DescriptorProto {
+        name: Some(of.name.clone()),
+        ..DescriptorProto::default()
+    };
+    if of.is_choice {
+        described.oneof_decl.push(oneof(ONEOF.to_owned()));
+    }
+    for field in &of.fields {
+        let mut made = field_of(field, package);
+        if of.is_choice {
+            made.oneof_index = Some(0);
+        } else if field.is_optional() {
+            // What proto3 makes of `optional`: a choice of one.
+            made.proto3_optional = Some(true);
+            made.oneof_index = Some(described.oneof_decl.len() as i32);
+            described.oneof_decl.push(oneof(format!("_{}", field.name)));
+        }
+        described.field.push(made);
+    }
+    described
+}
+
+const fn oneof(name: String) -> OneofDescriptorProto {
+    OneofDescriptorProto {
+        name: Some(name),
+        options: None,
+    }
+}
+
+impl MessageField {
+    /// Whether it is written even where it is 0.
+    pub(super) const fn is_optional(&self) -> bool {
+        matches!(self.of, FieldType::Leaf(Kind::Number | Kind::Instant))
+    }
+}
+
+fn field_of(field: &MessageField, package: &str) -> FieldDescriptorProto {
+    let (kind, named) = match &field.of {
+        FieldType::Leaf(Kind::Bool) => (Type::Bool, None),
+        FieldType::Leaf(Kind::Code(of)) => (Type::Enum, Some(of.name)),
+        FieldType::Leaf(Kind::Flags) => (Type::Fixed32, None),
+        FieldType::Leaf(Kind::Count(_)) => (Type::Uint64, None),
+        FieldType::Leaf(Kind::Signed(_)) => (Type::Sint64, None),
+        FieldType::Leaf(Kind::Instant) => (Type::Sfixed64, None),
+        FieldType::Leaf(Kind::Number) => (Type::Double, None),
+        FieldType::Message(name) => (Type::Message, Some(name.as_str())),
+        FieldType::Text => (Type::String, None),
+    };
+    FieldDescriptorProto {
+        name: Some(field.name.clone()),
+        number: i32::try_from(field.number).ok(),
+        label: Some(Label::Optional.into()),
+        r#type: Some(kind.into()),
+        type_name: named.map(|name| format!(".{package}.{name}")),
+        ..FieldDescriptorProto::default()
+    }
+}
+
+fn enumeration(of: &Enumeration) -> EnumDescriptorProto {
+    let value = of.variants.iter().map(|variant| EnumValueDescriptorProto {
+        name: Some(value_name(of, variant.name)),
+        number: Some(variant.number.into()),
+        options: None,
+    });
+    EnumDescriptorProto {
+        name: Some(of.name.to_owned()),
+        value: value.collect(),
+        ..EnumDescriptorProto::default()
+    }
+}
+
+/// What proto3 calls a value of an enum: with the enum's name before it, as
+/// values of one file share their names.
+pub(super) fn value_name(of: &Enumeration, variant: &str) -> String {
+    format!("{}_{}", snake(of.name), snake(variant)).to_uppercase()
+}

@@ -1,0 +1,80 @@
+//! Into bytes.
+
+use fcc_core::framework::schema::{Field, Schema, Sink, Type, Value};
+use prost::encoding::{self, WireType, encode_key, encode_varint, encoded_len_varint};
+
+/// Appends a struct as a message.
+pub fn encode<T: Schema>(value: &T, into: &mut Vec<u8>) {
+    value.visit(&mut Encoder {
+        into,
+        open: Vec::with_capacity(8),
+    });
+}
+
+/// Appends a text to a message, as its field of this number.
+pub fn append_text(number: u32, text: &str, into: &mut Vec<u8>) {
+    encode_key(number, WireType::LengthDelimited, into);
+    encode_varint(text.len() as u64, into);
+    into.extend_from_slice(text.as_bytes());
+}
+
+struct Encoder<'a> {
+    into: &'a mut Vec<u8>,
+    /// The messages that have begun and not ended.
+    open: Vec<Open>,
+}
+
+struct Open {
+    /// Where its fields begin.
+    start: usize,
+    /// Whether it is there to say which field it has.
+    is_choice: bool,
+}
+
+impl Sink for Encoder<'_> {
+    fn begin(&mut self, field: &'static Field) {
+        if field.number > 0 {
+            encode_key(field.number, WireType::LengthDelimited, self.into);
+        }
+        self.open.push(Open {
+            start: self.into.len(),
+            is_choice: matches!(field.of, Type::Choice(_)),
+        });
+    }
+
+    /// A message's length stands before it and is known after it.
+    fn end(&mut self, field: &'static Field) {
+        let Some(Open { start, .. }) = self.open.pop() else {
+            return;
+        };
+        if field.number == 0 {
+            return;
+        }
+        let end = self.into.len();
+        let length = (end - start) as u64;
+        let room = encoded_len_varint(length);
+        encode_varint(length, self.into);
+        if let Some(moved) = self.into.get_mut(start..end + room) {
+            moved.rotate_right(room);
+        }
+    }
+
+    fn value(&mut self, field: &'static Field, value: Value) {
+        let said_by_absence = !self.open.last().is_some_and(|open| open.is_choice);
+        let (number, into) = (field.number, &mut *self.into);
+        match value {
+            Value::Number(value) => encoding::double::encode(number, &value, into),
+            Value::Instant(value) => encoding::sfixed64::encode(number, &value, into),
+            value if value.bits() == 0 && said_by_absence => {}
+            Value::Bool(value) => encoding::bool::encode(number, &value, into),
+            Value::Code(value) => encoding::uint32::encode(number, &value.into(), into),
+            Value::Flags(value) => encoding::fixed32::encode(number, &value, into),
+            Value::Count(value) => encoding::uint64::encode(number, &value, into),
+            Value::Signed(value) => encoding::sint64::encode(number, &value, into),
+        }
+    }
+
+    fn derived(&mut self, field: &'static Field, value: f64) {
+        encoding::double::encode(field.number, &value, self.into);
+    }
+}

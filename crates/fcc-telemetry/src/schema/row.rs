@@ -1,0 +1,95 @@
+//! A struct as a row of a table.
+
+use std::fmt::Write as _;
+
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Type, Value};
+
+use super::columns::columns_and_derived;
+use super::layout::words_of;
+
+/// The names of a table's columns: of all values, and of what is worked out.
+pub fn header<T: Schema>() -> Vec<String> {
+    let all = columns_and_derived::<T>();
+    all.into_iter().map(|column| column.name).collect()
+}
+
+/// A row of a table: a cell for each value, as it is recorded, and empty for
+/// what was never measured. Codes are words.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    cells: Vec<String>,
+    used: usize,
+    /// Where the structs that have begun and not ended begin.
+    open: Vec<usize>,
+    never: bool,
+}
+
+impl Row {
+    /// Takes the place of the row before.
+    pub fn take<T: Schema>(&mut self, value: &T) {
+        self.used = 0;
+        self.open.clear();
+        value.visit(self);
+    }
+
+    /// The cells, in the order of [`header`].
+    pub fn cells(&self) -> &[String] {
+        self.cells.get(..self.used).unwrap_or_default()
+    }
+
+    fn cell(&mut self) -> Option<&mut String> {
+        if self.used == self.cells.len() {
+            self.cells.push(String::new());
+        }
+        self.used += 1;
+        let cell = self.cells.get_mut(self.used - 1)?;
+        cell.clear();
+        Some(cell)
+    }
+}
+
+impl Sink for Row {
+    fn begin(&mut self, _: &'static Field) {
+        self.open.push(self.used);
+    }
+
+    fn end(&mut self, field: &'static Field) {
+        let first = self.open.pop().unwrap_or(self.used);
+        // What was never measured has no value, whatever the number says.
+        if let Type::Struct(of) = field.of
+            && of.is_reading
+            && std::mem::take(&mut self.never)
+            && let Some(cells) = self.cells.get_mut(first..self.used)
+        {
+            cells.iter_mut().for_each(String::clear);
+        }
+    }
+
+    fn value(&mut self, field: &'static Field, value: Value) {
+        self.never = value.is_never();
+        let Some(cell) = self.cell() else {
+            return;
+        };
+        // Writing to a string does not fail.
+        let _ = match value {
+            _ if value.is_never() => Ok(()),
+            Value::Bool(value) => write!(cell, "{}", u8::from(value)),
+            Value::Code(number) => match field.of {
+                Type::Leaf(Kind::Code(of)) => {
+                    write!(cell, "{}", words_of(of.name_of(number).unwrap_or_default()))
+                }
+                _ => write!(cell, "{number}"),
+            },
+            Value::Flags(bits) => write!(cell, "{bits}"),
+            Value::Count(count) => write!(cell, "{count}"),
+            Value::Signed(number) | Value::Instant(number) => write!(cell, "{number}"),
+            Value::Number(number) => write!(cell, "{number}"),
+        };
+    }
+
+    fn derived(&mut self, _: &'static Field, value: f64) {
+        if let Some(cell) = self.cell() {
+            let _ = write!(cell, "{value}");
+        }
+    }
+}
