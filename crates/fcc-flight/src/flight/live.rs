@@ -1,7 +1,10 @@
 //! Lets others watch a flight, live.
 
-use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
-use fcc_telemetry::{FlightEvent, FlightRecord, recording};
+use std::ops::RangeInclusive;
+
+use fcc_live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
+use fcc_record as recording;
+use fcc_telemetry::{FlightEvent, FlightRecord};
 
 use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
@@ -17,11 +20,12 @@ pub(super) struct Live {
 }
 
 impl Live {
-    pub(super) fn new(section: &TelemetrySection) -> Self {
+    /// Commands are held to these airspeeds, m/s.
+    pub(super) fn new(section: &TelemetrySection, airspeeds_mps: RangeInclusive<f64>) -> Self {
         Self {
             section: section.clone(),
             publisher: None,
-            commands: Commands::default(),
+            commands: Commands::new(airspeeds_mps),
         }
     }
 }

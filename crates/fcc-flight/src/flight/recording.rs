@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::{
-    About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last,
-};
+use fcc_record::{About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
@@ -187,11 +185,15 @@ impl Observer for Recording {
     /// Ends the recording and waits for the disk, for a while.
     fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
         let Some(recorder) = self.recorder.take() else {
+            outcome.was_not_recorded();
             return;
         };
         let (status, news) = recorder.finish(ending);
         for news in news {
             pass_on(news, reports);
+        }
+        if status.stopped.is_some() || status.not_recorded > 0 || outcome.records_dropped > 0 {
+            outcome.was_not_recorded();
         }
         outcome.recording = Some(RecordingOutcome {
             files: status

@@ -1,0 +1,258 @@
+//! Commands and answers as they lie in shared memory.
+
+#![expect(unsafe_code, reason = "iceoryx2 asks for a promise about layouts")]
+
+use iceoryx2::prelude::ZeroCopySend;
+
+use super::super::Text;
+use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, OutsideLimits, Quantity, Verdict};
+
+/// A command as it lies in shared memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Request {
+    /// [`COMMANDS_VERSION`].
+    pub(super) version: u32,
+    /// 0 engage, 1 disengage, 2 stop, 3 set.
+    pub(super) code: u32,
+    /// NaN where it stays.
+    pub(super) airspeed_mps: f64,
+    /// NaN where it stays.
+    pub(super) heading_rad: f64,
+    /// NaN where it stays.
+    pub(super) altitude_m: f64,
+}
+
+/// An answer as it lies in shared memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(super) struct Answer {
+    /// 0 carried out, 1 refused, 2 refused for the airspeed's limits.
+    pub(super) code: u32,
+    /// [`COMMANDS_VERSION`].
+    pub(super) version: u32,
+    /// The tick that read the command; 0 if none did.
+    pub(super) tick: u64,
+    /// The least airspeed that this aircraft may fly, m/s; with code 2 alone.
+    pub(super) least_mps: f64,
+    /// The most.
+    pub(super) most_mps: f64,
+    /// Why it was refused.
+    pub(super) text: Text<224>,
+}
+
+// SAFETY: repr(C), numbers only.
+unsafe impl ZeroCopySend for Request {
+    unsafe fn type_name() -> &'static str {
+        "fcc.v2.Command"
+    }
+}
+
+// SAFETY: repr(C), numbers and bytes only.
+unsafe impl ZeroCopySend for Answer {
+    unsafe fn type_name() -> &'static str {
+        "fcc.v2.CommandAnswer"
+    }
+}
+
+const ENGAGE: u32 = 0;
+const DISENGAGE: u32 = 1;
+const STOP: u32 = 2;
+const SET: u32 = 3;
+
+const CARRIED_OUT: u32 = 0;
+const REFUSED: u32 = 1;
+const OUTSIDE: u32 = 2;
+
+impl From<FlightCommand> for Request {
+    fn from(command: FlightCommand) -> Self {
+        let (code, set) = match command {
+            FlightCommand::Engage => (ENGAGE, NewSetpoints::default()),
+            FlightCommand::Disengage => (DISENGAGE, NewSetpoints::default()),
+            FlightCommand::Stop => (STOP, NewSetpoints::default()),
+            FlightCommand::Set(set) => (SET, set),
+        };
+        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        Self {
+            version: COMMANDS_VERSION,
+            code,
+            airspeed_mps: number(set.airspeed_mps),
+            heading_rad: number(set.heading_rad),
+            altitude_m: number(set.altitude_m),
+        }
+    }
+}
+
+impl Request {
+    /// What another program wrote may be anything.
+    ///
+    /// # Errors
+    /// Why it is no command, in words.
+    pub(super) fn command(&self) -> Result<FlightCommand, String> {
+        if self.version != COMMANDS_VERSION {
+            return Err(format!(
+                "the command is of version {}, and this daemon takes version {COMMANDS_VERSION}: use \
+                 the fccd that belongs to it",
+                self.version
+            ));
+        }
+        let given = |value: f64| (!value.is_nan()).then_some(value);
+        let command = match self.code {
+            ENGAGE => FlightCommand::Engage,
+            DISENGAGE => FlightCommand::Disengage,
+            STOP => FlightCommand::Stop,
+            SET => FlightCommand::Set(NewSetpoints {
+                airspeed_mps: given(self.airspeed_mps),
+                heading_rad: given(self.heading_rad),
+                altitude_m: given(self.altitude_m),
+            }),
+            other => return Err(format!("there is no command with the number {other}")),
+        };
+        command
+            .check()
+            .map(|()| command)
+            .map_err(|error| error.to_string())
+    }
+}
+
+impl From<&Verdict> for Answer {
+    fn from(verdict: &Verdict) -> Self {
+        let answer = Self {
+            code: CARRIED_OUT,
+            version: COMMANDS_VERSION,
+            tick: 0,
+            least_mps: 0.0,
+            most_mps: 0.0,
+            text: Text::default(),
+        };
+        match verdict {
+            Verdict::CarriedOut { tick } => Self {
+                tick: *tick,
+                ..answer
+            },
+            Verdict::Refused(words) => Self {
+                code: REFUSED,
+                text: Text::new(words),
+                ..answer
+            },
+            Verdict::Outside(outside) => Self {
+                code: OUTSIDE,
+                least_mps: outside.least,
+                most_mps: outside.most,
+                text: Text::new(&outside.to_string()),
+                ..answer
+            },
+        }
+    }
+}
+
+impl Answer {
+    /// What became of this command.
+    pub(super) fn verdict(&self, command: &FlightCommand) -> Verdict {
+        match (self.code, command) {
+            (CARRIED_OUT, _) => Verdict::CarriedOut { tick: self.tick },
+            (
+                OUTSIDE,
+                FlightCommand::Set(NewSetpoints {
+                    airspeed_mps: Some(value),
+                    ..
+                }),
+            ) => Verdict::Outside(OutsideLimits {
+                quantity: Quantity::Airspeed,
+                value: *value,
+                least: self.least_mps,
+                most: self.most_mps,
+            }),
+            _ => Verdict::Refused(self.text.as_str().to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem::offset_of;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn the_layouts_are_as_written_down() {
+        assert_eq!((size_of::<Request>(), size_of::<Answer>()), (32, 256));
+        assert_eq!(
+            [
+                offset_of!(Request, version),
+                offset_of!(Request, code),
+                offset_of!(Request, airspeed_mps),
+                offset_of!(Request, heading_rad),
+                offset_of!(Request, altitude_m),
+            ],
+            [0, 4, 8, 16, 24]
+        );
+        assert_eq!(
+            [
+                offset_of!(Answer, code),
+                offset_of!(Answer, version),
+                offset_of!(Answer, tick),
+                offset_of!(Answer, least_mps),
+                offset_of!(Answer, most_mps),
+                offset_of!(Answer, text),
+            ],
+            [0, 4, 8, 16, 24, 32]
+        );
+    }
+
+    #[test]
+    fn orders_and_verdicts_come_back() {
+        for command in [
+            FlightCommand::Engage,
+            FlightCommand::Disengage,
+            FlightCommand::Stop,
+            FlightCommand::Set(NewSetpoints {
+                heading_rad: Some(1.5),
+                ..NewSetpoints::default()
+            }),
+        ] {
+            assert_eq!(Request::from(command).command(), Ok(command));
+        }
+        for verdict in [
+            Verdict::CarriedOut { tick: 9 },
+            Verdict::Refused("why".to_owned()),
+            Verdict::Outside(OutsideLimits {
+                quantity: Quantity::Airspeed,
+                value: 90.0,
+                least: 40.0,
+                most: 60.0,
+            }),
+        ] {
+            let command = FlightCommand::Set(NewSetpoints {
+                airspeed_mps: Some(90.0),
+                ..NewSetpoints::default()
+            });
+            assert_eq!(Answer::from(&verdict).verdict(&command), verdict);
+        }
+    }
+
+    #[test]
+    fn another_version_is_refused() {
+        let mut request = Request::from(FlightCommand::Engage);
+        request.version = 1;
+        let words = request.command().unwrap_err();
+        assert!(
+            words.contains("version 2") && words.contains("version 1"),
+            "{words}"
+        );
+    }
+
+    proptest! {
+        /// Nothing that lies in shared memory is a command that cannot be flown.
+        #[test]
+        fn any_bytes_are_an_order_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
+            let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
+            let request = Request { version, code, airspeed_mps, heading_rad, altitude_m };
+            if let Ok(command) = request.command() {
+                prop_assert!(command.check().is_ok());
+            }
+        }
+    }
+}
