@@ -553,7 +553,11 @@ class Recording:
 def list_recordings(folder: _Path) -> list[dict[str, Any]]: ...
 def recover(path: _Path) -> dict[str, Any]: ...
 def report(
-    path: _Path, *, html: _Path | None = None, csv: _Path | None = None
+    path: _Path,
+    *,
+    html: _Path | None = None,
+    svg: _Path | None = None,
+    csv: _Path | None = None,
 ) -> dict[str, Any]: ...
 def replay(
     paths: _Path | Iterable[_Path], config: Config | str | None = None
