@@ -104,6 +104,17 @@ class Setpoints:
     def climb_rate_mps(self) -> float: ...
     @property
     def pitch_rad(self) -> float: ...
+    @property
+    def guidance_mode(self) -> str:
+        """What guidance flies: "none", "hold" or "timed-pattern"."""
+
+    @property
+    def guidance_item(self) -> int:
+        """Which part of the mode is flown: of a pattern, the leg."""
+
+    @property
+    def guidance_elapsed_s(self) -> float:
+        """For how long the mode has been flown, s of the plant's time."""
 
 @final
 class Estimate:

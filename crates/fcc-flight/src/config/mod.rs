@@ -99,6 +99,10 @@ pub enum Aircraft<'a> {
     BuiltIn(&'a BuiltInSection),
 }
 
+/// So long the thread that fetches what the loop reports may be held up before
+/// records are lost: at 200 Hz or less.
+const FETCHED_WITHIN_S: f64 = 20.0;
+
 impl Config {
     /// Reads and checks a file.
     ///
@@ -182,7 +186,9 @@ impl Config {
 
     /// What the loop is told.
     pub fn loop_config(&self) -> LoopConfig {
+        let most = LoopConfig::default().messages_capacity;
         LoopConfig {
+            messages_capacity: self.tick.ticks_in(FETCHED_WITHIN_S, most),
             switch_off: self.engage.switch_off.into(),
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),
