@@ -58,8 +58,8 @@ WRONG = {
         "x-plane.engage_switch",
         "letters, digits, / _ [ ]",
     ),
-    "a name for an address": (
-        '[x-plane]\nsimulator = "localhost:49000"\n',
+    "no address": (
+        '[x-plane]\nsimulator = "192.168.1.300:49000"\n',
         2,
         "x-plane.simulator",
         "127.0.0.1:49000",

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::mem;
 use core::time::Duration;
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use fcc_core::flight::Measurements;
@@ -47,6 +47,7 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     release_monitor: ReleaseMonitor,
     datagrams_per_tick: usize,
     silent_after: Duration,
+    fallback_after: Duration,
     /// The first tick: silence counts from here until something comes.
     began: Time,
     restarted: Time,
@@ -78,6 +79,7 @@ impl<P: Port> XPlaneSensor<P> {
             release_monitor: ReleaseMonitor::new(Controls::new(config)?),
             datagrams_per_tick: usize::from(config.datagrams_per_tick),
             silent_after: config.silent_after,
+            fallback_after: config.fallback_after,
             began: Time::NEVER,
             restarted: Time::NEVER,
             buffer: Box::new([0; BUFFER_BYTES]),
@@ -110,7 +112,7 @@ impl<P: Port> XPlaneSensor<P> {
             };
             let known = self.link.simulator();
             let silent = now.since(self.inbox.last_received()) > self.silent_after;
-            let address = SocketAddrV4::new(*from.ip(), beacon.port);
+            let address = SocketAddr::new(from.ip(), beacon.port);
             let stay = known.is_some_and(|known| {
                 known != address && (!silent || self.link.control() == Control::Held)
             });
@@ -125,7 +127,7 @@ impl<P: Port> XPlaneSensor<P> {
         }
     }
 
-    fn receive(&mut self, now: Time, simulator: Option<SocketAddrV4>) -> Result<(), SensorFault> {
+    fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {
         let mut malformed = false;
         for _ in 0..self.datagrams_per_tick {
             let received = self.port.receive(self.buffer.as_mut_slice());
@@ -156,7 +158,7 @@ impl<P: Port> XPlaneSensor<P> {
         }
     }
 
-    fn ask(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+    fn ask(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
         self.subscriptions.send_due(now, &self.inbox, |request| {
             count(&link.counters.requests);
@@ -164,7 +166,7 @@ impl<P: Port> XPlaneSensor<P> {
         })
     }
 
-    fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+    fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
         self.release_monitor.see_to_it(now, link, |write| {
             count(&link.counters.writes);
@@ -178,7 +180,7 @@ pub(crate) fn send<P: Port>(
     port: &P,
     link: &SharedState,
     datagram: &[u8],
-    to: SocketAddrV4,
+    to: SocketAddr,
 ) -> Result<(), Errno> {
     port.send(datagram, to)
         .inspect_err(|_| count(&link.counters.refused))
@@ -215,6 +217,10 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
             _ if silent => Err(SensorFault::Silent),
             (received, Ok(())) => received,
         }
+    }
+
+    fn fallback_after(&self) -> Duration {
+        self.fallback_after
     }
 
     /// Decodes the last values once more, into copies of what a tick changes.

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
 
+use super::devices::in_entry;
 use super::places::{Places, line_of};
 use super::wording::plainly;
 use super::{Config, Problem};
@@ -40,7 +41,7 @@ pub(super) fn read(text: &str) -> Read<'_> {
             key.starts_with(&section)
         };
         if !(error.message().starts_with("missing field") && problems.iter().any(in_section)) {
-            problems.push(value(text, &path, &error));
+            problems.push(value(text, &places, &path, &error));
         }
         if !take_out(&mut table, &path) {
             break Config::default();
@@ -65,26 +66,40 @@ fn syntax(text: &str, error: &Error) -> Problem {
     }
 }
 
-fn value(text: &str, path: &[String], error: &Error) -> Problem {
+fn value(text: &str, places: &Places<'_>, path: &[String], error: &Error) -> Problem {
     let key = (!path.is_empty()).then(|| path.join("."));
+    // The entry of a list is read as a whole, and its keys have no places then.
+    let inside = key
+        .as_deref()
+        .and_then(|key| in_entry(text, key, error.message()));
+    let line = match &inside {
+        Some(key) => places.nearest_line(key),
+        None => error.span().map(|span| line_of(text, &span)),
+    };
+    let key = inside.or(key);
     Problem {
-        line: error.span().map(|span| line_of(text, &span)),
+        line,
         message: plainly(error.message(), key.as_deref()),
         key,
     }
 }
 
-/// Takes what a path leads to out of a table; whether there was something.
+/// Takes what a path leads to out of a table, a list as a whole; whether there
+/// was something.
 fn take_out(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
-    let Some((last, sections)) = path.split_last() else {
-        return false;
-    };
     let mut inner = table.get_mut();
-    for section in sections {
-        match inner.get_mut(section.as_str()).map(Spanned::get_mut) {
+    for (depth, part) in path.iter().enumerate() {
+        let (name, is_list) = match part.split_once('[') {
+            Some((name, _)) => (name, true),
+            None => (part.as_str(), false),
+        };
+        if is_list || depth + 1 == path.len() {
+            return inner.remove(name).is_some();
+        }
+        match inner.get_mut(name).map(Spanned::get_mut) {
             Some(DeValue::Table(next)) => inner = next,
             _ => return false,
         }
     }
-    inner.remove(last.as_str()).is_some()
+    false
 }

@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::{
-    About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last,
-};
+use fcc_record::{About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
@@ -16,6 +14,9 @@ use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
 use crate::config::{Aircraft, Config};
+
+/// So long a disk may be held up before records are lost: at 136 Hz or less.
+const WRITTEN_WITHIN_S: f64 = 60.0;
 
 /// How a flight is to be recorded.
 #[derive(Clone, Debug)]
@@ -29,8 +30,13 @@ impl RecordingRequest {
     /// of its file.
     pub fn of(config: &Config, as_given: Option<String>) -> Option<Self> {
         let section = &config.recording;
+        let settings = RecorderSettings::from(section);
+        let capacity = config.tick.ticks_in(WRITTEN_WITHIN_S, settings.capacity);
         section.enabled.then(|| Self {
-            settings: RecorderSettings::from(section),
+            settings: RecorderSettings {
+                capacity,
+                ..settings
+            },
             about: about(config, as_given),
         })
     }

@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
+use fcc_record::Recording;
 use fcc_telemetry::FlightRecord;
-use fcc_telemetry::recording::Recording;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;

@@ -1,0 +1,165 @@
+//! What happened once, in numbers and in words.
+
+use fcc_core::framework::{EventKind, LoopCommand, StateCode};
+
+use super::Text;
+use fcc_telemetry::FlightEvent;
+
+/// What happened once, in numbers for programs and in words for people.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+#[repr(C)]
+pub struct Event {
+    /// The tick it happened in.
+    pub tick: u64,
+    /// That tick's wake-up, ns on the loop's clock; the smallest number there
+    /// is before the first tick.
+    pub time_ns: i64,
+    /// What it was: see [`EventCode`].
+    pub code: u32,
+    /// Which sensor or actuator, the first being 0.
+    pub index: u32,
+    /// What the code says they are.
+    pub values: [u64; 3],
+    /// In words.
+    pub text: Text<208>,
+}
+
+/// What happened; in brackets what [`Event::values`] are.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[repr(u32)]
+pub enum EventCode {
+    /// Something that the loop itself does not know.
+    Remark = 0,
+    /// The loop's state changed (phase before, phase now, faults that led to
+    /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
+    StateChanged = 1,
+    /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
+    Ordered = 2,
+    /// Somebody wanted to engage and may not (what blocks it).
+    EngageRefused = 3,
+    /// A sensor goes wrong.
+    SensorFault = 4,
+    /// A sensor works again.
+    SensorRecovered = 5,
+    /// An actuator goes wrong.
+    ActuatorFault = 6,
+    /// An actuator works again.
+    ActuatorRecovered = 7,
+    /// Records are lost that nobody fetched in time (count, first and last
+    /// tick).
+    RecordsDropped = 8,
+    /// Events are lost that nobody fetched in time (count, first and last
+    /// tick).
+    EventsDropped = 9,
+    /// Records did not make it into the recording (count, first and last tick).
+    NotRecorded = 10,
+    /// The actuators were told to give control back (1 if all of them did).
+    Released = 11,
+    /// A part of the loop panicked.
+    Panicked = 12,
+    /// The timer failed.
+    TimerFailed = 13,
+    /// Ticks begin to overrun (how long it took, its budget, the stage that
+    /// took longest); the index is the stage whose budget it was. Stages: 0 the
+    /// timer, 1 sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6
+    /// the whole tick.
+    Overrun = 14,
+    /// No tick has overrun for a second (count, first and last tick).
+    OverrunsOver = 15,
+    /// The loop hung (how long without progress).
+    Hung = 16,
+    /// Readings are taken from another sensor than before (which, one bit each;
+    /// the sensor before); the index is the sensor now.
+    SourceChanged = 17,
+}
+
+impl Event {
+    /// An event of a flight; `text` tells it in words.
+    pub fn new(event: &FlightEvent, text: &str) -> Self {
+        let (code, index, values) = numbers(event);
+        Self {
+            tick: event.tick,
+            time_ns: event.time.as_nanos(),
+            code: code as u32,
+            index,
+            values,
+            text: Text::new(text),
+        }
+    }
+
+    /// Something that the loop itself does not know, said at one of its ticks.
+    pub fn remark(tick: u64, time_ns: i64, text: &str) -> Self {
+        Self {
+            tick,
+            time_ns,
+            text: Text::new(text),
+            ..Self::default()
+        }
+    }
+}
+
+fn numbers(event: &FlightEvent) -> (EventCode, u32, [u64; 3]) {
+    const NONE: [u64; 3] = [0; 3];
+    match event.kind {
+        EventKind::StateChanged { from, to } => {
+            let (from, to) = (StateCode::from(from), StateCode::from(to));
+            let values = [
+                from.phase().into(),
+                to.phase().into(),
+                to.flags().bits().into(),
+            ];
+            (EventCode::StateChanged, 0, values)
+        }
+        EventKind::CommandReceived(command) => {
+            let which = match command {
+                LoopCommand::Engage => 0,
+                LoopCommand::Disengage => 1,
+                LoopCommand::Stop => 2,
+                LoopCommand::Controller(_) => 3,
+            };
+            (EventCode::Ordered, 0, [which, 0, 0])
+        }
+        EventKind::EngageRefused { engage_inhibits } => (
+            EventCode::EngageRefused,
+            0,
+            [engage_inhibits.bits().into(), 0, 0],
+        ),
+        EventKind::SensorFault { index, .. } => (EventCode::SensorFault, index.into(), NONE),
+        EventKind::SensorRecovered { index } => (EventCode::SensorRecovered, index.into(), NONE),
+        EventKind::ActuatorFault { index, .. } => (EventCode::ActuatorFault, index.into(), NONE),
+        EventKind::ActuatorRecovered { index } => {
+            (EventCode::ActuatorRecovered, index.into(), NONE)
+        }
+        EventKind::RecordsDropped { count, first, last } => {
+            (EventCode::RecordsDropped, 0, [count, first, last])
+        }
+        EventKind::EventsDropped { count, first, last } => {
+            (EventCode::EventsDropped, 0, [count, first, last])
+        }
+        EventKind::NotRecorded { count, first, last } => {
+            (EventCode::NotRecorded, 0, [count, first, last])
+        }
+        EventKind::Released { ok } => (EventCode::Released, 0, [ok.into(), 0, 0]),
+        EventKind::Panicked => (EventCode::Panicked, 0, NONE),
+        EventKind::TimerFailed => (EventCode::TimerFailed, 0, NONE),
+        EventKind::Overrun {
+            of,
+            took_ns,
+            budget_ns,
+            longest,
+        } => {
+            let values = [took_ns, budget_ns, longest as u64];
+            (EventCode::Overrun, of as u32, values)
+        }
+        EventKind::OverrunsOver { count, first, last } => {
+            (EventCode::OverrunsOver, 0, [count, first, last])
+        }
+        EventKind::Hung { silent_ns } => (EventCode::Hung, 0, [silent_ns, 0, 0]),
+        EventKind::SourceChanged(change) => {
+            let values = [change.readings.bits().into(), change.from.into(), 0];
+            (EventCode::SourceChanged, change.to.into(), values)
+        }
+        // One that this version has no number for still has its words.
+        _ => (EventCode::Remark, 0, NONE),
+    }
+}

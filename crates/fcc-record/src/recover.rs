@@ -1,0 +1,353 @@
+//! Makes a finished file of one that was cut off or damaged.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use mcap::records::{MessageHeader, Metadata, Record};
+use mcap::write::NoSeek;
+use mcap::{Attachment, McapError};
+use prost::Message as _;
+use serde::Serialize;
+
+use super::damage::Damage;
+use super::disk;
+use super::end::{END, End, RunStatistics};
+use super::file::options;
+use super::foxglove;
+use super::items::{Channels, Item};
+use super::name::{damaged, unfinished};
+use super::raw::{Cut, Found, RawReader};
+use super::reader::{OpenError, Recording, Verified};
+use super::schema::encode_event;
+use super::settings::Compression;
+use super::wire::log::Level;
+use fcc_telemetry::{FlightMessage, event_words};
+
+/// What came of recovering a file.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct Recovered {
+    /// The file, under its own name.
+    pub path: PathBuf,
+    /// Whether it was whole already; then nothing was done.
+    pub was_whole: bool,
+    /// Records in it.
+    pub ticks: u64,
+    /// Where and why it was cut; none if it ended as it should.
+    pub cut: Option<String>,
+    /// What was damaged in it, and what is missing for it.
+    pub damages: Vec<Damage>,
+    /// Where the file as it was is kept, if it was damaged; none if all that
+    /// was in it is in the recovered one.
+    pub kept: Option<PathBuf>,
+}
+
+/// Why a file could not be recovered; it is as it was.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum RecoverError {
+    /// It cannot be read, or is no recording.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// Somebody is writing or recovering it.
+    #[error("{0}: is being written right now: end that flight first, or wait for who recovers it")]
+    BeingWritten(PathBuf),
+    /// The finished file could not be written.
+    #[error("{path}: cannot be written: {source}. The recording is as it was")]
+    Write {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// It takes longer than it may.
+    #[error("{0}: is too long to be recovered now: run `fccd recover` on it")]
+    TooLong(PathBuf),
+}
+
+/// Makes a finished file of one that was cut off or damaged: all of its
+/// messages that can be read, and the account and index that it lacks. Where
+/// ticks are missing, the finished file has an event that says which.
+/// `progress` is told how many of its bytes are read.
+///
+/// The finished file is put together beside the cut one and takes its place in
+/// one step once it is safe on the disk: at no moment is there less than
+/// before. A file that is damaged is kept beside it, as [`kept`](Recovered::kept)
+/// says. A whole file is left alone, and so is one that the system cannot read
+/// to its end.
+///
+/// # Errors
+/// When it cannot be read or written; it is as it was then.
+pub fn recover(
+    path: impl AsRef<Path>,
+    progress: impl FnMut(u64),
+) -> Result<Recovered, RecoverError> {
+    attempt(path.as_ref(), None, progress)
+}
+
+/// As [`recover`], but gives up after a while.
+pub(super) fn recover_within(path: &Path, limit: Duration) -> Result<Recovered, RecoverError> {
+    attempt(path, Some(Instant::now() + limit), |_| {})
+}
+
+fn attempt(
+    path: &Path,
+    deadline: Option<Instant>,
+    mut progress: impl FnMut(u64),
+) -> Result<Recovered, RecoverError> {
+    let unread = |source| OpenError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    // Nobody else may recover it meanwhile: two would write one file beside it.
+    let lock = disk::lock(path).map_err(unread)?;
+    // By its name, as another may just have recovered it.
+    let recording = Recording::open(path)?;
+    if lock.is_none() && !recording.is_whole() {
+        return Err(RecoverError::BeingWritten(path.to_owned()));
+    }
+    let mut go_on = |read| {
+        // It is read twice.
+        progress(read / 2);
+        deadline.is_none_or(|deadline| Instant::now() < deadline)
+    };
+    let Some(Verified {
+        account,
+        damages,
+        cut,
+    }) = recording.verify_while(&mut go_on)?
+    else {
+        return Err(RecoverError::TooLong(path.to_owned()));
+    };
+    if damages.is_empty() && cut.is_none() {
+        return Ok(Recovered {
+            path: path.to_owned(),
+            was_whole: true,
+            ticks: account.ticks,
+            cut,
+            damages,
+            kept: None,
+        });
+    }
+    if lock.is_none() {
+        return Err(RecoverError::BeingWritten(path.to_owned()));
+    }
+    let beside = unfinished(path);
+    let failed = |source| RecoverError::Write {
+        path: beside.clone(),
+        source,
+    };
+    let half = recording.bytes() / 2;
+    let rewritten = rewrite(path, &beside, &damages, |read| {
+        progress(half + read / 2);
+        deadline.is_none_or(|deadline| Instant::now() < deadline)
+    });
+    let result = match rewritten {
+        Ok(Rewritten::Whole { ticks }) => replace(path, &beside, !damages.is_empty())
+            .map_err(failed)
+            .map(|kept| Recovered {
+                path: path.to_owned(),
+                was_whole: false,
+                ticks,
+                cut,
+                damages,
+                kept,
+            }),
+        Ok(Rewritten::Unreadable(source)) => Err(unread(source).into()),
+        Ok(Rewritten::TooLong) => Err(RecoverError::TooLong(path.to_owned())),
+        Err(error) => Err(failed(error)),
+    };
+    if result.is_err() {
+        let _ = fs::remove_file(&beside);
+    }
+    result
+}
+
+/// Puts a finished file in the place of another; gives where that one is kept,
+/// if it is to be.
+fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBuf>> {
+    let kept = keep.then(|| damaged(path));
+    if let Some(kept) = &kept {
+        // Without links it is away for a moment, and never gone.
+        fs::hard_link(path, kept).or_else(|_| fs::rename(path, kept))?;
+    }
+    fs::rename(finished, path)?;
+    disk::sync_folder_of(path)?;
+    Ok(kept)
+}
+
+/// What came of writing the finished file.
+enum Rewritten {
+    Whole { ticks: u64 },
+    Unreadable(io::Error),
+    TooLong,
+}
+
+/// Writes a finished file with all records that can be read, `damages` being
+/// what cannot, unless `go_on`, told how many bytes are read, says no.
+fn rewrite(
+    from: &Path,
+    to: &Path,
+    damages: &[Damage],
+    mut go_on: impl FnMut(u64) -> bool,
+) -> io::Result<Rewritten> {
+    let mut raw = RawReader::new(File::open(from)?)?;
+    let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
+    let mut damages = damages.iter().peekable();
+    let ending = loop {
+        let damaged_at = match raw.next(|record| copy.take(&record)) {
+            Ok(Found::Record(taken)) => {
+                let understood = taken.map_err(to_io)?;
+                (!understood).then(|| raw.last_bytes().start)
+            }
+            Ok(Found::Damage(damaged)) => Some(damaged.bytes.start),
+            Ok(Found::End) => break "not known: the recording was damaged".to_owned(),
+            Err(Cut::Unreadable { source, .. }) => return Ok(Rewritten::Unreadable(source)),
+            Err(cut) => break format!("not known: the recording was {cut}"),
+        };
+        // Some damages are put together.
+        if let Some(at) = damaged_at
+            && let Some(damage) = damages.next_if(|damage| damage.from_byte <= at)
+        {
+            copy.gap(damage).map_err(to_io)?;
+        }
+        if copy.records % CHECK_EVERY == 0 && !go_on(raw.bytes_read()) {
+            return Ok(Rewritten::TooLong);
+        }
+    };
+    let ticks = copy.run_statistics.ticks();
+    copy.finish(&ending)?;
+    Ok(Rewritten::Whole { ticks })
+}
+
+/// Records copied between two looks at the clock.
+const CHECK_EVERY: u64 = 1_024;
+
+type Output = NoSeek<BufWriter<File>>;
+
+/// The finished file while it is put together.
+struct Copy {
+    writer: mcap::Writer<Output>,
+    channels: Channels,
+    run_statistics: RunStatistics,
+    records: u64,
+    /// Why the recording ended, if it says so.
+    ending: Option<String>,
+    last: MessageHeader,
+}
+
+impl Copy {
+    fn begin(file: File) -> Result<Self, McapError> {
+        let writer = options(Compression::default()).create(NoSeek::new(BufWriter::new(file)))?;
+        Ok(Self {
+            writer,
+            channels: Channels::default(),
+            run_statistics: RunStatistics::default(),
+            records: 0,
+            ending: None,
+            last: MessageHeader {
+                channel_id: 0,
+                sequence: 0,
+                log_time: 0,
+                publish_time: 0,
+            },
+        })
+    }
+
+    /// Copies a record, unless it is a message that cannot be understood.
+    fn take(&mut self, record: &Record<'_>) -> Result<bool, McapError> {
+        self.records += 1;
+        match self.channels.item(record, 0) {
+            Some(Ok(Item::Message(message))) => self.run_statistics.take(&message),
+            Some(Err(_)) => return Ok(false),
+            _ => {}
+        }
+        self.copy(record).map(|()| true)
+    }
+
+    fn copy(&mut self, record: &Record<'_>) -> Result<(), McapError> {
+        match record {
+            // It is written anew, of what is there.
+            Record::Metadata(metadata) if metadata.name == END => {
+                self.ending = Some(End::from_fields(&metadata.metadata).ending);
+                Ok(())
+            }
+            Record::Metadata(metadata) => self.writer.write_metadata(metadata),
+            Record::Attachment { header, data, .. } => self.writer.attach(&Attachment {
+                log_time: header.log_time,
+                create_time: header.create_time,
+                name: header.name.clone(),
+                media_type: header.media_type.clone(),
+                data: data.clone(),
+            }),
+            Record::Schema { header, data } => self
+                .writer
+                .add_schema_with_id(header.id, &header.name, &header.encoding, data)
+                .map(drop),
+            Record::Channel(channel) => self
+                .writer
+                .add_channel_with_id(
+                    channel.id,
+                    channel.schema_id,
+                    &channel.topic,
+                    &channel.message_encoding,
+                    &channel.metadata,
+                )
+                .map(drop),
+            Record::Message { header, data } => {
+                self.last = *header;
+                self.writer.write_to_known_channel(header, data)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Says where something is missing: as an event, for programs, and as a
+    /// line of the log, for people.
+    fn gap(&mut self, damage: &Damage) -> Result<(), McapError> {
+        if let Some(event) = damage.event() {
+            self.run_statistics.take(&FlightMessage::Event(event));
+            let text = event_words(&event, &[], &[]);
+            let mut bytes = Vec::new();
+            encode_event(&event, &text, &mut bytes);
+            self.write(self.channels.event, &bytes)?;
+        }
+        let text = damage.remark().text;
+        let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
+        self.write(self.channels.log, &line.encode_to_vec())
+    }
+
+    fn write(&mut self, channel: Option<u16>, message: &[u8]) -> Result<(), McapError> {
+        let Some(channel_id) = channel else {
+            return Ok(());
+        };
+        let header = MessageHeader {
+            channel_id,
+            ..self.last
+        };
+        self.writer.write_to_known_channel(&header, message)
+    }
+
+    fn finish(mut self, ending: &str) -> io::Result<()> {
+        let ending = self.ending.as_deref().unwrap_or(ending);
+        let metadata: BTreeMap<_, _> = self.run_statistics.end(ending).to_fields();
+        let end = Metadata {
+            name: END.to_owned(),
+            metadata,
+        };
+        self.writer.write_metadata(&end).map_err(to_io)?;
+        self.writer.finish().map_err(to_io)?;
+        let mut buffered = self.writer.into_inner().into_inner();
+        buffered.flush()?;
+        buffered.get_ref().sync_all()
+    }
+}
+
+fn to_io(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}

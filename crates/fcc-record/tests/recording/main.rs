@@ -1,0 +1,13 @@
+//! Recordings from outside: what goes in comes back, whatever the disk does.
+#![cfg(test)]
+
+mod any;
+mod cut;
+mod damage;
+mod disks;
+mod flight;
+mod folder;
+mod foxglove_layout;
+mod full_disk;
+mod round_trip;
+mod slow_disk;

@@ -1,0 +1,105 @@
+//! The sheet that plots are drawn on, and its inks.
+
+use std::io;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// A plot could not be drawn.
+#[derive(thiserror::Error, Debug)]
+#[error("a plot could not be drawn: {0}")]
+pub struct PlotError(#[from] DrawingAreaErrorKind<io::Error>);
+
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Drawn = Result<(), PlotError>;
+
+/// Width of every plot, px: half a millimetre of an A4 page is about 2 px.
+pub(super) const WIDTH_PX: f64 = 760.0;
+
+/// The library draws to whole units; with as many in a pixel, lines are smooth.
+const UNITS_PER_PX: f64 = 10.0;
+
+/// What is actual.
+pub(super) const ACTUAL: RGBColor = RGBColor(24, 66, 110);
+/// What was measured, behind what is estimated from it.
+pub(super) const MEASURED: RGBColor = RGBColor(150, 178, 206);
+/// What is desired. Nothing else has this ink: it is what is dashed.
+pub(super) const DESIRED: RGBColor = RGBColor(200, 80, 30);
+/// What is compared with.
+pub(super) const OTHER: RGBColor = RGBColor(120, 120, 120);
+/// Axes and their words.
+pub(super) const TEXT: RGBColor = RGBColor(45, 45, 45);
+/// Less than that.
+pub(super) const FAINT: RGBColor = RGBColor(130, 130, 130);
+/// The grid.
+pub(super) const GRID: RGBColor = RGBColor(224, 224, 224);
+
+/// Text sizes, px.
+pub(super) const LABEL_PX: f64 = 10.5;
+pub(super) const SMALL_PX: f64 = 9.0;
+
+/// Pixels in the library's units.
+pub(super) fn px(pixels: f64) -> i32 {
+    (pixels * UNITS_PER_PX).round() as i32
+}
+
+/// A pen of a width in px.
+pub(super) fn pen(ink: RGBColor, width_px: f64) -> ShapeStyle {
+    ink.stroke_width(px(width_px) as u32)
+}
+
+/// Text of a size in px, where it stands by its anchor.
+pub(super) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
+    // The library writes sizes by this factor smaller.
+    const LIBRARY_FACTOR: f64 = 1.24;
+    let size = size_px * UNITS_PER_PX * LIBRARY_FACTOR;
+    let mut style = TextStyle::from(("sans-serif", size).into_font()).pos(Pos::new(h, v));
+    style.color = ink.to_backend_color();
+    style
+}
+
+/// About how wide a text is, px: sans serif letters are half as wide as high.
+pub(super) fn text_width_px(words: &str, size_px: f64) -> f64 {
+    0.52 * size_px * words.chars().count() as f64
+}
+
+/// Draws a plot of a height; `label` says to those who cannot see it what it
+/// shows.
+pub(super) fn draw(
+    height_px: f64,
+    label: &str,
+    paint: impl FnOnce(&Area<'_>) -> Drawn,
+) -> Result<String, PlotError> {
+    let mut svg = String::new();
+    {
+        let size = (px(WIDTH_PX) as u32, px(height_px) as u32);
+        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        paint(&area)?;
+        area.present().map_err(PlotError::from)?;
+    }
+    Ok(finish(&svg, height_px, label))
+}
+
+/// What the library cannot say: a picture as wide as its page, one font for
+/// all, dashes for what is desired. It can draw dashes, one element each:
+/// megabytes where a line is long.
+fn finish(svg: &str, height_px: f64, label: &str) -> String {
+    let body = svg.split_once('>').map_or("", |(_, body)| body);
+    let desired = format!(
+        "stroke=\"#{:02X}{:02X}{:02X}\"",
+        DESIRED.0, DESIRED.1, DESIRED.2
+    );
+    let dashed = format!("{desired} stroke-dasharray=\"{} {}\"", px(5.0), px(3.0));
+    let body = body
+        .replace("font-family=\"sans-serif\" ", "")
+        .replace("opacity=\"1\" ", "")
+        .replace(&desired, &dashed);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" \
+         aria-label=\"{label}\" font-family=\"Helvetica Neue, Helvetica, Arial, \
+         Liberation Sans, sans-serif\" stroke-linejoin=\"round\">{body}",
+        px(WIDTH_PX),
+        px(height_px)
+    )
+}

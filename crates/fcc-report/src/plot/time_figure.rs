@@ -1,0 +1,230 @@
+//! Plots over time, one panel above another.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::super::Report;
+use super::super::states::Phase;
+use super::super::trace::Point;
+use super::axis::Axis;
+use super::canvas::{
+    ACTUAL, Area, DESIRED, Drawn, FAINT, LABEL_PX, MEASURED, PlotError, SMALL_PX, TEXT, WIDTH_PX,
+    draw, pen, px, text, text_width_px,
+};
+use super::marks::{Mark, marks};
+use super::panel::{Frame, Panel};
+
+/// Edges of all panels over time, px: the same in every figure, so that one
+/// can be laid upon another.
+pub(super) const LEFT_PX: f64 = 60.0;
+pub(super) const RIGHT_PX: f64 = WIDTH_PX - 12.0;
+
+const LEGEND_PX: f64 = 20.0;
+const MARKS_PX: f64 = 14.0;
+const BETWEEN_PX: f64 = 12.0;
+const X_WORDS_PX: f64 = 36.0;
+
+/// Of a flight longer than this, a fine line shows more.
+const DENSE_S: f64 = 600.0;
+
+/// Where records are missing.
+const GAP: RGBColor = RGBColor(255, 238, 170);
+
+/// How a line is drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Ink {
+    /// Thin and pale, behind the others.
+    Measured,
+    /// Solid.
+    Actual,
+    /// Thin and dashed.
+    Desired,
+}
+
+/// A panel of a figure over time.
+pub(super) struct TimePanel {
+    pub(super) height_px: f64,
+    pub(super) y: Axis,
+    /// Unbroken lines, drawn in this order.
+    pub(super) lines: Vec<(Ink, Vec<Vec<Point>>)>,
+}
+
+/// Draws panels over the time of a report.
+pub(super) fn time_figure(
+    report: &Report,
+    label: &str,
+    panels: &[TimePanel],
+) -> Result<String, PlotError> {
+    let top = LEGEND_PX + MARKS_PX;
+    let of_panels: f64 = panels
+        .iter()
+        .map(|panel| panel.height_px + BETWEEN_PX)
+        .sum();
+    let height_px = top + of_panels - BETWEEN_PX + X_WORDS_PX;
+    let marks = marks(&report.events, |time_s| time_px(report, time_s));
+    draw(height_px, label, |area| {
+        legend(area, report, panels)?;
+        let mut y_px = top;
+        for (number, panel) in panels.iter().enumerate() {
+            let frame = Frame {
+                left: LEFT_PX,
+                top: y_px,
+                right: RIGHT_PX,
+                bottom: y_px + panel.height_px,
+            };
+            let is_last = number + 1 == panels.len();
+            draw_panel(area, report, panel, frame, is_last, &marks)?;
+            y_px = frame.bottom + BETWEEN_PX;
+        }
+        number_marks(area, top, &marks)
+    })
+}
+
+fn draw_panel(
+    area: &Area<'_>,
+    report: &Report,
+    panel: &TimePanel,
+    frame: Frame,
+    is_last: bool,
+    marks: &[Mark],
+) -> Drawn {
+    let mut drawn = Panel::new(area, frame, time_axis(report), panel.y.clone())?;
+    for span in &report.states {
+        if let Some(tint) = tint(span.phase) {
+            drawn.tint(span.from_s, span.to_s, tint)?;
+        }
+    }
+    for gap in &report.continuity.gaps {
+        // A gap too short to be seen is seen all the same.
+        let least_s = report.duration_s / (RIGHT_PX - LEFT_PX);
+        drawn.tint(gap.from_s, gap.to_s.max(gap.from_s + least_s), GAP)?;
+    }
+    drawn.axes(is_last)?;
+    for mark in marks {
+        let (x, top, bottom) = (px(mark.at_px), px(frame.top), px(frame.bottom));
+        area.draw(&PathElement::new(
+            [(x, top), (x, bottom)],
+            pen(RGBColor(190, 190, 190), 0.6),
+        ))?;
+    }
+    for (ink, lines) in &panel.lines {
+        let style = match (ink, report.duration_s > DENSE_S) {
+            (Ink::Measured, _) => pen(MEASURED, 0.6),
+            (Ink::Actual, false) => pen(ACTUAL, 1.3),
+            (Ink::Actual, true) => pen(ACTUAL, 0.8),
+            (Ink::Desired, false) => pen(DESIRED, 1.0),
+            (Ink::Desired, true) => pen(DESIRED, 0.7),
+        };
+        drawn.lines(lines, style)?;
+    }
+    Ok(())
+}
+
+fn number_marks(area: &Area<'_>, top: f64, marks: &[Mark]) -> Drawn {
+    let style = text(SMALL_PX, FAINT, HPos::Center, VPos::Bottom);
+    for mark in marks {
+        area.draw_text(&mark.label(), &style, (px(mark.at_px), px(top - 1.0)))?;
+    }
+    Ok(())
+}
+
+/// What lines and tints mean, in a row above the panels.
+fn legend(area: &Area<'_>, report: &Report, panels: &[TimePanel]) -> Drawn {
+    let has = |ink: Ink| {
+        panels
+            .iter()
+            .flat_map(|panel| &panel.lines)
+            .any(|(with, lines)| *with == ink && !lines.is_empty())
+    };
+    let in_phase = |phase: Phase| report.states.iter().any(|span| span.phase == phase);
+    let mut x = LEFT_PX;
+    let middle = LEGEND_PX / 2.0 - 1.0;
+    let style = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
+    let mut say = |sample: &dyn Fn(f64) -> Drawn, words: &str| -> Drawn {
+        sample(x)?;
+        area.draw_text(words, &style, (px(x + 26.0), px(middle)))?;
+        x += 26.0 + text_width_px(words, LABEL_PX) + 16.0;
+        Ok(())
+    };
+    for (ink, pen, words) in [
+        (Ink::Measured, pen(MEASURED, 0.9), "measured"),
+        (Ink::Actual, pen(ACTUAL, 1.3), "actual"),
+        (Ink::Desired, pen(DESIRED, 1.0), "desired"),
+    ] {
+        // Where nothing is desired, the one line needs no name.
+        if has(ink) && has(Ink::Desired) {
+            let sample = |x: f64| -> Drawn {
+                let ends = [(px(x), px(middle)), (px(x + 21.0), px(middle))];
+                Ok(area.draw(&PathElement::new(ends, pen))?)
+            };
+            say(&sample, words)?;
+        }
+    }
+    let tints = [Phase::Standby, Phase::Failsafe, Phase::Stopped]
+        .into_iter()
+        .filter(|phase| in_phase(*phase))
+        .filter_map(|phase| Some((tint(phase)?, words(phase))))
+        .chain((report.continuity.lost > 0).then_some((GAP, "records missing")));
+    for (tint, words) in tints {
+        let sample = |x: f64| -> Drawn {
+            let corners = [
+                (px(x + 5.0), px(middle - 5.0)),
+                (px(x + 21.0), px(middle + 5.0)),
+            ];
+            area.draw(&Rectangle::new(corners, tint.filled()))?;
+            Ok(())
+        };
+        say(&sample, words)?;
+    }
+    Ok(())
+}
+
+/// The ground of a panel where the autopilot was not engaged.
+pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
+    match phase {
+        Phase::Engaged => None,
+        Phase::Standby => Some(RGBColor(240, 240, 238)),
+        Phase::Failsafe => Some(RGBColor(251, 222, 214)),
+        Phase::Stopped => Some(RGBColor(216, 216, 214)),
+    }
+}
+
+pub(super) fn words(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Standby => "standby",
+        Phase::Engaged => "engaged",
+        Phase::Failsafe => "failsafe",
+        Phase::Stopped => "stopped",
+    }
+}
+
+/// Where on the sheet a time is, px.
+pub(super) fn time_px(report: &Report, time_s: f64) -> f64 {
+    let share = (time_s / end_s(report)).clamp(0.0, 1.0);
+    LEFT_PX + share * (RIGHT_PX - LEFT_PX)
+}
+
+fn end_s(report: &Report) -> f64 {
+    // One tick has no duration, and its axis must have one.
+    report.duration_s.max(0.1)
+}
+
+/// The axis of time: its coordinate is in seconds, its words in what suits.
+pub(super) fn time_axis(report: &Report) -> Axis {
+    let end_s = end_s(report);
+    let (unit_s, unit) = match end_s {
+        end_s if end_s <= 300.0 => (1.0, "s"),
+        end_s if end_s <= 10_800.0 => (60.0, "min"),
+        _ => (3_600.0, "h"),
+    };
+    let mut axis = Axis::exactly(
+        (0.0, end_s / unit_s),
+        12,
+        &format!("time since the first tick, {unit}"),
+    );
+    axis.to = end_s;
+    for (at, _) in &mut axis.ticks {
+        *at *= unit_s;
+    }
+    axis
+}
