@@ -110,7 +110,12 @@ WRONG = {
         "watchdog.hang_after_ms",
         "50 to 60000",
     ),
-    "a leg of a hold": ('[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n', 2, "guidance", "leg_s"),
+    "a leg of a hold": (
+        '[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n',
+        2,
+        "guidance",
+        "leg_s",
+    ),
     "a section by its former name": (
         '[x-plane]\n[course]\nkind = "hold"\n',
         2,
