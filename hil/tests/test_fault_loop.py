@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, assert_released, engage, flight, wait_until
+from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
