@@ -169,6 +169,6 @@ mod tests {
         });
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
-        observer_conforms(|| Box::new(Live::new(&config.telemetry)));
+        observer_conforms(|| Box::new(Live::new(&config.telemetry, 30.0..=80.0)));
     }
 }
