@@ -92,7 +92,9 @@ def ended(process: subprocess.Popen[bytes], scratch: Path) -> Flown:
     return Flown.of(Ending(code, {}, ""), scratch / "recordings")
 
 
-def unwritable(fccd: Path, scratch: Path, output: Output, spoil: Callable[[Output], object]) -> Flown:
+def unwritable(
+    fccd: Path, scratch: Path, output: Output, spoil: Callable[[Output], object]
+) -> Flown:
     """Fly, and let the output break once control is taken."""
     with flying(fly(fccd, scratch, output.theirs, FLOWN_S)) as process:
         os.close(output.theirs)
