@@ -1,5 +1,5 @@
-//! How much faster than real time the aircraft flies in lockstep at 40 Hz,
-//! sensors and actuator included, on one core.
+//! Speed of the simulation relative to real time, in lockstep at 40 Hz, sensors
+//! and actuator included, on one core.
 //!
 //! An element is a second of flight: criterion's `elem/s` is simulated seconds
 //! per second of wall clock.

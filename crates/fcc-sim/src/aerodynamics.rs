@@ -1,9 +1,9 @@
 //! Forces and moments of the air and the propeller on the airframe.
 //!
-//! Linear derivatives, as published, with two non-linear curves where flight
-//! needs them: lift through the stall and drag over lift. Derivatives are
-//! taken to hold in body axes; the source's stability axes coincide with them
-//! at its reference of zero angle of attack.
+//! Published linear derivatives, with two non-linear curves where they are
+//! needed: lift through the stall and drag over lift. Derivatives are taken to
+//! hold in body axes; the source's stability axes coincide with them at its
+//! reference of zero angle of attack.
 
 use libm::{asin, atan2, exp, sincos, sqrt};
 use nalgebra::Vector3;
@@ -11,14 +11,15 @@ use nalgebra::Vector3;
 use crate::airframe::{Airframe, Drag, LateralRow, Lift, Propulsion};
 use crate::atmosphere::Air;
 
-/// How sharply the wing stalls, 1/rad: lift crosses from one curve to the
-/// other within some ±2° of the stall.
+/// Sharpness of the stall, 1/rad: lift changes from one curve to the other
+/// within about ±2° of the stall.
 const STALL_SHARPNESS: f64 = 50.0;
-/// Below this airspeed, m/s, rates are made dimensionless as if at it: dynamic
-/// pressure is nothing there, and 1/V must stay finite.
+/// The lowest airspeed, m/s, used to make rates dimensionless: below it dynamic
+/// pressure is negligible, and 1/V must stay finite.
 const SLOWEST_MPS: f64 = 1.0;
 
-/// What the controls do right now. Signs are the source's: see each field.
+/// The present deflections of the controls. Signs are those of the source: see
+/// each field.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Deflections {
     /// Elevator, rad, positive trailing edge down: nose down.
@@ -31,13 +32,13 @@ pub struct Deflections {
     pub throttle: f64,
 }
 
-/// Forces in N and moments in N·m, in body axes; and how much more of them
-/// each rad/s of angle-of-attack rate brings.
+/// Forces in N and moments in N·m, in body axes, and their derivatives with
+/// respect to the rate of the angle of attack.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Loads {
-    /// Force of air and propeller, without the part of `alpha_rate`.
+    /// Force of air and propeller, without the part due to `alpha_rate`.
     pub force_n: Vector3<f64>,
-    /// Moment, without the part of `alpha_rate`.
+    /// Moment, without the part due to `alpha_rate`.
     pub moment_nm: Vector3<f64>,
     /// Lift per angle-of-attack rate, N·s/rad.
     pub lift_per_alpha_rate: f64,
@@ -54,7 +55,7 @@ pub struct Flow {
     pub symmetric_mps: f64,
     /// Angle of attack, rad.
     pub alpha_rad: f64,
-    /// Its sine and cosine, had for a division.
+    /// Sine and cosine of the angle of attack, obtained by a division.
     pub sin_cos_alpha: (f64, f64),
     /// Sideslip, rad, positive when the air comes from the right.
     pub beta_rad: f64,
@@ -146,9 +147,9 @@ pub fn loads(
 /// Lift and drag coefficients over angle of attack, neutral elevator.
 ///
 /// Below the stall a line and a parabola; beyond it the curves of Viterna and
-/// Corrigan (NASA CP-2230, 1982), which go on to 90°; the sigmoid in Beard's
-/// *Small Unmanned Aircraft* (2012, eq. 4.10) leads from one to the
-/// other, so that both stay smooth.
+/// Corrigan (NASA CP-2230, 1982), which extend to 90°. The sigmoid in Beard's
+/// *Small Unmanned Aircraft* (2012, eq. 4.10) blends the two, so that the
+/// result is smooth.
 pub fn lift_and_drag(lift: &Lift, drag: &Drag, alpha_rad: f64) -> (f64, f64) {
     coefficients(lift, drag, alpha_rad, sincos(alpha_rad))
 }
@@ -170,7 +171,8 @@ fn coefficients(
     let drag_rest = (stall_drag - plate * sin_stall * sin_stall) / cos_stall;
 
     let square = sin_alpha * sin_alpha;
-    // The published curve has cos²/sin, which is meant for beyond the stall.
+    // The published curve contains cos²/sin, which is valid only beyond the
+    // stall.
     let separated_lift = plate * sin_alpha * cos_alpha
         + lift_rest * cos_alpha * cos_alpha * sin_alpha / square.max(sin_stall * sin_stall);
     let separated_drag = plate * square + drag_rest * cos_alpha.abs();
@@ -184,13 +186,13 @@ fn coefficients(
     )
 }
 
-/// Thrust along body x, N, at a true airspeed in m/s. Negative where a slow
-/// engine lets the propeller windmill.
+/// Thrust along body x, N, at a true airspeed in m/s. Negative where the
+/// propeller windmills.
 pub fn thrust_n(propulsion: &Propulsion, throttle: f64, airspeed_mps: f64, air: &Air) -> f64 {
     full_thrust_n(propulsion, air) * throttle + windmill_n(propulsion, airspeed_mps, air)
 }
 
-/// The part of the thrust that the engine's torque makes at full throttle, N.
+/// The part of the thrust due to the engine's torque at full throttle, N.
 pub(crate) fn full_thrust_n(propulsion: &Propulsion, air: &Air) -> f64 {
     let torque_nm = propulsion.rated_torque_nm * torque_ratio(propulsion, air);
     core::f64::consts::TAU * propulsion.polar_slope * torque_nm / propulsion.diameter_m

@@ -1,4 +1,4 @@
-//! The plant: an aircraft in its air, stepped by surfaces and time.
+//! The plant: an aircraft and the air around it, advanced by surfaces and time.
 
 use fcc_core::flight::{BodyRates, SpecificForce, Surfaces, Velocity};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -13,14 +13,15 @@ use crate::trim::{Trim, trim};
 use crate::truth::{Truth, turn};
 use crate::turbulence::Dryden;
 
-/// The most time one step simulates, s. A loop that was halted for longer, by
-/// a debugger or a laptop's lid, must not then wait for hours of flight.
+/// The longest time that one step simulates, s. A loop that was halted for
+/// longer, by a debugger or a suspended computer, must not then simulate hours
+/// of flight.
 pub const LONGEST_STEP_S: f64 = 1.0;
 
 /// An aircraft in flight.
 ///
-/// It starts trimmed, with the elevator's trim tab holding the nose: surfaces
-/// all zero and the throttle at [`Trim::throttle`] fly on straight and level.
+/// It starts trimmed, with the elevator's trim tab set: with all surfaces zero
+/// and the throttle at [`Trim::throttle`] it flies straight and level.
 #[derive(Clone, Debug)]
 pub struct Aircraft {
     airframe: Airframe,
@@ -83,23 +84,23 @@ impl Aircraft {
         })
     }
 
-    /// Flies on for `dt_s` under these commands, at most [`LONGEST_STEP_S`],
-    /// in equal sub-steps no longer than configured. Returns the time that
-    /// passed in the simulation, s. Commands that are not valid are left, and
-    /// the last valid ones held.
+    /// Simulates `dt_s` under these commands, at most [`LONGEST_STEP_S`], in
+    /// equal sub-steps no longer than configured. Returns the simulated time,
+    /// s. Invalid commands are ignored, and the last valid ones held.
     pub fn step(&mut self, commands: &Surfaces, dt_s: f64) -> f64 {
         self.step_watched(commands, dt_s, |_| ())
     }
 
-    /// [`step`](Self::step), showing the aircraft after each sub-step.
+    /// Like [`step`](Self::step), calling `watch` with the aircraft after each
+    /// sub-step.
     pub fn step_watched(
         &mut self,
         commands: &Surfaces,
         dt_s: f64,
         mut watch: impl FnMut(&Self),
     ) -> f64 {
-        /// A tick of three whole sub-steps may come out of its division as
-        /// three and a last digit.
+        /// Tolerance: rounding may make the number of sub-steps of a tick
+        /// slightly more than a whole number.
         const ROUNDING: f64 = 1e-6;
         if commands.is_valid() {
             self.commands = *commands;
@@ -152,7 +153,7 @@ impl Aircraft {
         self.time_s
     }
 
-    /// Whether the equations ran away and the aircraft stands still since.
+    /// Whether the equations diverged; the aircraft's state is then held.
     pub fn has_diverged(&self) -> bool {
         self.diverged
     }
@@ -162,7 +163,7 @@ impl Aircraft {
         &self.trim
     }
 
-    /// The commands of a pilot who takes the hands off: trim.
+    /// The commands with hands off the controls: trim.
     pub fn hands_off(&self) -> Surfaces {
         hands_off(&self.trim)
     }
@@ -177,17 +178,17 @@ impl Aircraft {
         &self.state
     }
 
-    /// Puts the rigid body somewhere else; for experiments.
+    /// Sets the rigid body's state, for experiments.
     pub fn set_state(&mut self, state: State) {
         self.state = state;
     }
 
-    /// How the air moves now.
+    /// The present motion of the air.
     pub fn air_motion(&self) -> &AirMotion {
         &self.motion
     }
 
-    /// The control surfaces and the throttle as they stand.
+    /// The present deflections of the control surfaces and the throttle.
     pub fn deflections(&self) -> Deflections {
         deflections(
             &self.airframe.travel,
@@ -196,7 +197,7 @@ impl Aircraft {
         )
     }
 
-    /// What is true now.
+    /// The present truth.
     pub fn truth(&self) -> Truth {
         let state = &self.state;
         let deflections = self.deflections();

@@ -1,4 +1,4 @@
-//! What an aircraft is: mass, size, derivatives, engine. Data, with sources.
+//! An aircraft's data: mass, size, derivatives, engine, with sources.
 
 use crate::units::{
     DEGREE_RAD, FOOT_M, FOOT_POUND_NM, POUND_KG, SLUG_FT2_KGM2, STANDARD_GRAVITY_MPS2,
@@ -21,11 +21,11 @@ pub struct Airframe {
     pub lift: Lift,
     /// Drag over lift.
     pub drag: Drag,
-    /// Pitching moment, and what pitching and the elevator do.
+    /// Pitching moment, pitch damping and the elevator.
     pub pitch: PitchDerivatives,
     /// Side force, roll and yaw.
     pub lateral: LateralDerivatives,
-    /// How far the control surfaces go.
+    /// Travel of the control surfaces.
     pub travel: Travel,
     /// Engine and propeller.
     pub propulsion: Propulsion,
@@ -116,7 +116,7 @@ pub struct LateralDerivatives {
     pub yaw: LateralRow,
 }
 
-/// How far the control surfaces go from neutral, rad, all positive.
+/// Travel of the control surfaces from neutral, rad, all positive.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Travel {
     /// Elevator trailing edge up: the nose rises.
@@ -132,10 +132,10 @@ pub struct Travel {
 /// A normally aspirated engine with a fixed-pitch propeller, after Lowry's
 /// bootstrap approach (Performance of Light Aircraft, AIAA, 1999, ch. 7): the
 /// propeller polar `C_T/J² = m·C_P/J² + b` is a straight line, and at full
-/// throttle the torque depends on density alone, so that thrust is
-/// `2πm·M/d + b·ρd²V²` whatever the engine's speed. Throttle is a share of that
-/// torque: at 0 the engine is dead weight on a windmilling propeller, which
-/// brakes harder than a real engine's idle.
+/// throttle the torque depends on density alone, so that thrust is `2πm·M/d +
+/// b·ρd²V²` at any engine speed. Throttle is a share of that torque: at 0 the
+/// propeller windmills without any torque of the engine, which gives more drag
+/// than a real engine at idle.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Propulsion {
     /// Torque at full throttle at sea level, N·m.
@@ -153,19 +153,19 @@ pub struct Propulsion {
 
 impl Airframe {
     /// A light high-wing single with 160 hp: a Cessna 172P in size, weight and
-    /// performance, flying by the derivatives that are published for its
-    /// sister with the same wing and tail, the 182.
+    /// performance, with the derivatives that are published for the 182, which
+    /// has the same wing and tail.
     ///
     /// | what | source |
     /// |---|---|
     /// | area, span, chord, inertia, all derivatives, `C_L0`, `C_m0` | Roskam, *Airplane Flight Dynamics and Automatic Flight Controls* I (1995), app. B, airplane A, cruise, pp. 480-482; the same in Napolitano, *Aircraft Dynamics* (2012), app. B, Cessna 182 |
-    /// | mass: 2,400 lb, its greatest | Cessna, *Pilot's Operating Handbook 172P* (1981) |
+    /// | mass: 2,400 lb, the maximum | Cessna, *Pilot's Operating Handbook 172P* (1981) |
     /// | `C_D0` 0.0319, e 0.75, A 7.32 | Loftin, *Quest for Performance*, NASA SP-468 (1985), Skyhawk |
     /// | lift at the stall: 1.6 | NACA 2412: Abbott and von Doenhoff, *Theory of Wing Sections* (1959) |
     /// | surface travel | FAA type certificate data sheet 3A12, model 172 |
     /// | torque, diameter, propeller polar | Lowry, *Performance of Light Aircraft* (1999), Cessna 172's data plate |
     ///
-    /// The 182 weighs more, so its inertia is on the high side here.
+    /// The 182 is heavier, so its inertia is somewhat too high here.
     pub const SKYHAWK: Self = Self {
         mass_kg: 2400.0 * POUND_KG,
         lift: Lift {
@@ -180,10 +180,10 @@ impl Airframe {
         ..Self::ROSKAM_A
     };
 
-    /// Roskam's airplane A (1995, app. B) in cruise: 2,650 lb, 5,000 ft,
-    /// 220.1 ft/s. Drag reproduces the tabled `C_D1` 0.032 and `C_Dα` 0.121.
-    /// The engine is the 182's, 230 hp at 2,400 rpm, with the 172's propeller
-    /// polar for want of its own.
+    /// Roskam's airplane A (1995, app. B) in cruise: 2,650 lb, 5,000 ft, 220.1
+    /// ft/s. Drag reproduces the tabled `C_D1` 0.032 and `C_Dα` 0.121. The
+    /// engine is the 182's, 230 hp at 2,400 rpm, with the 172's propeller
+    /// polar, since the 182's is not available.
     pub const ROSKAM_A: Self = Self {
         mass_kg: 2650.0 * POUND_KG,
         inertia: Inertia {

@@ -1,9 +1,9 @@
-//! The standard atmosphere, and what an airspeed indicator makes of it.
+//! The standard atmosphere, and the indication of an airspeed indicator.
 //!
-//! ISO 2533:1975, the same up to 32 km as the U.S. Standard Atmosphere 1976:
-//! a temperature gradient in the troposphere, constant temperature in the
-//! lower stratosphere. The earth is flat here, so that geometric and
-//! geopotential altitude are one, and so are altitude and pressure altitude.
+//! ISO 2533:1975, the same up to 32 km as the U.S. Standard Atmosphere 1976: a
+//! temperature gradient in the troposphere, constant temperature in the lower
+//! stratosphere. The earth is flat here, so geometric and geopotential altitude
+//! are equal, and so are altitude and pressure altitude.
 
 use libm::{exp, pow, sqrt};
 
@@ -23,15 +23,16 @@ const GAS_CONSTANT: f64 = 287.052_87;
 const HEAT_RATIO: f64 = 1.4;
 /// Temperature gradient in the troposphere, K/m.
 const LAPSE_KPM: f64 = 0.0065;
-/// Where the troposphere ends, m.
+/// The upper limit of the troposphere, m.
 const TROPOPAUSE_M: f64 = 11_000.0;
 /// Temperature of the lower stratosphere, K.
 const STRATOSPHERE_K: f64 = SEA_LEVEL_TEMPERATURE_K - LAPSE_KPM * TROPOPAUSE_M;
 /// Exponent of pressure over temperature in the troposphere.
 const PRESSURE_EXPONENT: f64 = STANDARD_GRAVITY_MPS2 / (GAS_CONSTANT * LAPSE_KPM);
-/// Where the model ends, m: the next layer warms again.
+/// The upper limit of the model, m: in the next layer temperature rises.
 const CEILING_M: f64 = 20_000.0;
-/// Below the lowest land; keeps the formulas sane if an aircraft falls on.
+/// The lower limit of the model, m, below the lowest land: keeps the formulas
+/// valid if an aircraft falls further.
 const FLOOR_M: f64 = -5_000.0;
 
 /// The air at one altitude.
@@ -47,7 +48,7 @@ pub struct Air {
 
 impl Air {
     /// The standard air at an altitude in m above mean sea level. Outside
-    /// -5..20 km it is that of the nearer end.
+    /// -5..20 km it is that of the nearer limit.
     pub fn at(altitude_m: f64) -> Self {
         let altitude_m = altitude_m.clamp(FLOOR_M, CEILING_M);
         let (temperature_k, pressure_pa) = if altitude_m <= TROPOPAUSE_M {
@@ -81,7 +82,7 @@ impl Air {
         true_mps * sqrt(self.density_ratio())
     }
 
-    /// What an airspeed indicator without position error shows at a true
+    /// The indication of an airspeed indicator without position error at a true
     /// airspeed, both m/s: calibrated airspeed, from the impact pressure of
     /// subsonic compressible flow.
     pub fn indicated_mps(&self, true_mps: f64) -> f64 {
@@ -90,7 +91,7 @@ impl Air {
         mach * sqrt(HEAT_RATIO * GAS_CONSTANT * SEA_LEVEL_TEMPERATURE_K)
     }
 
-    /// The true airspeed at which an airspeed indicator shows this, both m/s.
+    /// The true airspeed for an indicated airspeed, both m/s.
     pub fn true_of_indicated_mps(&self, indicated_mps: f64) -> f64 {
         let sea_level_sound = sqrt(HEAT_RATIO * GAS_CONSTANT * SEA_LEVEL_TEMPERATURE_K);
         let impact_pa = impact_pressure(indicated_mps / sea_level_sound, SEA_LEVEL_PRESSURE_PA);
@@ -111,7 +112,7 @@ fn troposphere(altitude_m: f64) -> (f64, f64) {
 /// Pressure rise at a pitot tube, Pa, isentropic (γ = 1.4).
 fn impact_pressure(mach: f64, static_pa: f64) -> f64 {
     let rise = 1.0 + 0.2 * mach * mach;
-    // rise^3.5 by a root: quicker than a power, and as exact.
+    // rise^3.5 by a square root: faster than a power, and as accurate.
     static_pa * (rise * rise * rise * sqrt(rise) - 1.0)
 }
 

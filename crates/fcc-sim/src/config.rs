@@ -1,4 +1,4 @@
-//! What a simulation starts from.
+//! The configuration of a simulation.
 
 use thiserror::Error;
 
@@ -9,9 +9,10 @@ use crate::trim::TrimError;
 use crate::turbulence::Severity;
 use crate::units::{FOOT_M, KNOT_MPS, POUND_KG};
 
-/// What a simulation starts from. The default: a light single with two aboard
-/// and full tanks at 3,000 ft and 100 kt indicated, heading north, trimmed, in
-/// calm air, with perfect sensors, and an engage switch that goes on after 2 s.
+/// The configuration of a simulation. The default: a light single with two
+/// aboard and full tanks at 3,000 ft and 100 kt indicated, heading north,
+/// trimmed, in calm air, with perfect sensors, and an engage switch that is
+/// switched on after 2 s.
 #[derive(Clone, PartialEq, Debug)]
 pub struct SimConfig {
     /// The aircraft.
@@ -24,12 +25,12 @@ pub struct SimConfig {
     pub indicated_airspeed_mps: f64,
     /// True heading at the start, rad.
     pub heading_rad: f64,
-    /// Where the flight begins, rad, at most 80° from the equator: the flat
-    /// earth is laid on here.
+    /// Latitude of the start, rad, at most 80° from the equator: here the flat
+    /// earth touches the ellipsoid.
     pub latitude_rad: f64,
     /// See `latitude_rad`; -π..=π.
     pub longitude_rad: f64,
-    /// How far magnetic north lies east of true north, rad.
+    /// Magnetic variation, rad, positive east.
     pub magnetic_variation_rad: f64,
     /// Steady wind.
     pub wind: Wind,
@@ -37,12 +38,12 @@ pub struct SimConfig {
     pub gusts: Option<Severity>,
     /// Errors and delay of the sensors.
     pub sensors: SensorConfig,
-    /// When the engage switch goes on and off.
+    /// When the engage switch is switched on and off.
     pub switch: SwitchScript,
     /// Longest step of the integration, s, 0.0001..=0.01: each tick is split
     /// into equal steps no longer than this.
     pub substep_s: f64,
-    /// Seed of gusts and noise: the same seed flies the same flight.
+    /// Seed of gusts and noise: the same seed gives the same flight.
     pub seed: u64,
 }
 
@@ -55,13 +56,13 @@ pub struct Wind {
     pub speed_mps: f64,
 }
 
-/// When the engage switch goes on and off, in s of simulated time; `None`
-/// never does.
+/// When the engage switch is switched on and off, in s of simulated time;
+/// `None` means never.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct SwitchScript {
-    /// Off before, on from then.
+    /// The time at which it is switched on.
     pub on_at_s: Option<f64>,
-    /// Off again from then.
+    /// The time at which it is switched off again.
     pub off_at_s: Option<f64>,
 }
 
@@ -97,17 +98,17 @@ impl Default for SimConfig {
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 #[non_exhaustive]
 pub enum SimError {
-    /// A number is out of its range.
+    /// A number is outside its range.
     #[error("{field} is {value}; it must be {allowed}")]
     Invalid {
         /// The field of [`SimConfig`].
         field: &'static str,
-        /// What it holds.
+        /// Its value.
         value: f64,
-        /// What it may hold.
+        /// The permitted range.
         allowed: &'static str,
     },
-    /// The aircraft cannot fly level there.
+    /// The aircraft cannot be trimmed for level flight there.
     #[error(transparent)]
     Trim(#[from] TrimError),
 }

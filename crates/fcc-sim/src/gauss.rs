@@ -1,8 +1,8 @@
 //! Normally distributed numbers that are the same on every machine.
 //!
-//! A recorded flight must fly again bit for bit on another computer. The usual
-//! samplers call the platform's `exp` and `ln`, which differ in the last digit
-//! from one C library to the next; this one calls `libm`'s.
+//! A recorded flight must be reproducible bit for bit on another computer. The
+//! usual samplers call the platform's `exp` and `ln`, which differ in the last
+//! digit from one C library to the next; this one calls `libm`'s.
 
 use libm::{log, sqrt};
 use rand_core::{Rng, SeedableRng};
@@ -13,13 +13,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 #[derive(Clone, Debug)]
 pub struct Gauss {
     bits: Xoshiro256PlusPlus,
-    /// The method makes two at a time; the second waits here.
+    /// The method generates two numbers at a time; this is the second.
     spare: Option<f64>,
 }
 
 impl Gauss {
-    /// The source with this seed. `stream` tells sources of one simulation
-    /// apart: gusts do not change because a sensor's noise was turned off.
+    /// The source with this seed. `stream` makes the sources of one simulation
+    /// independent: gusts do not change when a sensor's noise is turned off.
     pub fn new(seed: u64, stream: Stream) -> Self {
         let mut bits = Xoshiro256PlusPlus::seed_from_u64(seed);
         for _ in 0..stream as u8 {
@@ -52,7 +52,7 @@ impl Gauss {
     }
 }
 
-/// What a source of random numbers is for.
+/// The purpose of a source of random numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
 pub enum Stream {

@@ -1,12 +1,13 @@
-//! The built-in aircraft: what the loop flies when there is no simulator.
+//! The built-in aircraft, for use without a simulator.
 //!
-//! A rigid body with six degrees of freedom, a light single's published
-//! derivatives, a stall, an engine with a fixed-pitch propeller, actuators,
-//! the standard atmosphere, wind, gusts and sensor errors. It advances by the
-//! ticks it is sampled with: in real time under a loop, or in lockstep some
-//! thousand times faster. The same seed flies the same flight to the last bit
-//! on every machine: transcendental functions and random numbers are `libm`'s
-//! and this crate's own.
+//! A rigid body with six degrees of freedom, the published derivatives of a
+//! light single-engined aircraft, a stall, an engine with a fixed-pitch
+//! propeller, actuators, the standard atmosphere, wind, gusts and sensor
+//! errors. It advances by the time of the ticks with which it is sampled: in
+//! real time in a loop, or in lockstep some thousand times faster. The same
+//! seed gives the same flight to the last bit on every machine, because
+//! transcendental functions are those of `libm` and random numbers those of
+//! this crate.
 //!
 //! ```
 //! use fcc_core::flight::{Measurements, Surfaces};
@@ -28,7 +29,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! | module | what it knows |
+//! | module | contents |
 //! |---|---|
 //! | [`airframe`] | mass, size, derivatives: data, with sources |
 //! | [`atmosphere`] | standard air, airspeeds |
@@ -36,9 +37,9 @@
 //! | [`motion`] | the equations of motion and their integration |
 //! | [`turbulence`] | Dryden gusts |
 //!
-//! Left out: the ground, flaps, the engine's speed, torque, gyroscopic effect
-//! and slipstream, ice, fuel burn (mass is constant), Mach number, and the
-//! wing that drops at the stall: rolling stays damped.
+//! Not modelled: the ground, flaps, the engine's speed, torque, gyroscopic
+//! effect and slipstream, ice, fuel burn (mass is constant), Mach number, and
+//! wing drop at the stall: roll stays damped.
 #![forbid(unsafe_code)]
 
 pub mod aerodynamics;

@@ -1,8 +1,8 @@
-//! What sensor, actuator and onlookers of one simulation share.
+//! The state shared by sensor, actuator and observers of one simulation.
 //!
-//! The loop owns sensor and actuator in two boxes and calls them in turn on
-//! one thread, and neither may wait: commands go through atomics, the truth
-//! through a sequence lock, whose writer never waits either.
+//! The loop owns sensor and actuator separately and calls them in turn on one
+//! thread, and neither may wait: commands are passed through atomics, the truth
+//! through a sequence lock, whose writer never waits.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering, fence};
@@ -12,14 +12,14 @@ use fcc_core::framework::Switch;
 
 use crate::truth::{NUMBERS, Truth};
 
-/// What sensor, actuator and onlookers share.
+/// The state shared by sensor, actuator and observers.
 #[derive(Debug, Default)]
 pub(crate) struct SharedState {
     /// Bits of throttle, elevator, aileron and rudder.
     commands: [AtomicU64; 4],
     /// Whether the actuator holds the controls.
     held: AtomicBool,
-    /// 0 by the script, otherwise 1 off, 2 on.
+    /// 0 by the script, 1 off, 2 on.
     switch: AtomicU8,
     /// Odd while the truth is being written.
     sequence: AtomicU64,
@@ -27,8 +27,8 @@ pub(crate) struct SharedState {
 }
 
 impl SharedState {
-    /// Holds the controls at these commands. Someone who reads from another
-    /// thread in this very moment may see old and new commands mixed.
+    /// Holds the controls at these commands. A concurrent reader in another
+    /// thread may read a mixture of old and new commands.
     pub(crate) fn command(&self, surfaces: &Surfaces) {
         let values = [
             surfaces.throttle,
@@ -42,7 +42,7 @@ impl SharedState {
         self.held.store(true, Ordering::Release);
     }
 
-    /// Lets the controls go.
+    /// Releases the controls.
     pub(crate) fn release(&self) {
         self.held.store(false, Ordering::Release);
     }
@@ -64,7 +64,7 @@ impl SharedState {
         })
     }
 
-    /// The position of the switch, if a hand is on it.
+    /// The position of the switch, if it was set by a handle.
     pub(crate) fn switch(&self) -> Option<Switch> {
         match self.switch.load(Ordering::Relaxed) {
             1 => Some(Switch::Off),
@@ -82,8 +82,8 @@ impl SharedState {
         self.switch.store(code, Ordering::Relaxed);
     }
 
-    /// Shows a truth to the onlookers. One writer only.
-    pub(crate) fn show(&self, truth: &Truth) {
+    /// Publishes a truth to the observers. One writer only.
+    pub(crate) fn publish(&self, truth: &Truth) {
         let sequence = self.sequence.load(Ordering::Relaxed);
         self.sequence
             .store(sequence.wrapping_add(1), Ordering::Relaxed);
@@ -112,8 +112,8 @@ impl SharedState {
     }
 }
 
-/// A hand on the engage switch of a running simulation. Clones move the same
-/// switch, from any thread.
+/// Sets the engage switch of a running simulation. Clones set the same switch,
+/// from any thread.
 #[derive(Clone, Debug)]
 pub struct SwitchHandle(Arc<SharedState>);
 
@@ -122,15 +122,14 @@ impl SwitchHandle {
         Self(link)
     }
 
-    /// Moves the switch, whatever its script says; `None` gives it back to
-    /// the script.
+    /// Sets the switch, overriding its script; `None` returns it to the script.
     pub fn set(&self, switch: Option<Switch>) {
         self.0.set_switch(switch);
     }
 }
 
-/// A view of the truth of a running simulation, from any thread: for scoring a
-/// flight, never for flying it.
+/// Reads the truth of a running simulation, from any thread: for scoring a
+/// flight, never for controlling it.
 #[derive(Clone, Debug)]
 pub struct TruthHandle(Arc<SharedState>);
 
@@ -139,8 +138,8 @@ impl TruthHandle {
         Self(link)
     }
 
-    /// The truth after the last sample. Tries again while one is being
-    /// written, some ten nanoseconds.
+    /// The truth after the last sample. Retries while one is being written,
+    /// some ten nanoseconds.
     pub fn get(&self) -> Truth {
         self.0.truth()
     }

@@ -1,10 +1,10 @@
 //! The rigid body's six degrees of freedom, and their integration.
 //!
-//! Position and velocity are in north-east-down axes of a flat earth that does
-//! not turn, attitude is a quaternion from body to those axes, turn rates are
-//! in body axes (Stevens, Lewis and Johnson, *Aircraft Control and Simulation*,
+//! Position and velocity are in north-east-down axes of a flat, non-rotating
+//! earth, attitude is a quaternion from body to those axes, turn rates are in
+//! body axes (Stevens, Lewis and Johnson, *Aircraft Control and Simulation*,
 //! 2016, ch. 1). Four-stage Runge-Kutta: at 120 Hz its error in the fastest
-//! mode, roll with some 13 1/s, is 10⁻⁷ a step.
+//! mode, roll with about 13 1/s, is 10⁻⁷ per step.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -13,7 +13,7 @@ use crate::airframe::Airframe;
 use crate::atmosphere::Air;
 use crate::units::STANDARD_GRAVITY_MPS2;
 
-/// Where a rigid body is and how it moves.
+/// Position and motion of a rigid body.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct State {
     /// North, east and down of the origin at mean sea level, m.
@@ -26,12 +26,12 @@ pub struct State {
     pub rates_radps: Vector3<f64>,
 }
 
-/// How the air moves.
+/// The motion of the air.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AirMotion {
-    /// Steady wind: where the air moves to, north-east-down, m/s.
+    /// Steady wind: the velocity of the air, north-east-down, m/s.
     pub wind_mps: Vector3<f64>,
-    /// Gust on top of it, body axes, m/s.
+    /// Gust in addition to the wind, body axes, m/s.
     pub gust_mps: Vector3<f64>,
     /// Turn rate of the air over the aircraft's length and span, rad/s.
     pub gust_rates_radps: Vector3<f64>,
@@ -46,7 +46,7 @@ impl AirMotion {
     };
 }
 
-/// The time derivative of a [`State`], and what accelerometers feel.
+/// The time derivative of a [`State`], and the specific force.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Derivative {
     /// Velocity over the ground, m/s.
@@ -57,7 +57,7 @@ pub struct Derivative {
     pub attitude: Quaternion<f64>,
     /// Angular acceleration, body axes, rad/s².
     pub angular_radps2: Vector3<f64>,
-    /// Acceleration less gravity, body axes, m/s².
+    /// Specific force (acceleration minus gravity), body axes, m/s².
     pub specific_force_mps2: Vector3<f64>,
 }
 
@@ -86,7 +86,7 @@ impl State {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        // A sum is finite only if each part is, as long as none overflows.
+        // A sum is finite only if each summand is, as long as none overflows.
         let sum = self.position_m.sum()
             + self.velocity_mps.sum()
             + self.rates_radps.sum()
@@ -138,7 +138,7 @@ impl State {
         }
     }
 
-    /// The state moved along a slope; the quaternion's length drifts.
+    /// The state advanced along a slope; the quaternion's length drifts.
     fn moved(&self, dt_s: f64, slope: &Derivative) -> Self {
         Self {
             position_m: self.position_m + slope.velocity_mps * dt_s,
@@ -160,7 +160,7 @@ fn mean_slope(
     (k1 + (k2 + k3) * 2.0 + k4) / 6.0
 }
 
-/// How a state changes under deflections and moving air.
+/// The derivative of a state under deflections and moving air.
 pub fn derivative(
     airframe: &Airframe,
     state: &State,
@@ -179,7 +179,7 @@ pub fn derivative(
 
     // Lift and moment depend on the rate of the angle of attack, which depends
     // on lift: one linear equation, solved here instead of lagging a step. The
-    // gust stands still in body axes within a step.
+    // gust is constant in body axes within a step.
     let gravity =
         state
             .attitude

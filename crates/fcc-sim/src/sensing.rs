@@ -1,8 +1,8 @@
-//! Sensors: what they make of the truth.
+//! Sensors: measurements from the truth.
 //!
 //! A measurement is the truth some milliseconds ago, plus a bias, plus noise,
 //! rounded to the sensor's resolution. The reading is stamped with the tick
-//! that received it: as on a real bus, the loop does not know of the delay.
+//! that received it: as on a real bus, the delay is unknown to the loop.
 
 use fcc_core::flight::{Attitude, BodyRates, Measurements, Position, SpecificForce, Velocity};
 use fcc_core::framework::{Reading, Time};
@@ -23,14 +23,13 @@ pub struct SensorConfig {
     pub noise: Channels,
     /// Added to every sample.
     pub bias: Channels,
-    /// Steps in which the sensors speak; 0 for as fine as it gets.
+    /// Resolution; 0 for full precision.
     pub resolution: Channels,
-    /// Age of what is measured, ms, 0..=1000.
+    /// Delay of the measurements, ms, 0..=1000.
     pub delay_ms: u16,
 }
 
-/// One number for each kind of measurement; where there are several axes, the
-/// same for each.
+/// One number for each kind of measurement, the same for all its axes.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Channels {
     /// Pitch and roll, rad.
@@ -54,8 +53,8 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// Noise of a phone's or a hobbyist's sensors: 0.2° of attitude, 0.4° of
-    /// heading, 0.3°/s, 0.6 ft/s², 0.7 kt, 2.5 ft, 0.3° of angle of attack,
+    /// Noise typical of a phone's or low-cost sensors: 0.2° of attitude, 0.4°
+    /// of heading, 0.3°/s, 0.6 ft/s², 0.7 kt, 2.5 ft, 0.3° of angle of attack,
     /// with 2 m and 0.1 m/s of satellite navigation.
     pub const TYPICAL_NOISE: Self = Self {
         attitude_rad: 0.2 * DEGREE_RAD,
@@ -89,7 +88,7 @@ impl Channels {
     }
 }
 
-/// Which set of channels an error message speaks of.
+/// The set of channels named in an error message.
 #[derive(Clone, Copy)]
 enum Prefix {
     Noise,
@@ -231,7 +230,7 @@ impl Sensors {
     }
 }
 
-/// The flat earth, laid on the WGS 84 ellipsoid where the flight begins.
+/// The flat earth, tangent to the WGS 84 ellipsoid where the flight begins.
 #[derive(Clone, Copy, Debug)]
 struct LocalEarth {
     latitude_rad: f64,
@@ -265,7 +264,7 @@ impl LocalEarth {
     }
 }
 
-/// The truths of the last while, so that sensors can be late.
+/// The truths of the recent past, for delayed sensors.
 #[derive(Clone, Debug)]
 pub(crate) struct History {
     truths: Box<[Truth]>,
@@ -273,12 +272,12 @@ pub(crate) struct History {
     delay_s: f64,
 }
 
-/// Truths are kept at least this far apart, s: then one more than the delay
-/// has milliseconds reach back far enough, however short the sub-steps are.
+/// The shortest interval between stored truths, s. One more truth than the
+/// delay has milliseconds is then enough, for any length of sub-steps.
 const SPACING_S: f64 = 0.000_999;
 
 impl History {
-    /// `None` if nothing is late.
+    /// `None` without a delay.
     pub(crate) fn new(delay_ms: u16, start: &Truth) -> Option<Self> {
         (delay_ms > 0).then(|| Self {
             truths: vec![*start; usize::from(delay_ms) + 3].into_boxed_slice(),
@@ -287,8 +286,8 @@ impl History {
         })
     }
 
-    /// Keeps a truth.
-    pub(crate) fn keep(&mut self, truth: &Truth) {
+    /// Stores a truth.
+    pub(crate) fn store(&mut self, truth: &Truth) {
         let since_s = truth.time_s - self.at(0).time_s;
         if since_s < SPACING_S {
             return;
@@ -299,8 +298,8 @@ impl History {
         }
     }
 
-    /// The truth as it was the delay before `now`.
-    pub(crate) fn late(&self, now: &Truth) -> Truth {
+    /// The truth one delay before `now`.
+    pub(crate) fn delayed(&self, now: &Truth) -> Truth {
         let wanted_s = now.time_s - self.delay_s;
         let mut after = *now;
         for age in 0..self.truths.len() {
@@ -317,7 +316,7 @@ impl History {
         after
     }
 
-    /// The truth kept `age` places ago.
+    /// The truth stored `age` entries ago.
     fn at(&self, age: usize) -> Truth {
         let length = self.truths.len();
         let index = (self.newest + length - age) % length;

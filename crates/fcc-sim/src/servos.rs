@@ -1,4 +1,4 @@
-//! From commands to deflections: actuators that lag and have a top speed.
+//! From commands to deflections: actuators with lag and a rate limit.
 
 use fcc_core::flight::Surfaces;
 use libm::exp;
@@ -6,27 +6,27 @@ use libm::exp;
 use crate::aerodynamics::Deflections;
 use crate::airframe::Travel;
 
-/// How an actuator follows its command.
+/// The dynamics of an actuator.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Servo {
-    /// First-order lag, s; 0 follows at once.
+    /// First-order lag, s; 0 for none.
     pub lag_s: f64,
-    /// Top speed, in units of the command per second.
+    /// Rate limit, in units of the command per second.
     pub rate_per_s: f64,
 }
 
 /// The actuators of an aircraft.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Servos {
-    /// Of elevator, aileron and rudder.
+    /// Elevator, aileron and rudder.
     pub surfaces: Servo,
-    /// Of the throttle, with the engine's own lag.
+    /// The throttle, with the engine's lag.
     pub throttle: Servo,
 }
 
 impl Default for Servos {
-    /// Surfaces with 50 ms and half the travel in 0.4 s; an engine that takes
-    /// half a second to follow.
+    /// Surfaces with a lag of 50 ms and half the travel in 0.4 s; an engine
+    /// with a lag of half a second.
     fn default() -> Self {
         Self {
             surfaces: Servo {
@@ -42,7 +42,8 @@ impl Default for Servos {
 }
 
 impl Servos {
-    /// Where the actuators are after `dt_s` on the way to `commands`.
+    /// The positions of the actuators after moving for `dt_s` towards
+    /// `commands`.
     #[must_use]
     pub fn follow(&self, positions: &Surfaces, commands: &Surfaces, dt_s: f64) -> Surfaces {
         let surface = self.surfaces.prepared(dt_s);
@@ -71,7 +72,7 @@ impl Servo {
     }
 }
 
-/// A servo's step of one length, so that the exponential is taken once.
+/// A servo's step of a given length, so that the exponential is computed once.
 struct Prepared {
     share: f64,
     most: f64,

@@ -11,16 +11,16 @@ use crate::link::{SharedState, SwitchHandle, TruthHandle};
 use crate::sensing::{History, Sensors};
 use crate::trim::Trim;
 
-/// One simulated aircraft, in the parts that a loop and its onlookers hold.
+/// One simulated aircraft, in the parts for a loop and its observers.
 #[derive(Debug)]
 pub struct Simulation {
-    /// Owns the aircraft and flies it on when sampled.
+    /// Owns the aircraft and advances it when sampled.
     pub sensor: SimSensor,
     /// Moves the aircraft's controls.
     pub actuator: SimActuator,
-    /// A hand on the engage switch.
+    /// Sets the engage switch.
     pub switch: SwitchHandle,
-    /// A view of the truth.
+    /// Reads the truth.
     pub truth: TruthHandle,
     /// The trim that the flight begins with.
     pub trim: Trim,
@@ -55,14 +55,14 @@ impl Simulation {
     }
 }
 
-/// The aircraft's sensors, and the aircraft: each sample flies it on by the
-/// tick's time under the last commands, then measures.
+/// The aircraft and its sensors: each sample advances it by the tick's time
+/// under the last commands, then measures.
 ///
 /// Simulated time follows the ticks, so that the same simulation runs in real
-/// time under a loop's timer and in lockstep as fast as it computes. A tick
-/// that comes late or after missed ones flies on by what really passed, up to
-/// [`LONGEST_STEP_S`](crate::LONGEST_STEP_S); past that the plant's state is
-/// `Slow`.
+/// time under a loop's timer and in lockstep as fast as it computes. A late
+/// tick, or one after missed periods, advances by the time that actually
+/// passed, up to [`LONGEST_STEP_S`](crate::LONGEST_STEP_S); beyond that the
+/// plant's state is `Slow`.
 #[derive(Debug)]
 pub struct SimSensor {
     aircraft: Aircraft,
@@ -73,7 +73,7 @@ pub struct SimSensor {
 }
 
 impl SimSensor {
-    /// The aircraft as it is.
+    /// The aircraft in its present state.
     pub fn aircraft(&self) -> &Aircraft {
         &self.aircraft
     }
@@ -139,9 +139,9 @@ impl Sensor<Measurements> for SimSensor {
     }
 }
 
-/// The aircraft's controls. Released, they go back to a pilot who holds the
-/// trim: surfaces to where they were when the flight began, hands off, and no
-/// one levels the wings.
+/// The aircraft's controls. When released, they return to trim: the surfaces go
+/// to where they were at the start, as with hands off the controls, and nothing
+/// levels the wings.
 #[derive(Debug)]
 pub struct SimActuator {
     link: Arc<SharedState>,

@@ -10,7 +10,7 @@ use crate::atmosphere::Air;
 /// Straight and level flight in still air.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Trim {
-    /// Angle of attack and, level as it is, pitch, rad.
+    /// Angle of attack, in level flight equal to pitch, rad.
     pub alpha_rad: f64,
     /// Elevator, rad, positive trailing edge down.
     pub elevator_rad: f64,
@@ -26,37 +26,38 @@ pub struct Trim {
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 #[non_exhaustive]
 pub enum TrimError {
-    /// The wing cannot carry the weight.
+    /// The wing cannot provide the lift.
     #[error(
         "cannot fly level at {indicated_mps:.1} m/s indicated: the wing stalls; \
          choose a higher airspeed"
     )]
     TooSlow {
-        /// The airspeed asked for, m/s indicated.
+        /// The requested airspeed, m/s indicated.
         indicated_mps: f64,
     },
-    /// The engine cannot hold the speed, or even its idle exceeds it.
+    /// The engine cannot hold the speed, or exceeds it even at idle.
     #[error(
         "cannot hold {indicated_mps:.1} m/s indicated at {altitude_m:.0} m: it takes a \
          throttle of {throttle:.2} (0..1); choose a lower airspeed or altitude"
     )]
     Throttle {
-        /// The airspeed asked for, m/s indicated.
+        /// The requested airspeed, m/s indicated.
         indicated_mps: f64,
-        /// The altitude asked for, m.
+        /// The requested altitude, m.
         altitude_m: f64,
-        /// What it would take.
+        /// The throttle that would be required.
         throttle: f64,
     },
-    /// The elevator does not go that far.
+    /// The elevator's travel does not suffice.
     #[error(
         "cannot hold {indicated_mps:.1} m/s indicated: it takes {elevator_rad:.3} rad of \
          elevator, more than its travel; choose an airspeed nearer to cruise"
     )]
     Elevator {
-        /// The airspeed asked for, m/s indicated.
+        /// The requested airspeed, m/s indicated.
         indicated_mps: f64,
-        /// What it would take, rad, positive trailing edge down.
+        /// The deflection that would be required, rad, positive trailing edge
+        /// down.
         elevator_rad: f64,
     },
 }
@@ -64,18 +65,18 @@ pub enum TrimError {
 /// Trims for straight and level flight at an indicated airspeed in m/s and an
 /// altitude in m.
 ///
-/// Moments give the elevator for each angle of attack, drag the thrust, so
-/// that one equation in one unknown is left, lift against weight, which rises
-/// steadily up to the stall: bisection cannot fail there.
+/// For each angle of attack the moments determine the elevator and drag the
+/// thrust. One equation in one unknown remains, lift against weight, which is
+/// monotonic up to the stall, so that bisection always converges.
 ///
 /// # Errors
-/// [`TrimError`] if the wing, the engine or the elevator cannot.
+/// [`TrimError`] if the wing, the engine or the elevator does not suffice.
 pub fn trim(airframe: &Airframe, indicated_mps: f64, altitude_m: f64) -> Result<Trim, TrimError> {
-    /// Beyond what level flight at any speed takes, rad.
+    /// Bound of the search: beyond the angle of level flight at any speed, rad.
     const LOWEST_ALPHA_RAD: f64 = -0.15;
     /// Steps from the lowest angle up to the stall in search of a bracket.
     const SCAN: u32 = 64;
-    /// Halvings: 0.01 rad to below the last digit.
+    /// Bisection steps: from 0.01 rad to below the last digit.
     const HALVINGS: u32 = 60;
 
     let air = Air::at(altitude_m);
@@ -94,7 +95,7 @@ pub fn trim(airframe: &Airframe, indicated_mps: f64, altitude_m: f64) -> Result<
         pressure_area * total + thrust(alpha) * sin(alpha) - airframe.weight_n()
     };
 
-    // The lowest angle that carries the weight: the one before the stall.
+    // The lowest angle whose lift equals the weight: the one before the stall.
     let stride = (airframe.lift.stall_alpha_rad + 0.05 - LOWEST_ALPHA_RAD) / f64::from(SCAN);
     let mut high = None;
     for index in 1..=SCAN {
@@ -132,7 +133,7 @@ pub fn trim(airframe: &Airframe, indicated_mps: f64, altitude_m: f64) -> Result<
     )
 }
 
-/// The trim with its throttle, if engine and elevator can.
+/// The trim with its throttle, if engine and elevator suffice.
 fn checked(
     airframe: &Airframe,
     air: &Air,

@@ -1,8 +1,8 @@
-//! What is true of the simulated aircraft, as no sensor measures it.
+//! The true state of the simulated aircraft, without sensor errors.
 
 use fcc_core::flight::{BodyRates, SpecificForce, Velocity};
 
-/// What is true at one moment.
+/// The true state at one moment.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]
 pub struct Truth {
@@ -16,11 +16,11 @@ pub struct Truth {
     pub heading_rad: f64,
     /// Turn rates.
     pub rates: BodyRates,
-    /// What accelerometers at the centre of gravity feel.
+    /// Specific force at the centre of gravity.
     pub specific_force: SpecificForce,
     /// True airspeed, m/s.
     pub true_airspeed_mps: f64,
-    /// What the indicator shows, m/s.
+    /// Indicated airspeed, m/s.
     pub indicated_airspeed_mps: f64,
     /// Angle of attack, rad.
     pub angle_of_attack_rad: f64,
@@ -34,13 +34,13 @@ pub struct Truth {
     pub altitude_m: f64,
     /// Over the ground.
     pub velocity: Velocity,
-    /// Throttle as the engine follows it, 0..=1.
+    /// Throttle after the engine's lag, 0..=1.
     pub throttle: f64,
-    /// Elevator as it stands, rad, positive trailing edge down.
+    /// Elevator deflection, rad, positive trailing edge down.
     pub elevator_rad: f64,
-    /// Aileron as it stands, rad, positive rolls right.
+    /// Aileron deflection, rad, positive rolls right.
     pub aileron_rad: f64,
-    /// Rudder as it stands, rad, positive trailing edge left.
+    /// Rudder deflection, rad, positive trailing edge left.
     pub rudder_rad: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct Truth {
 pub const NUMBERS: usize = 24;
 
 impl Truth {
-    /// What the numbers of [`to_array`](Self::to_array) are called.
+    /// The names of the numbers of [`to_array`](Self::to_array).
     pub const NAMES: [&str; NUMBERS] = [
         "time_s",
         "roll_rad",
@@ -76,7 +76,7 @@ impl Truth {
         "rudder_rad",
     ];
 
-    /// Every number, in the order of the fields: as [`Truth::NAMES`] names them.
+    /// Every number, in the order of the fields and of [`Truth::NAMES`].
     pub fn to_array(self) -> [f64; NUMBERS] {
         [
             self.time_s,
@@ -168,8 +168,8 @@ impl Truth {
         }
     }
 
-    /// Between this and a later truth, `share` 0..=1 of the way; angles go the
-    /// short way round.
+    /// Interpolates between this and a later truth, with `share` in 0..=1;
+    /// angles take the shorter way round.
     #[must_use]
     pub fn towards(&self, later: &Self, share: f64) -> Self {
         let (here, there) = (self.to_array(), later.to_array());

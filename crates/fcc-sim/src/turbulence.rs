@@ -1,12 +1,12 @@
 //! Gusts after Dryden: MIL-F-8785C (1980), 3.7.
 //!
 //! White noise through forming filters. Each filter is discretised exactly for
-//! the step at hand (Van Loan's integral, worked out), so that variance and
+//! the present step (Van Loan's integral, in closed form), so that variance and
 //! correlation do not depend on the step. Filters run with unit variance and
-//! are scaled on the way out, so that a change of height scales the gust that
-//! blows and starts none.
+//! their output is scaled, so that a change of height scales the present gust
+//! and does not start a new one.
 //!
-//! Gusts are put on in body axes at every height, and the ground lies at mean
+//! Gusts are applied in body axes at every height, and the ground is at mean
 //! sea level.
 
 use libm::{cbrt, exp, pow, sqrt};
@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use crate::gauss::{Gauss, Stream};
 use crate::units::{FOOT_M, KNOT_MPS};
 
-/// How strong the turbulence is.
+/// The severity of the turbulence.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Severity {
     /// 15 kt of wind 20 ft above the ground; aloft exceeded one time in 10².
@@ -140,7 +140,7 @@ pub struct Dryden {
     across: SecondOrder,
     vertical: SecondOrder,
     roll: f64,
-    /// Gusts as they pass the tail, for the air's turn rates.
+    /// Gusts at the tail, for the air's turn rates.
     across_passed_mps: f64,
     vertical_passed_mps: f64,
 }
@@ -155,8 +155,8 @@ pub struct Gust {
 }
 
 impl Dryden {
-    /// Gusts of a severity. They blow from the start: the filters begin
-    /// somewhere in their steady state.
+    /// Gusts of a severity. They are present from the start: the filters begin
+    /// in a random sample of their steady state.
     pub fn new(severity: Severity, seed: u64) -> Self {
         let mut gauss = Gauss::new(seed, Stream::Gusts);
         Self {
@@ -174,8 +174,9 @@ impl Dryden {
     /// The gust `dt_s` later, for an aircraft of a true airspeed in m/s, a
     /// height above ground and a span in m.
     pub fn step(&mut self, dt_s: f64, airspeed_mps: f64, height_m: f64, span_m: f64) -> Gust {
-        /// Slower than anything that flies here; the field is frozen in space
-        /// and must be flown through.
+        /// A lower bound of the airspeed, m/s, below that of any aircraft here:
+        /// the gust field is fixed in space and the filters need a speed
+        /// through it.
         const SLOWEST_MPS: f64 = 5.0;
         let speed = airspeed_mps.max(SLOWEST_MPS);
         let scales = self.severity.scales(height_m);
@@ -193,8 +194,8 @@ impl Dryden {
                 .vertical
                 .step(moved_m / scales.vertical_length_m, &mut self.gauss);
 
-        // Turn rates of the air: the specification's filters on top of v and
-        // w, with the lengths 3b/π and 4b/π, and one of its own for roll.
+        // Turn rates of the air: the specification's filters applied to v and
+        // w, with the lengths 3b/π and 4b/π, and a separate one for roll.
         let yaw_length_m = 3.0 * span_m / core::f64::consts::PI;
         let pitch_length_m = 4.0 * span_m / core::f64::consts::PI;
         self.across_passed_mps +=
@@ -247,7 +248,7 @@ impl SecondOrder {
     fn step(&mut self, ratio: f64, gauss: &mut Gauss) -> f64 {
         let kept = exp(-ratio);
         let square = kept * kept;
-        // What noise must add to keep the covariance steady: P - Φ·P·Φᵀ.
+        // The covariance that the noise must add to keep it steady: P - Φ·P·Φᵀ.
         let xx = 1.0 - square;
         let xy = 0.5 - square * (0.5 + ratio);
         let yy = 0.5 - square * (0.5 + ratio + ratio * ratio);

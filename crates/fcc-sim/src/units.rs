@@ -1,7 +1,7 @@
-//! The units that aviation's sources speak, in SI.
+//! Units used in aviation's sources, in SI.
 //!
-//! Inside, everything is SI. Published tables are not, and a number that was
-//! converted by hand can no longer be compared with its source: constants of
+//! Internally everything is SI. Published tables are not, and a number
+//! converted by hand can no longer be compared with its source, so constants of
 //! the aircraft are written as in the source, times one of these.
 
 /// One international foot, m.

@@ -14,7 +14,7 @@ fn assert_close(value: f64, table: f64, tolerance: f64, what: &str) {
 
 /// Geopotential altitude m, temperature K, pressure Pa, density kg/m³.
 #[test]
-fn the_tables_hold() {
+fn the_standard_atmosphere_agrees_with_the_tables() {
     for (altitude_m, temperature, pressure, density) in [
         (-1_000.0, 294.650, 113_929.0, 1.347_0),
         (0.0, 288.150, 101_325.0, 1.225_0),
@@ -33,7 +33,7 @@ fn the_tables_hold() {
 
 /// ICAO Doc 7488 in feet: 3,000 ft, 8,000 ft.
 #[test]
-fn the_table_in_feet_holds() {
+fn the_standard_atmosphere_agrees_with_the_table_in_feet() {
     let air = Air::at(3_000.0 * FOOT_M);
     assert_close(air.pressure_pa, 90_812.0, 1.0, "pressure at 3,000 ft");
     assert_close(air.density_kgpm3, 1.121_0, 5e-5, "density at 3,000 ft");
@@ -48,7 +48,7 @@ fn the_table_in_feet_holds() {
 }
 
 #[test]
-fn sound_is_as_fast_as_in_the_tables() {
+fn the_speed_of_sound_agrees_with_the_tables() {
     assert_close(Air::at(0.0).sound_mps(), 340.294, 1e-3, "sea level");
     assert_close(Air::at(11_000.0).sound_mps(), 295.070, 1e-3, "11 km");
 }
@@ -81,7 +81,7 @@ fn airspeeds_convert_and_back() {
 }
 
 #[test]
-fn the_ends_hold_and_stay_finite() {
+fn beyond_the_limits_the_air_is_constant_and_finite() {
     assert_eq!(Air::at(1e9), Air::at(20_000.0));
     assert_eq!(Air::at(-1e9), Air::at(-5_000.0));
 }

@@ -1,4 +1,4 @@
-//! The built-in aircraft keeps what the traits promise.
+//! The built-in aircraft conforms to the traits.
 #![cfg(test)]
 
 use fcc_conformance::{
@@ -13,7 +13,7 @@ struct Bench {
     measured: Measurements,
 }
 
-/// With everything that costs a sample more.
+/// With everything that makes a sample more expensive.
 fn new() -> Bench {
     let config = SimConfig {
         gusts: Some(Severity::Moderate),
@@ -70,26 +70,26 @@ impl ActuatorBench for Bench {
         }
     }
 
-    /// Flies on, under what was applied before.
+    /// Advances, under what was applied before.
     fn live(&mut self, tick: &Tick) {
         let sensor = &mut self.simulation.sensor;
         sensor.sample(tick, &mut self.measured).unwrap();
     }
 
-    /// The surfaces of a pilot are those of the trim, which no outputs are.
+    /// Released surfaces are those of the trim, from which all outputs differ.
     fn is_held(&mut self) -> bool {
-        self.shown() != self.simulation.sensor.aircraft().hands_off()
+        self.measured_surfaces() != self.simulation.sensor.aircraft().hands_off()
     }
 
     fn follows(&mut self, outputs: &Surfaces) -> bool {
-        self.shown() == *outputs
+        self.measured_surfaces() == *outputs
     }
 }
 
 impl Bench {
-    /// What the controls are set to, as the next sample sees them; that
-    /// sample takes no time.
-    fn shown(&mut self) -> Surfaces {
+    /// The positions of the controls, as the next sample measures them; that
+    /// sample takes no simulated time.
+    fn measured_surfaces(&mut self) -> Surfaces {
         let tick = Tick::default();
         let sensor = &mut self.simulation.sensor;
         sensor.sample(&tick, &mut self.measured).unwrap();

@@ -1,4 +1,4 @@
-//! What every aircraft does, by physics and by the house's conventions.
+//! Physical behaviour of the aircraft and sign conventions.
 #![expect(
     clippy::unwrap_used,
     reason = "a test may panic, and so may what it calls"
@@ -31,7 +31,7 @@ fn after_a_second(change: Surfaces) -> Truth {
 }
 
 #[test]
-fn hands_off_it_flies_straight_and_level() {
+fn with_hands_off_it_flies_straight_and_level() {
     let mut aircraft = default_aircraft();
     let start = aircraft.truth();
     let hands_off = aircraft.hands_off();
@@ -81,7 +81,7 @@ fn rudder_yaws_right_and_slips_left() {
 }
 
 #[test]
-fn throttle_pushes() {
+fn throttle_accelerates() {
     let truth = after_a_second(Surfaces {
         throttle: 0.1,
         ..Surfaces::default()
@@ -93,7 +93,7 @@ fn throttle_pushes() {
 
 /// ψ̇ = g·tan φ/V and n = 1/cos φ: any textbook's coordinated turn.
 #[test]
-fn a_steady_turn_is_as_fast_as_it_must_be() {
+fn a_steady_turn_has_the_rate_of_a_coordinated_turn() {
     let mut aircraft = default_aircraft();
     let bank_rad = 30.0 * DEGREE_RAD;
     let mut pilot = Pilot::default();
@@ -121,7 +121,7 @@ fn a_steady_turn_is_as_fast_as_it_must_be() {
 /// Heading north with 15 m/s from the south-west: the wind adds to the
 /// velocity over the ground and changes nothing else.
 #[test]
-fn the_wind_triangle_closes() {
+fn the_wind_triangle_holds() {
     let calm = default_aircraft().truth();
     let mut aircraft = Aircraft::new(&SimConfig {
         wind: Wind {
@@ -144,10 +144,10 @@ fn the_wind_triangle_closes() {
     assert!(windy.sideslip_rad.abs() < 1e-9);
 }
 
-/// A body that air does not touch: it tumbles about all axes, and keeps its
+/// A body without aerodynamic forces tumbles about all axes and conserves its
 /// energy and its angular momentum.
 #[test]
-fn without_air_energy_and_angular_momentum_are_kept() {
+fn without_air_energy_and_angular_momentum_are_conserved() {
     let airframe = Airframe {
         wing_area_m2: 0.0,
         inertia: Inertia {
@@ -203,10 +203,10 @@ fn without_air_energy_and_angular_momentum_are_kept() {
     assert!((state.attitude.into_inner().norm() - 1.0).abs() < 1e-12);
 }
 
-/// Full deflections of everything, back and forth, for minutes: it stalls and
-/// spins about, and stays a rigid body in an atmosphere.
+/// Full deflections of all controls, back and forth, for minutes: it stalls and
+/// spins, and its state stays valid.
 #[test]
-fn rough_handling_breaks_nothing() {
+fn full_deflections_leave_the_state_valid() {
     let mut aircraft = default_aircraft();
     for step in 0..8_000_u32 {
         let sign = |period: u32| {
@@ -232,8 +232,8 @@ fn rough_handling_breaks_nothing() {
     assert!(!aircraft.has_diverged());
 }
 
-/// Pulled through the stall the wing carries less, the nose drops by itself,
-/// and hands off it flies again.
+/// Beyond the stall the wing has less lift, the nose drops without command, and
+/// with hands off the aircraft recovers.
 #[test]
 fn it_recovers_from_a_stall() {
     let mut aircraft = default_aircraft();
@@ -259,8 +259,8 @@ fn it_recovers_from_a_stall() {
     );
 }
 
-/// Half as long sub-steps change nothing that matters: the integration is as
-/// good as exact.
+/// Sub-steps of half the length make no relevant difference: the integration is
+/// accurate enough.
 #[test]
 fn substeps_are_short_enough() {
     let fly = |substep_s: f64| {

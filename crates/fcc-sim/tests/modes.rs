@@ -1,11 +1,10 @@
 //! The modes of small motion against textbooks.
 //!
 //! The model is linearised by differences about its own trim; its eigenvalues
-//! must be those that the same derivatives have in print. What is printed for
-//! the Navion is Nelson's (1998, examples 4.3 and 5.3); airplane A's are
-//! Roskam's equations (1995, ch. 5) with his table, worked out by
-//! `linear_modes.py` beside this file, which has no line in common with the
-//! model.
+//! must be those published for the same derivatives. For the Navion these are
+//! Nelson's (1998, examples 4.3 and 5.3); airplane A's are Roskam's equations
+//! (1995, ch. 5) with his table, computed by `linear_modes.py` in this folder,
+//! which shares no code with the model.
 #![expect(
     clippy::unwrap_used,
     clippy::indexing_slicing,
@@ -29,8 +28,8 @@ struct Modes {
     real: Vec<f64>,
 }
 
-/// Velocity, small rotation and turn rates: nine numbers that all stand still
-/// in trimmed flight.
+/// Velocity, small rotation and turn rates: nine numbers that are constant in
+/// trimmed flight.
 fn modes(airframe: &Airframe, true_mps: f64, altitude_m: f64) -> Modes {
     let air = Air::at(altitude_m);
     let trim = trim(airframe, air.indicated_mps(true_mps), altitude_m).unwrap();
@@ -49,7 +48,7 @@ fn modes(airframe: &Airframe, true_mps: f64, altitude_m: f64) -> Modes {
     let slope = |x: &SVector<f64, 9>| {
         let change = derivative(airframe, &state_at(x), &deflections, &AirMotion::CALM, &air);
         let (a, w) = (change.acceleration_mps2, change.angular_radps2);
-        // About standstill a small rotation changes by the turn rates.
+        // Near zero a small rotation changes by the turn rates.
         SVector::<f64, 9>::from([a.x, a.y, a.z, x[6], x[7], x[8], w.x, w.y, w.z])
     };
     let trimmed = slope(&SVector::zeros());
@@ -86,7 +85,7 @@ fn assert_near(value: f64, expected: f64, share: f64, what: &str) {
 }
 
 /// Short period, dutch roll, phugoid; roll and spiral. The last real root is
-/// heading, which nothing brings back: 0.
+/// heading, which has no restoring moment: 0.
 #[test]
 fn airplane_a_has_its_published_modes() {
     let published = Airframe::ROSKAM_A;
@@ -188,7 +187,7 @@ fn navion() -> Airframe {
                 per_rudder: -0.072,
             },
         },
-        // Nelson leaves out that thrust depends on airspeed.
+        // Nelson neglects the dependence of thrust on airspeed.
         propulsion: Propulsion {
             polar_intercept: 0.0,
             ..Airframe::ROSKAM_A.propulsion

@@ -1,4 +1,4 @@
-//! Nothing in a tick asks the allocator for anything.
+//! Nothing in a tick allocates.
 
 use fcc_conformance::allocator_calls;
 use fcc_core::flight::{Measurements, Surfaces};

@@ -31,7 +31,7 @@ fn limit_kt(altitude_ft: f64, mut can_kt: f64, mut cannot_kt: f64) -> f64 {
 }
 
 /// Handbook, section 5: stall with flaps up, power off: 51 KCAS. Here it is
-/// flown with power, which carries a little.
+/// flown with power, which adds a little lift.
 #[test]
 fn it_stalls_at_the_handbooks_speed() {
     let stall_kt = limit_kt(0.0, 70.0, 30.0);
@@ -45,8 +45,8 @@ fn full_throttle_at_sea_level_is_as_fast_as_in_the_handbook() {
     assert!((fastest_kt / 123.0 - 1.0).abs() < 0.05, "{fastest_kt} kt");
 }
 
-/// Handbook, section 1: 120 kt at 8,000 ft, where full throttle is what is
-/// left of the engine: 75 %.
+/// Handbook, section 1: 120 kt at 8,000 ft, where full throttle gives 75 % of
+/// the torque.
 #[test]
 fn cruise_at_8000_ft_is_as_fast_as_in_the_handbook() {
     let air = Air::at(8_000.0 * FOOT_M);
@@ -67,7 +67,8 @@ fn it_climbs_as_in_the_handbook() {
         ..SimConfig::default()
     })
     .unwrap();
-    // The faster, the more nose up; the angle in the middle is found by trial.
+    // The higher the pitch, the lower the airspeed; the angle between is found
+    // by iteration.
     let mut pilot = Pilot::default();
     let pitch = |now: &Truth| 0.16 + 0.02 * (now.indicated_airspeed_mps - 76.0 * KNOT_MPS);
     pilot.fly(&mut aircraft, 40.0, 1.0, 0.0, pitch);
@@ -108,7 +109,7 @@ fn airplane_a_is_trimmed_at_its_reference() {
 }
 
 #[test]
-fn what_cannot_be_trimmed_says_why() {
+fn an_impossible_trim_is_reported_with_its_reason() {
     let airframe = Airframe::SKYHAWK;
     let too_slow = trim(&airframe, 20.0, 0.0).unwrap_err();
     assert!(matches!(too_slow, TrimError::TooSlow { .. }));

@@ -1,4 +1,4 @@
-//! The same seed flies the same flight, to the last bit, on every machine.
+//! The same seed gives the same flight, to the last bit, on every machine.
 #![expect(
     clippy::unwrap_used,
     reason = "a test may panic, and so may what it calls"
@@ -55,7 +55,7 @@ fn hash_of_a_flight(seed: u64) -> u64 {
                 hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
             }
         }
-        // Leave the wings level by themselves, and stir.
+        // Level the wings, and add an oscillation.
         let stir = if (number / 40).is_multiple_of(2) {
             0.05
         } else {
@@ -72,8 +72,8 @@ fn hash_of_a_flight(seed: u64) -> u64 {
     hash
 }
 
-/// The number is the same on every machine, optimised or not. It changes when
-/// the model does, and then shall be set anew.
+/// The number is the same on every machine, optimised or not. It changes with
+/// the model, and must then be updated.
 #[test]
 fn a_seed_is_a_flight_to_the_last_bit() {
     const FLIGHT_OF_SEED_1: u64 = 0xaca2_bf8c_76c0_456c;

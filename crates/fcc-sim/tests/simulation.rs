@@ -1,4 +1,4 @@
-//! The simulated aircraft as a loop sees it: through sensor and actuator.
+//! The simulated aircraft as used by a loop: through sensor and actuator.
 #![expect(
     clippy::unwrap_used,
     reason = "a test may panic, and so may what it calls"
@@ -31,7 +31,7 @@ fn simulation(config: &SimConfig) -> Simulation {
 }
 
 #[test]
-fn measurements_are_the_truth_if_nothing_is_wrong() {
+fn without_errors_measurements_are_the_truth() {
     let mut sim = simulation(&SimConfig::default());
     let mut measured = Measurements::default();
     sim.sensor.sample(&tick(1), &mut measured).unwrap();
@@ -51,8 +51,8 @@ fn measurements_are_the_truth_if_nothing_is_wrong() {
     assert_eq!(truth, sim.sensor.aircraft().truth());
 }
 
-/// One minute of latitude is one nautical mile, near enough: 60 s at 104.5 kt
-/// are 1.742 NM.
+/// One minute of latitude is about one nautical mile: 60 s at 104.5 kt are
+/// 1.742 NM.
 #[test]
 fn position_moves_over_the_earth() {
     let mut sim = simulation(&SimConfig {
@@ -68,7 +68,7 @@ fn position_moves_over_the_earth() {
     let minutes = (measured.position.value.latitude_rad - 0.8) / DEGREE_RAD * 60.0;
     assert!((minutes / 1.742 - 1.0).abs() < 0.005, "{minutes}");
     assert!((measured.position.value.longitude_rad - 0.2).abs() < 1e-9);
-    // East variation is taken off: magnetic north lies to the right.
+    // East variation is subtracted: magnetic north lies to the right.
     assert!((measured.heading_rad.value / DEGREE_RAD - 355.0).abs() < 1e-6);
 }
 
@@ -112,10 +112,10 @@ fn errors_are_as_configured() {
     assert!((sigma(&pitches) / (0.2 * DEGREE_RAD) - 1.0).abs() < 0.03);
 }
 
-/// With 60 ms of delay at 40 Hz a roll that began in a tick shows up whole
-/// sub-steps later, and at any time it is the roll of 60 ms ago.
+/// With 60 ms of delay at 40 Hz a roll that began in a tick is measured whole
+/// sub-steps later, and the measured roll is always that of 60 ms ago.
 #[test]
-fn delayed_sensors_show_the_past() {
+fn delayed_sensors_measure_the_past() {
     let fly = |delay_ms: u16| {
         let mut sim = simulation(&SimConfig {
             sensors: SensorConfig {
@@ -148,7 +148,7 @@ fn delayed_sensors_show_the_past() {
     for index in 12..200 {
         assert!((past[index] - present[index - 12]).abs() < 1e-9, "{index}");
     }
-    // Half way between two ticks it lies between their truths.
+    // Half-way between two ticks it lies between their truths.
     let between = fly(62);
     assert!(between[150] > present[137] && between[150] < present[138]);
 }
@@ -183,7 +183,7 @@ fn the_pilot_flies_until_applied_and_after_release() {
 }
 
 #[test]
-fn commands_that_are_not_valid_are_left() {
+fn invalid_commands_are_ignored() {
     let mut sim = simulation(&SimConfig::default());
     let mut measured = Measurements::default();
     let broken = Surfaces {
@@ -199,7 +199,7 @@ fn commands_that_are_not_valid_are_left() {
 }
 
 #[test]
-fn actuators_lag_and_have_a_top_speed() {
+fn actuators_have_a_lag_and_a_rate_limit() {
     let mut sim = simulation(&SimConfig::default());
     let mut measured = Measurements::default();
     let full = Surfaces {
@@ -219,7 +219,7 @@ fn actuators_lag_and_have_a_top_speed() {
 }
 
 #[test]
-fn the_switch_follows_script_and_hand() {
+fn the_switch_follows_its_script_and_handle() {
     let mut sim = simulation(&SimConfig {
         switch: SwitchScript {
             on_at_s: Some(1.0),
@@ -246,10 +246,10 @@ fn the_switch_follows_script_and_hand() {
     assert_eq!(measured.engage_switch.value, Switch::Off);
 }
 
-/// A tick after three missed ones flies on by four periods; one after an hour
-/// by a second, and says that the plant is slow.
+/// A tick after three missed ones advances by four periods; one after an hour
+/// by a second, and reports that the plant is slow.
 #[test]
-fn late_ticks_fly_on_by_what_passed() {
+fn late_ticks_advance_by_the_time_that_passed() {
     let mut sim = simulation(&SimConfig::default());
     let mut measured = Measurements::default();
     let late = Tick {
@@ -274,7 +274,7 @@ fn late_ticks_fly_on_by_what_passed() {
 }
 
 #[test]
-fn what_is_wrong_in_a_configuration_is_said() {
+fn configuration_errors_are_reported() {
     let broken = [
         (
             SimConfig {
@@ -330,9 +330,9 @@ fn what_is_wrong_in_a_configuration_is_said() {
     );
 }
 
-/// Sensor and actuator travel to the loop's thread in boxes; handles stay.
+/// Sensor and actuator are moved to the loop's thread; handles stay.
 #[test]
-fn the_parts_travel_to_another_thread() {
+fn the_parts_can_be_moved_to_another_thread() {
     let Simulation {
         sensor,
         actuator,

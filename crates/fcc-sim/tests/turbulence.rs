@@ -38,7 +38,7 @@ fn assert_near(value: f64, expected: f64, tolerance: f64, what: &str) {
 /// at 3,750 ft; all scale lengths are 1,750 ft. Steps of 1/4 length, so that
 /// the flight is some thousand lengths long.
 #[test]
-fn aloft_sigma_and_scale_are_the_specifications() {
+fn at_3000_ft_sigma_and_scale_agree_with_the_specification() {
     const PER_LENGTH: usize = 4;
     let length_m = 1750.0 * FOOT_M;
     let dt_s = length_m / SPEED_MPS / PER_LENGTH as f64;
@@ -60,7 +60,7 @@ fn aloft_sigma_and_scale_are_the_specifications() {
 /// σw = 0.1·W20 = 5.063 ft/s, σu = σw/0.5885^0.4 = 6.259 ft/s;
 /// Lw = 500 ft, Lu = 500/0.5885^1.2 = 944.7 ft.
 #[test]
-fn low_down_sigma_and_scale_are_the_specifications() {
+fn at_500_ft_sigma_and_scale_agree_with_the_specification() {
     let dt_s = 1.0 / 120.0;
     let gusts = gusts(Severity::Moderate, 500.0, dt_s, 1_500_000);
     let axis =
@@ -76,8 +76,8 @@ fn low_down_sigma_and_scale_are_the_specifications() {
     assert_near(correlation(&vertical, lag(500.0)), e / 2.0, 0.05, "w");
 }
 
-/// The variance of the roll gust is the integral of its spectrum,
-/// Φp = σw²/(V·Lw)·0.8·(π·Lw/4b)^⅓/(1 + (4bω/πV)²), summed up here.
+/// The variance of the roll gust is the integral of its spectrum, Φp =
+/// σw²/(V·Lw)·0.8·(π·Lw/4b)^⅓/(1 + (4bω/πV)²), integrated numerically here.
 #[test]
 fn the_roll_gust_has_its_spectrums_variance() {
     use std::f64::consts::PI;
@@ -96,8 +96,8 @@ fn the_roll_gust_has_its_spectrums_variance() {
     assert_near(sigma(&rolls) / variance.sqrt(), 1.0, 0.02, "sigma p");
 }
 
-/// A gust that grows along the way pitches the air nose down and yaws it
-/// right: q = -∂w/∂x, r = ∂v/∂x, each behind a lag of 4b/π or 3b/π.
+/// A gust that increases along the flight path gives the air a nose-down and a
+/// right turn rate: q = -∂w/∂x, r = ∂v/∂x, each behind a lag of 4b/π or 3b/π.
 #[test]
 fn pitch_and_yaw_gusts_follow_the_gradient() {
     let dt_s = 1.0 / 120.0;
@@ -113,9 +113,9 @@ fn pitch_and_yaw_gusts_follow_the_gradient() {
     assert!(agreement.iter().all(|sum| *sum > 0.0), "{agreement:?}");
 }
 
-/// Between 1,000 and 2,000 ft the two models are joined in a straight line.
+/// Between 1,000 and 2,000 ft the two models are interpolated linearly.
 #[test]
-fn the_models_join() {
+fn the_models_are_continuous() {
     for severity in [Severity::Light, Severity::Moderate, Severity::Severe] {
         for height_ft in [1_000.0, 2_000.0] {
             let below = severity.scales((height_ft - 0.01) * FOOT_M);

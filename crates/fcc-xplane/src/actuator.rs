@@ -18,29 +18,30 @@ use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
 use crate::sensor::send;
 
-/// While control is held the overrides are set anew this often, for a lost
-/// datagram or a simulator that was restarted.
+/// While control is held, the overrides are set again at this interval, in case
+/// a datagram was lost or the simulator was restarted.
 const ASSERT_EVERY: Duration = Duration::from_secs(1);
 
-/// X-Plane as an actuator: takes the yoke and the throttles, writes them, and
-/// gives them back.
+/// X-Plane as an actuator: takes control of the yoke and the throttles, writes
+/// them, and releases them.
 ///
 /// The first [`apply`](Actuator::apply) after a release sets the overrides,
 /// then writes. [`release`](Actuator::release) centres the surfaces and
-/// releases the overrides, three times over; dropping does the same. A sensor
-/// that goes on being sampled sees to it that the release took effect.
+/// releases the overrides, three times; dropping does the same. A sensor that
+/// is still being sampled checks that the release took effect.
 #[derive(Debug)]
 pub struct XPlaneActuator<P: Port = UdpPort> {
     port: Arc<P>,
     link: Arc<SharedState>,
     controls: Controls,
-    held: Option<Held>,
+    held: Option<HeldControl>,
 }
 
-/// Control that was taken.
+/// The control that is held.
 #[derive(Debug)]
-struct Held {
-    /// Where: it is given back there, wherever a beacon points by then.
+struct HeldControl {
+    /// Where it is held. It is released there, even if a beacon has since named
+    /// another address.
     simulator: SocketAddr,
     /// When the overrides were last set.
     asserted: Time,
@@ -67,7 +68,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let now = tick.woke;
         let (port, link) = (self.port.as_ref(), self.link.as_ref());
         if link.control() != Control::Held {
-            // A release that could not be sent left it; it is taken anew.
+            // Left by a release that could not be sent; control is taken again.
             self.held = None;
         }
         let held = match &mut self.held {
@@ -75,10 +76,10 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             none => {
                 let simulator = link.simulator().filter(|at| link.is_allowed(*at));
                 let simulator = simulator.ok_or(ActuatorFault::NotConnected)?;
-                // Held from here on, before the first datagram leaves: what
-                // was perhaps taken must be given back.
+                // Counts as held before the first datagram is sent: what may
+                // have been taken must be released.
                 link.set_control(Control::Held);
-                none.insert(Held {
+                none.insert(HeldControl {
                     simulator,
                     asserted: Time::NEVER,
                     confirmation: Confirmation::begin(now),
@@ -110,7 +111,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         }
     }
 
-    /// Encodes the last outputs into copies of what a tick changes.
+    /// Encodes the last outputs into copies of the state that a tick changes.
     fn warm_up(&self, tick: &Tick, outputs: &Surfaces) {
         let Some(held) = &self.held else {
             return;
@@ -131,7 +132,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let mut released = false;
         let mut failed: Errno = 0;
         for _ in 0..LET_GO_TIMES {
-            let round = self.controls.let_go(|datagram| {
+            let round = self.controls.release(|datagram| {
                 count(&link.counters.writes);
                 send(port, link, datagram, simulator)
             });
@@ -146,7 +147,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             self.held = None;
             Ok(())
         } else {
-            // Perhaps still held, so that the next release tries again.
+            // It may still be held, so the next release tries again.
             Err(ActuatorFault::Io { errno: failed })
         }
     }
@@ -158,7 +159,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
 
 impl<P: Port> Drop for XPlaneActuator<P> {
     fn drop(&mut self) {
-        // Nobody is left to hear of a failure.
+        // A failure can no longer be reported.
         let _ = self.release();
     }
 }

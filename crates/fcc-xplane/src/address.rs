@@ -1,4 +1,4 @@
-//! Where X-Plane is: at an address, at a host of a name, or where its beacon
+//! Where X-Plane is: at an address, at a named host, or wherever its beacon
 //! comes from.
 
 use core::fmt;
@@ -23,25 +23,25 @@ use crate::open::OpenError;
 /// ```
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub enum Simulator {
-    /// At this address. For X-Plane on this machine say 127.0.0.1: datagrams
-    /// count only if they come from this very IP address.
+    /// At this address. For X-Plane on this machine use 127.0.0.1: only
+    /// datagrams from exactly this IP address are accepted.
     At(SocketAddr),
-    /// At the host of this name, which is looked up once, when the connection
-    /// is opened: its first IPv4 address, or else its first IPv6 address.
+    /// At the host with this name, which is looked up once when the connection
+    /// is opened: its first IPv4 address, otherwise its first IPv6 address.
     Named(HostName),
-    /// Wherever the first beacon of an X-Plane that flies comes from. While it
-    /// sends, beacons of others change nothing.
+    /// At the sender of the first beacon of an X-Plane that computes a flight.
+    /// While it sends, other beacons are ignored.
     Beacon,
 }
 
-/// The name of a host, and a port there.
+/// A host name and a port.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct HostName {
     name: String,
     port: u16,
 }
 
-/// A text that says nowhere where X-Plane could be.
+/// A text that is no address of an X-Plane.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[error(
     "\"{0}\" is neither \"beacon\" nor an address: give an IP address or a host name, with the \
@@ -50,7 +50,7 @@ pub struct HostName {
 pub struct AddressError(String);
 
 const BEACON: &str = "beacon";
-/// Of a host name and of a part of it (RFC 1035, 2.3.4).
+/// Longest host name and longest part of one, bytes (RFC 1035, 2.3.4).
 const LONGEST_NAME: usize = 253;
 const LONGEST_PART: usize = 63;
 
@@ -99,7 +99,7 @@ impl FromStr for Simulator {
     }
 }
 
-/// An IPv4 address that was written as IPv6 (`::ffff:127.0.0.1`) as what it is.
+/// Converts an IPv4-mapped IPv6 address (`::ffff:127.0.0.1`) to IPv4.
 fn canonical(address: SocketAddr) -> SocketAddr {
     match address.ip().to_canonical() {
         ip @ IpAddr::V4(_) => (ip, address.port()).into(),
@@ -108,8 +108,8 @@ fn canonical(address: SocketAddr) -> SocketAddr {
 }
 
 /// Letters, digits and hyphens between dots (RFC 1123, 2.1), and underscores,
-/// which some networks use. The last part is no number: that is an address
-/// with a mistake in it.
+/// which some networks use. The last part must not be a number: that would be a
+/// mistyped address.
 fn is_host_name(name: &str) -> bool {
     let name = name.strip_suffix('.').unwrap_or(name);
     let is_part = |part: &str| {
@@ -127,8 +127,9 @@ fn is_host_name(name: &str) -> bool {
 }
 
 impl Simulator {
-    /// Where datagrams are sent; `None` while only a beacon can tell. A name is
-    /// looked up, which may wait for the network: not for a loop.
+    /// Where datagrams are sent; `None` if it is known only from a beacon. A
+    /// name is looked up, which may wait for the network, so do not call this
+    /// in a loop.
     pub(crate) fn locate(&self) -> Result<Option<SocketAddr>, OpenError> {
         let address = match self {
             Self::Beacon => return Ok(None),
@@ -152,7 +153,8 @@ impl HostName {
     }
 }
 
-/// Whether datagrams can be sent to one machine there.
+/// Whether this is the address of a single machine to which datagrams can be
+/// sent.
 pub(crate) fn check(address: SocketAddr) -> Result<(), XPlaneConfigError> {
     let ip = address.ip();
     let is_broadcast = matches!(ip, IpAddr::V4(ip) if ip.is_broadcast());
@@ -198,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_address_is_refused_with_what_would_be_one() {
+    fn text_that_is_no_address_is_refused_with_an_example() {
         let long = format!("{}.lan", "a".repeat(64));
         for text in [
             "",
@@ -227,19 +229,19 @@ mod tests {
 
     #[test]
     fn a_name_is_looked_up_and_ipv4_comes_first() {
-        // Every machine has this one (RFC 6761), most of them as IPv6 too.
+        // Every machine has this name (RFC 6761), most of them for IPv6 too.
         let here: Simulator = "localhost:49000".parse().unwrap();
         let found = here.locate().unwrap().unwrap();
         assert!(found.is_ipv4() && found.ip().is_loopback(), "{found}");
-        // Nobody has this one (RFC 6761).
+        // No machine has this name (RFC 6761).
         let nowhere: Simulator = "sim.invalid".parse().unwrap();
-        let words = nowhere.locate().unwrap_err().to_string();
-        assert!(words.contains("sim.invalid:49000"), "{words}");
-        assert!(words.contains("IP address"), "{words}");
+        let message = nowhere.locate().unwrap_err().to_string();
+        assert!(message.contains("sim.invalid:49000"), "{message}");
+        assert!(message.contains("IP address"), "{message}");
     }
 
     #[test]
-    fn nothing_can_be_sent_to_many_or_to_nobody() {
+    fn broadcast_multicast_and_unspecified_addresses_are_refused() {
         for text in [
             "0.0.0.0",
             "255.255.255.255",
@@ -248,12 +250,12 @@ mod tests {
             "[ff02::1]",
         ] {
             let simulator: Simulator = text.parse().unwrap();
-            let words = simulator.locate().unwrap_err().to_string();
-            assert!(words.contains("one machine"), "{words}");
+            let message = simulator.locate().unwrap_err().to_string();
+            assert!(message.contains("one machine"), "{message}");
         }
         let somewhere: Simulator = "fe80::1".parse().unwrap();
-        let words = somewhere.locate().unwrap_err().to_string();
-        assert!(words.contains("%2]:49000"), "{words}");
+        let message = somewhere.locate().unwrap_err().to_string();
+        assert!(message.contains("%2]:49000"), "{message}");
         assert!(
             "[fe80::1%2]:49000"
                 .parse::<Simulator>()

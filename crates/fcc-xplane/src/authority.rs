@@ -14,15 +14,14 @@ use crate::open::{OpenError, XPlane};
 use crate::simulator::SimulatorState;
 use crate::status::{Trouble, XPlaneStatus};
 
-/// Begins the name of a plant that is an X-Plane; its address follows.
+/// Prefix of the name of an X-Plane plant; its address follows.
 const NAME: &str = "X-Plane at ";
 
-/// Trouble that lasts this long is reported: at the start, X-Plane has not had
-/// the time to answer.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// A problem is reported only after it has lasted this long: right after the
+/// start X-Plane has not yet had time to answer.
+const REPORT_AFTER: Duration = Duration::from_secs(1);
 
-/// Watches who has control of X-Plane, and gives it back by a socket of its
-/// own.
+/// Monitors who has control of X-Plane, and releases it over a separate socket.
 #[derive(Debug)]
 pub struct XPlaneAuthority {
     config: XPlaneConfig,
@@ -31,8 +30,8 @@ pub struct XPlaneAuthority {
 }
 
 impl XPlaneAuthority {
-    /// Of the connection that a sensor's or actuator's
-    /// [`status`](crate::XPlaneSensor::status) is of.
+    /// For the connection to which this [`status`](crate::XPlaneSensor::status)
+    /// of a sensor belongs.
     pub fn of(status: XPlaneStatus, config: &XPlaneConfig) -> Self {
         Self {
             status: Some(status),
@@ -40,8 +39,8 @@ impl XPlaneAuthority {
         }
     }
 
-    /// For a program that controls nothing, and only gives back what another
-    /// one held.
+    /// For a program that controls nothing itself and only releases what
+    /// another program held.
     pub fn without_connection(config: &XPlaneConfig) -> Self {
         Self {
             config: config.clone(),
@@ -62,7 +61,7 @@ impl ControlAuthority for XPlaneAuthority {
 
     fn require_permission(&self) {
         if let Some(status) = &self.status {
-            status.ask_first();
+            status.require_permission();
         }
     }
 
@@ -72,8 +71,8 @@ impl ControlAuthority for XPlaneAuthority {
         }
     }
 
-    /// X-Plane listens at every address of its machine, so one on this machine
-    /// has one name, whichever of them it goes by.
+    /// X-Plane listens at every address of its machine, so an X-Plane on this
+    /// machine gets the same name for all of the machine's addresses.
     fn unique(&self, plant: &PlantId) -> PlantId {
         address(plant)
             .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator))
@@ -83,12 +82,12 @@ impl ControlAuthority for XPlaneAuthority {
 
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>)) {
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(words) = self
+        if let Some(text) = self
             .status
             .as_ref()
-            .and_then(|status| reported.news(status))
+            .and_then(|status| reported.change(status))
         {
-            report(format_args!("{words}"));
+            report(format_args!("{text}"));
         }
     }
 
@@ -96,17 +95,17 @@ impl ControlAuthority for XPlaneAuthority {
         &self,
         plant: &PlantId,
         within: Duration,
-        is_called_off: &mut dyn FnMut() -> bool,
+        is_cancelled: &mut dyn FnMut() -> bool,
     ) -> Result<Released, ActuatorFault> {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
-        XPlane::release_unless(&self.config, simulator, within, is_called_off).map_err(|error| {
-            match error {
+        XPlane::release_unless_cancelled(&self.config, simulator, within, is_cancelled).map_err(
+            |error| match error {
                 OpenError::Bind { source, .. } => ActuatorFault::Io {
                     errno: source.raw_os_error().unwrap_or(0),
                 },
                 _ => ActuatorFault::NotConnected,
-            }
-        })
+            },
+        )
     }
 
     fn by_hand(&self) -> &'static str {
@@ -122,7 +121,7 @@ fn address(plant: &PlantId) -> Option<SocketAddr> {
     plant.as_str().strip_prefix(NAME)?.parse().ok()
 }
 
-/// The kernel binds a socket to no other.
+/// The kernel binds a socket only to addresses of this machine.
 fn is_of_this_machine(mut address: SocketAddr) -> bool {
     address.set_port(0);
     UdpSocket::bind(address).is_ok()
@@ -132,13 +131,13 @@ fn is_of_this_machine(mut address: SocketAddr) -> bool {
 #[derive(Debug)]
 struct Reported {
     trouble: Option<(Trouble, Instant)>,
-    last: Last,
+    last: LastReport,
     pace: SimulatorState,
     missing: Vec<Missing>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Last {
+enum LastReport {
     Nothing,
     Trouble(Trouble),
     Good,
@@ -148,7 +147,7 @@ impl Default for Reported {
     fn default() -> Self {
         Self {
             trouble: None,
-            last: Last::Nothing,
+            last: LastReport::Nothing,
             pace: SimulatorState::Running,
             missing: Vec::new(),
         }
@@ -156,62 +155,65 @@ impl Default for Reported {
 }
 
 impl Reported {
-    /// What has changed, in words; none if there is nothing to report.
-    fn news(&mut self, status: &XPlaneStatus) -> Option<String> {
+    /// A description of what has changed; none if there is nothing to report.
+    fn change(&mut self, status: &XPlaneStatus) -> Option<String> {
         let now = status.trouble();
         if self.trouble.map(|(trouble, _)| trouble) != now {
             self.trouble = now.map(|trouble| (trouble, Instant::now()));
         }
         match self.trouble {
             Some((trouble, since)) => {
-                let worth = since.elapsed() >= PATIENCE && self.last != Last::Trouble(trouble);
+                let worth =
+                    since.elapsed() >= REPORT_AFTER && self.last != LastReport::Trouble(trouble);
                 worth.then(|| {
-                    self.last = Last::Trouble(trouble);
+                    self.last = LastReport::Trouble(trouble);
                     trouble.to_string()
                 })
             }
             None => self
-                .good_news(status)
+                .recovery(status)
                 .or_else(|| self.change_of_pace(status))
                 .or_else(|| self.change_of_missing(status)),
         }
     }
 
-    /// Nothing is wrong; in words if something was, or at the first contact.
-    fn good_news(&mut self, status: &XPlaneStatus) -> Option<String> {
+    /// Called while nothing is wrong: a description if something was wrong
+    /// before, or at the first contact.
+    fn recovery(&mut self, status: &XPlaneStatus) -> Option<String> {
         let simulator = status.simulator()?;
-        match std::mem::replace(&mut self.last, Last::Good) {
-            Last::Good => None,
-            // Who no longer writes does not know whether it would work now.
-            Last::Trouble(Trouble::Unconfirmed(_)) => (status.control() == Control::Held)
+        match std::mem::replace(&mut self.last, LastReport::Good) {
+            LastReport::Good => None,
+            // Without writing it is not known whether writing would take effect
+            // now.
+            LastReport::Trouble(Trouble::Unconfirmed(_)) => (status.control() == Control::Held)
                 .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
-            Last::Nothing => Some(format!(
+            LastReport::Nothing => Some(format!(
                 "X-Plane at {simulator} answers; what engages is {}",
                 status.engage_switch()
             )),
-            Last::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
+            LastReport::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
         }
     }
 
     /// Whether X-Plane is paused or slow, if that has changed.
     fn change_of_pace(&mut self, status: &XPlaneStatus) -> Option<String> {
         let now = status.state();
-        let words = match now {
+        let text = match now {
             // The loop reports both itself, one as a sensor and one as a plant.
             SimulatorState::Silent | SimulatorState::Jumped => return None,
             SimulatorState::Running => "X-Plane's time runs again",
             SimulatorState::Paused => "X-Plane is paused",
-            SimulatorState::Stalled => "X-Plane's time stands still, but it does not say paused",
+            SimulatorState::Stalled => "X-Plane's clock has stopped although it is not paused",
             SimulatorState::Slow => {
                 "X-Plane is slow: fewer than 20 frames a second, or its time falls behind"
             }
         };
         let before = std::mem::replace(&mut self.pace, now);
-        (before != now).then(|| words.to_owned())
+        (before != now).then(|| text.to_owned())
     }
 
-    /// A value that X-Plane does not send though it was asked for, or that it
-    /// sends after all: each is reported once, one at a time.
+    /// A requested value that X-Plane does not send, or sends again: each
+    /// change is reported once, one per call.
     fn change_of_missing(&mut self, status: &XPlaneStatus) -> Option<String> {
         let now = status.missing();
         if let Some(lost) = now.iter().find(|what| !self.missing.contains(what)) {
@@ -238,7 +240,8 @@ mod tests {
         for here in ["127.0.0.1:49000", "127.9.9.9:49000", "[::1]:49000"] {
             assert_eq!(unique(here), "X-Plane at 127.0.0.1:49000");
         }
-        // Of blocks kept for documents (RFC 5737, RFC 3849), so nobody's.
+        // Of blocks reserved for documentation (RFC 5737, RFC 3849), so not of
+        // this machine.
         for elsewhere in ["192.0.2.1:49000", "[2001:db8::1]:49000"] {
             assert_eq!(unique(elsewhere), format!("X-Plane at {elsewhere}"));
         }

@@ -1,4 +1,4 @@
-//! What a user may choose, and what is refused.
+//! The connection's configuration and its validation.
 
 use core::time::Duration;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -9,7 +9,7 @@ use crate::protocol::{PathError, beacon, check_path, rref};
 /// The port on which X-Plane listens.
 pub const XPLANE_PORT: u16 = 49_000;
 
-/// How X-Plane is reached and what is read and written.
+/// How X-Plane is reached, and what is read and written.
 ///
 /// ```
 /// use fcc_xplane::{Simulator, XPlaneConfig};
@@ -26,37 +26,38 @@ pub struct XPlaneConfig {
     /// Where X-Plane is. Default: 127.0.0.1:49000.
     pub simulator: Simulator,
     /// The UDP port to receive on, 0 for any that is free. Default: 0, since
-    /// RREF answers to whatever port asked; rows of Data Output go where the
-    /// user sent them, so [`Input::Data`] needs one.
+    /// RREF replies go to the port that sent the request. Rows of Data Output
+    /// go to the port that is set in X-Plane, so [`Input::Data`] needs one.
     pub local_port: u16,
-    /// How measurements come. Default: [`Input::Rref`].
+    /// How measurements are received. Default: [`Input::Rref`].
     pub input: Input,
-    /// How surfaces go. Default: [`Output::Dref`].
+    /// How control surfaces are written. Default: [`Output::Dref`].
     pub output: Output,
-    /// How often X-Plane is asked to send each dataref, Hz, 1..=1000; it sends
-    /// at most once a frame. Default: 100, so that a value is no older than
-    /// its frame.
+    /// The rate at which X-Plane is asked to send each dataref, Hz, 1..=1000;
+    /// it sends at most once per frame. Default: 100, so that a value is no
+    /// older than one frame.
     pub rate_hz: u16,
-    /// How many engines take the throttle, 1..=8. Default: 1.
+    /// The number of engines whose throttle is written, 1..=8. Default: 1.
     pub engines: u8,
-    /// The dataref that engages: on from 0.5 up. Default:
+    /// The dataref of the engage switch: on from 0.5 upwards. Default:
     /// `sim/cockpit2/switches/generic_lights_switch[0]`, which nothing else in
     /// X-Plane reads.
     pub engage_switch: String,
-    /// After so long without a dataref's value it is asked for again, 100 ms
-    /// to 1 h. Default: 5 s.
+    /// A dataref without a value for this long is requested again, 100 ms to 1
+    /// h. Default: 5 s.
     pub resubscribe: Duration,
-    /// After so long without a datagram the simulator counts as silent, 50 ms
+    /// The simulator counts as silent after this long without a datagram, 50 ms
     /// to 1 min. Default: 500 ms.
     pub silent_after: Duration,
     /// The most datagrams read in one tick, 1..=1000. Default: 64, over ten
-    /// times what comes; a flood delays nothing.
+    /// times the usual number, so that a flood of datagrams cannot delay a
+    /// tick.
     pub datagrams_per_tick: u16,
-    /// After so long without a reading, that of another sensor is preferred
-    /// where a loop has several. Default: 100 ms, two frames at the lowest rate
-    /// that is not slow.
+    /// Where a loop has several sources of a quantity, another source is
+    /// preferred after this long without a reading. Default: 100 ms, two frames
+    /// at the lowest rate that is not slow.
     pub fallback_after: Duration,
-    /// Where beacons are sent. Default: 239.255.1.1:49707.
+    /// The multicast group of the beacons. Default: 239.255.1.1:49707.
     pub beacon: SocketAddrV4,
 }
 
@@ -79,32 +80,32 @@ impl Default for XPlaneConfig {
     }
 }
 
-/// How measurements come.
+/// How measurements are received.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Input {
-    /// By subscribed datarefs: no set-up in X-Plane's menus, and no doubt
-    /// about units and columns.
+    /// As subscribed datarefs: no set-up in X-Plane's menus, and unambiguous
+    /// units and columns.
     Rref,
-    /// By rows 1, 3, 4, 16, 17, 18, 20 and 21 of Data Output (in X-Plane 9: 17,
-    /// 18, 19 for 16, 17, 18), which the user has switched on and directed to
-    /// [`XPlaneConfig::local_port`]. The switch, the pause and the read-back of
-    /// the overrides have no row and are still subscribed.
+    /// As rows 1, 3, 4, 16, 17, 18, 20 and 21 of Data Output (in X-Plane 9: 17,
+    /// 18, 19 for 16, 17, 18), which the user has enabled and sent to
+    /// [`XPlaneConfig::local_port`]. The engage switch, the pause and the
+    /// readback of the overrides have no row and are still subscribed.
     Data(DataRows),
 }
 
-/// Which columns the rows have: versions of X-Plane differ.
+/// The layout of the rows, which differs between versions of X-Plane.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct DataRows {
-    /// The version that sends them.
+    /// The version of X-Plane that sends them.
     pub version: RowsVersion,
     /// The column of magnetic heading in the attitude row, 2..=7: 3 by most
-    /// sources, 4 in one capture of X-Plane 12. Look at Data Output on the
-    /// screen.
+    /// sources, 4 in one capture of X-Plane 12. Compare with Data Output on
+    /// X-Plane's screen.
     pub magnetic_heading_column: u8,
 }
 
 impl DataRows {
-    /// What most sources say of a version.
+    /// The layout that most sources give for a version.
     pub const fn of(version: RowsVersion) -> Self {
         Self {
             version,
@@ -113,7 +114,7 @@ impl DataRows {
     }
 }
 
-/// A version of X-Plane, as far as rows differ.
+/// A version of X-Plane, as far as the row layout differs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum RowsVersion {
     /// X-Plane 9: rates (Q, P, R in rad/s) in row 17, attitude in 18, air
@@ -126,47 +127,48 @@ pub enum RowsVersion {
     XPlane12,
 }
 
-/// How surfaces go. The overrides are set by DREF either way.
+/// How control surfaces are written. The overrides are set by DREF in both
+/// cases.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Output {
-    /// By datarefs.
+    /// As datarefs.
     Dref,
-    /// By rows 8 (joystick) and 25 (throttles), two rows in one datagram.
+    /// As rows 8 (joystick) and 25 (throttles), two rows in one datagram.
     Data,
 }
 
-/// What is wrong with a configuration.
+/// Why a configuration is refused.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum XPlaneConfigError {
-    /// A number is out of its range.
+    /// A number is outside its range.
     #[error("{key} is {value}: choose {range}")]
     Range {
         /// The field.
         key: &'static str,
-        /// What it holds.
+        /// Its value.
         value: String,
-        /// What it may hold.
+        /// The permitted range.
         range: &'static str,
     },
     /// The engage switch is no dataref path.
     #[error("engage_switch \"{path}\": {source}")]
     EngageSwitch {
-        /// What it holds.
+        /// Its value.
         path: String,
         /// What is wrong with it.
         source: PathError,
     },
-    /// An address to which nothing can be sent.
+    /// An address to which no datagram can be sent.
     #[error("simulator {0}: give the IP address and port of one machine, such as 127.0.0.1:49000")]
     Simulator(SocketAddr),
-    /// An address that every network of this machine may have.
+    /// A link-local address without the network interface.
     #[error(
         "simulator {0} is an address within one network: give the network's interface too, such \
          as [fe80::1%2]:49000, where 2 is its number in `ip link`"
     )]
     NoInterface(SocketAddr),
-    /// Rows are the input, but there is no port to receive them on.
+    /// Input is by rows, but no port is given to receive them on.
     #[error(
         "input by Data Output needs local_port: the one that is set as the target port in X-Plane"
     )]
@@ -174,10 +176,10 @@ pub enum XPlaneConfigError {
 }
 
 impl XPlaneConfig {
-    /// Whether everything is in its range.
+    /// Checks that every field is within its range.
     ///
     /// # Errors
-    /// The first field that is not, with what would be right.
+    /// The first field that is not, with the permitted range.
     pub fn validate(&self) -> Result<(), XPlaneConfigError> {
         range("rate_hz", self.rate_hz, 1, 1_000, "1 to 1000")?;
         range("engines", self.engines, 1, 8, "1 to 8")?;
@@ -224,7 +226,7 @@ impl XPlaneConfig {
     }
 }
 
-/// A duration that prints as one.
+/// A duration with a `Display` implementation.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 struct Span(Duration);
 
@@ -252,7 +254,7 @@ fn range<T: Copy + PartialOrd + core::fmt::Display>(
 mod tests {
     use super::*;
 
-    fn complaint(change: impl FnOnce(&mut XPlaneConfig)) -> String {
+    fn error_text(change: impl FnOnce(&mut XPlaneConfig)) -> String {
         let mut config = XPlaneConfig::default();
         change(&mut config);
         config.validate().unwrap_err().to_string()
@@ -264,27 +266,27 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_what_would_be_right() {
-        assert_eq!(complaint(|c| c.engines = 9), "engines is 9: choose 1 to 8");
-        assert_eq!(complaint(|c| c.engines = 0), "engines is 0: choose 1 to 8");
+    fn an_error_names_the_field_and_the_permitted_range() {
+        assert_eq!(error_text(|c| c.engines = 9), "engines is 9: choose 1 to 8");
+        assert_eq!(error_text(|c| c.engines = 0), "engines is 0: choose 1 to 8");
         assert_eq!(
-            complaint(|c| c.resubscribe = Duration::from_millis(20)),
+            error_text(|c| c.resubscribe = Duration::from_millis(20)),
             "resubscribe is 20ms: choose 100 ms to 1 h"
         );
         assert_eq!(
-            complaint(|c| c.engage_switch = "a".repeat(400)),
+            error_text(|c| c.engage_switch = "a".repeat(400)),
             format!(
                 "engage_switch \"{}\": the dataref path is 400 bytes long: at most 399 fit",
                 "a".repeat(400)
             )
         );
-        assert!(complaint(|c| c.engage_switch.clear()).contains("is empty"));
-        assert!(complaint(|c| c.engage_switch = "sim/größe".into()).contains("no dataref has"));
-        assert!(complaint(|c| c.engage_switch = "sim/a\0b".into()).contains("no dataref has"));
+        assert!(error_text(|c| c.engage_switch.clear()).contains("is empty"));
+        assert!(error_text(|c| c.engage_switch = "sim/größe".into()).contains("no dataref has"));
+        assert!(error_text(|c| c.engage_switch = "sim/a\0b".into()).contains("no dataref has"));
         let nowhere = (Ipv4Addr::UNSPECIFIED, 49_000).into();
-        assert!(complaint(|c| c.simulator = Simulator::At(nowhere)).contains("127.0.0.1:49000"));
+        assert!(error_text(|c| c.simulator = Simulator::At(nowhere)).contains("127.0.0.1:49000"));
         let rows = Input::Data(DataRows::of(RowsVersion::XPlane12));
-        assert!(complaint(|c| c.input = rows).contains("local_port"));
+        assert!(error_text(|c| c.input = rows).contains("local_port"));
     }
 
     #[test]

@@ -1,11 +1,10 @@
-//! Whether what is written takes effect.
+//! Checks that the written controls take effect.
 //!
-//! X-Plane acknowledges nothing, and its output flows even where its input is
-//! switched off or a firewall drops it. So the overrides and the yoke are read
-//! back while they are written: the writing is confirmed as long as everything
-//! that came back lately agrees with what was sent lately. The throttle itself
-//! is not compared, since the engine's own model may change it; its override
-//! is.
+//! X-Plane sends no acknowledgement, and it sends data even if its input is
+//! switched off or blocked by a firewall. So the overrides and the yoke are
+//! read back while they are written. Writing is confirmed as long as every
+//! recent readback agrees with what was recently sent. The throttle itself is
+//! not compared, since the engine model may change it, but its override is.
 
 use core::time::Duration;
 
@@ -14,12 +13,12 @@ use fcc_core::framework::Time;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
 
-/// Writing may go unconfirmed for so long.
+/// The longest time for which writing may be unconfirmed.
 pub(crate) const CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
-/// What came back in this time counts.
+/// A readback counts as recent for this long.
 const LATELY: Duration = Duration::from_millis(500);
-/// How far what comes back may lie outside what was sent lately: the rounding
-/// of a simulator that keeps the ratio in another form.
+/// How far a readback may lie outside the recently sent values: rounding, if
+/// the simulator stores the ratio in another form.
 const TOLERANCE: f32 = 0.02;
 
 const YOKE: [Quantity; 3] = [
@@ -29,7 +28,7 @@ const YOKE: [Quantity; 3] = [
 ];
 const OVERRIDES: [Quantity; 2] = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
 
-/// The least and the greatest that was written in some time.
+/// The least and the greatest value written in a period.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     least: f32,
@@ -59,20 +58,20 @@ impl Extent {
     }
 }
 
-/// Compares what is written with what comes back.
+/// Compares the written values with their readback.
 #[derive(Clone, Debug)]
 pub(crate) struct Confirmation {
     /// When control was taken.
     began: Time,
     confirmed: Time,
-    /// What was written to each axis in the present half second and in the one
-    /// before: what comes back is older by the way there and back.
+    /// What was written to each axis in the current and in the previous half
+    /// second: a readback is delayed by the round trip.
     extents: [[Extent; 2]; 3],
     turned: Time,
 }
 
 impl Confirmation {
-    /// Control is taken.
+    /// Starts when control is taken.
     pub(crate) const fn begin(now: Time) -> Self {
         Self {
             began: now,
@@ -82,7 +81,7 @@ impl Confirmation {
         }
     }
 
-    /// This was written to elevator, aileron and rudder.
+    /// Records what was written to elevator, aileron and rudder.
     pub(crate) fn wrote(&mut self, now: Time, yoke: [Option<f32>; 3]) {
         if now.since(self.turned) >= LATELY {
             self.turned = now;
@@ -98,7 +97,7 @@ impl Confirmation {
         }
     }
 
-    /// Looks at what came back; whether the writing has gone unconfirmed for
+    /// Compares the readback; returns whether writing has been unconfirmed for
     /// too long.
     pub(crate) fn is_overdue(&mut self, now: Time, link: &SharedState) -> bool {
         if let Some(newest) = self.agreement(now, link) {
@@ -107,15 +106,15 @@ impl Confirmation {
         now.since(self.confirmed) > CONFIRMED_WITHIN
     }
 
-    /// When the latest came back, if something did and all of it agrees.
+    /// The time of the latest readback, if there is one and all of them agree.
     fn agreement(&self, now: Time, link: &SharedState) -> Option<Time> {
-        let lately = |quantity| {
+        let recent = |quantity| {
             link.shown(quantity)
                 .filter(|(_, at)| *at > self.began && now.since(*at) <= LATELY)
         };
         let mut newest = None;
         for quantity in OVERRIDES {
-            if let Some((value, at)) = lately(quantity) {
+            if let Some((value, at)) = recent(quantity) {
                 if value < 0.5 {
                     return None;
                 }
@@ -123,7 +122,7 @@ impl Confirmation {
             }
         }
         for (quantity, [present, before]) in YOKE.into_iter().zip(self.extents) {
-            if let Some((value, at)) = lately(quantity) {
+            if let Some((value, at)) = recent(quantity) {
                 if !present.with(before).holds(value) {
                     return None;
                 }
@@ -140,9 +139,9 @@ mod tests {
 
     const TICK: Duration = Duration::from_millis(25);
 
-    /// Writes a moving elevator for so many ticks while the simulator shows
-    /// what `shows` makes of what was written 4 ticks ago.
-    fn overdue_after(ticks: u32, shows: impl Fn(f32) -> Option<[f32; 3]>) -> Vec<bool> {
+    /// Writes a moving elevator for `ticks` ticks; the simulator's readback is
+    /// `readback` applied to what was written 4 ticks earlier.
+    fn overdue_after(ticks: u32, readback: impl Fn(f32) -> Option<[f32; 3]>) -> Vec<bool> {
         let link = SharedState::new(None);
         let mut now = Time::from_nanos(1_000_000_000);
         let mut confirmation = Confirmation::begin(now);
@@ -150,7 +149,7 @@ mod tests {
         (0..ticks)
             .map(|tick| {
                 now = now + TICK;
-                if let Some([joystick, throttles, pitch]) = shows(written[tick as usize]) {
+                if let Some([joystick, throttles, pitch]) = readback(written[tick as usize]) {
                     link.show(Quantity::OverrideJoystick, f64::from(joystick), now);
                     link.show(Quantity::OverrideThrottles, f64::from(throttles), now);
                     link.show(Quantity::YokePitch, f64::from(pitch), now);
@@ -164,13 +163,13 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_with_a_delay_is_confirmed() {
+    fn a_delayed_readback_is_confirmed() {
         let overdue = overdue_after(400, |written| Some([1.0, 1.0, written]));
         assert!(!overdue.contains(&true));
     }
 
     #[test]
-    fn nothing_back_is_overdue_after_a_second_and_not_before() {
+    fn no_readback_is_overdue_after_a_second_and_not_before() {
         let overdue = overdue_after(60, |_| None);
         assert_eq!(overdue.iter().position(|overdue| *overdue), Some(40));
     }
@@ -188,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_yoke_that_somebody_else_holds_is_not_confirmed() {
+    fn a_yoke_held_by_another_program_is_not_confirmed() {
         assert_eq!(
             overdue_after(400, |_| Some([1.0, 1.0, 1.5])).last(),
             Some(&true)

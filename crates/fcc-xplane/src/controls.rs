@@ -1,13 +1,14 @@
 //! The datagrams by which surfaces, throttles and overrides are written.
 //!
-//! Signs are the house's own: X-Plane's `yoke_pitch_ratio` is positive nose up,
-//! `yoke_roll_ratio` positive right, `yoke_heading_ratio` positive nose right,
-//! each -1..1, and so are the columns of row 8; throttles are 0..1.
+//! The signs are those used throughout: X-Plane's `yoke_pitch_ratio` is
+//! positive nose up, `yoke_roll_ratio` positive right, `yoke_heading_ratio`
+//! positive nose right, each -1..1, and so are the columns of row 8; throttles
+//! are 0..1.
 //!
-//! No override has a timeout: X-Plane would fly on with the last deflection for
-//! ever. So letting go is: centre the surfaces, then release the overrides, in
-//! this command. The throttle has no centre; it stays where it is until the
-//! released override gives it back to the lever in the cockpit.
+//! No override has a timeout: X-Plane would keep the last deflection for ever.
+//! A release therefore centres the surfaces and then clears the overrides, in
+//! this order. The throttle has no centre position: it stays where it is until
+//! its override is cleared and the lever in the cockpit has control again.
 
 use core::iter;
 
@@ -24,28 +25,28 @@ const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use";
 const ROW_JOYSTICK: i32 = 8;
 const ROW_THROTTLES: i32 = 25;
 
-/// How often the letting go is sent back to back: datagrams get lost, and
-/// after the last there may be nobody left to repeat it.
+/// How often the release is sent in a row: datagrams get lost, and afterwards
+/// there may be no program left to repeat it.
 pub(crate) const LET_GO_TIMES: usize = 3;
 
-/// Three surfaces and the throttles of eight engines, which is the most that
-/// [`XPlaneConfig::engines`] may be.
+/// Three surfaces and the throttles of eight engines, the maximum of
+/// [`XPlaneConfig::engines`].
 const MOST_WRITES: usize = 11;
 
 type Write = Box<[u8; dref::WRITE_BYTES]>;
 
-/// Made once, so that a tick only changes numbers in them.
+/// The datagrams, built once: a tick only changes the numbers in them.
 #[derive(Clone, Debug)]
 pub(crate) struct Controls {
     overrides: [Write; 2],
-    way: Way,
+    encoding: Encoding,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum Encoding {
     Dref {
-        /// Elevator, aileron, rudder, then the throttles: back to back, so
-        /// that they can be sent at one go.
+        /// Elevator, aileron, rudder, then the throttles: contiguous, so that
+        /// one system call can send them.
         writes: Box<[[u8; dref::WRITE_BYTES]]>,
     },
     Data {
@@ -54,7 +55,7 @@ enum Way {
     },
 }
 
-/// What to write; `None` leaves as it is.
+/// The values to write; `None` leaves a control unchanged.
 #[derive(Clone, Copy)]
 struct Deflections {
     /// Elevator, aileron, rudder.
@@ -72,8 +73,8 @@ impl Deflections {
         throttle: None,
     };
 
-    /// Within their ranges; what is not a number leaves as it is. The loop
-    /// checks its outputs, this is the last wall before the aircraft.
+    /// Limited to their ranges; NaN leaves a control unchanged. The loop has
+    /// already checked its outputs; this is the last check before the aircraft.
     fn of(surfaces: &Surfaces) -> Self {
         Self {
             yoke: yoke_ratios(surfaces),
@@ -99,7 +100,7 @@ pub(crate) fn yoke_ratios(surfaces: &Surfaces) -> [Option<f32>; 3] {
 impl Controls {
     pub(crate) fn new(config: &XPlaneConfig) -> Result<Self, PathError> {
         let engines = usize::from(config.engines);
-        let way = match config.output {
+        let encoding = match config.output {
             Output::Dref => {
                 let yoke = [YOKE_PITCH, YOKE_ROLL, YOKE_HEADING].map(str::to_owned);
                 let throttles = (0..engines).map(|engine| format!("{THROTTLE}[{engine}]"));
@@ -108,16 +109,16 @@ impl Controls {
                     .chain(throttles)
                     .map(|path| write_to(&path).map(|write| *write))
                     .collect::<Result<_, _>>()?;
-                Way::Dref { writes }
+                Encoding::Dref { writes }
             }
-            Output::Data => Way::Data {
+            Output::Data => Encoding::Data {
                 engines,
                 datagram: [0; data::size(2)],
             },
         };
         Ok(Self {
             overrides: [write_to(OVERRIDE_JOYSTICK)?, write_to(OVERRIDE_THROTTLES)?],
-            way,
+            encoding,
         })
     }
 
@@ -129,8 +130,8 @@ impl Controls {
         self.set_overrides(1.0, &mut send)
     }
 
-    /// Writes surfaces and throttles. What is handed to `send` may be several
-    /// datagrams of [`dref::WRITE_BYTES`] back to back.
+    /// Writes surfaces and throttles. A slice given to `send` may hold several
+    /// contiguous datagrams of [`dref::WRITE_BYTES`].
     pub(crate) fn set(
         &mut self,
         surfaces: &Surfaces,
@@ -139,9 +140,9 @@ impl Controls {
         self.deflect(Deflections::of(surfaces), &mut send)
     }
 
-    /// Encodes what [`set`](Self::set) would write into a buffer on the stack.
+    /// Encodes into a buffer on the stack what [`set`](Self::set) would write.
     pub(crate) fn warm_up(&self, surfaces: &Surfaces, mut send: impl FnMut(&[u8])) {
-        let Way::Dref { writes } = &self.way else {
+        let Encoding::Dref { writes } = &self.encoding else {
             return;
         };
         let mut buffer = [[0; dref::WRITE_BYTES]; MOST_WRITES];
@@ -152,17 +153,17 @@ impl Controls {
         }
     }
 
-    /// Centres, then releases the overrides, once.
-    pub(crate) fn let_go(
+    /// Centres the surfaces, then clears the overrides, once.
+    pub(crate) fn release(
         &mut self,
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
         let centred = self.deflect(Deflections::CENTRED, &mut send);
-        // By rows, "leave as it is" in every column also ends what the row
-        // itself may have taken over.
-        let left = match self.way {
-            Way::Dref { .. } => Ok(()),
-            Way::Data { .. } => self.deflect(Deflections::AS_THEY_ARE, &mut send),
+        // With rows, "leave as it is" in every column also ends what the row
+        // itself may have overridden.
+        let left = match self.encoding {
+            Encoding::Dref { .. } => Ok(()),
+            Encoding::Data { .. } => self.deflect(Deflections::AS_THEY_ARE, &mut send),
         };
         let released = self.set_overrides(0.0, &mut send);
         centred.and(left).and(released)
@@ -188,8 +189,8 @@ impl Controls {
         send: &mut impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
         let mut outcome = Ok(());
-        match &mut self.way {
-            Way::Dref { writes } => {
+        match &mut self.encoding {
+            Encoding::Dref { writes } => {
                 if set_values(writes, &to) {
                     return send(writes.as_flattened());
                 }
@@ -199,7 +200,7 @@ impl Controls {
                     }
                 }
             }
-            Way::Data { engines, datagram } => {
+            Encoding::Data { engines, datagram } => {
                 let [elevator, aileron, rudder] = to.yoke;
                 let joystick = [elevator, aileron, rudder, None, None, None, None, None];
                 let throttles =
@@ -215,8 +216,8 @@ impl Controls {
     }
 }
 
-/// Sets the values of elevator, aileron, rudder and throttles; whether there
-/// was one for each.
+/// Sets the values of elevator, aileron, rudder and throttles; returns whether
+/// each had a value.
 fn set_values(writes: &mut [[u8; dref::WRITE_BYTES]], to: &Deflections) -> bool {
     let mut all = true;
     for (write, value) in writes.iter_mut().zip(to.values()) {
@@ -238,7 +239,7 @@ fn write_to(path: &str) -> Result<Write, PathError> {
 mod tests {
     use super::*;
 
-    /// What is sent, as (path, value) of DREF or as raw rows.
+    /// The datagrams that were sent.
     fn sent(act: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), Errno>)) -> Vec<Vec<u8>> {
         let mut datagrams = Vec::new();
         act(&mut |datagram| {
@@ -270,7 +271,7 @@ mod tests {
     };
 
     #[test]
-    fn each_surface_and_engine_is_a_write_of_its_own() {
+    fn each_surface_and_engine_is_written_separately() {
         let config = XPlaneConfig {
             engines: 2,
             ..XPlaneConfig::default()
@@ -288,10 +289,10 @@ mod tests {
     }
 
     #[test]
-    fn letting_go_centres_first_and_releases_last() {
+    fn a_release_centres_first_and_clears_the_overrides_last() {
         let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
         sent(|send| controls.set(&SURFACES, send).unwrap());
-        let writes = named(&sent(|send| controls.let_go(send).unwrap()));
+        let writes = named(&sent(|send| controls.release(send).unwrap()));
         let expected = [
             "sim/joystick/yoke_pitch_ratio",
             "sim/joystick/yoke_roll_ratio",
@@ -327,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_in_range_never_leaves() {
+    fn values_out_of_range_are_limited_or_not_sent() {
         let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
         let surfaces = Surfaces {
             throttle: -3.0,
@@ -345,10 +346,10 @@ mod tests {
     }
 
     #[test]
-    fn one_refused_datagram_does_not_keep_back_the_others() {
+    fn one_refused_datagram_does_not_prevent_the_others() {
         let mut controls = Controls::new(&XPlaneConfig::default()).unwrap();
         let mut tried = 0;
-        let outcome = controls.let_go(|_| {
+        let outcome = controls.release(|_| {
             tried += 1;
             if tried == 1 { Err(11) } else { Ok(()) }
         });

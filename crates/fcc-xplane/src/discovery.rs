@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::port::UdpPort;
 use crate::protocol::beacon;
 
-/// An X-Plane that announced itself.
+/// An X-Plane that sent a beacon.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Found {
     /// Where it listens.
@@ -22,15 +22,15 @@ pub struct Found {
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum DiscoverError {
-    /// Beacons cannot be listened for.
+    /// Beacons cannot be received.
     #[error("cannot listen for X-Plane's beacon on {group}: {source}")]
     Listen {
         /// The multicast group and port.
         group: SocketAddrV4,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
-    /// None came.
+    /// No beacon arrived.
     #[error(
         "no X-Plane announced itself on {group} within {waited:?}: start X-Plane, or give its \
          address (some networks do not carry multicast)"
@@ -38,17 +38,17 @@ pub enum DiscoverError {
     NotFound {
         /// The multicast group and port.
         group: SocketAddrV4,
-        /// How long was waited.
+        /// How long discovery waited.
         waited: Duration,
     },
 }
 
-/// Waits for the beacon of an X-Plane that flies (not Plane Maker, not an
-/// external visual), which sends one about every second. For set-up only: this
-/// blocks. `group` is [`beacon::GROUP`] unless a network is special.
+/// Waits for the beacon of an X-Plane that computes a flight (not Plane Maker,
+/// not an external visual); it sends one about every second. For set-up only:
+/// this blocks. `group` is normally [`beacon::GROUP`].
 ///
 /// # Errors
-/// When listening is refused, or none comes in time.
+/// When listening is refused, or no beacon arrives in time.
 pub fn discover(group: SocketAddrV4, timeout: Duration) -> Result<Found, DiscoverError> {
     let refused = |source| DiscoverError::Listen { group, source };
     let port = UdpPort::listen(group).map_err(refused)?;

@@ -1,17 +1,18 @@
 //! From datagrams to measurements.
 //!
-//! Datagrams of a tick are taken in one after the other, then what they
-//! completed is published. A measurement made of several quantities (pitch and
-//! roll, say) is published when each of them is new since the last time, and
-//! is as old as the oldest of them. X-Plane sends all values of a frame in one
-//! datagram, so they are of one instant; should it spread them over several,
-//! because subscriptions began in different frames, a measurement still comes
-//! together, at most one sending period apart.
+//! The datagrams of a tick are read one after the other, then the measurements
+//! they completed are published. A measurement of several quantities (such as
+//! pitch and roll) is published when all of them are new since it was last
+//! published, and has the age of the oldest. X-Plane sends all values of a
+//! frame in one datagram, so they belong to one instant. If it spreads them
+//! over several datagrams, because subscriptions began in different frames, a
+//! measurement is still completed, from values at most one sending period
+//! apart.
 //!
-//! A datagram that carries an earlier flight time than the last one came late,
-//! was overtaken, and is dropped whole. One without the flight time in it
-//! (RPOS; rows sent one by one) cannot be judged: a late one then shows a
-//! state some milliseconds old for one tick.
+//! A datagram with an earlier flight time than the last one was overtaken and
+//! is dropped as a whole. For one without a flight time (RPOS; rows sent one by
+//! one) this cannot be detected: a late one gives a state some milliseconds old
+//! for one tick.
 
 use fcc_core::flight::{
     Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
@@ -23,11 +24,11 @@ use crate::link::{SharedState, count};
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
-use crate::simulator::{SimulatorClock, SimulatorState, Word};
+use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
 use crate::specific_force::specific_force;
 use crate::values::{Group, Values};
 
-/// Takes datagrams in and gives measurements out.
+/// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Inbox {
     /// The rows to read, if rows are the input.
@@ -35,7 +36,8 @@ pub(crate) struct Inbox {
     clock: SimulatorClock,
     values: Values,
     position: Reading<Position>,
-    /// The last accelerations (east, up, south) and what was made of them.
+    /// The last accelerations (east, up, south) and the specific force computed
+    /// from them.
     accelerations: [f64; 3],
     force: SpecificForce,
 }
@@ -52,27 +54,27 @@ impl Inbox {
         }
     }
 
-    /// A new tick begins.
+    /// Begins a tick.
     pub(crate) fn begin(&mut self) {
         self.clock.begin();
     }
 
-    /// When a value of this quantity last came.
+    /// When a value of this quantity last arrived.
     pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
         self.values.arrived(quantity)
     }
 
-    /// When a position last came.
+    /// When a position last arrived.
     pub(crate) const fn position_arrived(&self) -> Time {
         self.position.taken
     }
 
-    /// When anything last came.
+    /// When anything last arrived.
     pub(crate) const fn last_received(&self) -> Time {
         self.clock.last_received()
     }
 
-    /// Takes in a datagram of the simulator.
+    /// Reads a datagram of the simulator.
     pub(crate) fn accept(
         &mut self,
         datagram: &[u8],
@@ -84,7 +86,7 @@ impl Inbox {
             Some(Kind::Rpos) => self.accept_position(datagram, now),
             Some(Kind::Data) => match self.rows {
                 Some(rows) => self.accept_rows(rows, datagram, now, link),
-                // Data Output that the user has for somebody else.
+                // Data Output that the user sends for another program.
                 None => Ok(()),
             },
             Some(Kind::Beacon) | None => {
@@ -103,7 +105,7 @@ impl Inbox {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
             let quantity = Quantity::from_index(index)?;
-            // Left over from a run by RREF: rows are what counts now.
+            // Left over from a run with RREF input: now only rows are read.
             let elsewhere = with_rows && quantity.comes_in_rows();
             (!elsewhere).then_some((quantity, f64::from(value)))
         });
@@ -114,14 +116,14 @@ impl Inbox {
         if self.is_late(now, time_s, link) {
             return Ok(());
         }
-        let mut word = Word {
+        let mut report = SimulatorReport {
             time_s,
-            ..Word::default()
+            ..SimulatorReport::default()
         };
         for (quantity, raw) in pairs {
-            self.take(quantity, raw, now, &mut word, link);
+            self.take(quantity, raw, now, &mut report, link);
         }
-        self.clock.receive(now, word);
+        self.clock.receive(now, report);
         Ok(())
     }
 
@@ -137,19 +139,19 @@ impl Inbox {
         if self.is_late(now, time_s, link) {
             return Ok(());
         }
-        let mut word = Word {
+        let mut report = SimulatorReport {
             time_s,
-            ..Word::default()
+            ..SimulatorReport::default()
         };
         for row in rows {
             rows::quantities(layout, &row, |quantity, raw| {
-                self.take(quantity, raw, now, &mut word, link);
+                self.take(quantity, raw, now, &mut report, link);
             });
             if let Some(position) = rows::position(&row) {
                 self.position = Reading::new(position, now);
             }
         }
-        self.clock.receive(now, word);
+        self.clock.receive(now, report);
         Ok(())
     }
 
@@ -163,7 +165,7 @@ impl Inbox {
             };
             self.position = Reading::new(position, now);
         }
-        self.clock.receive(now, Word::default());
+        self.clock.receive(now, SimulatorReport::default());
         Ok(())
     }
 
@@ -180,7 +182,7 @@ impl Inbox {
         quantity: Quantity,
         raw: f64,
         now: Time,
-        word: &mut Word,
+        report: &mut SimulatorReport,
         link: &SharedState,
     ) {
         let Some(value) = quantity.validate(raw) else {
@@ -190,16 +192,16 @@ impl Inbox {
         self.values.set(quantity, value, now);
         link.show(quantity, value, now);
         match quantity {
-            Quantity::Paused => word.paused = Some(value >= 0.5),
-            Quantity::FramePeriod => word.frame_period_s = Some(value),
+            Quantity::Paused => report.paused = Some(value >= 0.5),
+            Quantity::FramePeriod => report.frame_period_s = Some(value),
             Quantity::OnGround => link.set_on_ground(value >= 0.5),
             Quantity::Version => link.set_version(value as u32),
             _ => {}
         }
     }
 
-    /// Writes what came together since the last time, and returns what the
-    /// simulator is doing.
+    /// Publishes the measurements completed since the last call, and returns
+    /// the simulator's state.
     pub(crate) fn publish(
         &mut self,
         now: Time,
@@ -289,9 +291,10 @@ impl Inbox {
                 Quantity::Roll,
             ],
         ) {
-            // Accelerations that come again to the last bit are of the instant
-            // they first came in: with the attitude of now they would make a
-            // force of no instant, and one that hangs would seem to move.
+            // Accelerations that are repeated bit for bit belong to the instant
+            // at which they first arrived. Combined with the present attitude
+            // they would give a force that belongs to no instant, and a frozen
+            // one would seem to change.
             let accelerations = [east, up, south];
             if accelerations != self.accelerations {
                 self.accelerations = accelerations;
@@ -334,8 +337,8 @@ impl Inbox {
         }
     }
 
-    /// The simulator's clock and condition: written in every tick in which it
-    /// spoke, once its clock is known.
+    /// The simulator's clock and state: written in every tick in which it sent
+    /// something, once its clock is known.
     fn publish_plant(
         &mut self,
         now: Time,
@@ -355,10 +358,10 @@ impl Inbox {
     }
 }
 
-/// An angle brought into 0..2π.
+/// Wraps an angle into 0..2π.
 fn round(angle_rad: f64) -> f64 {
     let angle = angle_rad.rem_euclid(core::f64::consts::TAU);
-    // Rounding takes a tiny negative angle to 2π itself.
+    // Rounding maps a tiny negative angle to 2π itself.
     if angle < core::f64::consts::TAU {
         angle
     } else {

@@ -1,18 +1,17 @@
 //! X-Plane, over its own UDP protocol, as a sensor and an actuator.
 //!
-//! [`XPlane::open`] gives an [`XPlaneSensor`] and an [`XPlaneActuator`] that a
-//! loop holds like any others. Nothing needs to be set up in X-Plane's menus
-//! to read from it: values are subscribed (RREF, RPOS) and come back to the
-//! port that asked. To write, X-Plane 12 must accept incoming connections;
-//! whether it does is found out by reading back what was written, and
-//! [`XPlaneStatus::trouble`] says in words what to do.
+//! [`XPlane::open`] gives an [`XPlaneSensor`] and an [`XPlaneActuator`] for a
+//! loop. Reading needs no set-up in X-Plane's menus: values are subscribed
+//! (RREF, RPOS) and sent to the port that requested them. For writing, X-Plane
+//! 12 must accept incoming connections; this is checked by reading back what
+//! was written, and [`XPlaneStatus::trouble`] says what to do.
 //!
 //! ```no_run
 //! use fcc_xplane::{XPlane, XPlaneConfig};
 //!
 //! let (sensor, actuator) = XPlane::open(&XPlaneConfig::default())?;
 //! let status = sensor.status();
-//! // The loop takes `sensor` and `actuator`; `status` stays here.
+//! // The loop owns `sensor` and `actuator`; `status` is used from outside.
 //! if let Some(trouble) = status.trouble() {
 //!     eprintln!("{trouble}");
 //! }
@@ -20,27 +19,27 @@
 //! # Ok::<(), fcc_xplane::OpenError>(())
 //! ```
 //!
-//! # How it fits together
+//! # Structure
 //!
-//! | module | what it knows |
+//! | module | contents |
 //! |---|---|
 //! | [`protocol`] | messages as bytes; no I/O |
 //! | `quantity`, `rows`, `units`, `specific_force` | which dataref or column is what, and in which unit |
-//! | `simulator` | the simulator's clock against ours: [`SimulatorState`] |
+//! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
-//! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
-//! | `controls`, `confirmation`, `release_monitor`, `release` | writing, whether it takes effect, giving back |
-//! | `authority`, `status` | who has control, and how the connection is, seen from outside the loop |
+//! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
+//! | `controls`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
+//! | `authority`, `status` | who has control, and the state of the connection, seen from outside the loop |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
-//! # What may go wrong out there
+//! # Faults that are handled
 //!
-//! Datagrams are lost, doubled, reordered, cut and forged, and X-Plane is
-//! paused, slowed, restarted and killed. Cut and garbled ones are left out and
-//! counted; doubled ones change nothing; overtaken ones are dropped by the
-//! flight time in them; those from another IP address are dropped; and at most
-//! a configured number is read in a tick. The flight time is an f32: after 36
-//! hours of one flight it counts in steps of 16 ms.
+//! Datagrams may be lost, duplicated, reordered, truncated or forged, and
+//! X-Plane may be paused, slowed, restarted or killed. Truncated and corrupted
+//! datagrams are left out and counted; duplicates change nothing; overtaken
+//! ones are dropped by the flight time in them; those from another IP address
+//! are dropped; and at most a configured number is read in a tick. The flight
+//! time is an f32: after 36 hours of one flight it counts in steps of 16 ms.
 //!
 //! In a tick nothing allocates, locks, logs or panics, and the only system
 //! calls are to receive and to send, which do not wait.

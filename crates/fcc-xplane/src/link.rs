@@ -1,8 +1,9 @@
-//! What the sensor, the actuator and who watches share: atomics, no lock.
+//! The state shared by the sensor, the actuator and status readers: atomics, no
+//! lock.
 //!
-//! Sensor and actuator usually live in one thread and never race; the atomics
-//! are for watchers in other threads, and so that nothing breaks if the two
-//! are ever split.
+//! Sensor and actuator usually run in one thread and never race. The atomics
+//! are for readers in other threads, and allow the two to run in separate
+//! threads.
 
 use core::sync::atomic::{AtomicBool, AtomicI64, AtomicU8, AtomicU32, AtomicU64, Ordering};
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
@@ -13,7 +14,7 @@ use crate::missing::ValueSet;
 use crate::quantity::Quantity;
 use crate::simulator::SimulatorState;
 
-/// Who has the controls, as far as this side knows.
+/// Who has the controls, as far as this program knows.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
 pub enum Control {
@@ -21,11 +22,12 @@ pub enum Control {
     Free = 0,
     /// The actuator: overrides are set.
     Held = 1,
-    /// Given back, but X-Plane has not yet shown the overrides as released.
+    /// Released, but X-Plane has not yet confirmed that the overrides are
+    /// cleared.
     ReleaseMonitor = 2,
 }
 
-/// A value seen in the simulator and when.
+/// A value reported by the simulator and its time.
 #[derive(Debug)]
 struct Readback {
     bits: AtomicU32,
@@ -41,7 +43,7 @@ impl Readback {
     }
 }
 
-/// What is written to X-Plane and read back.
+/// The quantities that are written to X-Plane and read back.
 pub(crate) const READ_BACK: [Quantity; 5] = [
     Quantity::OverrideJoystick,
     Quantity::OverrideThrottles,
@@ -50,7 +52,7 @@ pub(crate) const READ_BACK: [Quantity; 5] = [
     Quantity::YokeHeading,
 ];
 
-/// Everything counted, since opening.
+/// All counters since opening.
 #[derive(Debug, Default)]
 pub(crate) struct Counters {
     pub(crate) received: AtomicU64,
@@ -70,21 +72,22 @@ pub(crate) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }
 
-/// No address has so many bits.
+/// Marks any address as allowed: no packed address has so many bits.
 const ANYWHERE: u64 = u64::MAX;
-/// Nor these: the address that was configured.
+/// Stands for the configured address: no packed address has these bits.
 const CONFIGURED: u64 = u64::MAX - 1;
-/// No address is nought.
+/// No address is allowed: no packed address is 0.
 const NOWHERE: u64 = 0;
 
 #[derive(Debug)]
 pub(crate) struct SharedState {
-    /// Where the simulator is, if that is known from the start.
+    /// The simulator's configured address, if there is one.
     configured: Option<SocketAddr>,
-    /// [`CONFIGURED`], or IPv4 address and port in the low 48 bits, as a beacon
-    /// told; 0 while unknown.
+    /// [`CONFIGURED`], or the IPv4 address and port from a beacon in the low 48
+    /// bits; 0 while unknown.
     simulator: AtomicU64,
-    /// The same of where control may be taken, or [`ANYWHERE`].
+    /// The address at which control may be taken, packed likewise, or
+    /// [`ANYWHERE`].
     allowed: AtomicU64,
     state: AtomicU8,
     control: AtomicU8,
@@ -127,8 +130,8 @@ impl SharedState {
         self.simulator.store(self.pack(address), Ordering::Relaxed);
     }
 
-    /// An address as a number. Only a beacon tells of another one than the
-    /// configured, and beacons are of IPv4.
+    /// An address as a number. Any address other than the configured one comes
+    /// from a beacon, and beacons are sent over IPv4.
     fn pack(&self, address: SocketAddr) -> u64 {
         match address {
             configured if Some(configured) == self.configured => CONFIGURED,
@@ -170,7 +173,7 @@ impl SharedState {
 
     /// `ReleaseMonitor` becomes `Free`, unless control was taken again meanwhile.
     pub(crate) fn set_free_if_releasing(&self) {
-        // Losing the exchange means there is nothing to do.
+        // If the exchange fails, there is nothing to do.
         let _ = self.control.compare_exchange(
             Control::ReleaseMonitor as u8,
             Control::Free as u8,
@@ -218,24 +221,24 @@ impl SharedState {
             .store(1 + u8::from(on_ground), Ordering::Relaxed);
     }
 
-    fn seen(&self, quantity: Quantity) -> Option<&Readback> {
-        let place = READ_BACK.iter().position(|of| *of == quantity)?;
-        self.read_back.get(place)
+    fn slot(&self, quantity: Quantity) -> Option<&Readback> {
+        let index = READ_BACK.iter().position(|of| *of == quantity)?;
+        self.read_back.get(index)
     }
 
-    /// Stores what the simulator shows; quantities not read back are ignored.
+    /// Stores a readback; quantities that are not read back are ignored.
     pub(crate) fn show(&self, quantity: Quantity, value: f64, at: Time) {
-        if let Some(seen) = self.seen(quantity) {
-            seen.bits.store((value as f32).to_bits(), Ordering::Relaxed);
-            seen.at.store(at.as_nanos(), Ordering::Release);
+        if let Some(slot) = self.slot(quantity) {
+            slot.bits.store((value as f32).to_bits(), Ordering::Relaxed);
+            slot.at.store(at.as_nanos(), Ordering::Release);
         }
     }
 
-    /// What the simulator showed last, and when.
+    /// The simulator's last readback, and its time.
     pub(crate) fn shown(&self, quantity: Quantity) -> Option<(f32, Time)> {
-        let seen = self.seen(quantity)?;
-        let at = Time::from_nanos(seen.at.load(Ordering::Acquire));
-        let value = f32::from_bits(seen.bits.load(Ordering::Relaxed));
+        let slot = self.slot(quantity)?;
+        let at = Time::from_nanos(slot.at.load(Ordering::Acquire));
+        let value = f32::from_bits(slot.bits.load(Ordering::Relaxed));
         (!at.is_never()).then_some((value, at))
     }
 }
@@ -251,27 +254,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_comes_back_as_it_was() {
-        let [told, v4, v6] = ["192.168.250.7:49000", "10.0.0.1:49000", "[fe80::1%2]:49000"]
+    fn an_address_is_restored_unchanged() {
+        let [announced, v4, v6] = ["192.168.250.7:49000", "10.0.0.1:49000", "[fe80::1%2]:49000"]
             .map(|text| text.parse::<SocketAddr>().unwrap());
         for configured in [v4, v6] {
             let state = SharedState::new(Some(configured));
             assert_eq!(state.simulator(), Some(configured));
             state.allow(None);
-            assert!(!state.is_allowed(configured) && !state.is_allowed(told));
+            assert!(!state.is_allowed(configured) && !state.is_allowed(announced));
             state.allow(Some(configured));
-            assert!(state.is_allowed(configured) && !state.is_allowed(told));
+            assert!(state.is_allowed(configured) && !state.is_allowed(announced));
         }
         let state = SharedState::new(None);
         assert_eq!(state.simulator(), None);
-        state.set_simulator(told);
-        assert_eq!(state.simulator(), Some(told));
-        state.allow(Some(told));
-        assert!(state.is_allowed(told) && !state.is_allowed(v4) && !state.is_allowed(v6));
+        state.set_simulator(announced);
+        assert_eq!(state.simulator(), Some(announced));
+        state.allow(Some(announced));
+        assert!(state.is_allowed(announced) && !state.is_allowed(v4) && !state.is_allowed(v6));
     }
 
     #[test]
-    fn what_is_shown_is_kept_with_its_time() {
+    fn a_readback_is_kept_with_its_time() {
         let link = SharedState::new(None);
         assert_eq!(link.shown(Quantity::YokeRoll), None);
         link.show(Quantity::YokeRoll, -0.25, Time::from_nanos(7));

@@ -1,10 +1,10 @@
-//! What was asked for and does not arrive while other values do.
+//! Values that were requested and do not arrive while other values do.
 //!
 //! X-Plane does not answer a request for a dataref that it does not have, nor
-//! does it say that a row of Data Output is switched off: a mistyped path, a
-//! plugin that is not loaded and an old version all look like nothing at all.
-//! (A version that answers such a request with 0 cannot be told from a switch
-//! that is off; for that the switch's path is reported at the first contact.)
+//! does it report that a row of Data Output is switched off: a mistyped path, a
+//! plugin that is not loaded and an old version all result in silence. (A
+//! version that answers such a request with 0 cannot be distinguished from a
+//! switch that is off, so the switch's path is logged at the first contact.)
 
 use core::fmt;
 use core::time::Duration;
@@ -15,17 +15,17 @@ use crate::config::DataRows;
 use crate::quantity::Quantity;
 use crate::rows::row_of;
 
-/// A value that has not come for so long, while others did, is missing: its
-/// request was repeated each second until then.
+/// A value that has not arrived for this long, while others have, is missing:
+/// until then its request was repeated each second.
 const IN_VAIN: Duration = Duration::from_secs(4);
-/// How often it is looked.
+/// The interval between two checks.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
 /// A set of values that are read from X-Plane.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(crate) struct ValueSet(u64);
 
-/// The position, which is no [`Quantity`].
+/// The bit of the position, which is not a [`Quantity`].
 const POSITION: u64 = 1 << Quantity::COUNT;
 const _: () = assert!(Quantity::COUNT < 64);
 
@@ -43,7 +43,7 @@ impl ValueSet {
     }
 }
 
-/// One value that ought to arrive.
+/// A value that is expected to arrive.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Expected {
     Value(Quantity),
@@ -61,16 +61,16 @@ impl Expected {
 
 /// Finds out which values are missing.
 #[derive(Debug)]
-pub(crate) struct Absences {
+pub(crate) struct MissingValues {
     expected: Vec<Expected>,
     resubscribe: Duration,
-    /// Since when the simulator has been sending without a pause; never while
-    /// it is silent.
+    /// Since when the simulator has been sending without interruption; never
+    /// while it is silent.
     sending_since: Time,
     looked: Time,
 }
 
-impl Absences {
+impl MissingValues {
     pub(crate) const fn new(expected: Vec<Expected>, resubscribe: Duration) -> Self {
         Self {
             expected,
@@ -80,20 +80,21 @@ impl Absences {
         }
     }
 
-    /// What is missing now, once a second; `None` in between. `heard` is when
-    /// anything last came, `arrived` when one value last did.
-    pub(crate) fn look(
+    /// The missing values, once a second; `None` in between. `last_received` is
+    /// when anything last arrived, `arrived` when a given value last did.
+    pub(crate) fn check(
         &mut self,
         now: Time,
-        heard: Time,
+        last_received: Time,
         arrived: impl Fn(Expected) -> Time,
     ) -> Option<ValueSet> {
         if now.since(self.looked) < LOOK_EVERY {
             return None;
         }
         self.looked = now;
-        if now.since(heard) >= LOOK_EVERY {
-            // What a silent simulator lacked, it lacks until it shows otherwise.
+        if now.since(last_received) >= LOOK_EVERY {
+            // What was missing before the silence stays missing until it
+            // arrives.
             self.sending_since = Time::NEVER;
             return None;
         }
@@ -105,7 +106,8 @@ impl Absences {
             let patience = if arrived.is_never() {
                 IN_VAIN
             } else {
-                // It came once: this long nobody has asked for it again.
+                // It has arrived before, so it was not requested again during
+                // this time.
                 self.resubscribe + IN_VAIN
             };
             now.since(arrived.max(self.sending_since)) >= patience
@@ -114,7 +116,7 @@ impl Absences {
     }
 }
 
-/// A value that was asked for and does not arrive, though others do. Its text
+/// A value that was requested and does not arrive although others do. Its text
 /// says what to do.
 #[derive(Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
@@ -130,7 +132,7 @@ pub enum Missing {
 }
 
 impl Missing {
-    /// What a set of values is called: each row once.
+    /// The values of a set, with each row once.
     pub(crate) fn of(set: ValueSet, engage_switch: &str, rows: Option<DataRows>) -> Vec<Self> {
         let mut missing = Vec::new();
         for quantity in Quantity::all() {
@@ -153,7 +155,7 @@ impl Missing {
         missing
     }
 
-    /// What it is, in a few words.
+    /// A short name of the value.
     pub fn what(&self) -> String {
         match self {
             Self::EngageSwitch(path) => format!("x-plane.engage_switch \"{path}\""),
@@ -169,16 +171,16 @@ impl fmt::Display for Missing {
         write!(f, "X-Plane does not send {}", self.what())?;
         f.write_str(match self {
             Self::EngageSwitch(_) => {
-                ", so nobody can engage by it. Check its spelling (X-Plane's own datarefs are \
+                ", so it cannot be used to engage. Check its spelling (X-Plane's own datarefs are \
                  listed in its Resources/plugins/DataRefs.txt), and that the plugin or aircraft \
                  that provides it is loaded."
             }
-            Self::Dataref(_) => ", though it sends others: this version may not have it.",
+            Self::Dataref(_) => ", although it sends others: this version may not have it.",
             Self::Row(_) => {
-                ", though it sends others: switch the row on in Settings > Data Output, for the \
+                ", although it sends others: switch the row on in Settings > Data Output, for the \
                  network, and check that x-plane.data_version is its version."
             }
-            Self::Position => ", though it sends datarefs: this version may not have it.",
+            Self::Position => ", although it sends datarefs: this version may not have it.",
         })
     }
 }
@@ -192,22 +194,22 @@ mod tests {
         Time::from_nanos(1_000_000_000_000 + s * 1_000_000_000)
     }
 
-    fn absences() -> Absences {
+    fn missing_values() -> MissingValues {
         let expected = vec![
             Expected::Value(Quantity::EngageSwitch),
             Expected::Value(Quantity::Altitude),
         ];
-        Absences::new(expected, Duration::from_secs(5))
+        MissingValues::new(expected, Duration::from_secs(5))
     }
 
-    /// What is missing, as the last look said.
-    fn after(looks: i64, arrived: impl Fn(i64, Expected) -> Time) -> ValueSet {
-        let mut absences = absences();
+    /// The missing values after the last check.
+    fn after(checks: i64, arrived: impl Fn(i64, Expected) -> Time) -> ValueSet {
+        let mut missing_values = missing_values();
         let mut set = ValueSet::default();
-        for second in 0..=looks {
+        for second in 0..=checks {
             let now = seconds(second);
-            set = absences
-                .look(now, now, |of| arrived(second, of))
+            set = missing_values
+                .check(now, now, |of| arrived(second, of))
                 .unwrap_or(set);
         }
         set
@@ -216,7 +218,7 @@ mod tests {
     const SWITCH: Expected = Expected::Value(Quantity::EngageSwitch);
 
     #[test]
-    fn what_never_comes_is_missing_after_four_seconds() {
+    fn a_value_that_never_arrives_is_missing_after_four_seconds() {
         let never = |second, of| {
             if of == SWITCH {
                 Time::NEVER
@@ -229,22 +231,25 @@ mod tests {
     }
 
     #[test]
-    fn what_came_once_is_asked_for_again_first() {
+    fn a_value_that_arrived_before_is_requested_again_first() {
         let once = |second, of| seconds(if of == SWITCH { 0 } else { second });
         assert_eq!(after(8, once), ValueSet::default());
         assert_eq!(after(9, once).bits(), SWITCH.bit());
     }
 
     #[test]
-    fn a_silent_simulator_lacks_nothing_and_begins_anew() {
-        let mut absences = absences();
+    fn nothing_is_missing_while_the_simulator_is_silent() {
+        let mut missing_values = missing_values();
         for second in 0..100 {
-            let heard = Time::NEVER;
-            assert_eq!(absences.look(seconds(second), heard, |_| Time::NEVER), None);
+            let last_received = Time::NEVER;
+            assert_eq!(
+                missing_values.check(seconds(second), last_received, |_| Time::NEVER),
+                None
+            );
         }
         for second in 100..104 {
             let now = seconds(second);
-            let set = absences.look(now, now, |_| Time::NEVER);
+            let set = missing_values.check(now, now, |_| Time::NEVER);
             assert_eq!(set, Some(ValueSet::default()), "{second}");
         }
     }

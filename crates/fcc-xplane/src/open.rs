@@ -26,7 +26,7 @@ pub enum OpenError {
     /// A dataref's path cannot be sent.
     #[error(transparent)]
     Path(#[from] PathError),
-    /// The local port cannot be had.
+    /// The local port cannot be bound.
     #[error(
         "cannot receive on UDP port {port}: {source}; choose another local_port, 0 for any that \
          is free (a second program for X-Plane on this machine may have taken it)"
@@ -34,7 +34,7 @@ pub enum OpenError {
     Bind {
         /// The port asked for.
         port: u16,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
     /// The simulator's host name has no address.
@@ -45,33 +45,33 @@ pub enum OpenError {
     NoSuchHost {
         /// The name.
         host: HostName,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
-    /// Beacons cannot be listened for.
+    /// Beacons cannot be received.
     #[error(
         "cannot listen for X-Plane's beacon on {group}: {source}; give X-Plane's address instead"
     )]
     Beacon {
         /// The multicast group and port.
         group: SocketAddrV4,
-        /// What the operating system said.
+        /// The operating system's error.
         source: io::Error,
     },
 }
 
 impl XPlane {
-    /// Opens the sockets, and looks up the simulator's host name, which may wait
-    /// for the network. Nothing is sent before the first tick, and X-Plane need
-    /// not run yet.
+    /// Opens the sockets, and looks up the simulator's host name, which may
+    /// wait for the network. Nothing is sent before the first tick, and X-Plane
+    /// need not be running yet.
     ///
     /// # Errors
     /// When the configuration is refused, the name has no address, or a port
-    /// cannot be had.
+    /// cannot be bound.
     pub fn open(config: &XPlaneConfig) -> Result<(XPlaneSensor, XPlaneActuator), OpenError> {
         config.validate()?;
         let simulator = config.simulator.locate()?;
-        // Beacons are of IPv4, and so is whom they tell of.
+        // Beacons are sent over IPv4, so the simulator has an IPv4 address.
         let peer = simulator.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |at| at.ip());
         let port = bind(config.local_port, peer)?;
         let beacons = match config.simulator {
@@ -85,8 +85,8 @@ impl XPlane {
         Self::join(config, simulator, port, beacons)
     }
 
-    /// The same over a port of the caller's own: for tests, and for networks
-    /// that are not UDP sockets.
+    /// The same over the caller's own [`Port`]: for tests, and for networks
+    /// other than UDP sockets.
     ///
     /// # Errors
     /// When the configuration is refused, or the name has no address.

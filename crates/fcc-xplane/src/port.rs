@@ -1,4 +1,4 @@
-//! Where datagrams come from and go to.
+//! Sending and receiving datagrams.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use std::io;
@@ -13,24 +13,24 @@ use crate::scratch_port::{PEEK_BYTES, ScratchPort};
 /// An operating system's error number, 0 if it gave none.
 pub type Errno = i32;
 
-/// Sends and receives datagrams without ever waiting. [`UdpPort`] is the real
-/// one; tests and fuzzing bring their own.
+/// Sends and receives datagrams without ever waiting. [`UdpPort`] is the
+/// implementation for UDP; tests and fuzzing have others.
 pub trait Port: Send + Sync {
-    /// Takes the next datagram, its length and sender; `None` if there is none
-    /// now. What does not fit the buffer is cut off.
+    /// Receives the next datagram: its length and sender; `None` if there is
+    /// none now. Bytes that do not fit the buffer are cut off.
     ///
     /// # Errors
     /// The operating system's error number.
     fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno>;
 
-    /// Sends a datagram off, or fails at once.
+    /// Sends a datagram, or fails at once.
     ///
     /// # Errors
     /// The operating system's error number.
     fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno>;
 
-    /// Sends datagrams of `size` bytes that lie back to back; every one, even
-    /// if another fails.
+    /// Sends contiguous datagrams of `size` bytes, every one even if another
+    /// fails.
     ///
     /// # Errors
     /// The first failure's error number.
@@ -38,12 +38,12 @@ pub trait Port: Send + Sync {
         send_one_by_one(self, datagrams, size, to)
     }
 
-    /// Loads the code and data of [`receive`](Self::receive) into the caches:
-    /// takes no datagram. Does nothing by default.
+    /// Loads the code and data of [`receive`](Self::receive) into the caches.
+    /// Takes no datagram. Does nothing by default.
     fn warm_up_receive(&self) {}
 
     /// Loads the code and data of [`send_each`](Self::send_each) into the
-    /// caches: nothing of it leaves this port. Does nothing by default.
+    /// caches. Sends nothing. Does nothing by default.
     fn warm_up_send(&self, _datagrams: &[u8], _size: usize) {}
 }
 
@@ -60,21 +60,21 @@ fn send_one_by_one<P: Port + ?Sized>(
     outcome
 }
 
-/// The writes of a tick are cut into datagrams of this size by the kernel.
-/// Nothing else that is sent here is longer.
+/// The size of the datagrams into which the kernel segments the writes of a
+/// tick. Nothing longer is sent here.
 const SEGMENT_BYTES: usize = dref::WRITE_BYTES;
 
 /// A non-blocking UDP socket, of IPv4 or of IPv6.
 ///
-/// Datagrams of one size go through the kernel's stack at one go where it can
-/// cut them apart itself (`UDP_SEGMENT`, Linux 4.18); on the wire they are what
-/// they would have been one by one.
+/// Datagrams of one size pass through the kernel's network stack together where
+/// it can segment them itself (`UDP_SEGMENT`, Linux 4.18); on the wire they are
+/// the same as if sent one by one.
 #[derive(Debug)]
 pub struct UdpPort {
     socket: UdpSocket,
-    /// Whether the kernel cuts, as far as is known.
-    cuts: AtomicBool,
-    /// For the warm-up; `None` if the system has no other socket to give.
+    /// Whether the kernel segments, as far as is known.
+    segments: AtomicBool,
+    /// For the warm-up; `None` if no further socket could be opened.
     scratch: Option<Box<ScratchPort>>,
 }
 
@@ -83,7 +83,8 @@ impl UdpPort {
     /// from addresses of the same kind as `peer`.
     ///
     /// # Errors
-    /// When the operating system refuses, for one because the port is taken.
+    /// When the operating system refuses, for example because the port is
+    /// taken.
     pub fn bind(port: u16, peer: IpAddr) -> io::Result<Self> {
         let mut bound = Self::bind_to((any_address(peer), port).into())?;
         bound.scratch = ScratchPort::open(peer).ok().map(Box::new);
@@ -93,15 +94,15 @@ impl UdpPort {
     pub(crate) fn bind_to(address: SocketAddr) -> io::Result<Self> {
         let socket = socket(Domain::for_address(address))?;
         if address.is_ipv6() {
-            // IPv4 is another socket's, wherever the system's default is.
+            // Not for IPv4, whatever the system's default is.
             socket.set_only_v6(true)?;
         }
         socket.bind(&address.into())?;
         socket.set_nonblocking(true)?;
-        let cuts = setsockopt(&socket, UdpGsoSegment, &(SEGMENT_BYTES as i32)).is_ok();
+        let segments = setsockopt(&socket, UdpGsoSegment, &(SEGMENT_BYTES as i32)).is_ok();
         Ok(Self {
             socket: socket.into(),
-            cuts: AtomicBool::new(cuts),
+            segments: AtomicBool::new(segments),
             scratch: None,
         })
     }
@@ -117,19 +118,20 @@ impl UdpPort {
         socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, group.port()).into())?;
         if group.ip().is_multicast() {
             let outside = socket.join_multicast_v4(group.ip(), &Ipv4Addr::UNSPECIFIED);
-            // A machine without a network has its own loopback to listen on.
+            // A machine without a network can still receive on its loopback
+            // interface.
             let inside = socket.join_multicast_v4(group.ip(), &Ipv4Addr::LOCALHOST);
             outside.or(inside)?;
         }
         socket.set_nonblocking(true)?;
         Ok(Self {
             socket: socket.into(),
-            cuts: AtomicBool::new(false),
+            segments: AtomicBool::new(false),
             scratch: None,
         })
     }
 
-    /// The port it is bound to.
+    /// The local port.
     ///
     /// # Errors
     /// When the operating system refuses.
@@ -137,7 +139,7 @@ impl UdpPort {
         self.socket.local_addr().map(|address| address.port())
     }
 
-    /// The socket itself, for set-up that may wait.
+    /// The socket, for set-up that may wait.
     pub(crate) const fn socket(&self) -> &UdpSocket {
         &self.socket
     }
@@ -147,7 +149,7 @@ fn socket(domain: Domain) -> io::Result<Socket> {
     Socket::new(domain, Type::DGRAM, Some(Protocol::UDP))
 }
 
-/// To bind to, for who sends to `peer`.
+/// The unspecified address of the same kind as `peer`, to bind to.
 pub(crate) const fn any_address(peer: IpAddr) -> IpAddr {
     match peer {
         IpAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
@@ -164,7 +166,7 @@ impl Port for UdpPort {
         match self.socket.recv_from(into) {
             Ok(received) => Ok(Some(received)),
             Err(error) => match error.kind() {
-                // Interrupted: the next tick takes it.
+                // Interrupted: the next tick receives it.
                 io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted => Ok(None),
                 _ => Err(errno(&error)),
             },
@@ -175,10 +177,12 @@ impl Port for UdpPort {
         match self.socket.send_to(datagram, to) {
             Ok(_) => Ok(()),
             // Where the network device leaves checksums to the kernel, Linux
-            // before 6.11 refuses all that a socket that cuts sends, even what
-            // is too short to be cut.
-            Err(error) if self.cuts.load(Ordering::Relaxed) && is_about_cutting(&error) => {
-                self.stop_cutting();
+            // before 6.11 refuses everything that a segmenting socket sends,
+            // even datagrams too short to be segmented.
+            Err(error)
+                if self.segments.load(Ordering::Relaxed) && is_about_segmentation(&error) =>
+            {
+                self.stop_segmenting();
                 let sent = self.socket.send_to(datagram, to);
                 sent.map(drop).map_err(|error| errno(&error))
             }
@@ -187,11 +191,12 @@ impl Port for UdpPort {
     }
 
     fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddr) -> Result<(), Errno> {
-        if size == SEGMENT_BYTES && self.cuts.load(Ordering::Relaxed) {
+        if size == SEGMENT_BYTES && self.segments.load(Ordering::Relaxed) {
             match self.socket.send_to(datagrams, to) {
                 Ok(_) => return Ok(()),
-                // A network device or a tunnel that cannot have it cut.
-                Err(error) if is_about_cutting(&error) => self.stop_cutting(),
+                // A network device or tunnel that does not support
+                // segmentation.
+                Err(error) if is_about_segmentation(&error) => self.stop_segmenting(),
                 Err(error) => return Err(errno(&error)),
             }
         }
@@ -199,7 +204,8 @@ impl Port for UdpPort {
     }
 
     fn warm_up_receive(&self) {
-        // Looks at the next datagram and leaves it in the queue (`MSG_PEEK`).
+        // Reads the next datagram without removing it from the queue
+        // (`MSG_PEEK`).
         let _ = self.socket.peek_from(&mut [0; PEEK_BYTES]);
     }
 
@@ -212,14 +218,14 @@ impl Port for UdpPort {
 
 impl UdpPort {
     /// From now on datagrams are sent one by one.
-    fn stop_cutting(&self) {
-        self.cuts.store(false, Ordering::Relaxed);
-        // Without effect on what is shorter than a segment, should it fail.
+    fn stop_segmenting(&self) {
+        self.segments.store(false, Ordering::Relaxed);
+        // If this fails, datagrams shorter than a segment are not affected.
         let _ = setsockopt(&self.socket, UdpGsoSegment, &0);
     }
 }
 
-fn is_about_cutting(error: &io::Error) -> bool {
+fn is_about_segmentation(error: &io::Error) -> bool {
     let about = [
         nix::errno::Errno::EIO,
         nix::errno::Errno::EINVAL,
@@ -240,7 +246,7 @@ mod tests {
         IpAddr::V6(Ipv6Addr::LOCALHOST),
     ];
 
-    /// Four datagrams, each full of its own number, as another socket gets
+    /// Four datagrams, each filled with its number, as another socket receives
     /// them.
     fn received_of_four(here: IpAddr, prepare: impl FnOnce(&UdpPort)) -> Vec<Vec<u8>> {
         let other = UdpSocket::bind((here, 0)).unwrap();
@@ -264,22 +270,23 @@ mod tests {
     }
 
     #[test]
-    fn datagrams_sent_at_one_go_arrive_one_by_one() {
+    fn datagrams_sent_together_arrive_one_by_one() {
         let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
         for here in HERE {
             assert_eq!(received_of_four(here, |_| {}), four);
-            assert_eq!(received_of_four(here, UdpPort::stop_cutting), four);
+            assert_eq!(received_of_four(here, UdpPort::stop_segmenting), four);
         }
     }
 
-    /// Too long for UDP, refused with the same number as what cannot be cut.
+    /// Too long for UDP, refused with the same error number as when
+    /// segmentation is not possible.
     #[test]
-    fn what_is_refused_is_tried_again_without_cutting() {
+    fn a_refused_send_is_repeated_without_segmentation() {
         let refused = |port: &UdpPort| {
-            let nobody = (Ipv4Addr::LOCALHOST, 9).into();
-            let sent = port.send(&vec![0; 70_000], nobody);
+            let unused = (Ipv4Addr::LOCALHOST, 9).into();
+            let sent = port.send(&vec![0; 70_000], unused);
             assert_eq!(sent, Err(nix::errno::Errno::EMSGSIZE as i32));
-            assert!(!port.cuts.load(Ordering::Relaxed));
+            assert!(!port.segments.load(Ordering::Relaxed));
         };
         let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
         assert_eq!(received_of_four(HERE[0], refused), four);

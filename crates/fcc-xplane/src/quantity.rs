@@ -1,7 +1,7 @@
-//! What is read from X-Plane: each quantity, its dataref, its unit there, and
-//! the range in which it is believed.
+//! The quantities read from X-Plane: their datarefs, their units there, and
+//! their plausible ranges.
 //!
-//! | dataref | becomes, in [`Measurements`](fcc_core::flight::Measurements) |
+//! | dataref | field of [`Measurements`](fcc_core::flight::Measurements) |
 //! |---|---|
 //! | P`theta`, P`phi` | `attitude` |
 //! | P`mag_psi` | `heading_rad` |
@@ -15,14 +15,14 @@
 //! | the configured switch | `engage_switch` |
 //! | `sim/time/total_flight_time_sec`, `paused`, `framerate_period` | `plant` |
 //! | `onground_any`, `xplane_internal_version` | [`XPlaneStatus`](crate::XPlaneStatus) |
-//! | the overrides and what is written under them | the read-back of the write path |
+//! | the overrides and the controls written under them | readback of the written controls |
 //!
-//! with P = `sim/flightmodel/position/`. Latitude, longitude and elevation
-//! come by RPOS, since an f32 of them loses about a metre.
+//! with P = `sim/flightmodel/position/`. Latitude, longitude and elevation are
+//! received by RPOS, since as f32 they lose about a metre.
 //!
 //! The altitude is what the pilot's altimeter **indicates**, so it is above the
 //! standard pressure level only while the altimeter is set to 29.92 inHg, and
-//! it steps when somebody turns that knob: leave it alone while engaged.
+//! it steps when the setting is changed: do not change it while engaged.
 //!
 //! X-Plane's local axes (x east, y up, z south) are those of its scenery's
 //! reference point: true north at the aircraft differs from them by the
@@ -33,8 +33,8 @@ use crate::units::Unit;
 const P: &str = "sim/flightmodel/position/";
 
 /// A quantity read from X-Plane. The number of each is the index under which
-/// its dataref is subscribed; it stays the same from run to run, so that a
-/// subscription left over from a killed process is taken over and not doubled.
+/// its dataref is subscribed; it is the same in every run, so that a
+/// subscription left over from a killed process is replaced and not duplicated.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
 pub(crate) enum Quantity {
@@ -71,14 +71,14 @@ pub(crate) enum Quantity {
     LoadSide,
 }
 
-/// Where X-Plane keeps a quantity.
+/// Where X-Plane provides a quantity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Source {
     /// In a dataref under `sim/flightmodel/position/`.
     Position(&'static str),
     /// In this dataref.
     Dataref(&'static str),
-    /// In the dataref of the engage switch, which is the user's choice.
+    /// In the configured dataref of the engage switch.
     EngageSwitch,
     /// In a row of Data Output only.
     Row,
@@ -94,9 +94,9 @@ pub(crate) const YOKE_PITCH: &str = "sim/joystick/yoke_pitch_ratio";
 pub(crate) const YOKE_ROLL: &str = "sim/joystick/yoke_roll_ratio";
 pub(crate) const YOKE_HEADING: &str = "sim/joystick/yoke_heading_ratio";
 
-/// Quantity, place, unit there, least and greatest value believed, in that
-/// unit. The ranges are wide: they keep out what no aircraft does, so that a
-/// garbled number cannot reach a filter.
+/// Quantity, source, unit there, least and greatest plausible value in that
+/// unit. The ranges are wide: they exclude values that no aircraft reaches, so
+/// that a corrupted number cannot enter a filter.
 #[rustfmt::skip]
 const TABLE: [Entry; Quantity::COUNT] = [
     Entry(Quantity::FlightTime, Dataref("sim/time/total_flight_time_sec"), Unit::Si, 0.0, 1e8),
@@ -155,23 +155,23 @@ impl Quantity {
         TABLE.get(self as usize)
     }
 
-    /// Whether Data Output has this in a row that is read: then nobody asks
-    /// for it by RREF while rows are the input.
+    /// Whether this comes in a row of Data Output: then it is not requested by
+    /// RREF while rows are the input.
     pub(crate) fn comes_in_rows(self) -> bool {
         matches!(
-            self.place(),
+            self.source(),
             Position(_) | Row | Dataref("sim/time/total_flight_time_sec")
         ) || self == Self::Altitude
     }
 
-    fn place(self) -> Source {
+    fn source(self) -> Source {
         self.entry().map_or(Row, |entry| entry.1)
     }
 
     /// The path to subscribe; `None` if it is in no dataref. For set-up: it
     /// allocates.
     pub(crate) fn path(self, engage_switch: &str) -> Option<String> {
-        match self.place() {
+        match self.source() {
             Position(name) => Some(format!("{P}{name}")),
             Dataref(path) => Some(path.to_owned()),
             Source::EngageSwitch => Some(engage_switch.to_owned()),
@@ -179,7 +179,7 @@ impl Quantity {
         }
     }
 
-    /// The value in SI units and radians, if it can be believed.
+    /// The value in SI units and radians, if it is plausible.
     pub(crate) fn validate(self, raw: f64) -> Option<f64> {
         let Entry(_, _, unit, least, greatest) = self.entry()?;
         (*least..=*greatest).contains(&raw).then(|| unit.to_si(raw))
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn an_index_of_somebody_else_is_nothing_of_ours() {
+    fn an_unknown_index_is_no_quantity() {
         for index in [-1, i32::MIN, 31, 1_000, i32::MAX] {
             assert_eq!(Quantity::from_index(index), None);
         }
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_aircraft_does_is_not_believed() {
+    fn implausible_values_are_rejected() {
         assert_eq!(Quantity::Pitch.validate(91.0), None);
         assert_eq!(Quantity::Roll.validate(1e30), None);
         assert_eq!(Quantity::Airspeed.validate(f64::NAN), None);

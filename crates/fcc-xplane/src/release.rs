@@ -1,5 +1,5 @@
-//! Giving control back from outside a loop, and waiting until it is really
-//! back: at the end of a program, and for who survives one that was killed.
+//! Releasing control from outside a loop, and waiting for confirmation: at the
+//! end of a program, and on behalf of a program that was killed.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, UdpSocket};
@@ -14,45 +14,46 @@ use crate::port::{Errno, any_address};
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 
-/// Between one letting go and the next.
+/// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);
-/// How long one wait for an answer is.
+/// The receive timeout.
 const LISTEN_FOR: Duration = Duration::from_millis(20);
-/// So many refusals in a row, and nobody is there.
+/// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
-/// How often the read-back is asked for, Hz.
+/// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
-/// The indices of the read-back, far from those of a sensor's subscriptions.
+/// The indices of the readback, distinct from those of a sensor's
+/// subscriptions.
 const INDICES: [i32; 2] = [9_001, 9_002];
 
 impl XPlane {
-    /// Centres the surfaces and releases the overrides at `simulator`, whoever
-    /// set them, until X-Plane shows them released or `patience` ends. Waits:
-    /// not for a loop.
+    /// Centres the surfaces and clears the overrides at `simulator`, whichever
+    /// program set them, until X-Plane confirms it or `timeout` has passed.
+    /// This waits, so do not call it in a loop.
     ///
-    /// X-Plane never takes an override back on its own, and one that hangs
-    /// loses what is sent to it: sending once is no release.
+    /// X-Plane never clears an override by itself, and an X-Plane that hangs
+    /// loses what is sent to it, so sending once is not enough.
     ///
     /// # Errors
-    /// When the configuration is refused or there is no socket to be had.
+    /// When the configuration is refused or no socket can be opened.
     pub fn release_and_wait(
         config: &XPlaneConfig,
         simulator: SocketAddr,
-        patience: Duration,
+        timeout: Duration,
     ) -> Result<Released, OpenError> {
-        Self::release_unless(config, simulator, patience, || false)
+        Self::release_unless_cancelled(config, simulator, timeout, || false)
     }
 
-    /// The same, unless it is called off: `is_called_off` is asked every 20 ms
-    /// or sooner, and before anything is sent.
+    /// The same, unless it is cancelled: `is_cancelled` is called at least
+    /// every 20 ms, and before anything is sent.
     ///
     /// # Errors
     /// As [`release_and_wait`](Self::release_and_wait).
-    pub fn release_unless(
+    pub fn release_unless_cancelled(
         config: &XPlaneConfig,
         simulator: SocketAddr,
-        patience: Duration,
-        is_called_off: impl FnMut() -> bool,
+        timeout: Duration,
+        is_cancelled: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
         config.validate()?;
         let socket = connect(simulator).map_err(|source| OpenError::Bind { port: 0, source })?;
@@ -63,7 +64,7 @@ impl XPlane {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
         let outcome =
-            retry_until_released(&socket, &mut controls, &requests, patience, is_called_off);
+            retry_until_released(&socket, &mut controls, &requests, timeout, is_cancelled);
         for request in &mut requests {
             rref::set_frequency(request, 0);
             let _ = socket.send(request);
@@ -74,7 +75,7 @@ impl XPlane {
 
 fn connect(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
     let socket = UdpSocket::bind((any_address(simulator.ip()), 0))?;
-    // Connected, so that the system tells of a port where nobody listens.
+    // Connected, so that the system reports a closed port.
     socket.connect(simulator)?;
     socket.set_read_timeout(Some(LISTEN_FOR))?;
     Ok(socket)
@@ -84,23 +85,23 @@ fn retry_until_released(
     socket: &UdpSocket,
     controls: &mut Controls,
     requests: &[[u8; rref::REQUEST_BYTES]; 2],
-    patience: Duration,
-    mut is_called_off: impl FnMut() -> bool,
+    timeout: Duration,
+    mut is_cancelled: impl FnMut() -> bool,
 ) -> Released {
     let begun = Instant::now();
     let mut sent: Option<Instant> = None;
     let mut refusals = 0;
-    // What each override shows, since the letting go was last sent.
-    let mut shown: [Option<bool>; 2] = [None; 2];
+    // The readback of each override since the release was last sent.
+    let mut readback: [Option<bool>; 2] = [None; 2];
     let mut datagram = [0; 2_048];
-    while begun.elapsed() < patience {
-        if is_called_off() {
+    while begun.elapsed() < timeout {
+        if is_cancelled() {
             return Released::CalledOff;
         }
         if sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
-            shown = [None; 2];
-            let _ = controls.let_go(|bytes| send(socket, bytes));
+            readback = [None; 2];
+            let _ = controls.release(|bytes| send(socket, bytes));
             for request in requests {
                 let _ = socket.send(request);
             }
@@ -108,12 +109,12 @@ fn retry_until_released(
         match socket.recv(&mut datagram) {
             Ok(length) => {
                 refusals = 0;
-                read_back(datagram.get(..length).unwrap_or_default(), &mut shown);
+                read_back(datagram.get(..length).unwrap_or_default(), &mut readback);
             }
             Err(error) if error.kind() == ErrorKind::ConnectionRefused => refusals += 1,
             Err(_) => {}
         }
-        if shown == [Some(false); 2] {
+        if readback == [Some(false); 2] {
             return Released::Confirmed;
         }
         if refusals >= REFUSALS {
@@ -123,16 +124,16 @@ fn retry_until_released(
     Released::Unconfirmed
 }
 
-/// Notes what a reply shows; what was sent before the requests has other
-/// indices and is passed over.
-fn read_back(datagram: &[u8], shown: &mut [Option<bool>; 2]) {
+/// Stores the readback in a reply; values sent before the requests have other
+/// indices and are ignored.
+fn read_back(datagram: &[u8], readback: &mut [Option<bool>; 2]) {
     let Ok(pairs) = rref::parse(datagram) else {
         return;
     };
     for (index, value) in pairs {
-        for (place, of) in shown.iter_mut().zip(INDICES) {
+        for (slot, of) in readback.iter_mut().zip(INDICES) {
             if index == of && value.is_finite() {
-                *place = Some(value >= 0.5);
+                *slot = Some(value >= 0.5);
             }
         }
     }

@@ -1,9 +1,9 @@
-//! Seeing to it that control that was given back is really back.
+//! Checks that a release took effect, and repeats it until it has.
 //!
-//! The actuator sends its letting go three times and is then, as a rule, not
-//! called again. Should all three get lost, X-Plane would fly on with its yoke
-//! held. The sensor is still called, and sees the overrides: while one that was
-//! released still shows as set, it sends the letting go again.
+//! The actuator sends its release three times and is then usually not called
+//! again. If all three are lost, X-Plane keeps its yoke overridden. The sensor
+//! is still called and reads the overrides: while a released override is still
+//! set, it sends the release again.
 
 use core::time::Duration;
 
@@ -14,18 +14,19 @@ use crate::link::{Control, SharedState};
 use crate::port::Errno;
 use crate::quantity::Quantity;
 
-/// What shows earlier than this after letting go may be from before.
+/// A readback earlier than this after a release may be from before it.
 const SETTLED_AFTER: Duration = Duration::from_millis(200);
-/// Between one letting go and the next.
+/// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);
-/// After so many (10 s) somebody else holds the override, and keeps it.
+/// After this many releases (10 s) another program holds the override, and
+/// keeps it.
 const MOST_TIMES: u8 = 40;
 
-/// Watches the overrides after control was given back.
+/// Monitors the overrides after a release.
 #[derive(Debug)]
 pub(crate) struct ReleaseMonitor {
     controls: Controls,
-    /// Since when control is being given back; never while it is not.
+    /// Since when control is being released; never while it is not.
     since: Time,
     sent: Time,
     times: u8,
@@ -41,9 +42,8 @@ impl ReleaseMonitor {
         }
     }
 
-    /// Looks at the overrides, and sends the letting go again if one is still
-    /// set.
-    pub(crate) fn see_to_it(
+    /// Checks the overrides, and sends the release again if one is still set.
+    pub(crate) fn poll(
         &mut self,
         now: Time,
         link: &SharedState,
@@ -59,15 +59,15 @@ impl ReleaseMonitor {
             self.times = 0;
         }
         let settled = self.since + SETTLED_AFTER;
-        // An override that never showed is one that this simulator lacks.
-        let shown = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
+        // An override without a readback does not exist in this simulator.
+        let readback = [Quantity::OverrideJoystick, Quantity::OverrideThrottles]
             .map(|quantity| link.shown(quantity));
-        let shown = shown.iter().flatten();
-        let still_set = shown
+        let readback = readback.iter().flatten();
+        let still_set = readback
             .clone()
             .any(|(value, at)| *value >= 0.5 && *at > settled && *at > self.sent);
-        let all_clear = shown.clone().count() > 0
-            && shown
+        let all_clear = readback.clone().count() > 0
+            && readback
                 .clone()
                 .all(|(value, at)| *value < 0.5 && *at > settled);
         if all_clear {
@@ -75,7 +75,7 @@ impl ReleaseMonitor {
         } else if still_set && now.since(self.sent) >= AGAIN_AFTER && self.times < MOST_TIMES {
             self.sent = now;
             self.times += 1;
-            return self.controls.let_go(send);
+            return self.controls.release(send);
         }
         Ok(())
     }
@@ -88,8 +88,8 @@ mod tests {
 
     const TICK: Duration = Duration::from_millis(25);
 
-    /// So many ticks in which the simulator shows its overrides; how many
-    /// datagrams were sent in each.
+    /// Runs ticks in which the simulator sends its overrides; returns the
+    /// number of datagrams sent in each.
     fn watch(
         release_monitor: &mut ReleaseMonitor,
         link: &SharedState,
@@ -103,7 +103,7 @@ mod tests {
             link.show(Quantity::OverrideJoystick, overrides[0], *now);
             link.show(Quantity::OverrideThrottles, overrides[1], *now);
             release_monitor
-                .see_to_it(*now, link, |_| {
+                .poll(*now, link, |_| {
                     sent += 1;
                     Ok(())
                 })
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn an_override_that_is_not_ours_is_left_alone() {
+    fn an_override_of_another_program_is_not_cleared() {
         let (mut release_monitor, link, mut now) = bench();
         assert_eq!(
             watch(&mut release_monitor, &link, &mut now, 400, [1.0, 1.0]),
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn released_and_seen_released_is_free_at_once() {
+    fn a_confirmed_release_is_free_at_once() {
         let (mut release_monitor, link, mut now) = bench();
         link.set_control(Control::ReleaseMonitor);
         assert_eq!(
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_still_shows_is_released_again_until_it_is() {
+    fn an_override_that_is_still_set_is_released_again() {
         let (mut release_monitor, link, mut now) = bench();
         link.set_control(Control::ReleaseMonitor);
         // Five datagrams each: three surfaces, two overrides.
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn somebody_who_keeps_setting_it_wins_after_ten_seconds() {
+    fn repeating_stops_after_ten_seconds_if_another_program_sets_it() {
         let (mut release_monitor, link, mut now) = bench();
         link.set_control(Control::ReleaseMonitor);
         let sent = watch(&mut release_monitor, &link, &mut now, 2_000, [1.0, 1.0]);

@@ -1,16 +1,17 @@
 //! Which column of which row of Data Output is which quantity.
 //!
 //! Where versions differ or sources conflict, the configuration decides
-//! ([`DataRows`]); who can, takes RREF, where nothing is in doubt.
+//! ([`DataRows`]). Prefer RREF, which is unambiguous.
 //!
 //! - Row 16, the rates: Q, P, R in rad/s up to X-Plane 11, P, Q, R in deg/s in
 //!   12. X-Plane 9 has rates, attitude and air angles one row further down.
-//! - Row 17, attitude: magnetic heading in column 3, or 4 by one capture.
-//! - Row 4, load factors in g: normal (column 4) is positive when it presses
-//!   the pilot into the seat, so it is -z of the body; axial (5) and side (6)
-//!   are taken as +x and +y, as two independent programs fly them.
-//! - Row 1, times: column 2 is the time of this flight, which stands still
-//!   while paused, and goes back when a flight is loaded.
+//! - Row 17, attitude: magnetic heading in column 3, or in 4 according to one
+//!   capture.
+//! - Row 4, load factors in g: normal (column 4) is positive upwards, so it is
+//!   -z of the body; axial (5) and side (6) are taken as +x and +y, as two
+//!   independent programs do.
+//! - Row 1, times: column 2 is the time of this flight, which does not advance
+//!   while paused and is reset when a flight is loaded.
 //! - Row 20: latitude and longitude are f32 here and lose about a metre.
 
 use fcc_core::flight::Position;
@@ -29,8 +30,8 @@ const VELOCITY: i32 = 21;
 /// The column of the flight's time in [`TIMES`].
 const FLIGHT_TIME: usize = 2;
 
-/// Hands every quantity of a row to `found`, in the unit in which it would
-/// come by RREF. Rows that nobody needs are left out.
+/// Passes every quantity of a row to `found`, in the unit it has in RREF. Rows
+/// that are not used are left out.
 pub(crate) fn quantities(rows: DataRows, row: &Row, mut found: impl FnMut(Quantity, f64)) {
     let mut give = |quantity, column: usize, scale: f64| {
         if let Some(value) = row.columns.get(column).copied().flatten() {
@@ -78,8 +79,8 @@ pub(crate) fn quantities(rows: DataRows, row: &Row, mut found: impl FnMut(Quanti
     }
 }
 
-/// The row in which a quantity comes; `None` if it comes in none. For people,
-/// not for a tick.
+/// The row that has a quantity; `None` if none has. For messages, not for a
+/// tick.
 pub(crate) fn row_of(rows: DataRows, quantity: Quantity) -> Option<i32> {
     (TIMES..=VELOCITY).find(|index| {
         let row = Row {

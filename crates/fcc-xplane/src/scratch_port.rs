@@ -1,10 +1,10 @@
-//! A socket on which the kernel's path for datagrams is run without effect.
+//! A socket that exercises the kernel's datagram path without effect.
 //!
-//! Most of the time that a tick spends on its datagrams is spent in the kernel,
-//! and after 25 ms of sleep that code is in no cache either. It cannot be run
-//! ahead of time on the simulator's socket without sending. So the same system
-//! calls are made on a second socket, which is bound to the loopback interface
-//! and sends to itself.
+//! A tick spends most of its datagram time in the kernel, and after 25 ms of
+//! sleep that code is no longer in the caches either. On the simulator's socket
+//! it cannot be run in advance without sending. So the same system calls are
+//! made on a second socket, which is bound to the loopback interface and sends
+//! to itself.
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
@@ -13,7 +13,8 @@ use crate::port::{Port, UdpPort};
 
 /// Longer than what X-Plane sends.
 pub(crate) const PEEK_BYTES: usize = 2_048;
-/// More than are sent for a tick. What is left is received the next time.
+/// More than are sent in a tick. Any remaining datagrams are received the next
+/// time.
 const MOST_RECEIVED: usize = 16;
 
 /// A socket that sends to itself.
@@ -24,7 +25,7 @@ pub(crate) struct ScratchPort {
 }
 
 impl ScratchPort {
-    /// Of the same kind as the simulator's address.
+    /// Opens the socket, for the same kind of address as the simulator's.
     pub(crate) fn open(simulator: IpAddr) -> io::Result<Self> {
         let here: IpAddr = match simulator {
             IpAddr::V4(_) => Ipv4Addr::LOCALHOST.into(),
@@ -35,8 +36,8 @@ impl ScratchPort {
         Ok(Self { port, address })
     }
 
-    /// Sends datagrams of `size` bytes and takes them back. One that is lost
-    /// or refused makes no difference.
+    /// Sends datagrams of `size` bytes and receives them. A lost or refused
+    /// datagram has no effect.
     pub(crate) fn send_to_itself(&self, datagrams: &[u8], size: usize) {
         let _ = self.port.send_each(datagrams, size, self.address);
         let mut taken = [0; PEEK_BYTES];
@@ -53,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_it_sends_it_takes_back() {
+    fn it_receives_everything_that_it_sends() {
         for simulator in [Ipv4Addr::BROADCAST.into(), Ipv6Addr::LOCALHOST.into()] {
             let scratch = ScratchPort::open(simulator).unwrap();
             for _ in 0..3 {

@@ -24,20 +24,22 @@ use crate::subscriptions::Subscriptions;
 const BUFFER_BYTES: usize = 8_192;
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
-/// Beacons of a silent simulator start the asking anew this often at most.
+/// Beacons of a silent simulator restart the subscriptions at most at this
+/// interval.
 const RESTART_AFTER: Duration = Duration::from_secs(1);
 
-/// X-Plane as a sensor: reads what came, asks for what did not.
+/// X-Plane as a sensor: reads the values that arrived and requests those that
+/// did not.
 ///
 /// In a tick it makes system calls to receive (at most as many datagrams as
 /// configured) and to send (a few requests), none of which waits. Readings are
-/// stamped with the time of the tick in which they came. Only datagrams from
-/// the simulator's IP address count; from any port of it, since replies need
-/// not come from the one that X-Plane listens on.
+/// stamped with the time of the tick in which they arrived. Only datagrams from
+/// the simulator's IP address are accepted, from any of its ports, since
+/// replies need not come from the port on which X-Plane listens.
 #[derive(Debug)]
 pub struct XPlaneSensor<P: Port = UdpPort> {
     port: Arc<P>,
-    /// Where beacons come in, if the simulator is found by them.
+    /// Where beacons are received, if the simulator is found by its beacon.
     beacons: Option<P>,
     link: Arc<SharedState>,
     inbox: Inbox,
@@ -48,7 +50,7 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     datagrams_per_tick: usize,
     silent_after: Duration,
     fallback_after: Duration,
-    /// The first tick: silence counts from here until something comes.
+    /// The first tick: until something arrives, silence is measured from here.
     began: Time,
     restarted: Time,
     buffer: Box<[u8; BUFFER_BYTES]>,
@@ -88,15 +90,16 @@ impl<P: Port> XPlaneSensor<P> {
         })
     }
 
-    /// What may be watched from any thread, also once the sensor is in a loop.
+    /// The connection's status, readable from any thread while the sensor is in
+    /// a loop.
     pub fn status(&self) -> XPlaneStatus {
         let engage_switch = Arc::clone(&self.engage_switch);
         XPlaneStatus::new(Arc::clone(&self.link), engage_switch, self.rows)
     }
 
-    /// Follows beacons: takes the first simulator that flies, stays with it
-    /// while it speaks or its controls are held, and asks anew when a silent
-    /// one is back.
+    /// Reads beacons: connects to the first simulator that computes a flight,
+    /// keeps to it while it sends or its controls are held, and subscribes
+    /// again when a silent one has returned.
     fn listen_for_beacons(&mut self, now: Time) {
         let Some(beacons) = &self.beacons else {
             return;
@@ -113,10 +116,10 @@ impl<P: Port> XPlaneSensor<P> {
             let known = self.link.simulator();
             let silent = now.since(self.inbox.last_received()) > self.silent_after;
             let address = SocketAddr::new(from.ip(), beacon.port);
-            let stay = known.is_some_and(|known| {
+            let keep = known.is_some_and(|known| {
                 known != address && (!silent || self.link.control() == Control::Held)
             });
-            if !beacon.is_flyable() || stay {
+            if !beacon.is_flyable() || keep {
                 continue;
             }
             self.link.set_simulator(address);
@@ -158,7 +161,7 @@ impl<P: Port> XPlaneSensor<P> {
         }
     }
 
-    fn ask(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
+    fn send_requests(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
         self.subscriptions.send_due(now, &self.inbox, |request| {
             count(&link.counters.requests);
@@ -168,7 +171,7 @@ impl<P: Port> XPlaneSensor<P> {
 
     fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
-        self.release_monitor.see_to_it(now, link, |write| {
+        self.release_monitor.poll(now, link, |write| {
             count(&link.counters.writes);
             send(port.as_ref(), link, write, simulator)
         })
@@ -205,7 +208,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
 
         let mut sent = Ok(());
         if let Some(simulator) = simulator {
-            sent = self.ask(now, simulator);
+            sent = self.send_requests(now, simulator);
             if self.link.is_allowed(simulator) {
                 sent = sent.and(self.poll_release_monitor(now, simulator));
             }
@@ -223,7 +226,8 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         self.fallback_after
     }
 
-    /// Decodes the last values once more, into copies of what a tick changes.
+    /// Decodes the last values again, into copies of the state that a tick
+    /// changes.
     fn warm_up(&self, tick: &Tick) {
         self.port.warm_up_receive();
         let link = SharedState::new(self.link.simulator());
@@ -243,10 +247,11 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
 }
 
 impl<P: Port> Drop for XPlaneSensor<P> {
-    /// Ends the subscriptions, or X-Plane would send to nobody until it quits.
+    /// Ends the subscriptions; otherwise X-Plane would keep sending until it
+    /// quits.
     fn drop(&mut self) {
         if let Some(simulator) = self.link.simulator() {
-            // Nobody is left to hear of a failure, and nothing hangs on it.
+            // A failure can no longer be reported and has no consequence.
             self.subscriptions.end(|request| {
                 let _ = self.port.send(request, simulator);
             });

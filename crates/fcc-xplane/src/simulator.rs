@@ -1,9 +1,9 @@
-//! What the simulator is doing, from its clock against ours.
+//! The simulator's state, from its clock compared with ours.
 //!
 //! X-Plane slows its time below about 20 frames a second, stops it when paused
 //! or behind a dialog, and sets it back when a flight is loaded. Each is a
-//! state of its own here. Nothing in this file reads a clock: it is told the
-//! time of the tick and what the datagrams said.
+//! separate state here. Nothing in this file reads a clock: the time of the
+//! tick and the contents of the datagrams are passed in.
 
 use core::time::Duration;
 
@@ -13,17 +13,17 @@ use fcc_core::framework::Time;
 /// Two datagrams of one flight are less than this apart when one overtakes
 /// the other; time that goes back further was set back.
 const LATE_S: f64 = 1.0;
-/// For so long an older time may be a datagram that came late. Nothing holds
-/// one back longer while newer ones get through.
+/// For this long an older time may belong to a late datagram. None is delayed
+/// longer while newer ones arrive.
 const LATE: Duration = Duration::from_secs(1);
-/// The simulator's clock gained this much on ours between two datagrams: it
+/// If the simulator's clock gains this much on ours between two datagrams, it
 /// was set forward.
 const AHEAD_S: f64 = 1.0;
-/// The simulator speaks and is not paused, but its clock stood still for so
-/// long: five frames at 20 a second.
+/// The simulator sends and is not paused, but its clock has not advanced for
+/// this long: five frames at 20 a second.
 const STALLED_AFTER: Duration = Duration::from_millis(250);
-/// The simulator's pace is taken over at least so long, at most twice so long:
-/// 25 ms of jitter at its end are then at most 2.5 %.
+/// The simulator's pace is measured over at least this long, at most twice this
+/// long: 25 ms of jitter at its end are then at most 2.5 %.
 const PACE_OVER: Duration = Duration::from_secs(1);
 /// Slow below this share of our time, until it is above [`PACE_REGAINED`].
 const PACE_LOST: f64 = 0.9;
@@ -33,31 +33,31 @@ const PACE_REGAINED: f64 = 0.95;
 const FRAME_LOST_S: f64 = 1.0 / 20.0;
 const FRAME_REGAINED_S: f64 = 1.0 / 22.0;
 
-/// What the simulator is doing.
+/// The simulator's state.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[repr(u8)]
 pub enum SimulatorState {
-    /// Nothing has come for the configured time.
+    /// Nothing has arrived for the configured time.
     #[default]
     Silent = 0,
-    /// Time runs with ours.
+    /// Its time runs at the rate of ours.
     Running = 1,
     /// Paused by its user.
     Paused = 2,
-    /// It speaks and does not say paused, but its clock has stood still for
-    /// 250 ms: a dialog, or loading.
+    /// It sends and is not paused, but its clock has not advanced for 250 ms: a
+    /// dialog, or loading.
     Stalled = 3,
     /// Its time runs at less than 90 % of ours over 1 to 2 s, or its frames
     /// take more than 50 ms; until 95 % and 45 ms are regained.
     Slow = 4,
-    /// In this very tick its clock went back by a second or more, or gained a
-    /// second on ours: a flight was loaded. One tick only: it is an event.
+    /// In this tick its clock went back by a second or more, or gained a second
+    /// on ours: a flight was loaded. This lasts for one tick only.
     Jumped = 5,
 }
 
 impl SimulatorState {
-    /// The same in the framework's words; `None` for silence, which there is
-    /// told by the readings' age.
+    /// The corresponding state of the framework; `None` for silence, which the
+    /// framework detects by the age of the readings.
     pub const fn plant_state(self) -> Option<PlantState> {
         match self {
             Self::Silent => None,
@@ -69,7 +69,7 @@ impl SimulatorState {
         }
     }
 
-    /// From the number stored.
+    /// The state with this number.
     pub(crate) const fn from_number(number: u8) -> Self {
         match number {
             1 => Self::Running,
@@ -82,9 +82,9 @@ impl SimulatorState {
     }
 }
 
-/// What one datagram says of the simulator itself; parts may be missing.
+/// What one datagram reports about the simulator itself; fields may be missing.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub(crate) struct Word {
+pub(crate) struct SimulatorReport {
     /// The flight's time, s.
     pub(crate) time_s: Option<f64>,
     pub(crate) paused: Option<bool>,
@@ -92,33 +92,33 @@ pub(crate) struct Word {
     pub(crate) frame_period_s: Option<f64>,
 }
 
-/// A time of the simulator and when it was seen.
+/// A time of the simulator and when it was received.
 #[derive(Clone, Copy, Debug, Default)]
-struct Mark {
+struct ClockSample {
     time_s: f64,
     seen: Time,
 }
 
-impl Mark {
-    /// The simulator's seconds for each of ours since an earlier mark.
+impl ClockSample {
+    /// The simulator's seconds per second of ours since an earlier sample.
     fn pace_since(self, earlier: Self) -> f64 {
         (self.time_s - earlier.time_s) / self.seen.since(earlier.seen).as_secs_f64()
     }
 }
 
-/// Follows the simulator's clock.
+/// Tracks the simulator's clock.
 #[derive(Clone, Debug)]
 pub(crate) struct SimulatorClock {
     silent_after: Duration,
     heard: Time,
-    latest: Mark,
-    /// When the clock was last seen to advance, or had a reason not to.
+    latest: ClockSample,
+    /// When the clock last advanced, or had a reason not to.
     advanced: Time,
     paused: bool,
     frame_period_s: f64,
-    /// Where the pace is measured from: the older one, until the younger is
-    /// [`PACE_OVER`] old.
-    marks: [Mark; 2],
+    /// The samples from which the pace is measured: the older one, until the
+    /// younger is [`PACE_OVER`] old.
+    marks: [ClockSample; 2],
     slow: bool,
     jumped: bool,
 }
@@ -128,24 +128,24 @@ impl SimulatorClock {
         Self {
             silent_after,
             heard: Time::NEVER,
-            latest: Mark::default(),
+            latest: ClockSample::default(),
             advanced: Time::NEVER,
             paused: false,
             frame_period_s: 0.0,
-            marks: [Mark::default(); 2],
+            marks: [ClockSample::default(); 2],
             slow: false,
             jumped: false,
         }
     }
 
-    /// A new tick begins.
+    /// Begins a tick.
     pub(crate) fn begin(&mut self) {
         self.jumped = false;
     }
 
     /// Whether a datagram of this flight time was overtaken by a newer one and
-    /// is to be dropped. An equal time is not: it is the same frame again, or
-    /// time stands still.
+    /// is to be dropped. An equal time is not late: it is the same frame again,
+    /// or time does not advance.
     pub(crate) fn is_late(&self, now: Time, time_s: f64) -> bool {
         let back_s = self.latest.time_s - time_s;
         !self.latest.seen.is_never()
@@ -154,35 +154,35 @@ impl SimulatorClock {
             && now.since(self.latest.seen) < LATE
     }
 
-    /// Takes in what a datagram that was accepted says.
-    pub(crate) fn receive(&mut self, now: Time, word: Word) {
+    /// Evaluates the report of an accepted datagram.
+    pub(crate) fn receive(&mut self, now: Time, report: SimulatorReport) {
         let was_silent = self.is_silent(now);
         self.heard = now;
-        if let Some(paused) = word.paused {
+        if let Some(paused) = report.paused {
             if self.paused && !paused {
                 self.begin_pace(now);
             }
             self.paused = paused;
         }
-        if let Some(period_s) = word.frame_period_s {
+        if let Some(period_s) = report.frame_period_s {
             self.frame_period_s = period_s;
         }
-        if let Some(time_s) = word.time_s {
+        if let Some(time_s) = report.time_s {
             self.read_clock(now, time_s, was_silent);
         }
-        self.judge_pace(now);
+        self.update_pace(now);
     }
 
     fn read_clock(&mut self, now: Time, time_s: f64, was_silent: bool) {
         let before = self.latest;
-        self.latest = Mark { time_s, seen: now };
+        self.latest = ClockSample { time_s, seen: now };
         if before.seen.is_never() {
             self.begin_pace(now);
             return;
         }
         let gained_s = time_s - before.time_s;
         let ours_s = now.since(before.seen).as_secs_f64();
-        // What was late was dropped, so time that went back was set back.
+        // Late datagrams were dropped, so a time that went back was set back.
         if gained_s < 0.0 || gained_s - ours_s > AHEAD_S {
             self.jumped = true;
             self.begin_pace(now);
@@ -196,14 +196,14 @@ impl SimulatorClock {
         }
     }
 
-    /// Forgets the pace so far: what follows is measured from here.
+    /// Restarts the measurement of the pace.
     fn begin_pace(&mut self, now: Time) {
         self.advanced = now;
         self.marks = [self.latest; 2];
         self.slow = false;
     }
 
-    fn judge_pace(&mut self, now: Time) {
+    fn update_pace(&mut self, now: Time) {
         let [older, younger] = self.marks;
         if self.paused || self.latest.seen.is_never() {
             return;
@@ -224,12 +224,12 @@ impl SimulatorClock {
         }
     }
 
-    /// Whether nothing has come for the configured time.
+    /// Whether nothing has arrived for the configured time.
     pub(crate) fn is_silent(&self, now: Time) -> bool {
         now.since(self.heard) > self.silent_after
     }
 
-    /// When something last came.
+    /// When something last arrived.
     pub(crate) const fn last_received(&self) -> Time {
         self.heard
     }
@@ -239,13 +239,13 @@ impl SimulatorClock {
         (!self.latest.seen.is_never()).then_some(self.latest.time_s)
     }
 
-    /// Whether it spoke, but not of time passing: measured to the last word, so
-    /// that a gap between words is not taken for a clock that stands still.
-    fn stands_still(&self) -> bool {
+    /// Whether it sends, but its time does not advance: measured up to the last
+    /// report, so that a gap between reports is not taken for a stopped clock.
+    fn has_stopped(&self) -> bool {
         !self.latest.seen.is_never() && self.heard.since(self.advanced) > STALLED_AFTER
     }
 
-    /// What the simulator is doing.
+    /// The simulator's state.
     pub(crate) fn state(&self, now: Time) -> SimulatorState {
         if self.is_silent(now) {
             SimulatorState::Silent
@@ -253,7 +253,7 @@ impl SimulatorClock {
             SimulatorState::Jumped
         } else if self.paused {
             SimulatorState::Paused
-        } else if self.stands_still() {
+        } else if self.has_stopped() {
             SimulatorState::Stalled
         } else if self.slow {
             SimulatorState::Slow

@@ -1,15 +1,14 @@
-//! What accelerometers would feel, from X-Plane's accelerations.
+//! Specific force, as accelerometers measure it, from X-Plane's accelerations.
 //!
 //! `local_ax/ay/az` are the acceleration of the aircraft over the ground in
-//! X-Plane's drawing axes (x east, y up, z south), gravity not in it: 0 in
-//! steady level flight. Specific force is that less gravity, in body axes:
-//! f = Rᵀ (a - g), with R the rotation from body to north-east-down.
+//! X-Plane's local axes (x east, y up, z south), without gravity: 0 in steady
+//! level flight. Specific force is that acceleration minus gravity, in body
+//! axes: f = Rᵀ (a - g), with R the rotation from body to north-east-down.
 //!
-//! Not `g_axil` and `g_side`: sources do not say, or do not agree, which way
-//! those point and whether they hold the share of gravity along their axis.
-//! The definition above leaves nothing to choose. Rows of Data Output have
-//! only the load factors, so there they are used, see
-//! [`rows`](crate::rows).
+//! `g_axil` and `g_side` are not used: sources do not state, or disagree on,
+//! their sign and whether they include the component of gravity along their
+//! axis. The definition above is unambiguous. Rows of Data Output have only the
+//! load factors, so these are used there, see [`rows`](crate::rows).
 
 use fcc_core::flight::SpecificForce;
 
@@ -31,7 +30,7 @@ pub(crate) fn specific_force(
     let (sin_pitch, cos_pitch) = pitch_rad.sin_cos();
     let (sin_roll, cos_roll) = roll_rad.sin_cos();
 
-    // One turn at a time: heading about z, pitch about y, roll about x.
+    // One rotation at a time: heading about z, pitch about y, roll about x.
     let ahead = cos_heading * north + sin_heading * east;
     let across = cos_heading * east - sin_heading * north;
     let forward = cos_pitch * ahead - sin_pitch * down;
@@ -55,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn level_and_steady_feels_one_g_from_below() {
+    fn steady_level_flight_gives_one_g_upwards() {
         close(
             specific_force([0.0; 3], [1.0, 0.0, 0.0]),
             [0.0, 0.0, -9.80665],
@@ -81,7 +80,7 @@ mod tests {
     /// At rest with the nose 30° up an accelerometer along x reads half a g
     /// forward: sin 30° = 1/2.
     #[test]
-    fn gravity_leans_on_a_raised_nose() {
+    fn a_raised_nose_gives_a_forward_component_of_gravity() {
         let nose = 30.0_f64.to_radians();
         close(
             specific_force([0.0; 3], [2.0, nose, 0.0]),
@@ -90,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_push_forward_is_felt_forward() {
+    fn a_forward_acceleration_gives_a_forward_force() {
         // Heading south, 2 m/s² towards south.
         let south = core::f64::consts::PI;
         close(
@@ -100,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn free_fall_feels_nothing() {
+    fn free_fall_gives_no_force() {
         close(
             specific_force([0.0, -9.80665, 0.0], [0.3, -0.2, 1.0]),
             [0.0; 3],

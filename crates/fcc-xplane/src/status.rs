@@ -1,4 +1,4 @@
-//! What people and other threads may know of the connection.
+//! The status of the connection, for users and other threads.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU64, Ordering};
@@ -10,7 +10,8 @@ use crate::link::{Control, SharedState};
 use crate::missing::Missing;
 use crate::simulator::SimulatorState;
 
-/// Watches the connection to X-Plane from any thread, without a lock.
+/// The status of the connection to X-Plane, readable from any thread without a
+/// lock.
 #[derive(Clone, Debug)]
 pub struct XPlaneStatus {
     link: Arc<SharedState>,
@@ -19,7 +20,7 @@ pub struct XPlaneStatus {
     rows: Option<DataRows>,
 }
 
-/// What was counted since opening.
+/// Counters since opening.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Counts {
     /// Datagrams from the simulator.
@@ -28,11 +29,11 @@ pub struct Counts {
     pub foreign: u64,
     /// Datagrams with a wrong length or field, dropped.
     pub malformed: u64,
-    /// Datagrams that are no message known here, dropped.
+    /// Datagrams that are no known message, dropped.
     pub unknown: u64,
     /// Datagrams overtaken by newer ones, dropped.
     pub late: u64,
-    /// Single values outside what any aircraft does, left out.
+    /// Single implausible values, left out.
     pub implausible: u64,
     /// Jumps of the simulator's clock.
     pub jumps: u64,
@@ -57,25 +58,25 @@ impl XPlaneStatus {
         }
     }
 
-    /// Where the simulator is; `None` until a beacon has told.
+    /// Where the simulator is; `None` until a beacon has arrived.
     pub fn simulator(&self) -> Option<SocketAddr> {
         self.link.simulator()
     }
 
-    /// From now on control is taken nowhere but where it is
-    /// [allowed](Self::allow): for who has to ask first whether another program
-    /// flies there. Until then [`apply`](fcc_core::framework::Actuator::apply)
-    /// says that it is not connected.
-    pub fn ask_first(&self) {
+    /// From now on control is taken only where it is [allowed](Self::allow):
+    /// for programs that have to check first whether another program flies
+    /// there. Until then [`apply`](fcc_core::framework::Actuator::apply)
+    /// reports that it is not connected.
+    pub fn require_permission(&self) {
         self.link.allow(None);
     }
 
-    /// Control may be taken at this address, and at no other.
+    /// Permits taking control at this address only.
     pub fn allow(&self, simulator: SocketAddr) {
         self.link.allow(Some(simulator));
     }
 
-    /// What the simulator was doing at the last tick.
+    /// The simulator's state at the last tick.
     pub fn state(&self) -> SimulatorState {
         self.link.state()
     }
@@ -85,7 +86,7 @@ impl XPlaneStatus {
         self.link.control()
     }
 
-    /// Where the controls are held, or not yet shown to be given back.
+    /// Where the controls are held, or their release is not yet confirmed.
     pub fn held_at(&self) -> Option<SocketAddr> {
         let allowed = |at: &SocketAddr| self.link.is_allowed(*at);
         let held = self.control() != Control::Free;
@@ -97,17 +98,17 @@ impl XPlaneStatus {
         self.link.is_unconfirmed()
     }
 
-    /// X-Plane's version, 115501 for 11.55r01, once it has told.
+    /// X-Plane's version, 115501 for 11.55r01, once received.
     pub fn version(&self) -> Option<u32> {
         self.link.version()
     }
 
-    /// Whether a wheel is on the ground, once X-Plane has told.
+    /// Whether a wheel is on the ground, once received.
     pub fn on_ground(&self) -> Option<bool> {
         self.link.on_ground()
     }
 
-    /// What was counted since opening.
+    /// Counters since opening.
     pub fn counts(&self) -> Counts {
         let counters = &self.link.counters;
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
@@ -130,14 +131,13 @@ impl XPlaneStatus {
         &self.engage_switch
     }
 
-    /// What was asked for and does not arrive while other values do: for 4 to 6 s
-    /// if it never came, and longer if it did.
+    /// Requested values that do not arrive while others do: for 4 to 6 s if a
+    /// value never arrived, and longer if it did.
     pub fn missing(&self) -> Vec<Missing> {
         Missing::of(self.link.missing(), &self.engage_switch, self.rows)
     }
 
-    /// What is wrong with the connection now and what to do about it, for
-    /// people; `None` while nothing is.
+    /// What is wrong with the connection now; `None` while nothing is.
     pub fn trouble(&self) -> Option<Trouble> {
         match self.simulator() {
             None => Some(Trouble::NoBeacon),
@@ -148,10 +148,10 @@ impl XPlaneStatus {
     }
 }
 
-/// What can be wrong with the connection. Its text says what to do.
+/// A problem with the connection. Its text says what to do.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Trouble {
-    /// No beacon has been heard.
+    /// No beacon has arrived.
     NoBeacon,
     /// The simulator does not answer.
     Silent(SocketAddr),

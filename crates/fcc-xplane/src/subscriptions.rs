@@ -1,14 +1,15 @@
-//! Asking X-Plane for what is needed, and asking again when it does not come.
+//! Requests values from X-Plane, and repeats requests for values that do not
+//! arrive.
 //!
-//! Requests get lost, X-Plane is restarted, and it forgets: so each dataref
-//! that has not come is asked for again, for itself. While the simulator is
-//! silent, or leaves a dataref unanswered for good (it may not have it), that
-//! is every [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe);
-//! while it answers others, the first few times after a second already, for
+//! Requests get lost, and a restarted X-Plane has lost its subscriptions, so
+//! each dataref that does not arrive is requested again. While the simulator is
+//! silent, or never answers for a dataref (it may not have it), that is every
+//! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe); while it
+//! answers others, the first few repetitions follow after one second, since
 //! then a single request was lost.
 //!
-//! X-Plane takes about 100 requests and then wants a pause of 100 ms. There are
-//! fewer than that in all, and they are spread over ticks.
+//! X-Plane accepts about 100 requests and then needs a pause of 100 ms. There
+//! are fewer than that in total, and they are spread over several ticks.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -17,7 +18,7 @@ use fcc_core::framework::Time;
 
 use crate::config::{Input, XPlaneConfig};
 use crate::inbox::Inbox;
-use crate::missing::{Absences, Expected, ValueSet};
+use crate::missing::{Expected, MissingValues, ValueSet};
 use crate::port::Errno;
 use crate::protocol::{PathError, rpos, rref};
 use crate::quantity::Quantity;
@@ -25,15 +26,15 @@ use crate::rows::row_of;
 
 /// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
 pub(crate) const REQUESTS_PER_TICK: usize = 8;
-/// What X-Plane takes without a pause.
+/// The number of requests that X-Plane accepts without a pause.
 const REQUESTS_AT_ONCE: usize = 100;
 const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
 
-/// A lost request is repeated after so long, so many times.
+/// A lost request is repeated after this long, this many times.
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
 
-/// The position is for navigation, which does not need every frame of it.
+/// The position is for navigation, which does not need it every frame.
 const POSITION_RATE_HZ: u16 = 20;
 
 #[derive(Debug)]
@@ -58,7 +59,7 @@ impl Request {
     }
 }
 
-/// When an expected value last came.
+/// When an expected value last arrived.
 fn arrived(inbox: &Inbox, expected: Expected) -> Time {
     match expected {
         Expected::Value(quantity) => inbox.arrived(quantity),
@@ -70,18 +71,18 @@ fn arrived(inbox: &Inbox, expected: Expected) -> Time {
 struct Subscription {
     request: Request,
     asked: Time,
-    /// How often it was asked since it last came.
+    /// The number of requests since it last arrived.
     unanswered: u8,
-    /// To be asked whatever came: the simulator is a new one.
+    /// To be requested in any case: the simulator is a new one.
     anew: bool,
 }
 
-/// What is asked for, and when it was last.
+/// The subscriptions, and when each was last requested.
 #[derive(Debug)]
 pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
-    absences: Absences,
+    missing_values: MissingValues,
 }
 
 impl Subscriptions {
@@ -112,18 +113,19 @@ impl Subscriptions {
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
-            absences: Absences::new(expected, config.resubscribe),
+            missing_values: MissingValues::new(expected, config.resubscribe),
         })
     }
 
-    /// What does not arrive though other values do, looked for once a second.
+    /// The values that do not arrive although others do, checked once a second.
     pub(crate) fn missing(&mut self, now: Time, inbox: &Inbox) -> Option<ValueSet> {
-        self.absences.look(now, inbox.last_received(), |expected| {
-            arrived(inbox, expected)
-        })
+        self.missing_values
+            .check(now, inbox.last_received(), |expected| {
+                arrived(inbox, expected)
+            })
     }
 
-    /// Reads what [`send_due`](Self::send_due) reads.
+    /// Reads the data that [`send_due`](Self::send_due) reads.
     pub(crate) fn warm_up(&self) {
         black_box(
             self.list
@@ -132,15 +134,15 @@ impl Subscriptions {
         );
     }
 
-    /// Asks for everything anew, from the next tick on.
+    /// Requests everything again, from the next tick on.
     pub(crate) fn restart(&mut self) {
         for subscription in &mut self.list {
             subscription.anew = true;
         }
     }
 
-    /// Sends what is due, at most [`REQUESTS_PER_TICK`]. A request that could
-    /// not be sent counts as sent and lost.
+    /// Sends the requests that are due, at most [`REQUESTS_PER_TICK`]. A
+    /// request that could not be sent counts as sent and lost.
     pub(crate) fn send_due(
         &mut self,
         now: Time,
@@ -155,8 +157,8 @@ impl Subscriptions {
             if budget == 0 {
                 break;
             }
-            let came = arrived(inbox, subscription.request.expected());
-            let answered = now.since(came) < resubscribe;
+            let arrived_at = arrived(inbox, subscription.request.expected());
+            let answered = now.since(arrived_at) < resubscribe;
             if answered && !subscription.anew {
                 subscription.unanswered = 0;
                 continue;
@@ -178,7 +180,7 @@ impl Subscriptions {
         outcome
     }
 
-    /// Ends everything, for shutting down.
+    /// Ends all subscriptions, for shutting down.
     pub(crate) fn end(&mut self, mut send: impl FnMut(&[u8])) {
         for subscription in &mut self.list {
             match &mut subscription.request {

@@ -1,4 +1,4 @@
-//! X-Plane's units, and what they are in SI.
+//! X-Plane's units and their conversion to SI.
 
 /// One international knot in m/s: 1852 m an hour (BIPM, The International
 /// System of Units, 8th ed. 2006, table 8), exact.
@@ -11,7 +11,8 @@ pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
 /// A unit that X-Plane uses.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Unit {
-    /// Already what is used inside: s, m, m/s, m/s², rad/s, a ratio or a flag.
+    /// Already the unit used internally: s, m, m/s, m/s², rad/s, a ratio or a
+    /// flag.
     Si,
     Degrees,
     Knots,

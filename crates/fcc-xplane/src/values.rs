@@ -35,8 +35,8 @@ struct Value {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Values {
     values: [Value; Quantity::COUNT],
-    /// For each group a bit for each quantity that came since the group was
-    /// last whole.
+    /// For each group, a bit for each quantity that arrived since the group was
+    /// last complete.
     new: [u64; Group::COUNT],
 }
 
@@ -54,7 +54,7 @@ impl Values {
         }
     }
 
-    /// When a quantity last came.
+    /// When a quantity last arrived.
     pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
         self.value(quantity).arrived
     }
@@ -66,8 +66,8 @@ impl Values {
             .unwrap_or_default()
     }
 
-    /// The values of a group's members and the time of the oldest, if each came
-    /// since this last gave some.
+    /// The values of a group's members and the time of the oldest, if each
+    /// arrived since the last call that returned values.
     pub(crate) fn whole<const N: usize>(
         &mut self,
         group: Group,
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_group_is_whole_when_every_member_is_new_and_as_old_as_the_oldest() {
+    fn a_group_is_complete_when_every_member_is_new_and_as_old_as_the_oldest() {
         let (early, late) = (Time::from_nanos(1), Time::from_nanos(2));
         let members = [Quantity::Pitch, Quantity::Roll];
         let mut values = Values::default();
@@ -101,7 +101,11 @@ mod tests {
             values.whole(Group::Attitude, members),
             Some(([0.1, 0.2], early))
         );
-        assert_eq!(values.whole(Group::Attitude, members), None, "given once");
+        assert_eq!(
+            values.whole(Group::Attitude, members),
+            None,
+            "returned once"
+        );
         values.set(Quantity::Roll, 0.3, late);
         assert_eq!(values.whole(Group::Attitude, members), None, "pitch is old");
     }

@@ -25,8 +25,8 @@ fn ten_thousand_ticks_allocate_nothing() {
                 elevator: (f64::from(number) * 0.01).sin(),
                 ..Surfaces::default()
             };
-            // Flying, released, silent for a while, garbled: all that a tick
-            // may meet.
+            // Flying, released, silent for a while, corrupted: all situations
+            // of a tick.
             let silent = (3_000..3_400).contains(&number);
             if !silent {
                 simulator.live(0.025);
@@ -49,7 +49,7 @@ fn ten_thousand_ticks_allocate_nothing() {
             counted += calls;
         }
         assert_eq!(counted, 0, "{output:?}");
-        assert!(faults > 0, "the ways that fail are among those counted");
+        assert!(faults > 0, "ticks with faults are counted too");
         assert!(!measurements.position.is_never());
     }
 }

@@ -1,5 +1,5 @@
-//! X-Plane's sensor and actuator keep what the traits promise, by both of its
-//! ways in and both of its ways out, against a minimal X-Plane on a loopback
+//! X-Plane's sensor and actuator conform to the traits, with both kinds of
+//! input and both kinds of output, against a minimal X-Plane on a loopback
 //! socket.
 #![cfg(test)]
 
@@ -27,7 +27,7 @@ struct Plane {
     measured: Measurements,
     /// Where the rows of Data Output go, if they are the input.
     rows_to: Option<u16>,
-    /// Nothing gets through, in either direction.
+    /// Nothing is transmitted, in either direction.
     cut_off: bool,
 }
 
@@ -56,7 +56,7 @@ impl Plane {
         }
     }
 
-    /// The simulator hears what came, and sends a frame.
+    /// The simulator reads what arrived, and sends a frame.
     fn frame(&mut self) {
         if self.cut_off {
             self.lose();
@@ -68,14 +68,14 @@ impl Plane {
         }
     }
 
-    /// What was sent gets lost on its way.
+    /// Discards what was sent.
     fn lose(&mut self) {
         let mut buffer = [0; 2_048];
         while self.simulator.socket.recv_from(&mut buffer).is_ok() {}
     }
 }
 
-/// How measurements come.
+/// How measurements are received.
 #[derive(Clone, Copy)]
 enum Way {
     Values,
@@ -131,11 +131,11 @@ impl<C: Case> SensorBench for Bench<C> {
     }
 }
 
-/// Killed, and started again: it knows nobody any more, and another flight.
+/// Killed and started again: it has no subscriptions and another flight.
 impl<C: Case> VanishingSource for Bench<C> {
     /// Half a second, by default.
     const PATIENCE: usize = 20;
-    /// Everything is asked for again every five seconds, by default.
+    /// Everything is requested again every five seconds, by default.
     const BACK_AFTER: usize = 210;
 
     fn vanish(&mut self) {
@@ -203,12 +203,12 @@ impl<C: Case> ActuatorBench for Bench<C> {
     }
 }
 
-/// A cable that is pulled: the simulator flies on as it was last told.
+/// A pulled cable: the simulator continues with the last commands it received.
 impl<C: Case> VanishingPlant for Bench<C> {
-    /// A second until what is written counts as without effect, and what was
-    /// read back before.
+    /// A second until writing counts as without effect, and the age of the last
+    /// readback.
     const PATIENCE: usize = 61;
-    /// Half a second until what comes back agrees, and a sensor that asks
+    /// Half a second until the readback agrees, and a sensor that requests
     /// again every five.
     const BACK_AFTER: usize = 210;
 

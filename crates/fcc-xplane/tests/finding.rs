@@ -33,8 +33,8 @@ fn a_port_that_is_taken_is_refused_with_what_to_do() {
         local_port: taken.local_addr().unwrap().port(),
         ..XPlaneConfig::default()
     };
-    let words = XPlane::open(&config).map(|_| ()).unwrap_err().to_string();
-    assert!(words.contains("choose another local_port"), "{words}");
+    let message = XPlane::open(&config).map(|_| ()).unwrap_err().to_string();
+    assert!(message.contains("choose another local_port"), "{message}");
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn a_beacon_finds_the_simulator_while_running() {
     bench.settle();
     assert!(!bench.measurements.attitude.is_never());
 
-    // Somebody else's beacon changes nothing while this one speaks.
+    // Another simulator's beacon changes nothing while this one sends.
     bench
         .simulator
         .socket
@@ -76,7 +76,7 @@ fn a_beacon_finds_the_simulator_while_running() {
     bench.watch().unwrap();
     assert_eq!(bench.status.simulator(), Some(bench.simulator.address()));
 
-    // Restarted: its beacon brings the subscriptions back at once.
+    // Restarted: its beacon renews the subscriptions at once.
     bench.simulator.listen();
     bench.simulator.restart();
     for _ in 0..41 {
@@ -95,13 +95,13 @@ fn a_beacon_finds_the_simulator_while_running() {
 }
 
 #[test]
-fn discovery_waits_for_a_simulator_that_flies() {
+fn discovery_waits_for_a_simulator_that_computes_a_flight() {
     let group = beacon_address();
     let announcer = std::thread::spawn(move || {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         for _ in 0..40 {
             for datagram in [beacon(1, 2, 1), beacon(49_000, 1, 1)] {
-                // Nobody listens yet, or no more.
+                // The port is not open yet, or no longer.
                 let _ = socket.send_to(&datagram, group);
             }
             std::thread::sleep(Duration::from_millis(5));
@@ -115,7 +115,7 @@ fn discovery_waits_for_a_simulator_that_flies() {
 }
 
 #[test]
-fn discovery_gives_up_in_time_and_says_what_to_do() {
+fn discovery_times_out_and_says_what_to_do() {
     let error = discover(beacon_address(), Duration::from_millis(20)).unwrap_err();
     assert!(matches!(error, DiscoverError::NotFound { .. }));
     assert!(error.to_string().contains("start X-Plane"));

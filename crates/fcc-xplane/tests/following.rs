@@ -1,5 +1,5 @@
-//! Keeping up with an X-Plane that is paused, slowed, killed and restarted: its
-//! states, and the subscriptions that follow it.
+//! An X-Plane that is paused, slowed, killed and restarted: its states, and its
+//! subscriptions.
 
 mod support;
 
@@ -29,7 +29,7 @@ fn a_request_that_got_lost_is_sent_again_after_a_second() {
     bench.simulator.listen();
     let theta = format!("{P}theta");
     bench.simulator.subscribed.retain(|_, path| *path != theta);
-    // It had come until now, so five seconds pass first.
+    // It arrived until now, so five seconds pass first.
     for _ in 0..201 {
         bench.watch().unwrap();
     }
@@ -71,10 +71,10 @@ fn a_dataref_that_x_plane_does_not_have_is_named_with_its_key() {
     }
     let missing = bench.status.missing();
     assert_eq!(missing, [Missing::EngageSwitch(mistyped.into())]);
-    let words = missing[0].to_string();
-    assert!(words.contains("x-plane.engage_switch"), "{words}");
-    assert!(words.contains(mistyped), "{words}");
-    // The rest arrives, and so does the switch once a plugin brings it.
+    let message = missing[0].to_string();
+    assert!(message.contains("x-plane.engage_switch"), "{message}");
+    assert!(message.contains(mistyped), "{message}");
+    // The rest arrives, and so does the switch once a plugin provides it.
     assert_eq!(bench.status.trouble(), None);
     bench.simulator.set(mistyped, 0.0);
     for _ in 0..41 {
@@ -106,17 +106,18 @@ fn rows_that_are_not_switched_on_are_named() {
 fn silence_is_a_fault_and_ends_with_a_new_subscription() {
     let mut bench = Bench::new();
     bench.settle();
-    // Killed: half a second is borne, then it is silent.
+    // Killed: it counts as silent after half a second.
     let faults: Vec<_> = (0..40).map(|_| bench.sample().err()).collect();
     let first = faults.iter().position(Option::is_some);
     assert_eq!(first, Some(20));
     assert_eq!(faults[20], Some(SensorFault::Silent));
     assert_eq!(bench.status.state(), SimulatorState::Silent);
-    let words = bench.status.trouble().unwrap().to_string();
-    assert!(words.contains("does not answer"));
+    let message = bench.status.trouble().unwrap().to_string();
+    assert!(message.contains("does not answer"));
     let last = bench.measurements.attitude.taken;
 
-    // Restarted, with another flight: within 5 s it is asked again.
+    // Restarted, with another flight: within 5 s the values are requested
+    // again.
     bench.simulator.listen();
     bench.simulator.restart();
     bench.simulator.requests = 0;
@@ -136,7 +137,7 @@ fn silence_is_a_fault_and_ends_with_a_new_subscription() {
 }
 
 #[test]
-fn a_simulator_that_never_answers_is_asked_every_five_seconds() {
+fn a_simulator_that_never_answers_gets_requests_every_five_seconds() {
     let mut bench = Bench::new();
     let mut asked = Vec::new();
     for second in 0..21 {
@@ -180,7 +181,7 @@ fn a_jump_is_an_event_of_one_tick() {
 }
 
 #[test]
-fn a_stalled_and_a_slow_clock_are_states_of_their_own() {
+fn a_stalled_and_a_slow_clock_are_separate_states() {
     let mut bench = Bench::new();
     bench.settle();
     for _ in 0..20 {

@@ -1,4 +1,5 @@
-//! Datagrams typed byte by byte from the layouts, against parsers and builders.
+//! Datagrams written out byte by byte from the documented layouts, compared
+//! with parsers and builders.
 
 use fcc_xplane::protocol::beacon::{self, Host, Role};
 use fcc_xplane::protocol::data::{self, Row};
@@ -63,7 +64,7 @@ fn with_fifth<const N: usize>(mut datagram: [u8; N], fifth: u8) -> [u8; N] {
 }
 
 #[test]
-fn the_fifth_byte_is_nobodys_business() {
+fn the_fifth_byte_is_ignored() {
     for fifth in [b'@', b'*', b'O', b',', b'4', 0, 0xff] {
         assert!(data::parse(&with_fifth(DATA_11, fifth)).is_ok());
         assert!(rref::parse(&with_fifth(RREF_11, fifth)).is_ok());
@@ -115,7 +116,7 @@ fn a_position_is_read_in_double_precision() {
 }
 
 #[test]
-fn a_place_that_is_not_on_earth_is_refused() {
+fn a_position_that_is_not_on_earth_is_refused() {
     let mut reply = RPOS_4;
     reply[20] = 0x50; // latitude 4·47.5…
     assert_eq!(rpos::parse(&reply), Err(Malformed::Field));
@@ -154,7 +155,7 @@ fn rows_are_read_with_what_is_not_there_left_out() {
 }
 
 #[test]
-fn a_beacon_says_where_and_what() {
+fn a_beacon_gives_port_and_version() {
     let beacon = beacon::parse(&BECN).unwrap();
     assert_eq!(beacon.minor, 2);
     assert_eq!(beacon.host, Host::XPlane);
@@ -169,7 +170,7 @@ fn a_beacon_says_where_and_what() {
 }
 
 #[test]
-fn a_beacon_of_something_else_is_refused_by_any_one_field() {
+fn a_beacon_with_any_one_wrong_field_is_refused() {
     // (byte, value): major, minor, host, version, role, port
     for (byte, value) in [
         (5, 2),

@@ -1,4 +1,5 @@
-//! Whatever bytes come: nothing panics, and only finite, sane values get out.
+//! Arbitrary datagrams: nothing panics, and only finite, plausible values are
+//! measured.
 
 mod support;
 
@@ -33,8 +34,8 @@ fn datagrams() -> impl Strategy<Value = Vec<u8>> {
         .prop_map(|(tag, body)| [tag, body].concat())
 }
 
-/// Values under small indices: what a simulator gone mad might send.
-fn mad_values() -> impl Strategy<Value = Vec<u8>> {
+/// Values under small indices, as a faulty simulator might send them.
+fn arbitrary_values() -> impl Strategy<Value = Vec<u8>> {
     let value = prop_oneof![any::<f32>(), -400.0..400.0_f32, Just(f32::NAN)];
     vec((-2..40_i32, value), 0..40).prop_map(|pairs| {
         let mut datagram = b"RREF,".to_vec();
@@ -47,7 +48,7 @@ fn mad_values() -> impl Strategy<Value = Vec<u8>> {
 }
 
 /// Rows that are read, with any columns.
-fn mad_rows() -> impl Strategy<Value = Vec<u8>> {
+fn arbitrary_rows() -> impl Strategy<Value = Vec<u8>> {
     let value = prop_oneof![any::<f32>(), -400.0..400.0_f32, Just(-999.0)];
     vec((0..26_i32, vec(value, 8)), 0..12).prop_map(|rows| {
         let mut datagram = b"DATA@".to_vec();
@@ -59,7 +60,7 @@ fn mad_rows() -> impl Strategy<Value = Vec<u8>> {
     })
 }
 
-fn assert_sane(m: &Measurements) {
+fn assert_plausible(m: &Measurements) {
     let turn = core::f64::consts::TAU;
     let half = core::f64::consts::PI;
     let quarter = core::f64::consts::FRAC_PI_2;
@@ -92,7 +93,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
     #[test]
-    fn parsers_take_anything_and_give_finite_values(datagram in datagrams()) {
+    fn parsers_accept_any_datagram_and_give_finite_values(datagram in datagrams()) {
         let kind = Kind::of(&datagram);
         if let Ok(pairs) = rref::parse(&datagram) {
             prop_assert_eq!(kind, Some(Kind::Rref));
@@ -117,7 +118,7 @@ proptest! {
     }
 
     #[test]
-    fn rows_survive_the_way_there_and_back(
+    fn rows_are_unchanged_by_writing_and_parsing(
         rows in vec((any::<i32>(), prop::array::uniform8(prop::option::of(-400.0..400.0_f32))), 0..8)
     ) {
         let rows: Vec<_> = rows
@@ -130,8 +131,8 @@ proptest! {
     }
 
     #[test]
-    fn a_sensor_takes_anything_and_measures_something_sane(
-        ticks in vec(vec(prop_oneof![datagrams(), mad_values(), mad_rows()], 0..4), 1..12),
+    fn a_sensor_accepts_any_datagram_and_measures_plausible_values(
+        ticks in vec(vec(prop_oneof![datagrams(), arbitrary_values(), arbitrary_rows()], 0..4), 1..12),
         by_rows: bool,
         version in prop_oneof![
             Just(RowsVersion::XPlane9),
@@ -155,7 +156,7 @@ proptest! {
         let mut measurements = Measurements::default();
         for _ in 0..ticks.len() {
             let _ = sensor.sample(&clock.next(), &mut measurements);
-            assert_sane(&measurements);
+            assert_plausible(&measurements);
         }
     }
 }

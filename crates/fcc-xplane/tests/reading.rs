@@ -1,5 +1,4 @@
-//! What a minimal X-Plane on the loopback interface sends, and what of it is
-//! measured.
+//! Measurements from what a minimal X-Plane on the loopback interface sends.
 
 mod support;
 
@@ -38,7 +37,7 @@ fn everything_subscribed_arrives_in_si_units() {
     // Not accelerated: one g, whatever the attitude.
     let f = m.specific_force.value;
     close(f.x_mps2.hypot(f.y_mps2).hypot(f.z_mps2), 9.80665);
-    // A millimetre of latitude is 1e-8 deg: it must survive.
+    // A millimetre of latitude is 1e-8 deg and must be preserved.
     assert!((m.position.value.latitude_rad.to_degrees() - 47.463_620_45).abs() < 1e-12);
     assert!((m.position.value.longitude_rad.to_degrees() + 122.309_308_12).abs() < 1e-12);
     close(m.position.value.altitude_m, 1_234.5);
@@ -86,7 +85,7 @@ fn a_simulator_is_reached_by_ipv6_and_by_its_name() {
 }
 
 #[test]
-fn what_holds_the_controls_by_ipv6_is_released_from_outside() {
+fn controls_held_over_ipv6_are_released_from_outside() {
     let mut bench = Bench::on(FakeXPlane::at("[::1]:0"), |_| {});
     bench.settle();
     bench.fly().unwrap();
@@ -102,7 +101,7 @@ fn what_holds_the_controls_by_ipv6_is_released_from_outside() {
 }
 
 #[test]
-fn the_switch_of_the_users_choice_engages() {
+fn the_configured_switch_engages() {
     let mut bench = Bench::with(|config| config.engage_switch = "my/plugin/engage[2]".into());
     bench.simulator.set("my/plugin/engage[2]", 1.0);
     bench.settle();
@@ -164,7 +163,7 @@ fn a_tick_reads_no_more_datagrams_than_configured() {
 }
 
 #[test]
-fn lost_doubled_and_reordered_datagrams_disturb_nothing() {
+fn lost_duplicated_and_reordered_datagrams_change_nothing() {
     let mut bench = Bench::new();
     bench.settle();
     let mut held_back: Option<Vec<u8>> = None;
@@ -213,7 +212,7 @@ fn a_cut_datagram_is_reported_and_left_out() {
 }
 
 #[test]
-fn rows_of_data_output_fly_as_well() {
+fn rows_of_data_output_give_all_measurements() {
     let free = free_port();
     let mut bench = Bench::with(|config| {
         config.local_port = free;

@@ -13,8 +13,8 @@ use support::{FLIGHT_TIME, FakeXPlane, Ticks};
 
 const TICKS: u32 = 400;
 
-/// Everything that can be seen of a flight from outside, tick by tick. As text,
-/// which distinguishes every bit of a number.
+/// Everything that is observable of a flight from outside, tick by tick, as
+/// text, which distinguishes every bit of a number.
 fn flown(output: Output, warm_up: bool) -> String {
     let mut simulator = FakeXPlane::new();
     let mut config = simulator.config();
@@ -29,7 +29,7 @@ fn flown(output: Output, warm_up: bool) -> String {
             elevator: (f64::from(number) * 0.01).sin(),
             ..Surfaces::default()
         };
-        // Alive, silent, set back, garbled, overtaken.
+        // Sending, silent, set back, corrupted, overtaken.
         if !(150..200).contains(&number) {
             simulator.live(0.025);
         }
@@ -68,7 +68,7 @@ fn flown(output: Output, warm_up: bool) -> String {
 }
 
 #[test]
-fn a_flight_with_warm_up_is_the_flight_without() {
+fn warm_up_does_not_change_a_flight() {
     for output in [Output::Dref, Output::Data] {
         let without = flown(output, false);
         let with = flown(output, true);

@@ -1,5 +1,5 @@
 //! Taking the controls of a minimal X-Plane on the loopback interface, writing
-//! them, and giving them back on every way out.
+//! them, and releasing them on every exit path.
 
 mod support;
 
@@ -48,7 +48,7 @@ fn control_is_taken_written_and_confirmed() {
 #[test]
 fn control_is_taken_only_where_it_is_allowed() {
     let mut bench = Bench::new();
-    bench.status.ask_first();
+    bench.status.require_permission();
     bench.settle();
     let here = bench.simulator.address();
     let elsewhere = SocketAddr::new(here.ip(), here.port() ^ 1);
@@ -81,7 +81,7 @@ fn an_override_that_got_lost_is_set_again_within_a_second() {
 }
 
 #[test]
-fn release_centres_and_lets_go() {
+fn a_release_centres_and_clears_the_overrides() {
     let mut bench = Bench::new();
     bench.settle();
     for _ in 0..40 {
@@ -95,7 +95,7 @@ fn release_centres_and_lets_go() {
         bench.watch().unwrap();
     }
     assert_eq!(bench.status.control(), Control::Free);
-    // Again, and at the end: there is nothing left to give back.
+    // Again, and at the end: there is nothing left to release.
     bench.simulator.writes.clear();
     bench.actuator.as_mut().unwrap().release().unwrap();
     drop(bench.actuator.take());
@@ -104,7 +104,7 @@ fn release_centres_and_lets_go() {
 }
 
 #[test]
-fn dropping_lets_go() {
+fn dropping_releases() {
     let mut bench = Bench::new();
     bench.settle();
     for _ in 0..40 {
@@ -116,7 +116,7 @@ fn dropping_lets_go() {
 }
 
 #[test]
-fn unwinding_lets_go() {
+fn unwinding_releases() {
     let mut bench = Bench::new();
     bench.settle();
     bench.fly().unwrap();
@@ -131,7 +131,7 @@ fn unwinding_lets_go() {
 }
 
 #[test]
-fn what_was_never_taken_is_not_let_go() {
+fn controls_that_were_never_taken_are_not_released() {
     let mut bench = Bench::new();
     bench.settle();
     bench.actuator.as_mut().unwrap().release().unwrap();
@@ -191,9 +191,9 @@ fn writing_into_a_firewall_is_unconfirmed_and_says_which_setting() {
     assert_eq!(faults[59], Some(ActuatorFault::Unconfirmed));
     let trouble = bench.status.trouble().unwrap();
     assert_eq!(trouble, Trouble::Unconfirmed(bench.simulator.address()));
-    let words = trouble.to_string();
-    assert!(words.contains("Settings > Network > Accept incoming connections"));
-    assert!(words.contains("firewall"));
+    let message = trouble.to_string();
+    assert!(message.contains("Settings > Network > Accept incoming connections"));
+    assert!(message.contains("firewall"));
 
     bench.simulator.accepts_writes = true;
     for _ in 0..41 {
@@ -222,7 +222,7 @@ fn after_a_crash_the_controls_can_be_released_from_outside() {
 }
 
 #[test]
-fn by_rows_it_is_written_confirmed_and_let_go_just_the_same() {
+fn with_rows_controls_are_written_confirmed_and_released_too() {
     let mut bench = Bench::with(|config| config.output = Output::Data);
     bench.settle();
     for tick in 0..100 {

@@ -1,10 +1,10 @@
-//! A pilot for tests: loops just good enough to hold a steady state that is to
-//! be measured.
+//! A simple controller for tests, sufficient to hold a steady state to be
+//! measured.
 
 use fcc_core::flight::Surfaces;
 use fcc_sim::{Aircraft, Truth};
 
-/// A pilot, with what hands and feet have learned so far.
+/// The controller with the state of its integrators.
 #[derive(Default)]
 pub(crate) struct Pilot {
     elevator: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Pilot {
 
 impl Pilot {
     /// Flies at a throttle and a bank for a time, at 40 Hz, with the pitch
-    /// that `wanted_pitch` says.
+    /// given by `wanted_pitch`.
     pub(crate) fn fly(
         &mut self,
         aircraft: &mut Aircraft,
@@ -29,7 +29,8 @@ impl Pilot {
             let bank_error = bank_rad - now.roll_rad;
             self.elevator += 0.03 * pitch_error;
             self.aileron += 0.02 * bank_error;
-            // Step on the ball: it rolls right when the aircraft is pushed left.
+            // Coordinate with the rudder towards the ball, which moves right
+            // when the side force is to the left.
             self.rudder -= 0.002 * now.specific_force.y_mps2;
             let elevator = 2.0 * pitch_error + self.elevator - 0.5 * now.rates.pitch_radps;
             let aileron = 2.0 * bank_error + self.aileron - 0.3 * now.rates.roll_radps;

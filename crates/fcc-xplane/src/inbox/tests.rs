@@ -23,7 +23,7 @@ impl Bench {
         }
     }
 
-    /// A tick in which these datagrams come.
+    /// A tick in which these datagrams arrive.
     fn tick(&mut self, datagrams: &[Vec<u8>]) -> SimulatorState {
         self.now = self.now + TICK;
         self.inbox.begin();
@@ -88,7 +88,7 @@ fn an_overtaken_datagram_is_dropped_whole_and_a_doubled_one_is_harmless() {
 }
 
 #[test]
-fn a_loaded_flight_is_seen_as_a_jump_and_followed() {
+fn a_loaded_flight_is_reported_as_a_jump_and_followed() {
     let mut bench = Bench::new(None);
     bench.tick(&[values(&[(Quantity::FlightTime, 500.0)])]);
     let state = bench.tick(&[values(&[(Quantity::FlightTime, 3.0)])]);
@@ -107,7 +107,7 @@ fn a_heading_just_west_of_north_stays_below_a_full_turn() {
 }
 
 #[test]
-fn what_is_not_a_number_leaves_the_reading_to_grow_old() {
+fn nan_leaves_the_old_reading() {
     let mut bench = Bench::new(None);
     bench.tick(&[values(&[(Quantity::Altitude, 3_000.0)])]);
     let before = bench.measurements.altitude_m;
@@ -118,10 +118,10 @@ fn what_is_not_a_number_leaves_the_reading_to_grow_old() {
     }
 }
 
-/// What hangs is the same to the last bit while the aircraft rolls; what moves
-/// is not.
+/// Repeated accelerations give a force that is unchanged to the last bit while
+/// the aircraft rolls; new ones do not.
 #[test]
-fn accelerations_that_hang_give_a_force_that_hangs() {
+fn frozen_accelerations_give_a_frozen_force() {
     let frame = |east: f32, roll_deg: f32| {
         values(&[
             (Quantity::AccelerationEast, east),
@@ -136,9 +136,9 @@ fn accelerations_that_hang_give_a_force_that_hangs() {
     bench.tick(&[frame(1.0, 0.0)]);
     let first = bench.measurements.specific_force;
     bench.tick(&[frame(1.0, 30.0)]);
-    let hanging = bench.measurements.specific_force;
-    assert_eq!(hanging.value, first.value);
-    assert!(hanging.taken > first.taken);
+    let frozen = bench.measurements.specific_force;
+    assert_eq!(frozen.value, first.value);
+    assert!(frozen.taken > first.taken);
     bench.tick(&[frame(1.1, 30.0)]);
     assert_ne!(bench.measurements.specific_force.value, first.value);
 }
@@ -170,14 +170,14 @@ fn rows_of_eleven_and_twelve_give_the_same_rates() {
 
 #[test]
 fn rows_fill_every_measurement_one_datagram_each_or_all_in_one() {
-    let gone = -999.0;
+    let absent = -999.0;
     let all = [
-        row(1, [70.0, 65.0, 60.0, 0.0, gone, 12.0, 12.0, 1.0]),
-        row(3, [90.0, 91.0, 95.0, 94.0, gone, 103.6, 109.3, 108.2]),
-        row(4, [0.14, gone, 500.0, gone, 1.5, 0.1, -0.05, gone]),
-        row(16, [0.1, 0.2, 0.3, gone, gone, gone, gone, gone]),
-        row(17, [5.0, -15.0, 80.0, 90.0, gone, gone, gone, gone]),
-        row(18, [4.0, 0.5, 80.0, 1.0, gone, gone, gone, 0.1]),
+        row(1, [70.0, 65.0, 60.0, 0.0, absent, 12.0, 12.0, 1.0]),
+        row(3, [90.0, 91.0, 95.0, 94.0, absent, 103.6, 109.3, 108.2]),
+        row(4, [0.14, absent, 500.0, absent, 1.5, 0.1, -0.05, absent]),
+        row(16, [0.1, 0.2, 0.3, absent, absent, absent, absent, absent]),
+        row(17, [5.0, -15.0, 80.0, 90.0, absent, absent, absent, absent]),
+        row(18, [4.0, 0.5, 80.0, 1.0, absent, absent, absent, 0.1]),
         row(
             20,
             [47.5, -122.25, 3_280.84, 900.0, 0.0, 3_000.0, 47.0, -122.0],
@@ -226,7 +226,7 @@ fn magnetic_heading_is_read_from_the_configured_column() {
 }
 
 #[test]
-fn rows_that_are_for_somebody_else_are_left_alone() {
+fn rows_for_another_program_are_ignored() {
     let mut bench = Bench::new(None);
     bench.tick(&[rows(&[row(17, [5.0; 8])])]);
     assert_eq!(bench.measurements, Measurements::default());

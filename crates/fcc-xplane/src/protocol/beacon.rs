@@ -1,12 +1,12 @@
-//! `BECN`: the multicast by which X-Plane says where it is.
+//! `BECN`: the multicast beacon by which X-Plane announces its address.
 //!
 //! After the header: u8 major, u8 minor, i32 host, i32 version, u32 role, u16
 //! port, then the computer's name up to a NUL.
 //!
-//! Sources conflict on whether the name has a fixed length, so it is read up
-//! to the NUL or the end, whichever comes first. Another plugin sends a
-//! different beacon under the same four letters (on port 49710), so every
-//! field is checked before any is believed.
+//! Sources conflict on whether the name has a fixed length, so it is read up to
+//! the NUL or the end, whichever comes first. Another plugin sends a different
+//! beacon under the same four letters (on port 49710), so every field is
+//! checked before any is used.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 
@@ -15,12 +15,12 @@ use super::{Kind, Malformed, body, fields};
 /// Where X-Plane sends its beacon.
 pub const GROUP: SocketAddrV4 = SocketAddrV4::new(Ipv4Addr::new(239, 255, 1, 1), 49_707);
 
-/// The beacon's own version that is known; the minor number (1 in X-Plane
-/// 10.40, 2 in 11.50) only ever added to the end.
+/// The supported major version of the beacon; increments of the minor version
+/// (1 in X-Plane 10.40, 2 in 11.50) have only appended fields.
 const MAJOR: u8 = 1;
-/// X-Plane 9 and 99: whatever is outside was not written by X-Plane.
+/// Versions from X-Plane 9 to 99: a beacon outside this range is not X-Plane's.
 const VERSIONS: core::ops::RangeInclusive<i32> = 90_000..=999_999;
-/// Longer than any computer's name.
+/// An upper bound for the length of a computer's name.
 const LONGEST_NAME: usize = 500;
 
 /// What sends the beacon.
@@ -28,16 +28,16 @@ const LONGEST_NAME: usize = 500;
 pub enum Host {
     /// X-Plane itself.
     XPlane,
-    /// Plane Maker, which flies nothing.
+    /// Plane Maker, which computes no flight.
     PlaneMaker,
 }
 
-/// What an X-Plane of several on a network does.
+/// The role of an X-Plane in a network of several.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
-    /// Computes the flight: the one to talk to.
+    /// Computes the flight: the one to connect to.
     Master,
-    /// Draws what a master computes.
+    /// Displays what a master computes.
     ExternalVisual,
     /// An instructor's station.
     Instructor,
@@ -52,7 +52,7 @@ pub struct Beacon<'a> {
     pub host: Host,
     /// X-Plane's version: 115501 is 11.55r01.
     pub version: u32,
-    /// What the sender does in its network.
+    /// The sender's role in its network.
     pub role: Role,
     /// The UDP port it listens on.
     pub port: u16,
@@ -61,7 +61,7 @@ pub struct Beacon<'a> {
 }
 
 impl Beacon<'_> {
-    /// Whether this sender computes a flight that can be flown from here.
+    /// Whether this sender computes a flight that can be controlled from here.
     pub const fn is_flyable(&self) -> bool {
         matches!(self.host, Host::XPlane) && matches!(self.role, Role::Master)
     }
@@ -97,12 +97,12 @@ pub fn parse(datagram: &[u8]) -> Result<Beacon<'_>, Malformed> {
         3 => Role::Instructor,
         _ => return Err(Malformed::Field),
     };
-    let believable = major == MAJOR
+    let plausible = major == MAJOR
         && minor > 0
         && VERSIONS.contains(&version)
         && port != 0
         && name.len() <= LONGEST_NAME;
-    if !believable {
+    if !plausible {
         return Err(Malformed::Field);
     }
     Ok(Beacon {

@@ -1,17 +1,17 @@
 //! `DATA`: the rows of X-Plane's Data Output, in and out.
 //!
 //! Header, then any number of rows of 36 bytes: i32 row index and eight f32.
-//! One row a datagram is seen as well as many. -999 means "not there" from
-//! X-Plane, and "leave as it is" to X-Plane: both are `None` here.
+//! Datagrams with one row occur as well as with many. -999 means "not there"
+//! from X-Plane, and "leave as it is" to X-Plane: both are `None` here.
 
 use super::{HEADER_BYTES, Kind, Malformed, body};
 
 /// The size of a row.
 pub const ROW_BYTES: usize = 36;
-/// What stands for "not there" and "leave as it is".
+/// The value that means "not there" and "leave as it is".
 pub const ABSENT: f32 = -999.0;
 
-/// One row: what its columns mean depends on its index.
+/// One row. The meaning of its columns depends on its index.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Row {
     /// The number that X-Plane's Data Output page shows for it.
@@ -20,7 +20,7 @@ pub struct Row {
     pub columns: [Option<f32>; 8],
 }
 
-/// The size of a datagram of so many rows.
+/// The size of a datagram with this many rows.
 pub const fn size(rows: usize) -> usize {
     HEADER_BYTES + rows * ROW_BYTES
 }
@@ -50,7 +50,7 @@ impl Iterator for Rows<'_> {
             let (columns, _) = columns.as_chunks::<4>();
             let mut read = columns.iter().map(|column| {
                 let value = f32::from_le_bytes(*column);
-                // X-Plane sends this very number; nothing is computed from it.
+                // X-Plane sends exactly this number; it is not computed.
                 let there = value.is_finite() && value.to_bits() != ABSENT.to_bits();
                 there.then_some(value)
             });

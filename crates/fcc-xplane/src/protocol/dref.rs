@@ -21,7 +21,7 @@ pub fn write(into: &mut [u8; WRITE_BYTES], value: f32, path: &str) -> Result<(),
     Ok(())
 }
 
-/// Changes the value of a write made before, and nothing else of it.
+/// Changes the value of an existing write, and nothing else.
 pub fn set_value(write: &mut [u8; WRITE_BYTES], value: f32) {
     let place = write.iter_mut().skip(HEADER_BYTES);
     for (place, byte) in place.zip(value.to_le_bytes()) {

@@ -1,6 +1,6 @@
 //! Reading and writing packed little-endian fields in order.
 
-/// What is left to read of a datagram.
+/// The part of a datagram that has not been read yet.
 #[derive(Clone, Copy)]
 pub(super) struct Fields<'a>(&'a [u8]);
 
@@ -31,28 +31,28 @@ impl<'a> Fields<'a> {
         self.take().map(i32::from_le_bytes)
     }
 
-    /// A finite number; `None` for an infinity or a NaN as for bytes missing.
+    /// A finite number; `None` for an infinity, a NaN or missing bytes.
     pub(super) fn f32(&mut self) -> Option<f32> {
         self.take()
             .map(f32::from_le_bytes)
             .filter(|v| v.is_finite())
     }
 
-    /// A finite number; `None` for an infinity or a NaN as for bytes missing.
+    /// A finite number; `None` for an infinity, a NaN or missing bytes.
     pub(super) fn f64(&mut self) -> Option<f64> {
         self.take()
             .map(f64::from_le_bytes)
             .filter(|v| v.is_finite())
     }
 
-    /// All that is left.
+    /// All remaining bytes.
     pub(super) const fn rest(self) -> &'a [u8] {
         self.0
     }
 }
 
-/// Writes `parts` one after the other and fills what is left with zeros; parts
-/// that no longer fit are left out (callers size their buffers so that all do).
+/// Writes `parts` one after the other and fills the rest with zeros; parts that
+/// do not fit are left out (callers size their buffers so that all do).
 pub(super) fn fill(into: &mut [u8], parts: &[&[u8]]) {
     let mut bytes = parts.iter().flat_map(|part| part.iter().copied());
     for place in into {

@@ -1,9 +1,9 @@
-//! X-Plane's messages as bytes: parsing and building, and nothing else.
+//! X-Plane's messages as bytes: parsing and building only.
 //!
-//! Everything here works on slices that the caller owns. Nothing reads a
-//! socket or a clock, allocates, or can panic: every length, tag, count and
-//! field is checked, and what is not understood is an error value or is left
-//! out. All numbers are packed and little-endian.
+//! All functions work on slices owned by the caller. None reads a socket or a
+//! clock, allocates, or can panic: every length, tag, count and field is
+//! checked; what is not understood is reported as an error or left out. All
+//! numbers are packed and little-endian.
 //!
 //! Messages begin with four letters and a fifth byte. From X-Plane that byte
 //! is for X-Plane's own use and differs by version (`DATA@` and `DATA*`,
@@ -37,8 +37,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What a datagram claims to be, by its first four bytes; `None` if it is
-    /// something else or shorter than a header.
+    /// The kind of a datagram by its first four bytes; `None` if it is unknown
+    /// or shorter than a header.
     pub fn of(datagram: &[u8]) -> Option<Self> {
         let (header, _) = datagram.split_first_chunk::<HEADER_BYTES>()?;
         let [a, b, c, d, _] = *header;
@@ -59,16 +59,16 @@ pub enum Malformed {
     /// than five.
     #[error("the datagram is another message")]
     Tag,
-    /// The length fits no whole number of entries: it was cut, or has another
+    /// The length is not a whole number of entries: it was cut, or has another
     /// layout.
-    #[error("the datagram's length fits no whole number of entries")]
+    #[error("the datagram's length is not a whole number of entries")]
     Length,
-    /// A field holds what it cannot hold.
+    /// A field is out of its range.
     #[error("a field is out of its range")]
     Field,
 }
 
-/// What follows the header, if the datagram is of this kind.
+/// The bytes after the header, if the datagram is of this kind.
 fn body(datagram: &[u8], kind: Kind) -> Result<&[u8], Malformed> {
     if Kind::of(datagram) != Some(kind) {
         return Err(Malformed::Tag);

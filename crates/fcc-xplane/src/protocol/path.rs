@@ -1,14 +1,14 @@
-//! What a dataref's path may look like on the wire.
+//! Which dataref paths can be sent.
 
 /// Why a path cannot be sent.
 #[derive(thiserror::Error, Clone, Copy, PartialEq, Eq, Debug)]
 pub enum PathError {
-    /// There is nothing in it.
+    /// It is empty.
     #[error("the dataref path is empty: write one such as sim/time/paused")]
     Empty,
-    /// It holds a blank, a control character or a letter outside ASCII.
+    /// It contains a blank, a control character or a letter outside ASCII.
     #[error(
-        "the dataref path holds a character that no dataref has: use letters, digits, / _ [ ] only"
+        "the dataref path contains a character that no dataref has: use letters, digits, / _ [ ] only"
     )]
     NotPrintable,
     /// It does not fit the message with its closing NUL.
@@ -16,7 +16,7 @@ pub enum PathError {
     TooLong {
         /// Its length in bytes.
         length: usize,
-        /// The most that fit.
+        /// The longest path that fits.
         limit: usize,
     },
 }

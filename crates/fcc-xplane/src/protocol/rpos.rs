@@ -3,17 +3,17 @@
 //! The reply is 69 bytes: header, f64 longitude, latitude (deg) and elevation
 //! (m above mean sea level), f32 height above ground (m), pitch, true heading,
 //! roll (deg), velocity east, up, south (m/s), and P, Q, R (rad/s). It carries
-//! no time, so an old one that arrives late cannot be told from a new one.
+//! no time, so a late old one cannot be distinguished from a new one.
 
 use super::{Kind, Malformed, body, fields};
 
-/// The most that a request takes: header, five digits, NUL.
+/// The maximum size of a request: header, five digits, NUL.
 pub const REQUEST_BYTES: usize = 11;
-/// The size of a reply. A longer one is read as far as it is known.
+/// The size of a reply. Of a longer one only the known fields are read.
 pub const REPLY_BYTES: usize = 69;
 
 /// Writes a request for `frequency_hz` replies a second (0 stops them), and
-/// returns the part of the buffer to send. The number goes as ASCII digits.
+/// returns the part of the buffer to send. The number is sent as ASCII digits.
 pub fn request(into: &mut [u8; REQUEST_BYTES], frequency_hz: u16) -> &[u8] {
     let places = [10_000, 1_000, 100, 10, 1];
     let mut digits = [0_u8; 5];
@@ -68,7 +68,7 @@ pub struct Rpos {
 ///
 /// # Errors
 /// When it is another message or too short, or when a field is not finite or
-/// the place is not on Earth.
+/// the position is not on Earth.
 pub fn parse(datagram: &[u8]) -> Result<Rpos, Malformed> {
     let body = body(datagram, Kind::Rpos)?;
     if datagram.len() < REPLY_BYTES {

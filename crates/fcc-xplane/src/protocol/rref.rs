@@ -1,10 +1,10 @@
-//! `RREF`: ask X-Plane to send a dataref's value so and so often, and read the
-//! values that come.
+//! `RREF`: request a dataref's value at a given rate, and read the values that
+//! arrive.
 //!
 //! A request is 413 bytes: header, i32 frequency in Hz, i32 index of the
-//! caller's choice, path\[400\]. The values come back to the sender's own
-//! address and port, as any number of pairs (i32 index, f32 value) in any
-//! command; up to 183 pairs are seen in one datagram.
+//! caller's choice, path\[400\]. The values are sent to the requester's address
+//! and port, as any number of pairs (i32 index, f32 value) in any order;
+//! datagrams with up to 183 pairs have been observed.
 
 use super::{HEADER_BYTES, Kind, Malformed, PathError, body, check_path, fields};
 
@@ -16,8 +16,8 @@ pub const PATH_BYTES: usize = 400;
 const PAIR_BYTES: usize = 8;
 
 /// Writes a request: send the value of `path` under `index`, `frequency_hz`
-/// times a second; 0 ends what runs under this index. A new request under an
-/// index takes the place of the one before.
+/// times a second; 0 ends the subscription under this index. A new request
+/// under an index replaces the previous one.
 ///
 /// # Errors
 /// When the path cannot be sent; the buffer is then as it was.
@@ -40,7 +40,7 @@ pub fn request(
     Ok(())
 }
 
-/// Changes how often a request made before asks, and nothing else of it.
+/// Changes the frequency of an existing request, and nothing else.
 pub fn set_frequency(request: &mut [u8; REQUEST_BYTES], frequency_hz: u16) {
     let place = request.iter_mut().skip(HEADER_BYTES);
     for (place, byte) in place.zip(i32::from(frequency_hz).to_le_bytes()) {

@@ -20,21 +20,21 @@ impl Bench {
         }
     }
 
-    fn tell(&mut self, word: Word) -> SimulatorState {
+    fn receive(&mut self, report: SimulatorReport) -> SimulatorState {
         self.now = self.now + Self::TICK;
         self.clock.begin();
-        self.clock.receive(self.now, word);
+        self.clock.receive(self.now, report);
         self.clock.state(self.now)
     }
 
-    /// So many ticks in which the simulator's time runs at this pace.
+    /// Runs ticks in which the simulator's time runs at this pace.
     fn fly(&mut self, ticks: u32, pace: f64) -> SimulatorState {
         let mut state = SimulatorState::Silent;
         for _ in 0..ticks {
             self.time_s += 0.025 * pace;
-            state = self.tell(Word {
+            state = self.receive(SimulatorReport {
                 time_s: Some(self.time_s),
-                ..Word::default()
+                ..SimulatorReport::default()
             });
         }
         state
@@ -42,7 +42,7 @@ impl Bench {
 }
 
 #[test]
-fn nothing_heard_is_silence_and_the_first_word_ends_it() {
+fn nothing_received_is_silence_and_the_first_report_ends_it() {
     let mut bench = Bench::new();
     assert_eq!(bench.clock.state(bench.now), SimulatorState::Silent);
     assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
@@ -53,24 +53,24 @@ fn nothing_heard_is_silence_and_the_first_word_ends_it() {
 }
 
 #[test]
-fn paused_is_not_stalled_and_going_on_is_not_slow() {
+fn paused_is_not_stalled_and_continuing_is_not_slow() {
     let mut bench = Bench::new();
     bench.fly(80, 1.0);
     let time_s = Some(bench.time_s);
-    let still = |paused| Word {
+    let still = |paused| SimulatorReport {
         time_s,
         paused: Some(paused),
-        ..Word::default()
+        ..SimulatorReport::default()
     };
     for _ in 0..400 {
-        assert_eq!(bench.tell(still(true)), SimulatorState::Paused);
+        assert_eq!(bench.receive(still(true)), SimulatorState::Paused);
     }
-    assert_eq!(bench.tell(still(false)), SimulatorState::Running);
+    assert_eq!(bench.receive(still(false)), SimulatorState::Running);
     assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
 }
 
 #[test]
-fn a_clock_that_stands_still_is_stalled_after_a_quarter_of_a_second() {
+fn a_stopped_clock_is_stalled_after_a_quarter_of_a_second() {
     let mut bench = Bench::new();
     bench.fly(80, 1.0);
     // A quarter of a second short of a second is slow before it is stalled.
@@ -101,10 +101,10 @@ fn frames_longer_than_a_twentieth_of_a_second_are_slow() {
     bench.fly(80, 1.0);
     let frames = |bench: &mut Bench, period_s| {
         bench.time_s += 0.025;
-        bench.tell(Word {
+        bench.receive(SimulatorReport {
             time_s: Some(bench.time_s),
             frame_period_s: Some(period_s),
-            ..Word::default()
+            ..SimulatorReport::default()
         })
     };
     assert_eq!(frames(&mut bench, 0.049), SimulatorState::Running);
@@ -139,8 +139,8 @@ fn a_datagram_overtaken_by_less_than_a_second_is_late() {
     assert!(!bench.clock.is_late(now, time_s), "the same frame again");
     assert!(!bench.clock.is_late(now, time_s + 0.01));
     assert!(!bench.clock.is_late(now, time_s - 1.0), "that is a jump");
-    // A flight loaded within its first second and paused there must not be
-    // taken for late for ever.
+    // A flight loaded within its first second and paused there must not count
+    // as late for ever.
     let later = now + LATE;
     assert!(!bench.clock.is_late(later, time_s - 0.5));
 }
@@ -152,7 +152,7 @@ fn silence_in_between_is_neither_a_jump_nor_slow() {
     bench.now = bench.now + Duration::from_secs(10);
     bench.time_s += 10.0;
     assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
-    // Ten seconds in which the simulator stood still.
+    // Ten seconds in which the simulator's time did not advance.
     bench.now = bench.now + Duration::from_secs(10);
     assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
     assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
@@ -168,10 +168,14 @@ fn a_tenth_of_the_datagrams_lost_changes_nothing() {
             continue;
         }
         let time_s = Some(bench.time_s);
-        let word = Word {
+        let report = SimulatorReport {
             time_s,
-            ..Word::default()
+            ..SimulatorReport::default()
         };
-        assert_eq!(bench.tell(word), SimulatorState::Running, "tick {tick}");
+        assert_eq!(
+            bench.receive(report),
+            SimulatorState::Running,
+            "tick {tick}"
+        );
     }
 }

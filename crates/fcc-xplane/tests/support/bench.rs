@@ -1,9 +1,9 @@
 //! Sensor and actuator, a minimal X-Plane on the loopback interface, and a loop
 //! between them.
 //!
-//! Loopback delivers before `send` returns, and the ticks' time is the test's
-//! own, so minutes of flight pass in milliseconds and nothing depends on how
-//! fast this machine is.
+//! The loopback interface delivers before `send` returns, and the time of the
+//! ticks is set by the test, so minutes of flight take milliseconds and nothing
+//! depends on the speed of the machine.
 
 use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault};
@@ -58,7 +58,7 @@ impl Bench {
         self.sensor.sample(&tick, &mut self.measurements)
     }
 
-    /// A tick in which the simulator lives and the loop only watches.
+    /// A tick in which the simulator runs and the loop only reads.
     pub fn watch(&mut self) -> Result<(), SensorFault> {
         self.simulator.live(0.025);
         self.sample()
@@ -72,10 +72,10 @@ impl Bench {
         self.actuator.as_mut().unwrap().apply(&tick, &SURFACES)
     }
 
-    /// Watches until the subscriptions have settled.
+    /// Reads until all subscriptions are active.
     pub fn settle(&mut self) {
         for _ in 0..8 {
-            // Silent in the first of them.
+            // It is silent in the first tick.
             let _ = self.watch();
         }
         self.watch().unwrap();
@@ -90,7 +90,7 @@ impl Bench {
         for path in [YOKE_PITCH, YOKE_ROLL, YOKE_HEADING] {
             self.simulator.assert_shows(path, 0.0);
         }
-        // Three times over, each time the surfaces before the overrides.
+        // Three times, each time the surfaces before the overrides.
         let writes = &self.simulator.writes;
         assert_eq!(writes.len(), 15);
         for round in writes.chunks(5) {

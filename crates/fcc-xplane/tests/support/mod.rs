@@ -1,5 +1,5 @@
-//! What the tests share: a minimal X-Plane on a loopback socket, written from
-//! the layouts and not from the crate's own builders, and a clock of ticks.
+//! Shared by the tests: a minimal X-Plane on a loopback socket, written from
+//! the layouts and not with the crate's own builders, and a clock of ticks.
 #![allow(
     dead_code,
     unreachable_pub,
@@ -35,14 +35,15 @@ pub const THROTTLE: &str = "sim/flightmodel/engine/ENGN_thro_use[0]";
 pub const FLIGHT_TIME: &str = "sim/time/total_flight_time_sec";
 pub const PAUSED: &str = "sim/time/paused";
 
-/// A minimal X-Plane: keeps what it is asked and told, sends when told to.
+/// A minimal X-Plane: stores requests and writes, and sends frames when the
+/// test calls for them.
 pub struct FakeXPlane {
     pub socket: UdpSocket,
-    /// Who asked last.
+    /// The last requester.
     pub client: Option<SocketAddr>,
     /// Index -> path.
     pub subscribed: HashMap<i32, String>,
-    /// Requests of every kind, in all.
+    /// The number of requests of every kind.
     pub requests: usize,
     pub position_hz: Option<String>,
     /// Longitude, latitude (deg), elevation (m).
@@ -50,7 +51,7 @@ pub struct FakeXPlane {
     pub values: HashMap<String, f32>,
     /// Every write in its order.
     pub writes: Vec<(String, f32)>,
-    /// Whether writes take effect: off is a firewall.
+    /// Whether writes take effect; off simulates a firewall.
     pub accepts_writes: bool,
 }
 
@@ -122,7 +123,7 @@ impl FakeXPlane {
         }
     }
 
-    /// Forgets whom to send to, as a restarted X-Plane.
+    /// Discards all subscriptions, like a restarted X-Plane.
     pub fn restart(&mut self) {
         self.subscribed.clear();
         self.client = None;
@@ -140,7 +141,7 @@ impl FakeXPlane {
         self.values[path]
     }
 
-    /// Takes in all that came.
+    /// Reads all datagrams that arrived.
     pub fn listen(&mut self) {
         let mut buffer = [0; 2_048];
         while let Ok((length, from)) = self.socket.recv_from(&mut buffer) {
@@ -233,7 +234,7 @@ impl FakeXPlane {
         }
     }
 
-    /// One tick of its life: listens, lets time pass, sends a frame.
+    /// One tick: reads, lets time pass, sends a frame.
     pub fn live(&mut self, seconds: f32) {
         self.listen();
         self.send_next_frame(seconds);
@@ -313,7 +314,7 @@ pub fn free_port() -> u16 {
     socket.local_addr().unwrap().port()
 }
 
-/// A reply to RPOS, typed from the layout.
+/// A reply to RPOS, written out from the layout.
 pub fn position_reply(place: [f64; 3]) -> Vec<u8> {
     let mut datagram = b"RPOS4".to_vec();
     for field in place {
@@ -327,7 +328,7 @@ pub fn position_reply(place: [f64; 3]) -> Vec<u8> {
     datagram
 }
 
-/// Ticks at 40 Hz on a clock of the test's own: nothing waits.
+/// Ticks at 40 Hz on a clock set by the test: nothing waits.
 pub struct Ticks {
     number: u64,
     pub now: Time,
@@ -354,8 +355,8 @@ impl Ticks {
     }
 }
 
-/// Datagrams handed in without a socket, all from one address; what is sent is
-/// forgotten.
+/// Supplies datagrams without a socket, all from one address; what is sent is
+/// discarded.
 pub struct Scripted {
     pub from: SocketAddr,
     pub datagrams: Mutex<VecDeque<Vec<u8>>>,
