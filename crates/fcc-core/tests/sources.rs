@@ -1,4 +1,4 @@
-//! Which of several sensors a reading is taken from, tick by tick.
+//! The sensor from which each reading is taken, tick by tick.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ const fn at(millis: i64) -> Time {
     Time::from_nanos(millis * 1_000_000)
 }
 
-/// A reading that is as deep as it was taken late, so that it tells by itself.
+/// A reading whose value is its time, so that it can be identified.
 fn taken(millis: i64) -> Reading<f64> {
     Reading::new(millis as f64, at(millis))
 }
@@ -34,7 +34,7 @@ const FRESH_FOR: [Duration; 3] = [
 ];
 
 /// The sensor and the time that are chosen at 10 s, of readings that each of
-/// three sensors took so many milliseconds before; none never took any.
+/// three sensors took this many milliseconds before; none if it never took any.
 fn chosen(ages: [Option<i64>; 3]) -> (u8, Time) {
     let own = ages.map(|age| Boat {
         depth_m: age.map_or_else(Reading::default, |age| taken(10_000 - age)),
@@ -52,7 +52,7 @@ fn chosen(ages: [Option<i64>; 3]) -> (u8, Time) {
 }
 
 #[test]
-fn the_first_that_is_fresh_is_taken() {
+fn the_first_fresh_reading_is_taken() {
     assert_eq!(chosen([Some(0), Some(0), Some(0)]), (0, at(10_000)));
     assert_eq!(chosen([Some(100), Some(0), Some(0)]), (0, at(9_900)));
     assert_eq!(chosen([Some(101), Some(99), Some(0)]), (1, at(9_901)));
@@ -61,7 +61,7 @@ fn the_first_that_is_fresh_is_taken() {
 }
 
 #[test]
-fn where_none_is_fresh_the_youngest_is_taken_and_then_the_first() {
+fn without_a_fresh_reading_the_youngest_is_taken_then_the_first() {
     assert_eq!(chosen([Some(500), Some(400), Some(3_000)]), (1, at(9_600)));
     assert_eq!(chosen([Some(400), Some(400), None]), (0, at(9_600)));
     assert_eq!(chosen([Some(500), None, Some(2_001)]), (0, at(9_500)));
@@ -69,7 +69,7 @@ fn where_none_is_fresh_the_youngest_is_taken_and_then_the_first() {
 }
 
 #[test]
-fn a_reading_of_the_future_is_taken_before_none_only() {
+fn a_reading_from_the_future_is_preferred_only_to_none() {
     assert_eq!(chosen([Some(-1), Some(50), None]), (1, at(9_950)));
     assert_eq!(chosen([Some(-1), Some(5_000), None]), (1, at(5_000)));
     assert_eq!(chosen([Some(500), Some(-1), None]), (0, at(9_500)));
@@ -77,7 +77,7 @@ fn a_reading_of_the_future_is_taken_before_none_only() {
 }
 
 #[test]
-fn each_reading_is_chosen_for_itself() {
+fn each_reading_is_chosen_separately() {
     let mut boat = Boat {
         depth_m: taken(9_990),
         speed_mps: taken(9_000),
@@ -116,7 +116,7 @@ fn watched(sources: &mut Sources, from: [Option<u8>; 3]) -> Vec<(u32, u8, u8)> {
 }
 
 #[test]
-fn changes_are_told_once_and_together() {
+fn changes_are_reported_once_and_together() {
     let mut sources = Sources::default();
     let (a, b, c) = (Some(0), Some(1), Some(2));
     assert_eq!(watched(&mut sources, [None, a, a]), [], "the first is none");

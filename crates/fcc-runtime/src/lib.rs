@@ -115,7 +115,7 @@ mod watchdog;
 
 // The types of a loop's messages, so that its users need no other crate.
 pub use fcc_core::framework::{
-    Event, EventKind, EventOf, EventWords, LoopCommand, Message, MessageOf, Record, RecordOf,
+    Event, EventDescription, EventKind, EventOf, LoopCommand, Message, MessageOf, Record, RecordOf,
     StageTimes,
 };
 

@@ -374,7 +374,7 @@ fn faults_are_told_when_they_change_and_counted_each_time() {
 
 #[test]
 fn events_read_as_words() {
-    let words = |kind: EventKind| kind.words::<bench::Puppet>().to_string();
+    let words = |kind: EventKind| kind.description::<bench::Puppet>().to_string();
     let engage_inhibits = Flags::bit(0) | Flags::bit(1);
     assert_eq!(
         words(EventKind::EngageRefused { engage_inhibits }),

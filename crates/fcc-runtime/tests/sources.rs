@@ -217,7 +217,7 @@ fn each_reading_goes_to_the_next_sensor_that_has_it() {
         [fault(0), changed(DEPTH, 0, 1), changed(SPEED, 0, 2)]
     );
     assert_eq!(
-        events[1].words::<Boat>().to_string(),
+        events[1].description::<Boat>().to_string(),
         "depth: from sensor 1 instead of 0"
     );
 }

@@ -36,7 +36,7 @@ impl Simulation {
         let start = aircraft.truth();
         let trim = *aircraft.trim();
         let link = Arc::new(SharedState::default());
-        link.show(&start);
+        link.publish(&start);
         Ok(Self {
             switch: SwitchHandle::new(Arc::clone(&link)),
             truth: TruthHandle::new(Arc::clone(&link)),
@@ -102,20 +102,20 @@ impl Sensor<Measurements> for SimSensor {
             .aircraft
             .step_watched(&commands, tick.dt_s, |aircraft| {
                 if let Some(history) = history {
-                    history.keep(&aircraft.truth());
+                    history.store(&aircraft.truth());
                 }
             });
         if self.aircraft.has_diverged() {
             return Err(SensorFault::Silent);
         }
         let truth = self.aircraft.truth();
-        self.link.show(&truth);
+        self.link.publish(&truth);
 
         let taken = tick.woke;
         let measured = self
             .history
             .as_ref()
-            .map_or(truth, |history| history.late(&truth));
+            .map_or(truth, |history| history.delayed(&truth));
         self.sensors.measure(&measured, taken, into);
         into.surfaces = Reading::new(commands, taken);
         into.engage_switch = Reading::new(self.switch(), taken);

@@ -46,6 +46,6 @@ pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]
             let (from, to) = (name(sensors, from.into()), name(sensors, to.into()));
             format!("{}: from {to} instead of {from}", names.join(", "))
         }
-        kind => kind.words::<Autopilot>().to_string(),
+        kind => kind.description::<Autopilot>().to_string(),
     }
 }

@@ -96,7 +96,7 @@ fn retry_until_released(
     let mut datagram = [0; 2_048];
     while begun.elapsed() < timeout {
         if is_cancelled() {
-            return Released::CalledOff;
+            return Released::Cancelled;
         }
         if sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
@@ -118,7 +118,7 @@ fn retry_until_released(
             return Released::Confirmed;
         }
         if refusals >= REFUSALS {
-            return Released::Gone;
+            return Released::Unreachable;
         }
     }
     Released::Unconfirmed

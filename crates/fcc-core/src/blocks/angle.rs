@@ -15,7 +15,7 @@ pub fn wrap_pi(angle_rad: f64) -> f64 {
     angle_rad - TAU * floor((angle_rad + PI) / TAU)
 }
 
-/// The same angle in 0..2π, rad: what a compass shows.
+/// The same angle in 0..2π, rad, as on a compass.
 ///
 /// ```
 /// use core::f64::consts::FRAC_PI_2;
@@ -24,7 +24,7 @@ pub fn wrap_pi(angle_rad: f64) -> f64 {
 /// ```
 pub fn wrap_two_pi(angle_rad: f64) -> f64 {
     let wrapped = angle_rad - TAU * floor(angle_rad / TAU);
-    // A tiny negative angle rounds up to a whole turn.
+    // A tiny negative angle rounds up to a full turn.
     if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn north_is_nought_from_either_side() {
+    fn north_is_zero_from_either_side() {
         assert_eq!(wrap_two_pi(0.0), 0.0);
         assert_eq!(wrap_two_pi(-1e-18), 0.0);
         assert_eq!(wrap_two_pi(TAU), 0.0);
@@ -41,7 +41,7 @@ mod tests {
     }
 
     #[test]
-    fn differences_take_the_short_way() {
+    fn differences_take_the_shorter_way() {
         // 350° to 10° is 20° to the right.
         let error = wrap_pi((10.0_f64 - 350.0).to_radians());
         assert!((error.to_degrees() - 20.0).abs() < 1e-12);

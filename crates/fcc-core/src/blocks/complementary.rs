@@ -1,10 +1,11 @@
-//! Two sensors of one quantity: one good in the short run, one in the long.
+//! Combines two sensors of one quantity: one accurate over short times, one
+//! over long times.
 
 use super::low_pass::smoothing_factor;
 
-/// First-order complementary filter: integrates a rate, and leans towards an
-/// absolute measurement with a time constant. Above `1/τ` rad/s it believes
-/// the rate, below it the measurement.
+/// First-order complementary filter: integrates a rate, and is corrected
+/// towards an absolute measurement with a time constant. Above `1/τ` rad/s it
+/// follows the rate, below it the measurement.
 ///
 /// ```
 /// use fcc_core::blocks::Complementary;
@@ -36,13 +37,14 @@ impl Complementary {
         self.value += rate * dt_s;
     }
 
-    /// Leans towards a measurement; `dt_s` is the time since the one before.
+    /// Corrects towards a measurement; `dt_s` is the time since the previous
+    /// one.
     pub fn correct(&mut self, measurement: f64, dt_s: f64) {
         self.correct_by(measurement - self.value, dt_s);
     }
 
-    /// Leans by an error that the caller worked out: on a circle, the short
-    /// way round.
+    /// Corrects by an error computed by the caller, such as the shorter
+    /// difference of two angles.
     pub fn correct_by(&mut self, error: f64, dt_s: f64) {
         self.value += smoothing_factor(dt_s, self.tau_s) * error;
     }
@@ -57,7 +59,7 @@ impl Complementary {
 mod tests {
     use super::*;
 
-    /// A rate with bias b settles at b·τ off: from ẋ = b + (m - x)/τ.
+    /// With a rate of bias b the error settles at b·τ: from ẋ = b + (m - x)/τ.
     #[test]
     fn a_biased_rate_settles_at_bias_times_time_constant() {
         let mut filter = Complementary::new(0.5);

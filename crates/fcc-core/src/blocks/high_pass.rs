@@ -2,7 +2,7 @@
 
 use super::LowPass;
 
-/// First-order high pass: the input less its low-passed self.
+/// First-order high pass: the input minus its low-passed value.
 ///
 /// The filter of the thesis (`lp = 0.8 lp + 0.2 x`, `y = x - lp` at 40 Hz) is
 /// the time constant 0.112 s.
@@ -12,7 +12,7 @@ use super::LowPass;
 ///
 /// let mut filter = HighPass::new(0.112);
 /// filter.reset(0.0);
-/// // The first sample of a step, of which the thesis' filter lets 0.8 through.
+/// // The first sample of a step, of which the thesis' filter passes 0.8.
 /// assert!((filter.step(1.0, 0.025) - 0.8).abs() < 1e-3);
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -28,12 +28,12 @@ impl HighPass {
         }
     }
 
-    /// Sets what is taken for the constant part of the input.
+    /// Sets the constant part of the input.
     pub const fn reset(&mut self, constant: f64) {
         self.low.reset(constant);
     }
 
-    /// Takes an input held for `dt_s` seconds; the output.
+    /// Processes an input held for `dt_s` seconds; returns the output.
     pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
         input - self.low.step(input, dt_s)
     }
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_dies_out() {
+    fn a_constant_decays() {
         let mut filter = HighPass::new(0.1);
         filter.reset(0.0);
         let first = filter.step(1.0, 0.1);

@@ -1,10 +1,10 @@
-//! Limits that neither panic nor hide what is not a number.
+//! Limits that neither panic nor hide NaN.
 
-/// The value, or the limit that it passes.
+/// The value, or the limit that it exceeds.
 ///
 /// Unlike [`f64::clamp`] it cannot panic; unlike a chain of `max` and `min` it
-/// lets NaN through, so that a broken value is seen at the outputs and not
-/// taken for a limit. Where the limits are crossed, `max` holds.
+/// passes NaN through, so that an invalid value is detected at the outputs
+/// instead of being replaced by a limit. If `min` exceeds `max`, `max` applies.
 ///
 /// ```
 /// use fcc_core::blocks::limit;
@@ -21,7 +21,7 @@ pub fn limit(value: f64, min: f64, max: f64) -> f64 {
     }
 }
 
-/// The value, held to `-most..=most`.
+/// The value, limited to `-most..=most`.
 ///
 /// ```
 /// assert_eq!(fcc_core::blocks::limit_abs(-1.2, 1.0), -1.0);

@@ -2,14 +2,15 @@
 
 use libm::{expm1, log1p};
 
-/// How far a first-order lag of time constant `tau_s` moves towards its input
-/// in `dt_s` seconds, 0..=1: `1 - exp(-dt/τ)`, exact for an input held during
-/// the step. A time constant of nought passes the input through.
+/// The share of the way that a first-order lag of time constant `tau_s` moves
+/// towards its input in `dt_s` seconds, 0..=1: `1 - exp(-dt/τ)`, exact for an
+/// input held during the step. A time constant of zero passes the input
+/// through.
 ///
 /// ```
-/// // A first-order lag has gone 63.2 % of the way after its time constant.
-/// let gone = fcc_core::blocks::smoothing_factor(0.5, 0.5);
-/// assert!((gone - 0.632).abs() < 1e-3);
+/// // A first-order lag has covered 63.2 % of the way after its time constant.
+/// let share = fcc_core::blocks::smoothing_factor(0.5, 0.5);
+/// assert!((share - 0.632).abs() < 1e-3);
 /// ```
 pub fn smoothing_factor(dt_s: f64, tau_s: f64) -> f64 {
     if dt_s <= 0.0 {
@@ -26,7 +27,7 @@ pub fn smoothing_factor(dt_s: f64, tau_s: f64) -> f64 {
 /// [`smoothing_factor`].
 ///
 /// ```
-/// // The low pass of the thesis: 0.15 a sample at 40 Hz.
+/// // The low pass of the thesis: 0.15 per sample at 40 Hz.
 /// let tau_s = fcc_core::blocks::time_constant(0.15, 0.025);
 /// assert!((tau_s - 0.154).abs() < 1e-3);
 /// ```
@@ -66,7 +67,7 @@ impl LowPass {
         self.output = Some(output);
     }
 
-    /// Takes an input held for `dt_s` seconds; the output.
+    /// Processes an input held for `dt_s` seconds; returns the output.
     pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
         let output = match self.output {
             None => input,
@@ -101,13 +102,13 @@ mod tests {
         let mut thesis = 0.0_f32;
         let mut state = 12_345_u32;
         for n in 0..4_000 {
-            // A step, then noise: a linear congruential generator will do.
+            // A step, then noise from a linear congruential generator.
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             let noise = (state >> 8) as f32 / 16_777_216.0 - 0.5;
             let input = if n < 100 { 9.81 } else { 9.81 + noise };
             thesis = thesis_low_pass(input, thesis);
             let output = ours.step(f64::from(input), dt_s);
-            // f32 carries 24 bits: 9.81 is good to about 1e-6.
+            // f32 has 24 bits: 9.81 is accurate to about 1e-6.
             assert!(
                 (output - f64::from(thesis)).abs() < 4e-6,
                 "sample {n}: {output} against {thesis}"

@@ -1,8 +1,9 @@
-//! Control blocks: filters, limiters, profiles, PID. They know no plant.
+//! Control blocks: filters, limiters, profiles, PID. They are independent of
+//! the plant.
 //!
-//! Every block steps with the time since its last step, `dt_s`, because a
-//! coefficient per sample is right at one rate only. A step of nought seconds
-//! changes nothing: a plant that is paused leaves no trace in a filter.
+//! Every block takes the time since its last step, `dt_s`, because a
+//! coefficient per sample is valid at one rate only. A step of zero seconds
+//! changes nothing, so a paused plant does not affect a filter.
 
 mod angle;
 mod complementary;

@@ -2,7 +2,7 @@
 
 use super::{limit, limit_abs, smoothing_factor};
 
-/// What keeps the integral from growing while the output cannot follow.
+/// Prevents the integral from growing while the output is saturated.
 ///
 /// ```
 /// use fcc_core::blocks::{AntiWindup, Pid, PidConfig};
@@ -14,7 +14,7 @@ use super::{limit, limit_abs, smoothing_factor};
 ///     anti_windup: AntiWindup::BackCalculation { tracking_tau_s: 0.1 },
 ///     ..PidConfig::default()
 /// });
-/// // An error of 10 for 10 s, most of it in vain: 100 without anti-windup.
+/// // An error of 10 for 10 s with the output saturated: 100 without anti-windup.
 /// for _ in 0..400 {
 ///     valve.step(10.0, 0.0, 0.025);
 /// }
@@ -22,9 +22,9 @@ use super::{limit, limit_abs, smoothing_factor};
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum AntiWindup {
-    /// The integral stands still while it would push further into a limit.
+    /// The integral is held while it would increase the saturation.
     Clamping,
-    /// The integral is drawn back by what the limits cut off, with this time
+    /// The integral is reduced by the excess over the limits, with this time
     /// constant in s (Åström and Hägglund 1995, section 3.5).
     BackCalculation {
         /// Tracking time constant, s; positive.
@@ -38,7 +38,7 @@ pub enum AntiWindup {
 /// ```
 /// use fcc_core::blocks::{Pid, PidConfig};
 ///
-/// // Proportional alone: what is not said is nought or without a limit.
+/// // Proportional only: other gains are zero and there are no limits by default.
 /// let mut rudder = Pid::new(PidConfig { kp: 0.5, ..PidConfig::default() });
 /// assert_eq!(rudder.step(3.0, 1.0, 0.025), 1.0);
 /// ```
@@ -49,7 +49,7 @@ pub struct PidConfig {
     /// Integral gain, 1/s.
     pub ki: f64,
     /// Derivative gain, s; it acts on the measurement, so that a step of the
-    /// set point does not kick.
+    /// set point causes no derivative kick.
     pub kd: f64,
     /// Time constant of the derivative's low pass, s; 0 for none.
     pub derivative_tau_s: f64,
@@ -57,14 +57,14 @@ pub struct PidConfig {
     pub output_min: f64,
     /// Largest output.
     pub output_max: f64,
-    /// Fastest output, units/s; infinite for none.
+    /// Largest rate of the output, units/s; infinite for none.
     pub output_rate_per_s: f64,
-    /// What keeps the integral from winding up.
+    /// The anti-windup method.
     pub anti_windup: AntiWindup,
 }
 
 impl Default for PidConfig {
-    /// All gains nought, no limits, clamping.
+    /// All gains zero, no limits, clamping.
     fn default() -> Self {
         Self {
             kp: 0.0,
@@ -79,8 +79,8 @@ impl Default for PidConfig {
     }
 }
 
-/// PID controller with derivative on measurement, anti-windup, limits on
-/// output and its rate, feed-forward, and take-over without a bump.
+/// PID controller with derivative on measurement, anti-windup, limits on the
+/// output and its rate, feed-forward, and bumpless transfer.
 ///
 /// The integral is kept in units of the output, so changing a gain while it runs
 /// does not make the output jump.
@@ -107,7 +107,7 @@ pub struct Pid {
 }
 
 impl Pid {
-    /// A controller at rest.
+    /// A controller in its initial state.
     pub const fn new(config: PidConfig) -> Self {
         Self {
             config,
@@ -118,9 +118,8 @@ impl Pid {
         }
     }
 
-    /// Takes over at a present output without a bump: the next step with the
-    /// same set point, measurement, feed-forward and gain scale yields it
-    /// again.
+    /// Bumpless transfer from a present output: the next step with the same set
+    /// point, measurement, feed-forward and gain scale yields this output.
     pub fn engage(
         &mut self,
         output: f64,
@@ -137,14 +136,14 @@ impl Pid {
         self.last_output = Some(output);
     }
 
-    /// One step; the output.
+    /// Performs one step; returns the output.
     pub fn step(&mut self, setpoint: f64, measurement: f64, dt_s: f64) -> f64 {
         self.step_scheduled(setpoint, measurement, 0.0, 1.0, dt_s)
     }
 
-    /// One step with a feed-forward (units of the output) and with all gains
-    /// multiplied by `gain_scale`, for plants whose response changes in a known
-    /// way; the output.
+    /// Performs one step with a feed-forward (units of the output) and with all
+    /// gains multiplied by `gain_scale`, for plants whose response changes in a
+    /// known way; returns the output.
     pub fn step_scheduled(
         &mut self,
         setpoint: f64,
@@ -239,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_the_set_point_does_not_kick_the_derivative() {
+    fn a_step_of_the_set_point_causes_no_derivative_kick() {
         let config = PidConfig {
             kd: 10.0,
             ..PidConfig::default()
@@ -266,7 +265,7 @@ mod tests {
             for _ in 0..4_000 {
                 assert!(pid.step(10.0, 0.0, 0.025) <= 1.0);
             }
-            // 100 s of saturation, unlimited, would have gathered 1,000.
+            // 100 s of saturation without anti-windup would give 1,000.
             let mut steps = 0;
             while pid.step(-0.5, 0.0, 0.025) >= 1.0 {
                 steps += 1;
@@ -276,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn taking_over_does_not_bump() {
+    fn the_transfer_is_bumpless() {
         let mut pid = pi(AntiWindup::Clamping);
         pid.engage(0.63, 3.0, 2.9, 0.2, 1.8);
         let output = pid.step_scheduled(3.0, 2.9, 0.2, 1.8, 0.0);
@@ -284,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn the_output_moves_no_faster_than_its_rate() {
+    fn the_output_is_limited_in_rate() {
         let mut pid = Pid::new(PidConfig {
             kp: 100.0,
             output_rate_per_s: 2.0,

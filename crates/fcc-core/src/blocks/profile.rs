@@ -1,12 +1,12 @@
-//! How fast to close an error without overshooting.
+//! The speed at which to close an error without overshoot.
 
 use libm::sqrt;
 
 /// The speed at which to close an error so that braking at a constant
-/// deceleration ends at nought: proportional near the target, a square root
-/// further out, joined with equal slope.
+/// deceleration ends at zero: proportional near the target, a square root
+/// further out, with a continuous slope.
 ///
-/// From v² = 2 a s. With gain k the proportional part reaches to e₀ = a/k²;
+/// From v² = 2 a s. With gain k the proportional part extends to e₀ = a/k²;
 /// beyond it, v = √(2a(|e| - e₀/2)).
 ///
 /// ```
@@ -21,12 +21,12 @@ use libm::sqrt;
 pub struct SquareRootProfile {
     /// Closing speed per error near the target, 1/s; positive.
     pub gain_per_s: f64,
-    /// Deceleration to plan with, units/s²; positive.
+    /// The planned deceleration, units/s²; positive.
     pub deceleration: f64,
 }
 
 impl SquareRootProfile {
-    /// The closing speed for an error, units/s, of the error's sign.
+    /// The closing speed for an error, units/s, with the sign of the error.
     pub fn speed(&self, error: f64) -> f64 {
         let knee = self.deceleration / (self.gain_per_s * self.gain_per_s);
         let distance = error.abs();
@@ -48,16 +48,17 @@ mod tests {
     };
 
     #[test]
-    fn the_two_parts_join_in_value_and_slope() {
+    fn value_and_slope_are_continuous() {
         let knee = 4.0;
         assert!((PROFILE.speed(knee) - 2.0).abs() < 1e-12);
         let slope = (PROFILE.speed(knee + 1e-6) - PROFILE.speed(knee)) / 1e-6;
         assert!((slope - 0.5).abs() < 1e-5);
     }
 
-    /// Following the profile exactly, the deceleration never exceeds the plan.
+    /// When the profile is followed exactly, the deceleration never exceeds the
+    /// planned one.
     #[test]
-    fn following_it_brakes_as_planned_and_never_passes() {
+    fn following_it_brakes_as_planned_without_overshoot() {
         let (mut error, dt) = (100.0_f64, 1e-3);
         let mut last = PROFILE.speed(error);
         for _ in 0..40_000 {
@@ -71,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_odd() {
+    fn it_is_an_odd_function() {
         assert!((PROFILE.speed(-30.0) + PROFILE.speed(30.0)).abs() < 1e-15);
     }
 }

@@ -1,8 +1,8 @@
-//! Limits how fast a signal may move.
+//! Limits the rate of change of a signal.
 
 use super::limit_abs;
 
-/// Limits how fast a signal may move.
+/// Limits the rate of change of a signal.
 ///
 /// ```
 /// use fcc_core::blocks::RateLimit;
@@ -34,7 +34,7 @@ impl RateLimit {
         self.output = Some(output);
     }
 
-    /// Moves towards `input` for `dt_s` seconds; the output.
+    /// Moves towards `input` for `dt_s` seconds; returns the output.
     pub fn step(&mut self, input: f64, dt_s: f64) -> f64 {
         let output = match self.output {
             None => input,

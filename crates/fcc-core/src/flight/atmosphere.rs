@@ -18,15 +18,14 @@ const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
 const LAPSE_RATE_K_PER_M: f64 = -0.006_5;
 const GAS_CONSTANT_J_PER_KG_K: f64 = 287.053;
-/// Where the lapse rate ends, m. Above, the altitude is held at this one: the
-/// aircraft this is made for do not go there.
+/// The upper limit of the lapse rate, m. Higher altitudes are limited to this
+/// one; the aircraft considered here do not reach it.
 const TROPOPAUSE_M: f64 = 11_000.0;
 /// The exponent of pressure over temperature, g/(-L R) = 5.256.
 const PRESSURE_EXPONENT: f64 = GRAVITY_MPS2 / (-LAPSE_RATE_K_PER_M * GAS_CONSTANT_J_PER_KG_K);
 
-/// Pressure altitude in m from static pressure in Pa (the thesis' figure 5.9:
-/// h = (T₀/L)((p/p₀)^(-L R/g) - 1)). Not a number for a pressure that is not
-/// positive.
+/// Pressure altitude in m from static pressure in Pa (the thesis' figure 5.9: h
+/// = (T₀/L)((p/p₀)^(-L R/g) - 1)). NaN for a pressure that is not positive.
 ///
 /// ```
 /// use fcc_core::flight::atmosphere::pressure_altitude_m;
@@ -109,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_in_is_not_a_number_out() {
+    fn invalid_input_gives_nan() {
         assert!(pressure_altitude_m(-1.0).is_nan());
     }
 }

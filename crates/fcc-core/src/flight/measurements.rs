@@ -1,4 +1,4 @@
-//! What an aircraft's sensors measure.
+//! The measurements of an aircraft's sensors.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -7,11 +7,12 @@ use crate::framework::{Reading, Switch};
 use crate::{readings, schema};
 
 schema! {
-    /// What an aircraft's sensors measure, each with the time it was taken.
+    /// The measurements of an aircraft's sensors, each with the time it was
+    /// taken.
     ///
-    /// Control needs attitude, heading, body rates, specific force, airspeed and
-    /// altitude, as in the thesis; position and ground velocity are for navigation
-    /// where there is a source, and never needed to fly.
+    /// Control needs attitude, heading, body rates, specific force, airspeed
+    /// and altitude, as in the thesis; position and ground velocity are for
+    /// navigation, if there is a source, and are never needed for control.
     ///
     /// ```
     /// use core::time::Duration;
@@ -37,7 +38,7 @@ schema! {
         /// Turn rates about the body axes.
         #[field(3)]
         pub body_rates: Reading<BodyRates>,
-        /// What accelerometers feel.
+        /// Specific force, as accelerometers measure it.
         #[field(4, column = "specific_force_*")]
         pub specific_force: Reading<SpecificForce>,
         /// Indicated airspeed in m/s.
@@ -49,20 +50,20 @@ schema! {
         /// Angle of attack in rad, positive when the air comes from below the nose.
         #[field(7)]
         pub angle_of_attack_rad: Reading<f64>,
-        /// Where the aircraft is; for navigation.
+        /// Position of the aircraft; for navigation.
         #[field(8)]
         pub position: Reading<Position>,
-        /// How it moves over the ground; for navigation.
+        /// Velocity over the ground; for navigation.
         #[field(9)]
         pub velocity: Reading<Velocity>,
-        /// Where throttle and surfaces stand, if the plant tells: for taking over
-        /// without a bump.
+        /// Positions of throttle and surfaces, if the plant measures them: for
+        /// a bumpless engagement.
         #[field(10, column = "measured_*")]
         pub surfaces: Reading<Surfaces>,
         /// The engage switch.
         #[field(11)]
         pub engage_switch: Reading<Switch>,
-        /// A simulated plant's own clock and condition; never read on a real one.
+        /// A simulated plant's clock and state; never taken on a real one.
         #[field(12, column = "plant_*")]
         pub plant: Reading<Plant>,
     }
@@ -128,13 +129,13 @@ schema! {
 }
 
 schema! {
-    /// Acceleration less gravity, along the body axes, m/s²: what an accelerometer
-    /// reads. Level and unaccelerated, z is -9.81.
+    /// Acceleration minus gravity, along the body axes, m/s², as an
+    /// accelerometer measures it. In level unaccelerated flight z is -9.81.
     ///
     /// ```
     /// use fcc_core::flight::SpecificForce;
     ///
-    /// // A level turn at 60° of bank weighs twice as much.
+    /// // A level turn at 60° of bank has a load factor of 2.
     /// let turn = SpecificForce { z_mps2: -2.0 * 9.806_65, ..SpecificForce::default() };
     /// assert!(turn.z_mps2 < -19.6);
     /// ```
@@ -153,7 +154,7 @@ schema! {
 }
 
 schema! {
-    /// A place on the WGS 84 ellipsoid.
+    /// A position on the WGS 84 ellipsoid.
     ///
     /// ```
     /// use fcc_core::flight::Position;
@@ -205,7 +206,7 @@ schema! {
 }
 
 schema! {
-    /// A simulated plant's own clock and condition.
+    /// A simulated plant's clock and state.
     ///
     /// ```
     /// use fcc_core::flight::{Plant, PlantState};
@@ -215,18 +216,18 @@ schema! {
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Plant {
-        /// The plant's own time in s. The loop integrates with it where there is
-        /// one: a simulator whose frame rate falls slows its time.
+        /// The plant's time in s. The loop integrates with it if there is one:
+        /// a simulator whose frame rate falls slows its time.
         #[field(1)]
         pub time_s: f64,
-        /// What the plant is doing.
+        /// The plant's state.
         #[field(2)]
         pub state: PlantState,
     }
 }
 
 schema! {
-    /// What a simulated plant is doing.
+    /// The state of a simulated plant.
     ///
     /// ```
     /// use fcc_core::flight::PlantState;
@@ -238,11 +239,11 @@ schema! {
         Running = 0,
         /// Halted by its user: outputs are held, nothing integrates.
         Paused = 1,
-        /// It speaks, but its clock stands still and it does not say paused.
+        /// It sends, but its clock has stopped although it is not paused.
         Stalled = 2,
         /// Time runs, slower than the wall clock or at a low frame rate.
         Slow = 3,
-        /// Its clock jumped: it was restarted, reloaded or put somewhere else.
+        /// Its clock jumped: it was restarted, reloaded or repositioned.
         Jumped = 4,
     }
 }

@@ -1,11 +1,12 @@
-//! The aircraft: the values that travel, and the autopilot that turns
-//! measurements into surfaces by navigation, guidance and control.
+//! The aircraft: its measurements, set points and outputs, and the autopilot
+//! that computes surfaces from measurements by navigation, guidance and
+//! control.
 //!
-//! | module | answers |
+//! | module | computes |
 //! |---|---|
-//! | [`navigation`] | where are we, how do we move? |
-//! | [`guidance`] | where to go next? (set points) |
-//! | [`control`] | which surfaces, what throttle? |
+//! | [`navigation`] | position, attitude and motion |
+//! | [`guidance`] | set points |
+//! | [`control`] | surfaces and throttle |
 
 pub mod atmosphere;
 mod autopilot;

@@ -1,10 +1,10 @@
-//! How body axes stand to the earth: Euler angles, quaternions, and vectors
-//! turned from one to the other.
+//! The orientation of body axes relative to the earth: Euler angles,
+//! quaternions, and the transformation of vectors.
 //!
 //! Body axes are x forward, y right, z down; earth axes are north, east, down.
 //! Euler angles are the aircraft's: first the heading about down, then the
 //! pitch about right, then the roll about forward. A quaternion `[w, x, y, z]`
-//! is of unit length and turns body axes to earth axes (Stevens, Lewis and
+//! is of unit length and transforms body axes to earth axes (Stevens, Lewis and
 //! Johnson, *Aircraft Control and Simulation*, 2016, section 1.3; Diebel 2006,
 //! section 5).
 
@@ -56,9 +56,9 @@ pub fn quaternion_from_euler(angles: EulerAngles) -> [f64; 4] {
     ]
 }
 
-/// The Euler angles of a quaternion, which need not be of unit length. With
-/// the nose straight up or down, roll and heading are one rotation; how it is
-/// shared out means nothing then. Not a number for a quaternion of no length.
+/// The Euler angles of a quaternion, which need not be of unit length. With the
+/// nose straight up or down, roll and heading are the same rotation, and its
+/// division between the two is arbitrary. NaN for a quaternion of length zero.
 ///
 /// ```
 /// use core::f64::consts::FRAC_1_SQRT_2;
@@ -72,13 +72,13 @@ pub fn euler_from_quaternion(quaternion: [f64; 4]) -> EulerAngles {
     let [w, x, y, z] = unit(quaternion);
     EulerAngles {
         roll_rad: atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-        // Rounding may lead beyond a sine's range.
+        // Rounding may lead outside the range of a sine.
         pitch_rad: asin(limit_abs(2.0 * (w * y - z * x), 1.0)),
         heading_rad: wrap_two_pi(atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))),
     }
 }
 
-/// A vector in body axes, in earth axes.
+/// Transforms a vector from body axes to earth axes.
 ///
 /// ```
 /// use core::f64::consts::FRAC_1_SQRT_2;
@@ -93,12 +93,12 @@ pub fn body_to_earth(quaternion: [f64; 4], vector: [f64; 3]) -> [f64; 3] {
     turned(unit(quaternion), vector)
 }
 
-/// A vector in earth axes, in body axes.
+/// Transforms a vector from earth axes to body axes.
 ///
 /// ```
 /// use fcc_core::flight::orientation::{EulerAngles, earth_to_body, quaternion_from_euler};
 ///
-/// // Gravity in a bank of 30° to the right: half of it pulls to the right.
+/// // Gravity in a bank of 30° to the right: half of it acts to the right.
 /// let bank = EulerAngles { roll_rad: 30.0_f64.to_radians(), ..EulerAngles::default() };
 /// let [_, right, _] = earth_to_body(quaternion_from_euler(bank), [0.0, 0.0, 9.806_65]);
 /// assert!((right - 4.903_325).abs() < 1e-9);
@@ -149,10 +149,10 @@ mod tests {
         }
     }
 
-    /// What a hand holding a model sees: forward, right and down of the
-    /// aircraft, as north, east and down.
+    /// The forward, right and down axes of the aircraft in north, east and
+    /// down.
     #[test]
-    fn axes_point_where_the_aircraft_does() {
+    fn axes_point_in_the_aircrafts_directions() {
         const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
         const RIGHT: [f64; 3] = [0.0, 1.0, 0.0];
         let turned = |angles, axis| body_to_earth(quaternion_from_euler(angles), axis);
@@ -160,7 +160,7 @@ mod tests {
         near(&turned(euler(0.0, 0.0, 90.0), RIGHT), &[-1.0, 0.0, 0.0]);
         near(&turned(euler(0.0, 90.0, 0.0), FORWARD), &[0.0, 0.0, -1.0]);
         near(&turned(euler(90.0, 0.0, 0.0), RIGHT), &[0.0, 0.0, 1.0]);
-        // Nose 30° up on heading 60°: cos 30 of it is level, half is up.
+        // Nose 30° up on heading 60°: cos 30° is horizontal, one half is up.
         let level = 3.0_f64.sqrt() / 2.0;
         near(
             &turned(euler(0.0, 30.0, 60.0), FORWARD),
@@ -168,8 +168,8 @@ mod tests {
         );
     }
 
-    /// A level aircraft banked by 60° feels gravity by its right wing: sin 60
-    /// to the right, cos 60 down.
+    /// In an aircraft banked by 60° gravity acts by sin 60° to the right and
+    /// cos 60° down.
     #[test]
     fn gravity_in_body_axes() {
         let banked = quaternion_from_euler(euler(60.0, 0.0, 137.0));
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_come_back() {
+    fn angles_are_restored() {
         for roll in [-170.0, -35.0, 0.0, 80.0] {
             for pitch in [-85.0, -10.0, 0.0, 60.0] {
                 for heading in [0.0, 1.0, 179.0, 181.0, 359.0] {
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn no_length_is_no_orientation() {
+    fn a_quaternion_of_length_zero_gives_nan() {
         assert!(euler_from_quaternion([0.0; 4]).pitch_rad.is_nan());
     }
 }

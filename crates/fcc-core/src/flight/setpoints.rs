@@ -1,4 +1,4 @@
-//! What the autopilot aims for.
+//! The autopilot's set points.
 
 use core::f64::consts::TAU;
 
@@ -6,19 +6,19 @@ use super::guidance::Progress;
 use crate::schema;
 
 schema! {
-    /// What the autopilot aims for: guidance's set points, and those that the
-    /// outer loops hand to the inner ones.
+    /// The autopilot's set points: those of guidance, and those of the outer
+    /// loops for the inner ones.
     ///
     /// ```
     /// use fcc_core::flight::Setpoints;
     /// use fcc_core::flight::guidance::{Mode, Progress};
     ///
-    /// let aims = Setpoints {
+    /// let setpoints = Setpoints {
     ///     altitude_m: 960.12,
     ///     guidance: Progress { mode: Mode::TimedPattern, item: 1, ..Progress::default() },
     ///     ..Setpoints::default()
     /// };
-    /// assert_eq!(aims.guidance.to_string(), "timed-pattern leg 1");
+    /// assert_eq!(setpoints.guidance.to_string(), "timed-pattern leg 1");
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Setpoints {
@@ -31,17 +31,16 @@ schema! {
         /// Barometric altitude, m.
         #[field(3)]
         pub altitude_m: f64,
-        /// Bank that the heading loop asks for, rad, right wing down.
+        /// Bank commanded by the heading loop, rad, right wing down.
         #[field(4)]
         pub roll_rad: f64,
-        /// Climb rate that the altitude loop asks for, m/s, up.
+        /// Climb rate commanded by the altitude loop, m/s, up.
         #[field(5)]
         pub climb_rate_mps: f64,
-        /// Pitch that the climb-rate loop asks for, rad, nose up.
+        /// Pitch commanded by the climb-rate loop, rad, nose up.
         #[field(6)]
         pub pitch_rad: f64,
-        /// The mode that guidance flies, and how far it has come; its captured
-        /// heading is 0..2π.
+        /// Guidance's mode and its progress; its captured heading is 0..2π.
         #[field(7, column = "guidance_*")]
         pub guidance: Progress,
     }

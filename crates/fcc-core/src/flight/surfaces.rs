@@ -1,10 +1,10 @@
-//! What the autopilot commands.
+//! The autopilot's outputs.
 
 use crate::framework::schema::in_range;
 use crate::schema;
 
 schema! {
-    /// What the autopilot commands: throttle and control surfaces.
+    /// The autopilot's outputs: throttle and control surfaces.
     ///
     /// ```
     /// use fcc_core::flight::Surfaces;

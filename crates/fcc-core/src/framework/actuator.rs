@@ -33,20 +33,20 @@ use crate::schema;
 /// assert!(heater.release().is_ok() && heater.release().is_ok());
 /// ```
 pub trait Actuator<A>: Send {
-    /// Sends the outputs off and returns. Never waits, allocates, locks, logs
-    /// or panics. The first call after a release takes control.
+    /// Sends the outputs and returns. Never waits, allocates, locks, logs or
+    /// panics. The first call after a release takes control.
     ///
     /// # Errors
-    /// What went wrong in this tick; the loop counts it and goes on.
+    /// What went wrong in this tick; the loop counts it and continues.
     fn apply(&mut self, tick: &Tick, outputs: &A) -> Result<(), ActuatorFault>;
 
-    /// Gives control back: centres, then lets go. Called on every way out of
-    /// control (disengaged, failsafe's end, stop, signal, a panic), perhaps
-    /// more than once, perhaps without an `apply` before: then it does
+    /// Releases control: centres, then releases. Called on every exit path
+    /// (disengagement, end of failsafe, stop, signal, panic), possibly more
+    /// than once, and possibly without an `apply` before, in which case it does
     /// nothing.
     ///
     /// # Errors
-    /// When control may still be held, with the reason.
+    /// The reason, when control may still be held.
     fn release(&mut self) -> Result<(), ActuatorFault>;
 
     /// Loads what the next [`apply`](Self::apply) will run and read into the
@@ -56,7 +56,7 @@ pub trait Actuator<A>: Send {
     /// last outputs; the rules of a tick apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick, _outputs: &A) {}
 
-    /// What people call this actuator; for events and reports.
+    /// The actuator's name, for events and reports.
     fn name(&self) -> &'static str;
 }
 
@@ -79,10 +79,10 @@ schema! {
             #[field(1)]
             errno: i32,
         },
-        /// Writes are sent, but the plant does not follow them.
+        /// Writes are sent but have no effect on the plant.
         #[field(4)]
         Unconfirmed,
-        /// Where to send is not known yet.
+        /// The plant's address is not known yet.
         #[field(5)]
         NotConnected,
     }
@@ -93,7 +93,7 @@ impl fmt::Display for ActuatorFault {
         match self {
             Self::Io { errno } => write!(f, "writing failed (errno {errno})"),
             Self::Unconfirmed => f.write_str("writes are sent but do not take effect"),
-            Self::NotConnected => f.write_str("where to send is not known yet"),
+            Self::NotConnected => f.write_str("the address is not known yet"),
         }
     }
 }

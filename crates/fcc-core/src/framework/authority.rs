@@ -1,76 +1,75 @@
-//! Who has control of a plant, as it is seen from outside the loop's thread.
+//! Who has control of a plant, seen from outside the loop's thread.
 
 use core::fmt;
 use core::time::Duration;
 
 use super::{ActuatorFault, PlantId};
 
-/// Watches who has control of a plant, and gives control back by a way of its
-/// own: an [`Actuator`](super::Actuator) is in the hands of the loop, which may
-/// hang or be dead.
+/// Monitors who has control of a plant, and releases it independently of the
+/// loop: an [`Actuator`](super::Actuator) is owned by the loop, which may hang
+/// or have ended.
 ///
-/// Any thread may call it but the loop's: here waiting is allowed.
+/// May be called by any thread except the loop's, since it may wait.
 pub trait ControlAuthority: Send + Sync {
-    /// The plant that is, or would be, controlled; none while that is not
-    /// known.
+    /// The plant that is, or would be, controlled; none while it is not known.
     fn plant(&self) -> Option<PlantId>;
 
-    /// The plant that this program controls, or that does not show yet that it
-    /// has its controls back.
+    /// The plant that this program controls, or whose release is not yet
+    /// confirmed.
     fn held(&self) -> Option<PlantId>;
 
-    /// From now on the actuator takes control of no plant but the one that is
-    /// [permitted](Self::permit): for a program that has to find out first
-    /// whether another one controls it.
+    /// From now on the actuator takes control only of the plant that is
+    /// [permitted](Self::permit): for a program that has to check first whether
+    /// another one controls it.
     fn require_permission(&self);
 
-    /// The actuator may take control of this plant, and of no other.
+    /// Permits the actuator to take control of this plant only.
     fn permit(&self, plant: &PlantId);
 
-    /// One name for a plant that is reached by several: two programs that
-    /// control the same plant get the same.
+    /// A unique name for a plant that can be addressed by several names: two
+    /// programs that control the same plant get the same name.
     fn unique(&self, plant: &PlantId) -> PlantId {
         *plant
     }
 
-    /// Reports what has changed since the last call, in words for people: what
-    /// is wrong and what to do about it, and when it is right again.
+    /// Reports what has changed since the last call, as text for users: what is
+    /// wrong and what to do about it, and when it is resolved.
     fn report(&self, report: &mut dyn FnMut(fmt::Arguments<'_>));
 
-    /// Gives the controls of a plant back, whoever took them, until the plant
-    /// shows that it has them or `within` is over. `is_called_off` is asked
+    /// Releases the controls of a plant, whichever program took them, until the
+    /// plant confirms it or `within` has passed. `is_cancelled` is called
     /// several times a second, and before anything is sent.
     ///
     /// # Errors
-    /// When nothing can be sent to this plant at all.
+    /// When nothing can be sent to this plant.
     fn release(
         &self,
         plant: &PlantId,
         within: Duration,
-        is_called_off: &mut dyn FnMut() -> bool,
+        is_cancelled: &mut dyn FnMut() -> bool,
     ) -> Result<Released, ActuatorFault>;
 
-    /// What a person does at the plant to take control back by hand.
+    /// What a user does at the plant to take control back manually.
     fn by_hand(&self) -> &'static str;
 }
 
-/// How a release that was waited for ended.
+/// The result of waiting for a release.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Released {
-    /// The plant shows that it has its controls back.
+    /// The plant confirmed the release of its controls.
     Confirmed,
-    /// The plant is gone: there is nothing left to control.
-    Gone,
-    /// The plant did not answer, or goes on showing that its controls are held:
-    /// it hangs, cannot be reached, or somebody else holds them.
+    /// The plant no longer exists: there is nothing left to control.
+    Unreachable,
+    /// The plant did not answer, or reports that its controls are still held:
+    /// it hangs, cannot be reached, or another program holds them.
     Unconfirmed,
-    /// The release was called off before the plant showed it.
-    CalledOff,
+    /// The release was cancelled before the plant confirmed it.
+    Cancelled,
 }
 
 impl Released {
-    /// Whether nobody holds the plant's controls any more.
+    /// Whether the plant's controls are no longer held.
     pub const fn is_over(self) -> bool {
-        matches!(self, Self::Confirmed | Self::Gone)
+        matches!(self, Self::Confirmed | Self::Unreachable)
     }
 }

@@ -1,10 +1,10 @@
-//! What may be asked of a loop from outside.
+//! Commands to a loop from outside.
 
 use crate::schema;
 
 schema! {
-    /// What may be asked of a loop from outside; `O` is what may be asked of its
-    /// controller. Commands are carried out in the sequence they were sent in.
+    /// A command to a loop from outside; `O` is a command to its controller.
+    /// Commands are executed in the order in which they were sent.
     ///
     /// ```
     /// use fcc_core::framework::LoopCommand;
@@ -15,17 +15,17 @@ schema! {
     /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug)]
     pub enum LoopCommand<O> {
-        /// Take over, if nothing blocks it: one attempt, answered by a change of
-        /// state or by `EngageRefused`.
+        /// Engage, if no engage inhibit is active: one attempt, answered by a
+        /// change of state or by `EngageRefused`.
         #[field(1)]
         Engage,
-        /// Let go.
+        /// Disengage.
         #[field(2)]
         Disengage,
-        /// Let go and end the loop.
+        /// Release control and end the loop.
         #[field(3)]
         Stop,
-        /// For the controller.
+        /// A command to the controller.
         #[field(4)]
         Controller(command: O),
     }

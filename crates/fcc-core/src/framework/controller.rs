@@ -1,4 +1,4 @@
-//! What the loop runs.
+//! The controller that a loop runs.
 
 use core::fmt;
 
@@ -15,22 +15,22 @@ schema! {
     /// assert_eq!(Switch::from_number(1), Some(Switch::On));
     /// ```
     pub enum Switch {
-        /// Hands off.
+        /// The pilot controls.
         Off = 0,
-        /// The loop shall control.
+        /// The loop is to control.
         On = 1,
     }
 }
 
-/// What the loop runs: from measurements to outputs.
+/// The controller that a loop runs: from measurements to outputs.
 ///
 /// In each tick the loop calls, in this order and each at most once:
 /// [`command`](Self::command) for every command, [`estimate`](Self::estimate)
-/// (in every state), [`engage`](Self::engage) if it is to begin, then
+/// (in every state), [`engage`](Self::engage) if it is to engage, then
 /// [`guide`](Self::guide) and [`control`](Self::control) while engaged or
 /// [`failsafe`](Self::failsafe) while in failsafe. All of them are pure
-/// functions of the controller's state and what they are handed: they read no
-/// clock, allocate nothing and do not panic.
+/// functions of the controller's state and their arguments: they read no clock,
+/// allocate nothing and do not panic.
 ///
 /// ```
 /// use fcc_core::framework::{Controller, Flags, Tick};
@@ -93,53 +93,53 @@ schema! {
 pub trait Controller: Send {
     /// What the sensors measure.
     type Measurements: Schema + Readings;
-    /// What the controller makes of the measurements, for those who watch.
+    /// The controller's estimate, for observers.
     type Estimate: Schema;
-    /// What the controller aims for, for those who watch.
+    /// The controller's set points, for observers.
     type Setpoints: Schema;
-    /// What the actuators carry out.
+    /// What the actuators execute.
     type Outputs: Schema;
-    /// What may be asked of the controller from outside.
+    /// The commands to the controller from outside.
     type Command: Schema;
 
-    /// Follows the plant, in every state of the loop: filters and estimates,
-    /// so that they are settled when the loop engages.
+    /// Updates filters and estimates in every state of the loop, so that they
+    /// are settled when the loop engages.
     fn estimate(&mut self, tick: &Tick, measurements: &Self::Measurements);
 
     /// Why the loop may not engage now; empty if it may.
     fn engage_inhibits(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
-    /// What makes going on unsafe, while engaged; empty if nothing does.
+    /// Faults that make it unsafe to stay engaged; empty if there are none.
     fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
     /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits) and
-    /// [`faults`](Self::faults), in words for people.
+    /// [`faults`](Self::faults), as text for users.
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;
 
-    /// A command to this controller, in words for people.
+    /// A command to this controller, as text for users.
     ///
     /// # Errors
-    /// What the formatter says.
+    /// The formatter's error.
     fn write_command(_command: &Self::Command, f: &mut fmt::Formatter<'_>) -> fmt::Result
     where
         Self: Sized,
     {
-        f.write_str("something of the controller")
+        f.write_str("a command to the controller")
     }
 
-    /// Takes over: captures the present as set points, so that the outputs do
-    /// not jump.
+    /// Engages: captures the present state as set points, so that the outputs
+    /// do not jump.
     fn engage(&mut self, tick: &Tick, measurements: &Self::Measurements);
 
-    /// Works out where to go next: set points.
+    /// Computes the set points.
     fn guide(&mut self, _tick: &Tick, _measurements: &Self::Measurements) {}
 
-    /// Works out the outputs that lead there.
+    /// Computes the outputs that lead to the set points.
     fn control(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
 
-    /// The safest outputs that what is left of the measurements allows.
+    /// The safest outputs that the remaining measurements allow.
     fn failsafe(&mut self, tick: &Tick, measurements: &Self::Measurements) -> Self::Outputs;
 
     /// Loads what the next tick will run and read into the caches, without
@@ -148,13 +148,14 @@ pub trait Controller: Send {
     /// apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick, _measurements: &Self::Measurements) {}
 
-    /// Lets go.
+    /// Disengages.
     fn disengage(&mut self) {}
 
-    /// Takes a command from outside; one that makes no sense now is left.
+    /// Executes a command from outside; one that is not applicable now is
+    /// ignored.
     fn command(&mut self, _command: &Self::Command) {}
 
-    /// What it makes of the measurements at present.
+    /// The present estimate.
     fn estimated(&self) -> Self::Estimate {
         Self::Estimate::default()
     }
@@ -162,10 +163,10 @@ pub trait Controller: Send {
     /// The present set points.
     fn setpoints(&self) -> Self::Setpoints;
 
-    /// Whether these outputs may be sent: every one finite and in its range.
+    /// Whether these outputs may be sent: all finite and within their ranges.
     fn outputs_are_valid(&self, outputs: &Self::Outputs) -> bool;
 
-    /// The engage switch as measured; never read where there is none.
+    /// The engage switch as measured; never taken where there is none.
     fn switch(&self, _measurements: &Self::Measurements) -> Reading<Switch> {
         Reading::new(Switch::Off, Time::NEVER)
     }

@@ -12,7 +12,7 @@ schema! {
     /// Something that happened once, unlike a record, of which there is one per
     /// tick; it comes before the record of its tick.
     ///
-    /// `O` is what may be ordered of the controller.
+    /// `O` is a command to the controller.
     ///
     /// ```
     /// use fcc_core::framework::{Event, EventKind, Time};
@@ -32,7 +32,7 @@ schema! {
         /// That tick's wake-up, on the loop's clock.
         #[field(2)]
         pub time: Time,
-        /// What it was.
+        /// What happened.
         #[field(4)]
         pub kind: EventKind<O>,
     }
@@ -72,8 +72,8 @@ schema! {
 pub type EventOf<C> = Event<<C as Controller>::Command>;
 
 schema! {
-    /// What can happen in a loop. Sensors and actuators go by their place in the
-    /// loop, the first being 0.
+    /// What can happen in a loop. Sensors and actuators are identified by their
+    /// index in the loop, the first being 0.
     ///
     /// ```
     /// use fcc_core::framework::{EventKind, State};
@@ -97,57 +97,58 @@ schema! {
             #[field(2)]
             to: State,
         },
-        /// A command was read, in the sequence they were sent in: with these and the
+        /// A command was read, in the order of sending: from these and the
         /// measurements of its records a run can be replayed.
         #[field(11)]
         CommandReceived(command: LoopCommand<O>),
-        /// The loop was told to end by its stop flag, as a signal does; this too
+        /// The loop's stop flag was set, for example by a signal. This too
         /// comes from outside, and is needed to replay a run.
         #[field(23)]
         StopRequested,
-        /// Somebody wanted to engage, and must ask again.
+        /// A request to engage was refused, and has to be repeated.
         #[field(12)]
         EngageRefused {
-            /// Why; empty if control was let go in the same tick, or if as many
-            /// ticks in a row overrun as lead to failsafe.
+            /// The engage inhibits; empty if control was released in the same
+            /// tick, or if as many consecutive ticks overran as lead to
+            /// failsafe.
             #[field(1)]
             engage_inhibits: Flags,
         },
-        /// A sensor went wrong, or goes wrong in another way than before.
+        /// A sensor has a fault, or another fault than before.
         #[field(13)]
         SensorFault {
             /// Which sensor.
             #[field(1)]
             index: u16,
-            /// What goes wrong.
+            /// The fault.
             #[field(2)]
             fault: SensorFault,
         },
-        /// A sensor that went wrong works again.
+        /// A sensor has recovered from its fault.
         #[field(15)]
         SensorRecovered {
             /// Which sensor.
             #[field(1)]
             index: u16,
         },
-        /// An actuator went wrong, or goes wrong in another way than before.
+        /// An actuator has a fault, or another fault than before.
         #[field(14)]
         ActuatorFault {
             /// Which actuator.
             #[field(1)]
             index: u16,
-            /// What goes wrong.
+            /// The fault.
             #[field(2)]
             fault: ActuatorFault,
         },
-        /// An actuator that went wrong works again.
+        /// An actuator has recovered from its fault.
         #[field(16)]
         ActuatorRecovered {
             /// Which actuator.
             #[field(1)]
             index: u16,
         },
-        /// Records that found no room in the ring are lost.
+        /// Records were lost because the ring was full.
         #[field(17)]
         RecordsDropped {
             /// How many.
@@ -160,7 +161,7 @@ schema! {
             #[field(3)]
             last: u64,
         },
-        /// Events that found no room are lost.
+        /// Events were lost because the ring was full.
         #[field(18)]
         EventsDropped {
             /// How many.
@@ -173,8 +174,8 @@ schema! {
             #[field(3)]
             last: u64,
         },
-        /// Messages that reached the recorder and not its file are lost: the disk
-        /// was too slow for them, or full.
+        /// Messages that reached the recorder were not written to its file: the
+        /// disk was too slow, or full.
         #[field(19)]
         NotRecorded {
             /// How many.
@@ -187,21 +188,22 @@ schema! {
             #[field(3)]
             last: u64,
         },
-        /// The actuators were told to give control back.
+        /// The actuators were released.
         #[field(20)]
         Released {
-            /// Whether all of them did. If not, the loop asks again.
+            /// Whether all of them succeeded. If not, the loop repeats the
+            /// release.
             #[field(1)]
             ok: bool,
         },
-        /// A part panicked; its words are in the loop's report.
+        /// A component panicked; its message is in the loop's report.
         #[field(21)]
         Panicked,
-        /// The timer failed; why is in the loop's report.
+        /// The timer failed; the reason is in the loop's report.
         #[field(22)]
         TimerFailed,
-        /// Ticks begin to overrun. Told once, however many follow:
-        /// `OverrunsOver` says how many it became.
+        /// Ticks begin to overrun. Reported once, however many follow:
+        /// `OverrunsOver` gives their number.
         #[field(24)]
         Overrun {
             /// Whose budget was overrun; the timer's is one period.
@@ -210,7 +212,7 @@ schema! {
             /// How long it took, or how late the timer woke, ns.
             #[field(2)]
             took_ns: u64,
-            /// How long it might have taken, ns.
+            /// The budget, ns.
             #[field(3)]
             budget_ns: u64,
             /// The stage that took longest in that tick.
@@ -230,30 +232,30 @@ schema! {
             #[field(3)]
             last: u64,
         },
-        /// The loop hung, and its watchdog ended it: told by the watchdog, after
-        /// the last tick.
+        /// The loop hung, and its watchdog ended it: reported by the watchdog,
+        /// after the last tick.
         #[field(26)]
         Hung {
-            /// How long the loop had shown no progress, ns.
+            /// How long the loop had made no progress, ns.
             #[field(1)]
             silent_ns: u64,
         },
-        /// Readings are taken from another sensor than before: the one before
-        /// grew too old, or one that is preferred came back.
+        /// Readings are taken from another sensor than before: the previous
+        /// one's became too old, or a preferred one returned.
         #[field(27)]
         SourceChanged(change: SourceChange),
     }
 }
 
 impl<O: Copy> EventKind<O> {
-    /// The event in words for people, its conditions and commands named by the
-    /// controller.
-    pub const fn words<C: Controller<Command = O>>(&self) -> EventWords<C> {
-        EventWords { kind: *self }
+    /// The event as text for users, with its conditions and commands named by
+    /// the controller.
+    pub const fn description<C: Controller<Command = O>>(&self) -> EventDescription<C> {
+        EventDescription { kind: *self }
     }
 }
 
-/// An event in words for people; see [`EventKind::words`].
+/// An event as text for users; see [`EventKind::description`].
 ///
 /// ```
 /// # use fcc_core::framework::{Controller, Flags, Tick};
@@ -277,13 +279,13 @@ impl<O: Copy> EventKind<O> {
 /// use fcc_core::framework::EventKind;
 ///
 /// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
-/// assert!(refused.words::<Heating>().to_string().ends_with("the door is open"));
+/// assert!(refused.description::<Heating>().to_string().ends_with("the door is open"));
 /// ```
-pub struct EventWords<C: Controller> {
+pub struct EventDescription<C: Controller> {
     kind: EventKind<C::Command>,
 }
 
-impl<C: Controller> fmt::Display for EventWords<C> {
+impl<C: Controller> fmt::Display for EventDescription<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {
             EventKind::StateChanged { from, to } => {
@@ -307,9 +309,9 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                 f.write_str("command: ")?;
                 C::write_command(&command, f)
             }
-            EventKind::StopRequested => f.write_str("told to stop"),
+            EventKind::StopRequested => f.write_str("stop requested"),
             EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => {
-                f.write_str("not engaged: control was let go at the same time, or ticks overrun")
+                f.write_str("not engaged: control was released at the same time, or ticks overrun")
             }
             EventKind::EngageRefused { engage_inhibits } => {
                 f.write_str("not engaged: ")?;
@@ -322,13 +324,13 @@ impl<C: Controller> fmt::Display for EventWords<C> {
             EventKind::RecordsDropped { count, first, last } => {
                 write!(
                     f,
-                    "{count} records lost, ticks {first} to {last}: nobody fetched them in time"
+                    "{count} records lost, ticks {first} to {last}: they were not read in time"
                 )
             }
             EventKind::EventsDropped { count, first, last } => {
                 write!(
                     f,
-                    "{count} events lost, ticks {first} to {last}: nobody fetched them in time"
+                    "{count} events lost, ticks {first} to {last}: they were not read in time"
                 )
             }
             EventKind::NotRecorded { count, first, last } => {

@@ -2,8 +2,8 @@
 
 use core::ops::{BitOr, BitOrAssign};
 
-/// A set of up to 32 conditions: why a loop may not engage, or what fails it.
-/// A controller names its bits ([`Controller::flag_name`](super::Controller::flag_name)).
+/// A set of up to 32 conditions: engage inhibits or faults. A controller names
+/// its bits ([`Controller::flag_name`](super::Controller::flag_name)).
 ///
 /// ```
 /// use fcc_core::framework::Flags;

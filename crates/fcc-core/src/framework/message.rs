@@ -1,27 +1,27 @@
-//! What a loop tells of itself.
+//! The messages that a loop sends.
 
 use super::{Controller, Event, Record};
 
-/// What a loop tells of itself: `M`, `E`, `S` and `O` are its measurements,
-/// estimate, set points and outputs, `R` what may be ordered of its controller.
+/// A message from a loop: `M`, `E`, `S` and `O` are its measurements, estimate,
+/// set points and outputs, `R` a command to its controller.
 ///
 /// ```
 /// use fcc_core::framework::{Message, Record, State, Tick};
 ///
-/// // Of a plant with one measurement and one output.
+/// // For a plant with one measurement and one output.
 /// let record = Record::<f64, (), f64, f64>::new(Tick::default(), State::Standby);
 /// let message = Message::<f64, (), f64, f64, ()>::Tick(record);
 /// assert!(matches!(message, Message::Tick(record) if record.state == State::Standby));
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Message<M, E, S, O, R> {
-    /// One tick, whole.
+    /// The record of one tick.
     Tick(Record<M, E, S, O>),
     /// Something that happened. It comes before the record of its tick.
     Event(Event<R>),
 }
 
-/// What a controller's loop tells of itself.
+/// The message type of a controller's loop.
 ///
 /// ```
 /// # use fcc_core::framework::{Controller, Flags, Tick};

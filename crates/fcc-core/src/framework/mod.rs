@@ -1,11 +1,12 @@
-//! The control framework: what every plant shares, an aircraft or a room.
+//! The control framework: the part that is common to all plants, from an
+//! aircraft to a room.
 //!
-//! A loop wakes once a [`Tick`], lets each [`Sensor`] write its part of the
-//! measurements, steps a [`Controller`] and hands the outputs to each
-//! [`Actuator`]. Which [`State`] the loop is in, and why, follows one
-//! transition table ([`State::after`]). What happened in a tick is its
-//! [`Record`]; what happened once is an [`Event`]. The loop itself lives in
-//! `fcc-runtime`; here are the parts it holds and the words they exchange.
+//! In each [`Tick`] a loop wakes, lets each [`Sensor`] write its part of the
+//! measurements, steps a [`Controller`] and passes the outputs to each
+//! [`Actuator`]. The [`State`] of the loop follows one transition table
+//! ([`State::after`]). What happened in a tick is its [`Record`]; what happened
+//! once is an [`Event`]. The loop itself is in `fcc-runtime`; this module has
+//! its components and the types they exchange.
 
 mod actuator;
 mod authority;
@@ -30,7 +31,7 @@ pub use actuator::{Actuator, ActuatorFault};
 pub use authority::{ControlAuthority, Released};
 pub use command::LoopCommand;
 pub use controller::{Controller, Switch};
-pub use event::{Event, EventKind, EventOf, EventWords};
+pub use event::{Event, EventDescription, EventKind, EventOf};
 pub use flags::Flags;
 pub use message::{Message, MessageOf};
 pub use plant_id::PlantId;

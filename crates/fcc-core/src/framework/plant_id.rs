@@ -1,9 +1,11 @@
-//! Which plant, among those that programs on one machine could control.
+//! The identity of a plant among those that programs on one machine can
+//! control.
 
 use core::fmt::{self, Write};
 
-/// Names a plant, as people read it and so that its adapter finds it again:
-/// "X-Plane at 127.0.0.1:49000". At most [`CAPACITY`](Self::CAPACITY) bytes.
+/// The name of a plant, readable by users and from which its adapter finds it
+/// again: "X-Plane at 127.0.0.1:49000". At most [`CAPACITY`](Self::CAPACITY)
+/// bytes.
 ///
 /// ```
 /// use fcc_core::framework::PlantId;
@@ -23,13 +25,13 @@ impl PlantId {
     /// The longest name, bytes.
     pub const CAPACITY: usize = 80;
 
-    /// A name; none if it is too long.
-    pub fn new(words: fmt::Arguments<'_>) -> Option<Self> {
+    /// Creates a name; none if it is too long.
+    pub fn new(text: fmt::Arguments<'_>) -> Option<Self> {
         let mut this = Self {
             bytes: [0; Self::CAPACITY],
             length: 0,
         };
-        this.write_fmt(words).ok().map(|()| this)
+        this.write_fmt(text).ok().map(|()| this)
     }
 
     /// The name.

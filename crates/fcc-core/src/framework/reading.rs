@@ -4,11 +4,11 @@ use core::time::Duration;
 
 use super::Time;
 
-/// A value and the time it was taken; [`Time::NEVER`] where none has come yet.
+/// A value and the time it was taken; [`Time::NEVER`] before the first value.
 ///
-/// Plain `repr(C)` data, so that the same struct goes through the loop, shared
-/// memory and a recording. Whether a reading is fresh is a question asked with
-/// the tick's time, never a flag that someone must remember to clear.
+/// Plain `repr(C)` data, so that the same struct is used in the loop, in shared
+/// memory and in a recording. Whether a reading is fresh is computed from the
+/// tick's time and never stored as a flag that would have to be cleared.
 ///
 /// ```
 /// use core::time::Duration;
@@ -26,8 +26,8 @@ pub struct Reading<T> {
     pub value: T,
     /// When the value was taken, on the loop's clock.
     pub taken: Time,
-    /// Which sensor it came from, by its place in the loop, the first being 0.
-    /// The loop sets it where there are several; sensors leave it.
+    /// The index in the loop of the sensor that it came from, the first being
+    /// 0. The loop sets it if there are several sensors; sensors do not.
     pub source: u8,
 }
 
@@ -46,7 +46,7 @@ impl<T> Reading<T> {
         self.taken.is_never()
     }
 
-    /// How old the value is at `now`: [`Duration::MAX`] if it never came.
+    /// The age of the value at `now`: [`Duration::MAX`] if there is none.
     pub const fn age(&self, now: Time) -> Duration {
         now.since(self.taken)
     }

@@ -1,14 +1,14 @@
-//! All that is known of one tick.
+//! The record of one tick.
 
 use super::{Controller, Flags, State, StateCode, Tick};
 use crate::schema;
 
 schema! {
-    /// All that is known of one tick of a loop with measurements `M`, estimate
-    /// `E`, set points `S` and outputs `O`.
+    /// The record of one tick of a loop with measurements `M`, estimate `E`,
+    /// set points `S` and outputs `O`.
     ///
-    /// Plain `repr(C)` data of a fixed size: the same struct goes through the
-    /// loop's ring, shared memory and a recording.
+    /// Plain `repr(C)` data of a fixed size: the same struct is used in the
+    /// loop's ring, in shared memory and in a recording.
     ///
     /// ```
     /// use fcc_core::framework::{Record, State, Tick};
@@ -25,16 +25,16 @@ schema! {
         /// How long the stages took.
         #[field(2)]
         pub stages: StageTimes,
-        /// What the sensors had measured by then, each reading with its time.
+        /// The latest measurements of the sensors, each reading with its time.
         #[field(3)]
         pub measurements: M,
-        /// What the controller makes of them.
+        /// The controller's estimate.
         #[field(4, column = "estimated_*")]
         pub estimate: E,
         /// The controller's set points.
         #[field(5, column = "desired_*")]
         pub setpoints: S,
-        /// What was handed to the actuators; the default if nothing was.
+        /// The outputs sent to the actuators; the default if none were.
         #[field(6, column = "commanded_*")]
         pub outputs: O,
         /// Failed samples of sensors since the loop's start.
@@ -43,7 +43,7 @@ schema! {
         /// Failed writes and releases of actuators since the loop's start.
         #[field(12)]
         pub actuator_faults: u64,
-        /// Records that found no room in the ring since the loop's start.
+        /// Records lost since the loop's start because the ring was full.
         #[field(13)]
         pub records_dropped: u64,
         /// Ticks that took longer than their budget since the loop's start, this
@@ -53,20 +53,20 @@ schema! {
         /// Page faults of the loop's thread since the loop's start.
         #[field(15)]
         pub page_faults: u64,
-        /// How long before the deadline the timer asked to be woken, ns; 0 where
-        /// it does not wake early.
+        /// The margin of the early wake-up before the deadline, ns; 0 without
+        /// early wake-up.
         #[field(16)]
         pub early_wake_ns: u64,
         /// The loop's state at the tick's end.
         #[field(7)]
         pub state: StateCode,
-        /// Why the loop may not engage; empty while engaged.
+        /// The engage inhibits; empty while engaged.
         #[field(8)]
         pub engage_inhibits: Flags,
-        /// What makes going on unsafe; empty in standby.
+        /// The faults; empty in standby.
         #[field(9)]
         pub faults: Flags,
-        /// Whether outputs were handed to the actuators.
+        /// Whether outputs were sent to the actuators.
         #[field(10)]
         pub sent: bool,
     }
@@ -106,7 +106,7 @@ pub type RecordOf<C> = Record<
 >;
 
 impl<M: Default, E: Default, S: Default, O: Default> Record<M, E, S, O> {
-    /// The record of a tick of which nothing is known yet.
+    /// A record at the beginning of a tick.
     pub fn new(tick: Tick, state: State) -> Self {
         Self {
             tick,
@@ -137,7 +137,8 @@ schema! {
         /// [`Controller::guide`].
         #[field(3, column = "guide_time_ns")]
         pub guide_ns: u64,
-        /// [`Controller::control`], or `failsafe`, and the check of what they give.
+        /// [`Controller::control`], or `failsafe`, and the check of their
+        /// outputs.
         #[field(4, column = "control_time_ns")]
         pub control_ns: u64,
         /// Driving the actuators.

@@ -1,4 +1,4 @@
-//! Where measurements come from.
+//! Sources of measurements.
 
 use core::fmt;
 use core::time::Duration;
@@ -6,23 +6,23 @@ use core::time::Duration;
 use super::Tick;
 use crate::schema;
 
-/// How old a reading may be by default before another sensor's is preferred.
+/// The default age of a reading above which another sensor's is preferred.
 pub const FALLBACK_AFTER: Duration = Duration::from_millis(100);
 
-/// Writes its part of the measurements `M` once a tick.
+/// Writes its part of the measurements `M` once per tick.
 ///
 /// The loop holds sensors as `Box<dyn Sensor<M>>`: a simulated plant and a
-/// board's own sensors differ in configuration and in no line of the loop. A sensor
-/// that has nothing new leaves `into` as it is: each
-/// [`Reading`](super::Reading) carries its own time, and grows old by itself.
-/// `into` is this sensor's own: where there are several, the loop takes each
-/// reading from the most preferred that has a fresh one.
+/// board's sensors differ only in configuration, not in the loop's code. A
+/// sensor that has nothing new leaves `into` unchanged: each
+/// [`Reading`](super::Reading) carries the time it was taken. Each sensor has
+/// its own `into`: if there are several sensors, the loop takes each reading
+/// from the most preferred one with a fresh reading.
 ///
 /// ```
 /// use core::time::Duration;
 /// use fcc_core::framework::{Reading, Sensor, SensorFault, Tick};
 ///
-/// /// A thermometer that always says 19 °C.
+/// /// A thermometer that always reads 19 °C.
 /// struct Thermometer;
 ///
 /// impl Sensor<Reading<f64>> for Thermometer {
@@ -41,17 +41,17 @@ pub const FALLBACK_AFTER: Duration = Duration::from_millis(100);
 /// assert_eq!(measured.value, 19.0);
 /// ```
 pub trait Sensor<M>: Send {
-    /// Takes what is there and returns. Never waits, allocates, locks, logs or
-    /// panics.
+    /// Reads what is available and returns. Never waits, allocates, locks, logs
+    /// or panics.
     ///
     /// # Errors
-    /// What went wrong in this tick. The loop counts it, shows it in the
-    /// record and goes on: what decides about failsafe is the readings' age.
+    /// What went wrong in this tick. The loop counts it, stores it in the
+    /// record and continues: the age of the readings decides about failsafe.
     fn sample(&mut self, tick: &Tick, into: &mut M) -> Result<(), SensorFault>;
 
-    /// How old a reading of this sensor may be before that of the next sensor
-    /// in the loop's order of preference is taken; asked once, before the first
-    /// tick. Longer than the time between two of them.
+    /// The age of this sensor's readings above which that of the next sensor in
+    /// the loop's order of preference is taken; called once, before the first
+    /// tick. It must exceed the interval between two readings.
     fn fallback_after(&self) -> Duration {
         FALLBACK_AFTER
     }
@@ -62,7 +62,7 @@ pub trait Sensor<M>: Send {
     /// time; the rules of a tick apply. Does nothing by default.
     fn warm_up(&self, _tick: &Tick) {}
 
-    /// What people call this sensor; for events and reports.
+    /// The sensor's name, for events and reports.
     fn name(&self) -> &'static str;
 }
 
@@ -78,7 +78,7 @@ schema! {
     #[name("SensorFaultKind")]
     #[non_exhaustive]
     pub enum SensorFault {
-        /// The source has been silent for longer than it should be.
+        /// The source has been silent for too long.
         #[field(1)]
         Silent,
         /// The operating system refused a read, with its error number.
@@ -88,7 +88,7 @@ schema! {
             #[field(1)]
             errno: i32,
         },
-        /// What came could not be understood, and was left out.
+        /// The data that arrived is invalid, and was left out.
         #[field(3)]
         Malformed,
     }
@@ -99,7 +99,7 @@ impl fmt::Display for SensorFault {
         match self {
             Self::Silent => f.write_str("nothing arrives"),
             Self::Io { errno } => write!(f, "reading failed (errno {errno})"),
-            Self::Malformed => f.write_str("what arrives cannot be understood"),
+            Self::Malformed => f.write_str("the data that arrives is invalid"),
         }
     }
 }

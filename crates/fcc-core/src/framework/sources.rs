@@ -1,35 +1,35 @@
-//! Which of several sensors each reading comes from.
+//! Selects the sensor from which each reading is taken.
 //!
 //! The sensors of a loop are in an order of preference, and each writes into
-//! measurements of its own. Of each reading the first is taken that is fresh;
-//! where none is, the youngest, and of those of one age the first. So a sensor
-//! that falls silent is replaced before its readings count as lost, and one
-//! that speaks again is taken back.
+//! its own measurements. For each quantity the first fresh reading is taken; if
+//! none is fresh, the youngest, and of equal ones the first. So a sensor that
+//! becomes silent is replaced before its readings count as lost, and is used
+//! again when it returns.
 
 use core::time::Duration;
 
 use super::{Flags, Reading, Time};
 use crate::schema;
 
-/// Measurements, as the readings that they are made of.
+/// Measurements as a collection of readings.
 ///
-/// [`readings!`](crate::readings) implements it for a struct. One that names no
-/// reading is taken from the first sensor as a whole.
+/// [`readings!`](crate::readings) implements it for a struct. A struct without
+/// named readings is taken as a whole from the first sensor.
 pub trait Readings {
-    /// What people call each reading, in their order; at most 32.
+    /// The names of the readings, in their order; at most 32.
     const NAMES: &'static [&'static str] = &[];
 
-    /// Takes over each reading of another sensor that is to be taken before the
-    /// one that is here. That sensor is less preferred than those that these
-    /// came from.
+    /// Replaces each reading by another sensor's if that one is to be
+    /// preferred. The other sensor comes later in the order of preference than
+    /// those of the present readings.
     fn choose(&mut self, _other: &Self, _sensor: u8, _by: &Preference<'_>) {}
 
-    /// Hands each reading's sensor and time to `visit`, in their order.
+    /// Passes each reading's sensor and time to `visit`, in their order.
     fn each_source(&self, _visit: &mut dyn FnMut(u8, Time)) {}
 }
 
 /// Implements [`Readings`](crate::framework::Readings) for a struct whose
-/// fields are readings, each with the name that people call it by.
+/// fields are readings, each with its name for users.
 ///
 /// ```
 /// use fcc_core::framework::{Reading, Readings};
@@ -64,7 +64,7 @@ macro_rules! readings {
     };
 }
 
-/// A value that no sensor gives a time.
+/// A value without a time.
 impl Readings for u64 {}
 impl Readings for f64 {}
 impl Readings for () {}
@@ -89,14 +89,14 @@ impl<T: Copy> Readings for Reading<T> {
     }
 }
 
-/// By what one sensor's reading is taken before another's.
+/// The criteria by which one sensor's reading is preferred to another's.
 #[derive(Clone, Copy, Debug)]
 pub struct Preference<'a> {
-    /// The tick's time. A reading of the future is never fresh, and older than
-    /// any other.
+    /// The tick's time. A reading from the future is never fresh, and counts as
+    /// older than any other.
     pub now: Time,
-    /// How old a reading of each sensor may be to be fresh, by the sensors'
-    /// places in the loop.
+    /// The age up to which a reading of each sensor is fresh, by the sensors'
+    /// index in the loop.
     pub fresh_for: &'a [Duration],
 }
 
@@ -116,10 +116,10 @@ impl Preference<'_> {
     }
 }
 
-/// As many readings as there are [`Flags`].
+/// The maximum number of readings: the number of [`Flags`].
 const MOST: usize = 32;
 
-/// Remembers which sensor each reading came from.
+/// Stores which sensor each reading came from.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
     /// None before the first reading.
@@ -130,22 +130,22 @@ schema! {
     /// Readings that come from another sensor than before.
     #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
     pub struct SourceChange {
-        /// Which: a bit for each, in the order of the measurements.
+        /// The readings: a bit for each, in the order of the measurements.
         #[field(1)]
         pub readings: Flags,
-        /// The place of the sensor before.
+        /// The index of the previous sensor.
         #[field(2)]
         pub from: u8,
-        /// The place of the sensor now.
+        /// The index of the present sensor.
         #[field(3)]
         pub to: u8,
     }
 }
 
 impl Sources {
-    /// Looks at a tick's measurements and hands what has changed to `changed`,
-    /// readings that went the same way together. Where a reading first comes
-    /// from is no change.
+    /// Examines a tick's measurements and passes changes to `changed`, readings
+    /// with the same change together. The first source of a reading is not a
+    /// change.
     pub fn watch(&mut self, measurements: &impl Readings, mut changed: impl FnMut(SourceChange)) {
         let before = self.known;
         let mut known = self.known.iter_mut();

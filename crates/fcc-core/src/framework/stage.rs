@@ -6,7 +6,7 @@ use super::StageTimes;
 use crate::schema;
 
 schema! {
-    /// A stage of a tick, the whole of it, or the wait before it.
+    /// A stage of a tick, the whole tick, or the wait before it.
     ///
     /// ```
     /// use fcc_core::framework::Stage;
@@ -33,7 +33,7 @@ schema! {
 }
 
 impl Stage {
-    /// The stages that are timed, in their order; not the whole of them.
+    /// The timed stages, in their order, without the whole tick.
     pub const TIMED: [Self; 5] = [
         Self::Sensors,
         Self::Estimate,

@@ -1,13 +1,13 @@
-//! The loop's states and the one table of how they change.
+//! The loop's states and their transition table.
 
 use core::fmt;
 
 use super::Flags;
 
-/// What the loop is doing.
+/// The state of the loop.
 ///
-/// The table, whole: rows are states, columns inputs, `·` means nothing
-/// changes.
+/// The complete transition table: rows are states, columns inputs, `·` means no
+/// change.
 ///
 /// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeOver` | Stop |
 /// |---|---|---|---|---|---|---|
@@ -17,7 +17,7 @@ use super::Flags;
 /// | **Stopped** | · | · | · | · | · | · |
 ///
 /// Leaving Engaged or Failsafe for Standby or Stopped releases the actuators.
-/// `Engage` is only put in when nothing blocks it.
+/// `Engage` is input only when no engage inhibit is active.
 ///
 /// ```
 /// use fcc_core::framework::{Cause, Input, State, SwitchOff};
@@ -28,18 +28,19 @@ use super::Flags;
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum State {
-    /// Watching; the controls are somebody else's.
+    /// The controls belong to the pilot; sensors are read and filters run.
     #[default]
     Standby,
     /// In control.
     Engaged,
-    /// In control of what is left: safe outputs for a while, then release.
+    /// In control with the remaining readings: safe outputs for a limited time,
+    /// then release.
     Failsafe(Cause),
-    /// Over.
+    /// The loop has ended.
     Stopped,
 }
 
-/// Why the loop fell into failsafe.
+/// Why the loop entered failsafe.
 ///
 /// ```
 /// use fcc_core::framework::{Cause, Flags};
@@ -49,9 +50,9 @@ pub enum State {
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Cause {
-    /// The controller saw these faults: sensors too old, a plant gone.
+    /// The controller detected these faults, such as readings that are too old.
     Faults(Flags),
-    /// The controller's outputs were not finite or not in range.
+    /// The controller's outputs were not finite or out of range.
     InvalidOutput,
     /// Ticks overran their budget, or were missed, as many in a row as
     /// configured.
@@ -68,21 +69,21 @@ pub enum Cause {
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Input {
-    /// Take over: asked for, and nothing blocks it.
+    /// Engage: requested, with no engage inhibit active.
     Engage,
-    /// Let go: asked for from outside.
+    /// Disengage: requested from outside.
     Disengage,
-    /// The engage switch went off.
+    /// The engage switch was switched off.
     SwitchedOff,
-    /// Going on is unsafe.
+    /// It is unsafe to stay engaged.
     Fault(Cause),
     /// Failsafe has lasted as long as configured.
     FailsafeOver,
-    /// End the loop: asked for, a signal, or a panic.
+    /// End the loop: requested, a signal, or a panic.
     Stop,
 }
 
-/// What switching off the engage switch means.
+/// The effect of switching off the engage switch.
 ///
 /// ```
 /// use fcc_core::framework::{Input, State, SwitchOff};
@@ -101,7 +102,7 @@ pub enum SwitchOff {
 }
 
 impl State {
-    /// The state after an input: the one transition table.
+    /// The state after an input, by the transition table.
     #[must_use]
     pub const fn after(self, input: Input, switch_off: SwitchOff) -> Self {
         match (self, input) {
@@ -149,9 +150,9 @@ mod tests {
         Input::Stop,
     ];
 
-    /// The table of [`State`]'s documentation, typed again.
+    /// The table of [`State`]'s documentation, written out again.
     #[test]
-    fn the_documented_table_holds() {
+    fn transitions_follow_the_documented_table() {
         use State::{Engaged, Standby, Stopped};
         let rows = [
             (

@@ -7,28 +7,28 @@ use super::{Cause, Flags, State};
 use crate::schema;
 
 schema! {
-    /// What the loop is doing.
+    /// The phase of the loop's state.
     enum Phase {
-        /// Watching; the controls are somebody else's.
+        /// The controls belong to the pilot; sensors are read and filters run.
         Standby = 0,
         /// In control.
         Engaged = 1,
-        /// In control of what is left, for a while.
+        /// In control with the remaining readings, for a limited time.
         Failsafe = 2,
-        /// Over.
+        /// The loop has ended.
         Stopped = 3,
     }
 }
 
 schema! {
-    /// Why the loop fell into failsafe.
+    /// Why the loop entered failsafe.
     #[name("Cause")]
     enum CauseCode {
-        /// It did not.
+        /// Not in failsafe.
         None = 0,
-        /// By faults.
+        /// Faults.
         Faults = 1,
-        /// By an invalid output.
+        /// An invalid output.
         InvalidOutput = 2,
         /// Too many ticks in a row overran their budget.
         Overrun = 3,
@@ -36,8 +36,9 @@ schema! {
 }
 
 schema! {
-    /// A [`State`] as plain numbers of a fixed layout, for records: they go through
-    /// shared memory and files, where an enum that carries data has no place.
+    /// A [`State`] as plain numbers of a fixed layout, for records: they are
+    /// stored in shared memory and files, where an enum with data cannot be
+    /// used.
     ///
     /// ```
     /// use fcc_core::framework::{Cause, Flags, State, StateCode};
@@ -52,20 +53,20 @@ schema! {
     #[name("State")]
     #[check(Self::is_state)]
     pub struct StateCode {
-        /// What the loop is doing.
+        /// The phase of the loop's state.
         #[field(1, column = "state")]
         phase: Phase,
-        /// Why it fell into failsafe.
+        /// Why it entered failsafe.
         #[field(2, column = "state_cause")]
         cause: CauseCode,
-        /// The faults that led there.
+        /// The faults that led to it.
         #[field(3, column = "state_flags")]
         flags: Flags,
     }
 }
 
 impl StateCode {
-    /// From the numbers as stored; none if no state has these.
+    /// The state with these stored numbers; none if there is no such state.
     pub fn from_parts(phase: u8, cause: u8, flags: Flags) -> Option<Self> {
         let code = Self {
             phase: Phase::from_number(phase)?,
@@ -84,8 +85,8 @@ impl StateCode {
         self.phase as u8
     }
 
-    /// Why it fell into failsafe: 1 by faults, 2 by an invalid output, 3 by
-    /// overruns; 0 in every other state.
+    /// Why it entered failsafe: 1 faults, 2 an invalid output, 3 overruns; 0 in
+    /// every other state.
     pub const fn cause(self) -> u8 {
         self.cause as u8
     }
@@ -108,7 +109,7 @@ impl StateCode {
     }
 }
 
-/// A state's values are those of its code.
+/// A state has the values of its code.
 impl Schema for State {
     const TYPE: Type = StateCode::TYPE;
     const FIELDS: &'static [Field] = StateCode::FIELDS;
@@ -168,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_state_comes_back() {
+    fn every_state_is_restored() {
         for state in [
             State::Standby,
             State::Engaged,
@@ -185,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_codes_of_states_are_taken() {
+    fn only_codes_of_states_are_accepted() {
         for phase in 0..=u8::MAX {
             for cause in 0..=u8::MAX {
                 let taken = StateCode::from_parts(phase, cause, Flags::NONE).is_some();
@@ -193,7 +194,7 @@ mod tests {
                 assert_eq!(taken, known, "{phase} {cause}");
             }
         }
-        // Flags where there are no faults mean nothing.
+        // Flags without faults are ignored.
         assert_eq!(StateCode::from_parts(1, 0, Flags::bit(0)), None);
     }
 }

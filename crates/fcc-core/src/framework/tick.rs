@@ -1,4 +1,4 @@
-//! One turn of the loop.
+//! One pass through the loop.
 
 use core::time::Duration;
 
@@ -6,8 +6,8 @@ use super::Time;
 use crate::schema;
 
 schema! {
-    /// One turn of the loop: its number and its times. All that code inside a tick
-    /// knows of time, it knows from here.
+    /// One pass through the loop: its number and its times. Code inside a tick
+    /// has no other source of time.
     ///
     /// ```
     /// use core::time::Duration;
@@ -33,11 +33,11 @@ schema! {
         /// When the loop woke for it.
         #[field(3)]
         pub woke: Time,
-        /// Periods that passed unserved right before this tick.
+        /// Periods missed directly before this tick.
         #[field(4)]
         pub missed: u64,
-        /// Seconds since the tick before, by schedule: the period, times one more
-        /// than the missed. Positive.
+        /// Seconds since the previous tick, by schedule: the period times one
+        /// more than the missed periods. Positive.
         #[field(5)]
         pub dt_s: f64,
     }

@@ -5,8 +5,8 @@ use core::time::Duration;
 
 /// An instant in nanoseconds on the loop's monotonic clock, or [`Time::NEVER`].
 ///
-/// Where the clock began is of no meaning; only differences are. Wall-clock
-/// time never enters the loop.
+/// The origin of the clock is arbitrary; only differences have a meaning.
+/// Wall-clock time is not used in the loop.
 ///
 /// ```
 /// use core::time::Duration;
@@ -39,8 +39,8 @@ impl Time {
         self.0 == i64::MIN
     }
 
-    /// How long ago `earlier` was: zero if it lies ahead, [`Duration::MAX`] if
-    /// it never was.
+    /// The time since `earlier`: zero if it lies in the future,
+    /// [`Duration::MAX`] if it is [`Time::NEVER`].
     pub const fn since(self, earlier: Self) -> Duration {
         if earlier.is_never() {
             return Duration::MAX;
@@ -64,7 +64,7 @@ impl Default for Time {
 impl Add<Duration> for Time {
     type Output = Self;
 
-    /// Saturates; [`Time::NEVER`] stays what it is.
+    /// Saturates; [`Time::NEVER`] stays [`Time::NEVER`].
     fn add(self, span: Duration) -> Self {
         if self.is_never() {
             return self;
@@ -95,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn the_future_is_zero_old() {
+    fn the_future_has_age_zero() {
         assert_eq!(
             Time::from_nanos(5).since(Time::from_nanos(9)),
             Duration::ZERO

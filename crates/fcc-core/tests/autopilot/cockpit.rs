@@ -1,4 +1,4 @@
-//! An autopilot with somebody in the other seat, who moves the instruments.
+//! An autopilot with measurements set by the test.
 
 use core::time::Duration;
 
@@ -9,7 +9,7 @@ use fcc_core::flight::{
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
-/// Every sensor that control needs, by its fault.
+/// Every sensor needed by control, with its fault.
 pub(crate) const SENSORS: [Flags; 6] = [
     flags::ATTITUDE,
     flags::HEADING,
@@ -22,11 +22,11 @@ pub(crate) const SENSORS: [Flags; 6] = [
 pub(crate) const DT_S: f64 = 0.025;
 pub(crate) const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
 
-/// An autopilot and the aircraft that it believes to be in.
+/// An autopilot and the aircraft simulated for it.
 pub(crate) struct Cockpit {
     pub(crate) autopilot: Autopilot,
     pub(crate) tick: Tick,
-    /// What the sensors say; stamped at each tick.
+    /// The sensors' readings, stamped at each tick.
     pub(crate) feel: Feel,
     pub(crate) measurements: Measurements,
     pub(crate) silent: Flags,
@@ -63,8 +63,8 @@ impl Cockpit {
     pub(crate) fn new(guidance: GuidanceConfig) -> Self {
         let config = AutopilotConfig {
             guidance,
-            // What it feels here is the same to the last bit until it is told
-            // otherwise.
+            // The readings are the same to the last bit until the test changes
+            // them.
             frozen_after: Duration::ZERO,
             ..AutopilotConfig::default()
         };
@@ -162,7 +162,8 @@ impl Cockpit {
         self.autopilot.estimate(&self.tick, &self.measurements);
     }
 
-    /// A tick on which everything speaks, but the plant's clock stands still.
+    /// A tick in which all sensors send, but the plant's clock does not
+    /// advance.
     pub(crate) fn pause(&mut self, time_s: f64) {
         self.tick.number += 1;
         self.tick.woke = self.tick.woke + Duration::from_millis(25);

@@ -1,4 +1,4 @@
-//! What it may not fly by, and what it does then.
+//! The autopilot's faults and its failsafe.
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, Surfaces, flags};
@@ -12,7 +12,7 @@ fn each_silent_sensor_is_its_own_fault_once_it_is_too_old() {
         let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
         cockpit.step();
         cockpit.silent = sensor;
-        // 250 ms are allowed.
+        // 250 ms are permitted.
         for _ in 0..10 {
             cockpit.step();
             assert_eq!(cockpit.faults(), Flags::NONE);
@@ -28,17 +28,17 @@ fn a_switch_that_falls_silent_is_a_fault() {
     cockpit.switch = Some(Switch::On);
     cockpit.step();
     cockpit.switch = None;
-    // 1 s is allowed.
+    // 1 s is permitted.
     cockpit.steps(40);
     assert_eq!(cockpit.faults(), Flags::NONE);
     cockpit.step();
     assert_eq!(cockpit.faults(), flags::ENGAGE_SWITCH);
 }
 
-/// The simulator's clock is lost while everything else goes on: the loops must
-/// not freeze with the last command standing.
+/// The simulator's clock is lost while everything else continues: the loops
+/// must not freeze with the last command held.
 #[test]
-fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
+fn a_stopped_clock_is_a_fault_and_not_a_pause() {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     cockpit.observe();
@@ -53,7 +53,7 @@ fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
     }
     cockpit.steps(2);
     assert_eq!(cockpit.faults(), flags::PLANT_STALLED);
-    // And the controls move again: 20° of bank is flown off.
+    // The controls move again: 20° of bank are levelled.
     cockpit.feel.roll_deg = 20.0;
     let first = cockpit.steps(1);
     let later = cockpit.steps(20);
@@ -61,7 +61,7 @@ fn a_clock_that_stands_still_is_a_fault_and_not_a_pause() {
 }
 
 #[test]
-fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
+fn implausible_values_count_as_silence_and_never_reach_a_surface() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e30] {
         let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
         cockpit.step();
@@ -85,10 +85,10 @@ fn nonsense_counts_as_silence_and_never_reaches_a_surface() {
     }
 }
 
-/// Paused in the middle of things: the climb rate is not settled, the
-/// altitude is off, the bank is not where it is asked to be.
+/// Paused during a manoeuvre: the climb rate is not settled, and altitude and
+/// bank differ from their set points.
 #[test]
-fn a_paused_simulator_leaves_everything_as_it_is() {
+fn a_paused_simulator_changes_nothing() {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     cockpit.observe();
@@ -104,7 +104,7 @@ fn a_paused_simulator_leaves_everything_as_it_is() {
     let estimated = cockpit.autopilot.estimated();
     assert!(estimated.climb_rate_mps.abs() > 0.5);
 
-    // The plant's clock stands still from the last running tick on.
+    // The plant's clock does not advance after the last running tick.
     let time_s = cockpit.measurements.plant.value.time_s;
     cockpit.feel.plant = Some(PlantState::Paused);
     for _ in 0..400 {
@@ -132,8 +132,8 @@ fn a_jump_of_the_simulator_is_a_fault() {
     assert!(cockpit.faults().contains(flags::PLANT_JUMPED));
 }
 
-/// 300 m in a tick: not believed while it is news, and a loss when the last good
-/// altitude is too old.
+/// 300 m in a tick: rejected at first, and a loss of the sensor when the last
+/// good altitude is too old.
 #[test]
 fn a_jump_of_a_sensor_is_its_loss() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
@@ -185,7 +185,7 @@ fn failsafe_without_attitude_keeps_the_trim() {
 }
 
 #[test]
-fn what_blocks_engaging_is_said() {
+fn engage_inhibits_are_named() {
     let mut slow = Cockpit::new(GuidanceConfig::Hold);
     slow.feel.airspeed_kt = 40.0;
     for _ in 0..400 {
@@ -206,7 +206,7 @@ fn what_blocks_engaging_is_said() {
 }
 
 #[test]
-fn it_engages_only_after_it_has_watched_for_a_second() {
+fn it_engages_only_after_a_second_of_settling() {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.autopilot = Autopilot::new(*cockpit.autopilot.config());
     for _ in 0..40 {
@@ -229,7 +229,7 @@ fn failsafe_flies_level_whatever_the_pitch_was() {
         .autopilot
         .engage(&cockpit.tick, &cockpit.measurements);
     cockpit.step();
-    // The altimeter says that it climbs at 5 m/s.
+    // The altimeter shows a climb of 5 m/s.
     for _ in 0..400 {
         cockpit.feel.altitude_m += 5.0 * DT_S;
         cockpit.observe();

@@ -1,4 +1,4 @@
-//! What the autopilot flies once it is engaged.
+//! The engaged autopilot.
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{AutopilotCommand, AutopilotConfig};
@@ -7,7 +7,7 @@ use fcc_core::framework::Controller;
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
 
 #[test]
-fn taking_over_in_steady_flight_moves_nothing() {
+fn engaging_in_steady_flight_moves_no_control() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     let first = cockpit.step();
     for (ours, standing) in [
@@ -25,7 +25,7 @@ fn taking_over_in_steady_flight_moves_nothing() {
 }
 
 #[test]
-fn surfaces_act_in_the_directions_of_the_house() {
+fn surfaces_follow_the_sign_conventions() {
     let mut right = Cockpit::engaged(GuidanceConfig::Hold);
     right
         .autopilot
@@ -46,7 +46,7 @@ fn surfaces_act_in_the_directions_of_the_house() {
 }
 
 #[test]
-fn the_bank_asked_for_ends_at_the_limit() {
+fn the_commanded_bank_is_limited() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit
         .autopilot
@@ -56,9 +56,9 @@ fn the_bank_asked_for_ends_at_the_limit() {
     assert!((bank + 30.0).abs() < 1e-9, "{bank}");
 }
 
-/// The aircraft does not turn at all, so that commands pile up past 180°.
+/// The aircraft does not turn at all, so that commands accumulate past 180°.
 #[test]
-fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
+fn a_turn_that_accumulates_past_half_a_circle_is_not_reversed() {
     let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     for second in 0..120 {
         cockpit.steps(40);
@@ -70,7 +70,7 @@ fn a_turn_that_piles_up_past_half_a_circle_is_not_reversed() {
 }
 
 #[test]
-fn too_slow_trades_altitude_for_speed() {
+fn below_the_lowest_airspeed_it_descends() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit
         .autopilot
@@ -85,7 +85,7 @@ fn too_slow_trades_altitude_for_speed() {
 /// The ceiling is 135 kt and the margin 8 kt: engaged above, it slows down to
 /// where it can still descend, instead of climbing for ever.
 #[test]
-fn what_is_captured_is_inside_the_envelope() {
+fn captured_targets_are_inside_the_envelope() {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.airspeed_kt = 150.0;
     for _ in 0..400 {
@@ -115,10 +115,10 @@ fn the_throttle_is_steady_around_the_floor() {
     assert!(last > 0.999, "{last}");
 }
 
-/// From 0°, told 90° and then 260°: 100° to the left is shorter than 260° to
-/// the right.
+/// From 0°, commanded to 90° and then to 260°: 100° to the left is shorter than
+/// 260° to the right.
 #[test]
-fn a_heading_is_turned_to_from_where_the_nose_points() {
+fn a_turn_starts_from_the_present_heading() {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.heading_deg = 0.0;
     for _ in 0..400 {
@@ -136,10 +136,10 @@ fn a_heading_is_turned_to_from_where_the_nose_points() {
     assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
 }
 
-/// At engagement the altitude is known to a foot or so; what is measured in
-/// the seconds after says where that was. An altitude that is ordered stays.
+/// At engagement the altitude is known to about a foot; later measurements
+/// refine it for some seconds. A commanded altitude is not changed.
 #[test]
-fn the_captured_altitude_is_learnt_and_an_ordered_one_is_kept() {
+fn the_captured_altitude_is_refined_and_a_commanded_one_is_kept() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     let captured = cockpit.autopilot.setpoints().altitude_m;

@@ -1,4 +1,4 @@
-//! A flight that was cut off, taken up again.
+//! Continuing an interrupted flight.
 
 use fcc_core::flight::guidance::{GuidanceConfig, Mode, Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, AutopilotConfig, Resume, Surfaces};
@@ -6,10 +6,10 @@ use fcc_core::framework::Controller;
 
 use crate::cockpit::{Cockpit, KNOT_MPS, STANDING};
 
-/// Cut off 65 s into the pattern, whose start was at 350° and 3,000 ft: in
-/// leg 3, which the thesis flies 270° further and 150 ft higher.
+/// Interrupted 65 s into the pattern, whose start was at 350° and 3,000 ft: in
+/// leg 3, which in the thesis is 270° further and 150 ft higher.
 #[test]
-fn a_pattern_is_gone_on_with_where_it_was() {
+fn a_pattern_is_continued_where_it_was() {
     let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     cockpit.step();
     let resume = Resume {
@@ -37,13 +37,13 @@ fn a_pattern_is_gone_on_with_where_it_was() {
     // From 30° to 260°: the shorter way is to the left.
     cockpit.steps(40);
     assert!(cockpit.autopilot.setpoints().roll_rad < -0.5);
-    // 15 s to the next leg, of which 41 ticks are over.
+    // 15 s to the next leg, of which 41 ticks have passed.
     cockpit.steps(15 * 40);
     aims_at(&mut cockpit, 350.0, 3_000.0);
 }
 
 #[test]
-fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
+fn hold_is_continued_with_the_last_surfaces() {
     let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     let flew = Surfaces {
         throttle: 0.8,
@@ -79,7 +79,7 @@ fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
 }
 
 #[test]
-fn a_flight_that_cannot_have_been_is_not_taken_up() {
+fn an_invalid_progress_is_not_resumed() {
     let sane = Resume {
         progress: Progress {
             mode: Mode::Hold,

@@ -28,8 +28,8 @@ pub(super) fn guard() -> Exit {
     };
     let plant = given_back.plant;
     let (words, exit) = match given_back.released {
-        Released::Gone => return Exit::Success,
-        Released::CalledOff => (format!("; another has taken {plant} over"), Exit::Success),
+        Released::Unreachable => return Exit::Success,
+        Released::Cancelled => (format!("; another has taken {plant} over"), Exit::Success),
         Released::Confirmed => (format!("; {plant} was released"), Exit::Success),
         Released::Unconfirmed => (
             format!(

@@ -234,7 +234,7 @@ mod tests {
             .unwrap()
             .unwrap()
             .released;
-        assert_eq!(released, Released::Gone);
+        assert_eq!(released, Released::Unreachable);
     }
 
     #[test]

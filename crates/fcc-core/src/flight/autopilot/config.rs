@@ -1,4 +1,4 @@
-//! Everything about the autopilot that is the user's choice.
+//! The autopilot's configuration.
 
 use core::time::Duration;
 
@@ -8,13 +8,13 @@ use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
 use crate::schema;
 
-/// Everything about the autopilot that is the user's choice.
+/// The autopilot's configuration.
 ///
 /// ```
 /// use core::time::Duration;
 /// use fcc_core::flight::AutopilotConfig;
 ///
-/// // A slower sensor, that is still good after half a second.
+/// // A slower sensor, whose readings are valid for half a second.
 /// let config = AutopilotConfig {
 ///     max_age: Duration::from_millis(500),
 ///     ..AutopilotConfig::default()
@@ -24,15 +24,15 @@ use crate::schema;
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AutopilotConfig {
-    /// The airspeed at which the gains hold as they are, m/s.
+    /// The reference airspeed of the gains, m/s.
     pub reference_airspeed_mps: f64,
-    /// Older readings than this are a loss of their sensor.
+    /// Readings older than this count as a loss of their sensor.
     pub max_age: Duration,
-    /// Readings that stay the same to the last bit for so long, while others
-    /// say that the aircraft moved, are frozen; zero never calls one so.
+    /// Readings that stay the same to the last bit for this long, while others
+    /// show that the aircraft moved, are frozen; zero switches the check off.
     pub frozen_after: Duration,
-    /// Navigation has to have watched for so long before the autopilot takes
-    /// over.
+    /// The time that navigation needs to settle before the autopilot can
+    /// engage.
     pub settling: Duration,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
@@ -44,7 +44,7 @@ pub struct AutopilotConfig {
     pub altitude: AltitudeConfig,
     /// Gains of the airspeed loop.
     pub airspeed: AirspeedConfig,
-    /// What the loops may ask of the aircraft.
+    /// The limits of the loops' commands.
     pub envelope: Envelope,
 }
 
@@ -67,9 +67,8 @@ impl Default for AutopilotConfig {
 }
 
 schema! {
-    /// What may be asked of the autopilot while it is engaged. Each but the last
-    /// changes one set point, ends a pattern and keeps the other set points as they
-    /// are.
+    /// A command to the engaged autopilot. Each but the last changes one set
+    /// point, ends a pattern and leaves the other set points unchanged.
     ///
     /// ```
     /// use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
@@ -77,24 +76,24 @@ schema! {
     ///
     /// let mut autopilot = Autopilot::new(AutopilotConfig::default());
     /// autopilot.command(&AutopilotCommand::Altitude(960.12));
-    /// // Not engaged, it flies nothing.
+    /// // Without being engaged it ignores commands.
     /// assert_eq!(autopilot.setpoints().altitude_m, 0.0);
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug)]
     #[name("Command")]
     #[non_exhaustive]
     pub enum AutopilotCommand {
-        /// Indicated airspeed, m/s; held to what the envelope allows.
+        /// Indicated airspeed, m/s; limited to the envelope.
         #[field(1)]
         Airspeed(airspeed_mps: f64),
-        /// Magnetic heading, rad; turned to the shorter way from where the nose
-        /// points now.
+        /// Magnetic heading, rad; the turn takes the shorter way from the
+        /// present heading.
         #[field(2)]
         Heading(heading_rad: f64),
         /// Barometric altitude, m.
         #[field(3)]
         Altitude(altitude_m: f64),
-        /// Take up what was flown before a restart.
+        /// Continue what was flown before a restart.
         #[field(4)]
         Resume(resume: Resume),
     }

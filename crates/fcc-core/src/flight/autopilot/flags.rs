@@ -1,4 +1,4 @@
-//! What may block engaging or fail the flight, as bits of [`Flags`].
+//! Engage inhibits and faults, as bits of [`Flags`].
 
 use crate::flight::navigation::Frozen;
 use crate::framework::Flags;
@@ -19,43 +19,44 @@ pub const ALTITUDE: Flags = Flags::bit(5);
 pub const PLANT_JUMPED: Flags = Flags::bit(6);
 /// The simulator is paused.
 pub const PLANT_PAUSED: Flags = Flags::bit(7);
-/// Too slow to be flying.
+/// The airspeed is too low for flight.
 pub const TOO_SLOW: Flags = Flags::bit(8);
-/// Bank or pitch is beyond what may be taken over.
+/// Bank or pitch is too large for engaging.
 pub const UPSET: Flags = Flags::bit(9);
-/// The simulator's clock stands still and it does not say paused.
+/// The simulator's clock has stopped although it is not paused.
 pub const PLANT_STALLED: Flags = Flags::bit(10);
-/// The engage switch was there and is silent.
+/// The engage switch was read before and is now silent.
 pub const ENGAGE_SWITCH: Flags = Flags::bit(11);
-/// Navigation has not watched for long enough.
+/// Navigation has not settled yet.
 pub const SETTLING: Flags = Flags::bit(12);
 
-/// Pitch or roll stand still while the gyroscopes turn.
+/// Pitch or roll do not change although the gyroscopes show a rotation.
 pub const FROZEN_ATTITUDE: Flags = Flags::bit(13);
-/// The heading stands still while the gyroscopes turn.
+/// The heading does not change although the gyroscopes show a rotation.
 pub const FROZEN_HEADING: Flags = Flags::bit(14);
-/// The gyroscopes stand still while attitude or heading turn.
+/// The gyroscopes do not change although attitude or heading do.
 pub const FROZEN_BODY_RATES: Flags = Flags::bit(15);
-/// The accelerometers stand still while the aircraft banks or pitches.
+/// The accelerometers do not change although the aircraft banks or pitches.
 pub const FROZEN_SPECIFIC_FORCE: Flags = Flags::bit(16);
-/// The airspeed stands still while the aircraft banks or pitches.
+/// The airspeed does not change although the aircraft banks or pitches.
 pub const FROZEN_AIRSPEED: Flags = Flags::bit(17);
-/// The altitude stands still while the aircraft climbs or descends.
+/// The altitude does not change although the aircraft climbs or descends.
 pub const FROZEN_ALTITUDE: Flags = Flags::bit(18);
-/// One of the readings that are too old comes, but cannot be true: out of
+/// One of the readings that are too old does arrive, but is implausible: out of
 /// range, or too far from the last.
 pub const REJECTED: Flags = Flags::bit(19);
 
-/// From the bit of a quantity that is too old to that of one that is frozen.
+/// The shift from the bit of a quantity that is too old to the bit of the same
+/// quantity being frozen.
 const FROZEN_SHIFT: u32 = 13;
 
-/// A set with the quantities that are frozen among those that are too old:
-/// neither is there to fly by.
-pub(super) const fn gone(stale: Flags, frozen: Flags) -> Flags {
+/// A set in which frozen quantities also count as too old: neither can be used
+/// for control.
+pub(super) const fn unusable(stale: Flags, frozen: Flags) -> Flags {
     Flags::from_bits(stale.bits() | frozen.bits() >> FROZEN_SHIFT)
 }
 
-/// The bits of what is frozen.
+/// The bits of the frozen quantities.
 pub(super) const fn frozen(frozen: Frozen) -> Flags {
     Flags::NONE
         .with(FROZEN_ATTITUDE, frozen.attitude)
@@ -66,7 +67,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
         .with(FROZEN_ALTITUDE, frozen.altitude)
 }
 
-/// What each bit says, lowest first.
+/// The text of each bit, lowest first.
 pub(super) const NAMES: [&str; 20] = [
     "attitude is missing or too old",
     "heading is missing or too old",
@@ -78,7 +79,7 @@ pub(super) const NAMES: [&str; 20] = [
     "simulator is paused",
     "airspeed is below the floor",
     "bank or pitch is beyond 60 degrees",
-    "simulator time stands still",
+    "simulator time has stopped",
     "engage switch is silent",
     "navigation is settling",
     "attitude is frozen",
@@ -87,7 +88,7 @@ pub(super) const NAMES: [&str; 20] = [
     "acceleration is frozen",
     "airspeed is frozen",
     "altitude is frozen",
-    "what is measured cannot be true",
+    "measured values are implausible",
 ];
 
 #[cfg(test)]
@@ -95,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_frozen_is_gone_under_its_own_name() {
+    fn a_frozen_quantity_is_unusable_and_keeps_its_bit() {
         let pairs = [
             (ATTITUDE, FROZEN_ATTITUDE),
             (HEADING, FROZEN_HEADING),
@@ -105,7 +106,7 @@ mod tests {
             (ALTITUDE, FROZEN_ALTITUDE),
         ];
         for (stale, frozen) in pairs {
-            assert_eq!(gone(Flags::NONE, frozen), stale);
+            assert_eq!(unusable(Flags::NONE, frozen), stale);
         }
     }
 }

@@ -26,7 +26,7 @@ use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
 use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
-/// Beyond this bank or pitch the autopilot does not take over, rad.
+/// Beyond this bank or pitch the autopilot does not engage, rad.
 const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
@@ -48,12 +48,12 @@ const UPSET_RAD: f64 = 1.047;
 /// for n in 1..=80 {
 ///     let now = Time::from_nanos(n * 25_000_000);
 ///     (tick.scheduled, tick.woke) = (now, now);
-///     let felt = SpecificForce { z_mps2: -9.806_65, ..SpecificForce::default() };
+///     let force = SpecificForce { z_mps2: -9.806_65, ..SpecificForce::default() };
 ///     measured = Measurements {
 ///         attitude: Reading::new(Attitude::default(), now),
 ///         heading_rad: Reading::new(30.0_f64.to_radians(), now),
 ///         body_rates: Reading::new(BodyRates::default(), now),
-///         specific_force: Reading::new(felt, now),
+///         specific_force: Reading::new(force, now),
 ///         airspeed_mps: Reading::new(51.444, now),
 ///         altitude_m: Reading::new(914.4, now),
 ///         ..Measurements::default()
@@ -69,7 +69,7 @@ const UPSET_RAD: f64 = 1.047;
 #[derive(Clone, Debug)]
 pub struct Autopilot {
     config: AutopilotConfig,
-    /// The last measurements that can be true.
+    /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
     frozen: FrozenDetector,
@@ -85,7 +85,7 @@ pub struct Autopilot {
 }
 
 impl Autopilot {
-    /// An autopilot at rest.
+    /// An autopilot that is not engaged.
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
@@ -126,7 +126,7 @@ impl Autopilot {
         }
     }
 
-    /// Enters the mode that the table of changes gives, with what is aimed for.
+    /// Enters the mode given by the transition table, with the present targets.
     fn change_mode(&mut self, input: ModeInput) {
         let config = &self.config.guidance;
         if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
@@ -134,7 +134,7 @@ impl Autopilot {
         }
     }
 
-    /// Takes over with throttle and surfaces where they stand.
+    /// Engages the loops with the present throttle and surfaces.
     fn take_over(&mut self, standing: &Surfaces) {
         let estimate = *self.navigation.estimate();
         let schedule = self.schedule();
@@ -156,7 +156,8 @@ impl Controller for Autopilot {
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
         plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
         if self.plant_is(PlantState::Jumped) {
-            // It is not where it was, so nothing is too far from the last.
+            // The aircraft was repositioned, so no distance from the last
+            // values is implausible.
             self.accepted = Measurements::default();
             plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
             self.navigation.reset(&self.config.navigation);
@@ -299,15 +300,14 @@ impl Controller for Autopilot {
         }
     }
 
-    /// Wings level while the attitude is known, and level flight while the
-    /// climb rate is; the trims that the loops had found where they are not;
-    /// trim throttle.
+    /// Wings level while the attitude is known, level flight while the climb
+    /// rate is; otherwise the trims that the loops had found; trim throttle.
     fn failsafe(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        let gone = flags::gone(self.stale(tick.woke), self.frozen());
+        let unusable = flags::unusable(self.stale(tick.woke), self.frozen());
         let throttle = self.config.airspeed.trim_throttle;
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
-        if gone.intersects(flags::ATTITUDE | flags::BODY_RATES) {
+        if unusable.intersects(flags::ATTITUDE | flags::BODY_RATES) {
             self.setpoints.pitch_rad = 0.0;
             return Surfaces {
                 throttle,
@@ -317,13 +317,13 @@ impl Controller for Autopilot {
             };
         }
         let mut estimate = *self.navigation.estimate();
-        if gone.contains(flags::SPECIFIC_FORCE) {
+        if unusable.contains(flags::SPECIFIC_FORCE) {
             estimate.side_force_mps2 = 0.0;
         }
         let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
         let envelope = self.config.envelope;
         let lateral = self.heading.hold_bank(0.0, &estimate, schedule, dt_s);
-        let vertical = if gone.intersects(flags::ALTITUDE | flags::SPECIFIC_FORCE) {
+        let vertical = if unusable.intersects(flags::ALTITUDE | flags::SPECIFIC_FORCE) {
             self.altitude
                 .hold_level_pitch(&estimate, &envelope, schedule, dt_s)
         } else {

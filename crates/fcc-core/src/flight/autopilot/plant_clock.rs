@@ -1,15 +1,15 @@
-//! How much of the plant's time a tick is worth.
+//! The plant's time that passes in a tick.
 
 use core::time::Duration;
 
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Tick, Time};
 
-/// No single step of the plant's time is longer than this, s: after a gap, the
-/// loops go on from what is, not from an extrapolation.
+/// The longest single step of the plant's time, s: after a gap the loops
+/// continue from the present state, not from an extrapolation.
 const MAX_STEP_S: f64 = 0.2;
 
-/// Follows a simulated plant's clock; a real plant's is the loop's own.
+/// Tracks a simulated plant's clock; a real plant's clock is that of the loop.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PlantClock {
     last_s: Option<f64>,
@@ -19,10 +19,10 @@ pub(super) struct PlantClock {
 }
 
 impl PlantClock {
-    /// Takes the plant's time at a tick. A clock that stands still for longer
-    /// than `patience`, on a plant that does not say paused, is not believed
-    /// any more.
-    pub(super) fn step(&mut self, tick: &Tick, measurements: &Measurements, patience: Duration) {
+    /// Reads the plant's time at a tick. A clock that has been stopped for
+    /// longer than `limit`, on a plant that is not paused, is ignored from then
+    /// on.
+    pub(super) fn step(&mut self, tick: &Tick, measurements: &Measurements, limit: Duration) {
         let tick_s = tick.dt_s.min(MAX_STEP_S);
         let plant = measurements.plant;
         if plant.is_never() {
@@ -32,8 +32,8 @@ impl PlantClock {
         let state = plant.value.state;
         let last_s = self.last_s.replace(plant.value.time_s);
         let passed_s = last_s.map_or(0.0, |last_s| plant.value.time_s - last_s);
-        // The difference alone says how much: a state that is wrong must not
-        // freeze the loops while the aircraft flies on.
+        // Only the difference of times is used: a wrong state must not freeze
+        // the loops while the aircraft keeps flying.
         self.step_s = if state == PlantState::Jumped || passed_s <= 0.0 {
             0.0
         } else {
@@ -45,18 +45,19 @@ impl PlantClock {
             self.stalled_since = tick.woke;
         }
         self.is_stalled =
-            !self.stalled_since.is_never() && tick.woke.since(self.stalled_since) > patience;
+            !self.stalled_since.is_never() && tick.woke.since(self.stalled_since) > limit;
         if self.is_stalled {
             self.step_s = tick_s;
         }
     }
 
-    /// Seconds of the plant since the tick before; 0 where none passed.
+    /// Seconds of the plant since the previous tick; 0 if its time did not
+    /// advance.
     pub(super) const fn step_s(&self) -> f64 {
         self.step_s
     }
 
-    /// Whether the plant's clock is not believed any more.
+    /// Whether the plant's clock is ignored because it has stopped.
     pub(super) const fn is_stalled(&self) -> bool {
         self.is_stalled
     }

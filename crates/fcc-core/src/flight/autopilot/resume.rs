@@ -1,4 +1,4 @@
-//! Taking up a flight that was cut off: by a crash, a kill or a watchdog.
+//! Continues a flight that was interrupted by a crash, a kill or a watchdog.
 
 use core::f64::consts::TAU;
 
@@ -10,14 +10,14 @@ use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
 use crate::schema;
 
 schema! {
-    /// What was flown when a flight was cut off. Commanded right after engaging,
-    /// it puts the autopilot where it was.
+    /// What was flown when a flight was interrupted. Commanded directly after
+    /// engaging, it restores the autopilot's state.
     ///
     /// ```
     /// use fcc_core::flight::guidance::{Mode, Progress};
     /// use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
     ///
-    /// // 65 s into the pattern when the power went.
+    /// // 65 s into the pattern when the power failed.
     /// let resume = Resume {
     ///     progress: Progress { mode: Mode::TimedPattern, elapsed_s: 65.0, ..Progress::default() },
     ///     surfaces: Surfaces { throttle: 0.7, ..Surfaces::default() },
@@ -27,21 +27,20 @@ schema! {
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Resume {
-        /// How far guidance had come, as the record has it: the captured heading
-        /// is on the compass, 0..2π.
+        /// The progress of guidance as in the record: the captured heading is
+        /// 0..2π.
         #[field(4)]
         pub progress: Progress,
-        /// The surfaces that flew the aircraft: whoever gave the controls back may
-        /// have centred them since.
+        /// The last outputs; a release may have centred the surfaces since.
         #[field(3)]
         pub surfaces: Surfaces,
     }
 }
 
 impl Autopilot {
-    /// Takes up what was flown. The compass does not tell how often the
-    /// aircraft has turned about: the heading that is aimed for now is taken
-    /// within half a turn of where the nose points.
+    /// Continues what was flown. The compass does not give the number of full
+    /// turns, so the target heading is taken within half a turn of the present
+    /// heading.
     pub(super) fn resume(&mut self, resume: &Resume) {
         let (config, mut progress) = (&self.config.guidance, resume.progress);
         if !progress.is_valid() || !resume.surfaces.is_valid() {
@@ -60,7 +59,7 @@ impl Autopilot {
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
         self.guidance = ActiveMode::resume(config, &progress);
         self.targets = self.guidance.targets().unwrap_or(aimed);
-        // What was captured is known as well as it ever will be.
+        // The captured altitude is not refined any further.
         self.capture = None;
         self.take_over(&resume.surfaces);
     }

@@ -1,32 +1,33 @@
-//! One set of gains for many aircraft.
+//! Scales one set of gains to many aircraft.
 
 use super::AutopilotConfig;
 
-/// How an aircraft differs from the one that the gains were found on. 1 is
-/// the same; each factor multiplies a family of gains.
+/// How an aircraft differs from the one for which the gains were tuned. 1 means
+/// no difference; each factor multiplies a group of gains.
 ///
 /// ```
 /// use fcc_core::flight::{AutopilotConfig, Scale};
 ///
-/// // An airliner: half as quick. Rates are halved.
+/// // An airliner with half the response rate: rates are halved.
 /// let scale = Scale { pace: 0.5, ..Scale::default() };
-/// let as_found = AutopilotConfig::default();
-/// let scaled = as_found.scaled(&scale);
-/// assert_eq!(scaled.heading.roll_gain_per_s, 0.5 * as_found.heading.roll_gain_per_s);
+/// let tuned = AutopilotConfig::default();
+/// let scaled = tuned.scaled(&scale);
+/// assert_eq!(scaled.heading.roll_gain_per_s, 0.5 * tuned.heading.roll_gain_per_s);
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Scale {
-    /// Elevator: more where the elevator does less.
+    /// Elevator: larger where the elevator is less effective.
     pub elevator: f64,
     /// Aileron.
     pub aileron: f64,
     /// Rudder.
     pub rudder: f64,
-    /// Throttle: more where the engine does less for the aircraft's weight.
+    /// Throttle: larger where the engine has less power for the aircraft's
+    /// weight.
     pub throttle: f64,
-    /// How quickly everything goes, as if time ran faster: rates are
-    /// multiplied by this, accelerations by its square. Less than 1 for an
-    /// aircraft that answers slowly.
+    /// The pace of the response, as a scale of time: rates are multiplied by
+    /// this, accelerations by its square. Less than 1 for an aircraft that
+    /// responds slowly.
     pub pace: f64,
 }
 
@@ -47,9 +48,9 @@ impl AutopilotConfig {
     /// The same gains for an aircraft that differs by `scale`.
     ///
     /// Pace is a change of the unit of time: of the loops' own rates and
-    /// accelerations, of the gains that are per second, and of the lags. What
-    /// bounds the climb rate grows with the rate alone, as the aircraft climbs
-    /// no faster for answering faster.
+    /// accelerations, of the gains that are per second, and of the lags. The
+    /// limits of the climb rate are scaled by the rate only, since an aircraft
+    /// does not climb faster because it responds faster.
     #[must_use]
     pub fn scaled(mut self, scale: &Scale) -> Self {
         let pace = scale.pace;
@@ -99,8 +100,8 @@ mod tests {
         assert_eq!(config.scaled(&Scale::default()), config);
     }
 
-    /// In a loop of gain k per second, pace p divides every time by p: what
-    /// is per second is multiplied by it, what is in seconds divided.
+    /// In a loop of gain k per second, pace p divides every time by p: values
+    /// per second are multiplied by it, values in seconds divided.
     #[test]
     fn half_the_pace_takes_twice_the_time() {
         let config = AutopilotConfig::default();
@@ -115,7 +116,7 @@ mod tests {
             time_s(config.heading.roll_gain_per_s),
         );
         twice(slow.heading.lead_s, config.heading.lead_s);
-        // To its fastest roll: rate over acceleration.
+        // Time to the largest roll rate: rate over acceleration.
         twice(
             slow.heading.max_roll_rate_radps / slow.heading.max_roll_acceleration_radps2,
             config.heading.max_roll_rate_radps / config.heading.max_roll_acceleration_radps2,
@@ -132,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_surface_that_does_half_is_moved_twice_as_far() {
+    fn a_half_as_effective_surface_is_moved_twice_as_far() {
         let config = AutopilotConfig::default();
         let weak = config.scaled(&Scale {
             aileron: 2.0,

@@ -1,4 +1,4 @@
-//! Whether what the autopilot is told is fit to fly by.
+//! Whether the autopilot's readings can be used for control.
 
 use core::time::Duration;
 
@@ -6,8 +6,8 @@ use super::{Autopilot, flags};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Time};
 
-/// A switch that was read once and is silent for longer than this cannot
-/// switch off any more.
+/// A switch that was read before and is silent for longer than this counts as
+/// lost, since it could not be switched off.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
 impl Autopilot {
@@ -15,7 +15,7 @@ impl Autopilot {
         self.too_old(&self.accepted, now)
     }
 
-    /// What stands still while the aircraft moves; on the ground nothing does.
+    /// The frozen quantities; none while the airspeed is below the floor.
     pub(super) fn frozen(&self) -> Flags {
         if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
             Flags::NONE
@@ -53,11 +53,12 @@ impl Autopilot {
             )
     }
 
-    /// What neither engaging nor staying engaged can do with.
+    /// The faults that prevent both engaging and staying engaged.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
         let switch = self.accepted.engage_switch;
         let stale = self.stale(now);
-        // As they came some are not too old: those were not accepted.
+        // The raw readings that are not too old although the accepted ones are:
+        // these were rejected as implausible.
         let rejected = stale != self.too_old(measurements, now);
         (stale | self.frozen())
             .with(flags::REJECTED, rejected)

@@ -16,19 +16,19 @@ use crate::flight::navigation::Estimate;
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AirspeedConfig {
-    /// Acceleration asked for per airspeed error, 1/s.
+    /// Commanded acceleration per airspeed error, 1/s.
     pub airspeed_gain_per_s: f64,
     /// The same, integrated, 1/s².
     pub airspeed_integral_gain_per_s2: f64,
     /// Throttle that accelerates the aircraft, per m/s².
     pub throttle_per_mps2: f64,
-    /// Drag of lift at 1 g over weight: what a turn costs more is this times
-    /// (n² - 1).
+    /// Induced drag at 1 g over weight: the additional drag of a turn is this
+    /// times (n² - 1).
     pub induced_drag_ratio: f64,
-    /// Fastest throttle, 1/s.
+    /// Largest throttle rate, 1/s.
     pub max_throttle_rate_per_s: f64,
-    /// Throttle that flies level at the reference airspeed, 0..=1: taken at
-    /// engagement if the plant does not tell its throttle, and in failsafe.
+    /// Throttle for level flight at the reference airspeed, 0..=1: used at
+    /// engagement if the plant does not measure its throttle, and in failsafe.
     pub trim_throttle: f64,
 }
 
@@ -45,7 +45,7 @@ impl Default for AirspeedConfig {
     }
 }
 
-/// What the airspeed loop has to know of the other two.
+/// The inputs of the airspeed loop from the other two loops.
 ///
 /// ```
 /// use fcc_core::flight::control::ThrottleDemand;
@@ -61,9 +61,9 @@ impl Default for AirspeedConfig {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct ThrottleDemand {
-    /// Indicated airspeed asked for, m/s.
+    /// Commanded indicated airspeed, m/s.
     pub airspeed_mps: f64,
-    /// Climb rate asked for, m/s.
+    /// Commanded climb rate, m/s.
     pub climb_rate_mps: f64,
     /// Load factor of the turn.
     pub load_factor: f64,
@@ -71,7 +71,7 @@ pub struct ThrottleDemand {
     pub least_throttle: f64,
 }
 
-/// Airspeed → throttle, with climb and turn fed forward.
+/// Airspeed → throttle, with feed-forward of climb and turn.
 ///
 /// ```
 /// use fcc_core::flight::control::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
@@ -91,7 +91,7 @@ pub struct ThrottleDemand {
 /// };
 /// let mut airspeed = AirspeedLoop::new(AirspeedConfig::default());
 /// airspeed.engage(0.65, &demand, &level);
-/// // Taken over as it stands; a knot too slow asks for more.
+/// // Engaged at the present throttle; a knot too slow gives more throttle.
 /// assert!((airspeed.step(&demand, &level, 0.025) - 0.65).abs() < 1e-9);
 /// let slow = Estimate { airspeed_mps: 50.9, ..level };
 /// assert!(airspeed.step(&demand, &slow, 0.025) > 0.65);
@@ -103,7 +103,7 @@ pub struct AirspeedLoop {
 }
 
 impl AirspeedLoop {
-    /// A loop at rest.
+    /// A loop that is not engaged.
     pub const fn new(config: AirspeedConfig) -> Self {
         Self {
             config,
@@ -117,7 +117,7 @@ impl AirspeedLoop {
         }
     }
 
-    /// Takes over with the throttle where it stands.
+    /// Engages with the present throttle.
     pub fn engage(&mut self, throttle: f64, demand: &ThrottleDemand, estimate: &Estimate) {
         let feed_forward = self.feed_forward(demand, estimate);
         self.throttle.engage(
@@ -129,7 +129,7 @@ impl AirspeedLoop {
         );
     }
 
-    /// One step; the throttle, 0..=1.
+    /// Performs one step; returns the throttle, 0..=1.
     pub fn step(&mut self, demand: &ThrottleDemand, estimate: &Estimate, dt_s: f64) -> f64 {
         let feed_forward = self.feed_forward(demand, estimate);
         let throttle = self.throttle.step_scheduled(
@@ -142,7 +142,7 @@ impl AirspeedLoop {
         throttle.max(demand.least_throttle)
     }
 
-    /// Climbing costs g sin γ, turning the induced drag of the load.
+    /// A climb needs g sin γ, a turn the additional induced drag.
     fn feed_forward(&self, demand: &ThrottleDemand, estimate: &Estimate) -> f64 {
         let speed = estimate.true_airspeed_mps.max(1.0);
         let climb = GRAVITY_MPS2 * demand.climb_rate_mps / speed;

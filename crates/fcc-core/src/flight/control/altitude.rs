@@ -19,28 +19,28 @@ use crate::flight::navigation::Estimate;
 pub struct AltitudeConfig {
     /// Climb rate per altitude error near the target, 1/s.
     pub altitude_gain_per_s: f64,
-    /// Vertical deceleration to plan the capture with, m/s².
+    /// Planned vertical deceleration of the altitude capture, m/s².
     pub capture_mps2: f64,
-    /// Fastest change of the climb rate asked for, m/s².
+    /// Largest rate of change of the commanded climb rate, m/s².
     pub climb_acceleration_mps2: f64,
-    /// Flight-path angle asked for per climb-rate error over airspeed.
+    /// Commanded flight-path angle per climb-rate error over airspeed.
     pub climb_rate_gain: f64,
     /// The same, integrated, 1/s.
     pub climb_rate_integral_gain_per_s: f64,
-    /// How far the flight path lags behind the one asked for, s: what is only
+    /// Lag of the flight path behind the commanded one, s: error explained by
     /// this lag is not integrated.
     pub flight_path_lag_s: f64,
-    /// Angle of attack that carries 1 g at the reference airspeed, rad.
+    /// Angle of attack for 1 g at the reference airspeed, rad.
     pub angle_of_attack_per_g_rad: f64,
     /// Pitch rate per pitch error, 1/s.
     pub pitch_gain_per_s: f64,
-    /// Largest pitch rate asked for besides the turn's own, rad/s.
+    /// Largest commanded pitch rate in addition to that of the turn, rad/s.
     pub max_pitch_rate_radps: f64,
     /// Elevator per pitch-rate error, per rad/s.
     pub pitch_rate_gain: f64,
     /// Elevator per integrated pitch-rate error, per rad.
     pub pitch_rate_integral_gain: f64,
-    /// Elevator that goes with the turn's load, per g above 1.
+    /// Elevator for the load of a turn, per g above 1.
     pub elevator_per_g: f64,
 }
 
@@ -63,8 +63,8 @@ impl Default for AltitudeConfig {
     }
 }
 
-/// Bounds of the climb rate, m/s; where they contradict, the upper one holds:
-/// too slow matters more than too fast.
+/// Limits of the climb rate, m/s; if they conflict, the upper one applies,
+/// since too slow is more dangerous than too fast.
 ///
 /// ```
 /// use fcc_core::flight::control::{ClimbLimits, Envelope};
@@ -82,7 +82,7 @@ pub struct ClimbLimits {
     pub min_mps: f64,
 }
 
-/// What the altitude loop commands.
+/// The commands of the altitude loop.
 ///
 /// ```
 /// use fcc_core::flight::control::PitchCommand;
@@ -91,9 +91,9 @@ pub struct ClimbLimits {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct PitchCommand {
-    /// Climb rate asked for, m/s.
+    /// Commanded climb rate, m/s.
     pub climb_rate_mps: f64,
-    /// Pitch asked for, rad.
+    /// Commanded pitch, rad.
     pub pitch_rad: f64,
     /// -1..=1, positive raises the nose.
     pub elevator: f64,
@@ -114,7 +114,7 @@ pub struct PitchCommand {
 /// let (envelope, schedule) = (Envelope::default(), Schedule::at(51.4, 51.4));
 /// let mut altitude = AltitudeLoop::new(AltitudeConfig::default(), &envelope);
 /// altitude.engage(0.05, &level, schedule);
-/// // It is where it is to be: the elevator stays.
+/// // On target: the elevator stays.
 /// let held = altitude.step(914.4, &level, &envelope, schedule, 0.025);
 /// assert!((held.elevator - 0.05).abs() < 1e-9);
 /// // 150 ft higher: the nose goes up.
@@ -125,14 +125,14 @@ pub struct PitchCommand {
 pub struct AltitudeLoop {
     config: AltitudeConfig,
     climb_rate: RateLimit,
-    /// The flight path to expect by now of what was asked for, rad.
+    /// The flight-path angle expected now from the past commands, rad.
     expected_path: LowPass,
     pitch: Pid,
     pitch_rate: Pid,
 }
 
 impl AltitudeLoop {
-    /// A loop at rest.
+    /// A loop that is not engaged.
     pub const fn new(config: AltitudeConfig, envelope: &Envelope) -> Self {
         Self {
             config,
@@ -153,7 +153,7 @@ impl AltitudeLoop {
         }
     }
 
-    /// Takes over with the elevator and the aircraft's motion as they are.
+    /// Engages with the present elevator and motion of the aircraft.
     pub fn engage(&mut self, elevator: f64, estimate: &Estimate, schedule: Schedule) {
         let path = flight_path(estimate.climb_rate_mps, estimate);
         self.climb_rate.reset(estimate.climb_rate_mps);
@@ -202,8 +202,8 @@ impl AltitudeLoop {
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
         let expected = self.expected_path.step(path, dt_s);
-        // The gain acts on the whole error, the integral on what the lag does
-        // not explain.
+        // The gain acts on the whole error, the integral only on the part not
+        // explained by the lag.
         let ahead = self.config.climb_rate_gain * (path - expected);
         let pitch_rad = self.pitch.step_scheduled(
             expected,
@@ -222,8 +222,8 @@ impl AltitudeLoop {
         )
     }
 
-    /// One step towards the pitch at which level flight is expected, where
-    /// altitude and climb rate are not known.
+    /// One step towards the pitch expected for level flight, if altitude and
+    /// climb rate are not known.
     pub fn hold_level_pitch(
         &mut self,
         estimate: &Estimate,
@@ -239,7 +239,7 @@ impl AltitudeLoop {
         self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
     }
 
-    /// The elevator that the loop has found to keep the pitch.
+    /// The elevator trim that the loop has found.
     pub const fn trim(&self) -> f64 {
         self.pitch_rate.integral()
     }
@@ -256,8 +256,8 @@ impl AltitudeLoop {
         let config = &self.config;
         let speed = estimate.true_airspeed_mps.max(1.0);
         let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
-        // Euler pitch rate into body axes, and what the turn itself needs:
-        // q = θ̇ cos φ + ψ̇ cos θ sin φ.
+        // Euler pitch rate converted to body axes, plus the pitch rate of the
+        // turn: q = θ̇ cos φ + ψ̇ cos θ sin φ.
         let theta_rate = limit_abs(
             config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
             config.max_pitch_rate_radps,
@@ -281,8 +281,8 @@ impl AltitudeLoop {
         }
     }
 
-    /// The angle of attack that carries the aircraft in this turn at this
-    /// airspeed: proportional to load, inversely to dynamic pressure.
+    /// The angle of attack needed in this turn at this airspeed: proportional
+    /// to load, inversely proportional to dynamic pressure.
     fn angle_of_attack(&self, estimate: &Estimate, schedule: Schedule) -> f64 {
         self.config.angle_of_attack_per_g_rad * schedule.moment * (1.0 + turn_load(estimate))
     }

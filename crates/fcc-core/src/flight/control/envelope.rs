@@ -1,4 +1,4 @@
-//! What the outer loops may ask of the aircraft.
+//! The limits of what the outer loops command.
 
 use core::ops::RangeInclusive;
 
@@ -7,12 +7,12 @@ use libm::acos;
 use super::ClimbLimits;
 use crate::blocks::limit;
 
-/// What the outer loops may ask of the aircraft.
+/// The limits of what the outer loops command.
 ///
 /// ```
 /// use fcc_core::flight::control::Envelope;
 ///
-/// // A level turn at 2 g banks by 60°.
+/// // A level turn at 2 g has a bank of 60°.
 /// let envelope = Envelope { max_bank_rad: 1.3, max_load_factor: 2.0, ..Envelope::default() };
 /// assert!((envelope.bank_limit_rad().to_degrees() - 60.0).abs() < 1e-9);
 /// ```
@@ -26,20 +26,23 @@ pub struct Envelope {
     pub max_pitch_rad: f64,
     /// Smallest pitch, rad; negative.
     pub min_pitch_rad: f64,
-    /// Slowest indicated airspeed, m/s: below, altitude is traded for speed.
+    /// Lowest indicated airspeed, m/s: below it, the aircraft descends to gain
+    /// speed.
     pub min_airspeed_mps: f64,
-    /// Fastest indicated airspeed, m/s: above, the aircraft may not descend.
+    /// Highest indicated airspeed, m/s: above it, the aircraft does not
+    /// descend.
     pub max_airspeed_mps: f64,
-    /// Fastest climb, m/s.
+    /// Largest climb rate, m/s.
     pub max_climb_mps: f64,
-    /// Fastest descent, m/s, a positive number.
+    /// Largest descent rate, m/s, a positive number.
     pub max_sink_mps: f64,
-    /// Within this of either airspeed limit the climb limits close in, m/s.
+    /// Within this margin of either airspeed limit the climb limits are
+    /// reduced, m/s.
     pub airspeed_margin_mps: f64,
 }
 
 impl Default for Envelope {
-    /// A light single-engine aircraft of the Cessna 172's kind.
+    /// A light single-engine aircraft such as the Cessna 172.
     fn default() -> Self {
         Self {
             max_bank_rad: 30.0_f64.to_radians(),
@@ -63,8 +66,8 @@ impl Envelope {
             .min(acos(1.0 / self.max_load_factor.max(1.0)))
     }
 
-    /// Climb limits at an indicated airspeed: they close in near the slowest
-    /// airspeed (below it, only a descent is left) and near the fastest.
+    /// Climb limits at an indicated airspeed: they are reduced near the lowest
+    /// airspeed (below it only a descent is permitted) and near the highest.
     pub fn climb_limits(&self, airspeed_mps: f64) -> ClimbLimits {
         let margin = self.airspeed_margin_mps.max(0.1);
         let above_floor = (airspeed_mps - self.min_airspeed_mps) / margin;
@@ -83,21 +86,21 @@ impl Envelope {
         }
     }
 
-    /// The airspeeds that may be asked for, m/s: a margin inside the limits, so
-    /// that level flight there leaves room to climb and to descend.
+    /// The airspeeds that may be commanded, m/s: a margin inside the limits, so
+    /// that climb and descent are possible from level flight there.
     pub fn allowed_airspeeds(&self) -> RangeInclusive<f64> {
         self.min_airspeed_mps + self.airspeed_margin_mps
             ..=self.max_airspeed_mps - self.airspeed_margin_mps
     }
 
-    /// The nearest airspeed that may be asked for, m/s.
+    /// The nearest airspeed that may be commanded, m/s.
     pub fn allowed_airspeed(&self, airspeed_mps: f64) -> f64 {
         let allowed = self.allowed_airspeeds();
         limit(airspeed_mps, *allowed.start(), *allowed.end())
     }
 
-    /// The least throttle at an airspeed, 0..=1: full at the slowest and
-    /// below, none from half a margin above. It rises evenly in between, so
+    /// The least throttle at an airspeed, 0..=1: full at the lowest airspeed
+    /// and below, zero from half a margin above it. It is linear in between, so
     /// that noise at the limit does not make the throttle jump.
     pub fn least_throttle(&self, airspeed_mps: f64) -> f64 {
         let half_margin = 0.5 * self.airspeed_margin_mps.max(0.1);
@@ -113,7 +116,8 @@ impl Envelope {
 mod tests {
     use super::*;
 
-    /// FAA-H-8083-3C, figure 10-1: a level turn at 60° of bank pulls 2 g.
+    /// FAA-H-8083-3C, figure 10-1: a level turn at 60° of bank has a load
+    /// factor of 2.
     #[test]
     fn the_load_factor_limits_the_bank() {
         let envelope = Envelope {
@@ -125,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn too_slow_may_only_descend_and_too_fast_may_only_climb() {
+    fn below_the_limits_only_descent_and_above_only_climb_is_permitted() {
         let envelope = Envelope::default();
         assert!(envelope.climb_limits(30.0).max_mps < 0.0);
         assert!(envelope.climb_limits(73.0).min_mps > 0.0);

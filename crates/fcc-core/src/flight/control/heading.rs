@@ -19,23 +19,23 @@ use crate::flight::navigation::Estimate;
 pub struct HeadingConfig {
     /// Turn rate per heading error near the target, 1/s.
     pub heading_gain_per_s: f64,
-    /// Roll rate to plan the roll-out with, rad/s.
+    /// Planned roll rate of the roll-out, rad/s.
     pub rollout_rate_radps: f64,
-    /// How far ahead the heading is looked at, s: what the roll loop lags.
+    /// Prediction time of the heading, s: the lag of the roll loop.
     pub lead_s: f64,
     /// Roll rate per bank error, 1/s.
     pub roll_gain_per_s: f64,
-    /// Largest roll rate asked for, rad/s.
+    /// Largest commanded roll rate, rad/s.
     pub max_roll_rate_radps: f64,
-    /// Fastest change of the roll rate asked for, rad/s².
+    /// Largest rate of change of the commanded roll rate, rad/s².
     pub max_roll_acceleration_radps2: f64,
-    /// Aileron that keeps up a roll rate, per rad/s.
+    /// Aileron for a steady roll rate, per rad/s.
     pub aileron_per_roll_rate: f64,
     /// Aileron per roll-rate error, per rad/s.
     pub roll_rate_gain: f64,
     /// Aileron per integrated roll-rate error, per rad.
     pub roll_rate_integral_gain: f64,
-    /// Rudder that goes with the aileron, against adverse yaw.
+    /// Rudder per aileron, against adverse yaw.
     pub rudder_per_aileron: f64,
     /// Rudder per side force, per m/s².
     pub side_force_gain: f64,
@@ -65,7 +65,7 @@ impl Default for HeadingConfig {
     }
 }
 
-/// What the heading loop commands.
+/// The commands of the heading loop.
 ///
 /// ```
 /// use fcc_core::flight::control::{HeadingConfig, HeadingLoop, Lateral, Schedule};
@@ -78,7 +78,7 @@ impl Default for HeadingConfig {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Lateral {
-    /// Bank asked for, rad.
+    /// Commanded bank, rad.
     pub roll_rad: f64,
     /// -1..=1, positive rolls right.
     pub aileron: f64,
@@ -101,7 +101,7 @@ pub struct Lateral {
 /// let (envelope, schedule) = (Envelope::default(), Schedule::at(51.4, 51.4));
 /// let mut heading = HeadingLoop::new(HeadingConfig::default());
 /// heading.engage(0.0, 0.0, &level, schedule);
-/// // 90° to the right: the bank asked for is the limit, 30°.
+/// // 90° to the right: the commanded bank is the limit, 30°.
 /// let command = heading.step(90.0_f64.to_radians(), &level, &envelope, schedule, 0.025);
 /// assert!((command.roll_rad.to_degrees() - 30.0).abs() < 1e-9);
 /// assert!(command.aileron > 0.0);
@@ -115,7 +115,7 @@ pub struct HeadingLoop {
 }
 
 impl HeadingLoop {
-    /// A loop at rest.
+    /// A loop that is not engaged.
     pub const fn new(config: HeadingConfig) -> Self {
         Self {
             config,
@@ -133,7 +133,7 @@ impl HeadingLoop {
         }
     }
 
-    /// Takes over with the surfaces where they stand.
+    /// Engages with the present surfaces.
     pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
         let roll_rate = estimate.body_rates.roll_radps;
         self.roll_command.reset(roll_rate);
@@ -153,7 +153,7 @@ impl HeadingLoop {
         );
     }
 
-    /// One step towards a heading (rad, counted on through full turns).
+    /// One step towards a heading (rad, continuous through full turns).
     pub fn step(
         &mut self,
         heading_rad: f64,
@@ -177,7 +177,7 @@ impl HeadingLoop {
         self.hold_bank(roll_rad, estimate, schedule, dt_s)
     }
 
-    /// One step towards a bank (rad), whatever the heading.
+    /// One step towards a bank (rad), independent of the heading.
     pub fn hold_bank(
         &mut self,
         roll_rad: f64,
@@ -198,7 +198,7 @@ impl HeadingLoop {
             schedule.moment,
             dt_s,
         );
-        // A side force to the right asks for the nose to the left.
+        // A side force to the right requires yaw to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
@@ -213,13 +213,13 @@ impl HeadingLoop {
         }
     }
 
-    /// The aileron that keeps up a roll rate.
+    /// The aileron for a steady roll rate.
     fn aileron_feed_forward(&self, roll_rate_radps: f64, schedule: Schedule) -> f64 {
         schedule.rate * self.config.aileron_per_roll_rate * roll_rate_radps
     }
 
-    /// The rudder that goes with the aileron, and damps what yaw rate is not
-    /// the turn's own: g/V sin φ cos θ in a level coordinated turn.
+    /// The rudder for the aileron, plus damping of the yaw rate in excess of
+    /// the turn's: g/V sin φ cos θ in a level coordinated turn.
     fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
         let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
             * sin(estimate.roll_rad)
@@ -229,12 +229,12 @@ impl HeadingLoop {
             - schedule.moment * self.config.yaw_damping * excess
     }
 
-    /// The aileron that the loop has found to fly with wings level.
+    /// The aileron trim that the loop has found for wings level.
     pub const fn aileron_trim(&self) -> f64 {
         self.roll_rate.integral()
     }
 
-    /// The rudder that the loop has found to fly without sideslip.
+    /// The rudder trim that the loop has found for no sideslip.
     pub fn rudder_trim(&self) -> f64 {
         self.side_force.integral() + self.config.rudder_per_aileron * self.aileron_trim()
     }

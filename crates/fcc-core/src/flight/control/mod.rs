@@ -1,14 +1,14 @@
-//! Control: which surfaces and what throttle.
+//! Control: surfaces and throttle.
 //!
 //! Three loops, coupled where the aircraft couples them:
 //! - [`HeadingLoop`]: heading → turn rate → bank → roll rate → aileron, with
 //!   the rudder keeping the turn coordinated;
 //! - [`AltitudeLoop`]: altitude → climb rate → pitch → pitch rate → elevator,
-//!   knowing of the bank;
-//! - [`AirspeedLoop`]: airspeed → throttle, knowing of climb and bank.
+//!   compensated for bank;
+//! - [`AirspeedLoop`]: airspeed → throttle, compensated for climb and bank.
 //!
-//! An [`Envelope`] bounds what the outer loops may ask of the inner ones.
-//! Gains hold at a reference airspeed; a surface's effect grows with dynamic
+//! An [`Envelope`] limits the outer loops' commands to the inner ones. Gains
+//! apply at a reference airspeed; a surface's effect grows with dynamic
 //! pressure, so they are scaled by [`Schedule`].
 
 use crate::blocks::{AntiWindup, PidConfig};
@@ -25,10 +25,10 @@ pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use schedule::Schedule;
 
-/// Beyond this bank a turn's load and rate are not followed any further, rad.
+/// The largest bank for which a turn's load and rate are computed, rad.
 const MAX_TURN_BANK_RAD: f64 = 1.05;
 
-/// A controller of a surface: no gains yet, -1..=1.
+/// A controller of a surface: without gains, output -1..=1.
 const SURFACE: PidConfig = PidConfig {
     kp: 0.0,
     ki: 0.0,

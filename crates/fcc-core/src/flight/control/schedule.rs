@@ -1,9 +1,9 @@
-//! How gains follow the airspeed.
+//! The scaling of gains with airspeed.
 
 use crate::blocks::limit;
 
-/// How gains follow the airspeed, by the ratio of the reference airspeed to
-/// the present.
+/// The scaling of gains with airspeed, by the ratio of the reference airspeed
+/// to the present.
 ///
 /// ```
 /// use fcc_core::flight::control::Schedule;
@@ -22,8 +22,8 @@ pub struct Schedule {
     pub rate: f64,
 }
 
-/// The airspeed sensor is not trusted beyond this ratio either way: a blocked
-/// pitot tube must not make the gains explode or vanish.
+/// The limit of the ratio, in both directions: a blocked pitot tube must not
+/// make the gains extremely large or small.
 const MAX_RATIO: f64 = 1.8;
 
 impl Schedule {

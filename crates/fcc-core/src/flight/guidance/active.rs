@@ -1,9 +1,9 @@
-//! The mode that is flown, in a place of its own without heap.
+//! The active guidance mode, stored without heap.
 
 use super::{Guidance, Hold, Mode, Progress, Targets, TimedPattern, TimedPatternConfig};
 use crate::flight::navigation::Estimate;
 
-/// The mode that is flown once engaged.
+/// The guidance mode after engaging.
 ///
 /// ```
 /// use fcc_core::flight::guidance::{GuidanceConfig, Mode, TimedPatternConfig};
@@ -13,7 +13,7 @@ use crate::flight::navigation::Estimate;
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum GuidanceConfig {
-    /// Keep what was captured, until commanded otherwise.
+    /// Hold the captured values, until commanded otherwise.
     Hold,
     /// The timed pattern of the thesis.
     TimedPattern(TimedPatternConfig),
@@ -29,8 +29,8 @@ impl GuidanceConfig {
     }
 }
 
-/// The mode that is flown. A further mode is a further variant, in this file
-/// and in [`Mode`].
+/// The active guidance mode. A new mode needs a variant in this file and in
+/// [`Mode`].
 ///
 /// ```
 /// use fcc_core::flight::guidance::{ActiveMode, GuidanceConfig, Mode, Targets};
@@ -42,16 +42,16 @@ impl GuidanceConfig {
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub enum ActiveMode {
-    /// Nothing is flown.
+    /// No mode is active.
     #[default]
     None,
-    /// What was captured is kept.
+    /// The captured values are held.
     Hold(Hold),
     /// The timed pattern.
     TimedPattern(TimedPattern),
 }
 
-/// The same of whichever mode is flown, or what there is without one.
+/// Evaluates an expression for the active mode, or another without one.
 macro_rules! of_mode {
     ($active:expr, $mode:ident => $of:expr, none => $none:expr) => {
         match $active {
@@ -63,8 +63,8 @@ macro_rules! of_mode {
 }
 
 impl ActiveMode {
-    /// Goes on with the mode of a progress. Nothing is flown if it is a mode
-    /// that is not configured.
+    /// Continues the mode of a progress. No mode is active if that mode is not
+    /// configured.
     pub fn resume(config: &GuidanceConfig, progress: &Progress) -> Self {
         match (progress.mode, config) {
             (Mode::Hold, _) => Self::Hold(Hold::resume((), progress)),
@@ -75,7 +75,7 @@ impl ActiveMode {
         }
     }
 
-    /// Begins a mode now, with what was captured.
+    /// Begins a mode now, with the captured targets.
     pub fn enter(mode: Mode, config: &GuidanceConfig, captured: Targets) -> Self {
         let progress = Progress {
             mode,
@@ -90,7 +90,7 @@ impl ActiveMode {
         self.progress().mode
     }
 
-    /// The targets now; none where nothing is flown.
+    /// The present targets; none if no mode is active.
     pub fn targets(&self) -> Option<Targets> {
         of_mode!(self, mode => Some(mode.targets()), none => None)
     }
@@ -100,7 +100,7 @@ impl ActiveMode {
         of_mode!(self, mode => mode.advance(estimate, dt_s), none => {});
     }
 
-    /// How far it has come.
+    /// Its progress.
     pub fn progress(&self) -> Progress {
         of_mode!(self, mode => mode.progress(), none => Progress::default())
     }

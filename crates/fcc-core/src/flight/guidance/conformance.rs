@@ -1,4 +1,4 @@
-//! What holds for every mode.
+//! Conformance suite for all modes.
 
 use std::format;
 
@@ -20,14 +20,14 @@ const CAPTURED: Targets = Targets {
 
 /// Runs the suite on a mode.
 fn conforms<G: Guidance>(config: G::Config) {
-    begins_with_what_was_captured::<G>(config);
-    time_that_does_not_pass_changes_nothing::<G>(config);
-    is_gone_on_with_from_any_tick::<G>(config);
-    an_altitude_known_better_moves_the_targets_along::<G>(config);
-    nothing_ever_leads_beyond_numbers::<G>(config);
+    begins_with_the_captured_targets::<G>(config);
+    a_step_of_zero_seconds_changes_nothing::<G>(config);
+    can_be_resumed_from_any_tick::<G>(config);
+    a_refined_altitude_shifts_the_targets::<G>(config);
+    targets_stay_finite::<G>(config);
 }
 
-fn begins_with_what_was_captured<G: Guidance>(config: G::Config) {
+fn begins_with_the_captured_targets<G: Guidance>(config: G::Config) {
     let begins = Progress {
         mode: G::MODE,
         item: G::enter(config, CAPTURED).progress().item,
@@ -38,7 +38,7 @@ fn begins_with_what_was_captured<G: Guidance>(config: G::Config) {
     assert_ne!(G::MODE, Mode::None);
 }
 
-fn time_that_does_not_pass_changes_nothing<G: Guidance>(config: G::Config) {
+fn a_step_of_zero_seconds_changes_nothing<G: Guidance>(config: G::Config) {
     let mut mode = G::enter(config, CAPTURED);
     for n in 0..TICKS {
         if n % 100 == 0 {
@@ -52,8 +52,8 @@ fn time_that_does_not_pass_changes_nothing<G: Guidance>(config: G::Config) {
     assert!((mode.progress().elapsed_s - flown_s).abs() < 1e-6);
 }
 
-/// The progress is all that has to be known.
-fn is_gone_on_with_from_any_tick<G: Guidance>(config: G::Config) {
+/// The progress is sufficient to continue.
+fn can_be_resumed_from_any_tick<G: Guidance>(config: G::Config) {
     let mut mode = G::enter(config, CAPTURED);
     let mut again = G::enter(config, CAPTURED);
     for n in 0..TICKS {
@@ -67,7 +67,7 @@ fn is_gone_on_with_from_any_tick<G: Guidance>(config: G::Config) {
     }
 }
 
-fn an_altitude_known_better_moves_the_targets_along<G: Guidance>(config: G::Config) {
+fn a_refined_altitude_shifts_the_targets<G: Guidance>(config: G::Config) {
     let mut mode = G::enter(config, CAPTURED);
     for _ in 0..TICKS {
         let before = mode.targets();
@@ -81,7 +81,7 @@ fn an_altitude_known_better_moves_the_targets_along<G: Guidance>(config: G::Conf
     }
 }
 
-fn nothing_ever_leads_beyond_numbers<G: Guidance>(config: G::Config) {
+fn targets_stay_finite<G: Guidance>(config: G::Config) {
     for elapsed_s in [0.0, 1e-9, 1e3, 1e9, 1e18] {
         let progress = Progress {
             mode: G::MODE,
@@ -115,7 +115,7 @@ fn the_timed_pattern_conforms() {
     });
 }
 
-/// A mode that is in the table and not in the enum would never be flown.
+/// A mode that is in the table but not in the enum could never be active.
 #[test]
 fn the_active_mode_is_the_one_that_was_entered() {
     let config = GuidanceConfig::TimedPattern(TimedPatternConfig::default());
@@ -128,7 +128,7 @@ fn the_active_mode_is_the_one_that_was_entered() {
     assert_eq!(unknown, ActiveMode::None);
 }
 
-/// As a configuration spells them, for a log or a display.
+/// The spelling in a configuration, for a log or a display.
 #[test]
 fn modes_have_names() {
     let names = Mode::ALL.map(|mode| format!("{mode}"));

@@ -1,4 +1,4 @@
-//! Keep what was captured.
+//! Holds the captured values.
 
 use super::{Guidance, Mode, Progress, Targets};
 use crate::flight::navigation::Estimate;

@@ -1,10 +1,10 @@
-//! Guidance: where to go next.
+//! Guidance: the targets of control.
 //!
-//! A [mode](Mode) is one way to go on: keep what was captured, fly a pattern.
-//! Each is a [`Guidance`]; [`ActiveMode`] holds the one that is flown, and
-//! [`Mode::after`] is the one table of how modes change. What a mode has done
-//! so far is its [`Progress`], which stands in the record of every tick, so
-//! that nobody has to work it out from events.
+//! A [mode](Mode) is a kind of guidance: hold the captured values, fly a
+//! pattern. Each is a [`Guidance`]; [`ActiveMode`] contains the active one, and
+//! [`Mode::after`] is the transition table of the modes. A mode's state is its
+//! [`Progress`], which is part of the record of every tick, so that it need not
+//! be derived from events.
 
 mod active;
 #[cfg(test)]
@@ -25,7 +25,7 @@ pub use progress::Progress;
 use crate::schema;
 
 schema! {
-    /// What guidance asks of control.
+    /// The targets that guidance sets for control.
     ///
     /// ```
     /// use fcc_core::flight::guidance::Targets;
@@ -39,9 +39,9 @@ schema! {
         /// Indicated airspeed, m/s.
         #[field(1)]
         pub airspeed_mps: f64,
-        /// Magnetic heading, rad, counted on through full turns: which way to turn
-        /// is said by the number, not guessed from the shorter way. Turns that
-        /// pile up while the aircraft cannot keep up never reverse.
+        /// Magnetic heading, rad, continuous through full turns: the number
+        /// determines the direction of the turn. Turns that accumulate faster
+        /// than the aircraft can follow are never reversed.
         #[field(2)]
         pub heading_rad: f64,
         /// Barometric altitude, m.
@@ -51,7 +51,7 @@ schema! {
 }
 
 impl Targets {
-    /// Whether every one is a finite number.
+    /// Whether all are finite.
     pub const fn is_finite(&self) -> bool {
         self.airspeed_mps.is_finite() && self.heading_rad.is_finite() && self.altitude_m.is_finite()
     }
@@ -59,9 +59,9 @@ impl Targets {
 
 /// A mode of guidance: targets for control, tick by tick.
 ///
-/// Under the rules of a tick: a pure function of what it holds and is handed,
-/// without heap, clock or panic. Every mode runs the conformance suite beside
-/// this trait, which shows what is said here.
+/// The rules of a tick apply: a pure function of its state and arguments,
+/// without heap, clock or panic. Every mode is tested by the conformance suite
+/// in this module.
 ///
 /// ```
 /// use fcc_core::flight::guidance::{Guidance, Targets, TimedPattern, TimedPatternConfig};
@@ -74,24 +74,24 @@ impl Targets {
 /// pattern.advance(&Estimate::default(), 20.0);
 /// assert!((pattern.targets().heading_rad.to_degrees() - 90.0).abs() < 1e-9);
 /// assert!((pattern.targets().altitude_m / 0.304_8 - 3_150.0).abs() < 1e-9);
-/// // What it has done is all that is needed to go on with it elsewhere.
+/// // The progress is all that is needed to continue elsewhere.
 /// let again = TimedPattern::resume(TimedPatternConfig::default(), &pattern.progress());
 /// assert_eq!(again, pattern);
 /// ```
 pub trait Guidance: Copy {
-    /// What of this mode is the user's choice.
+    /// The mode's configuration.
     type Config: Copy;
 
-    /// Which mode this is.
+    /// The identifier of this mode.
     const MODE: Mode;
 
-    /// Goes on with a mode that was flown this far; `progress.mode` is not
-    /// looked at. From here on it gives, to the last bit, what the one that
-    /// the progress is of gives.
+    /// Continues a mode from a progress; `progress.mode` is ignored. From here
+    /// on it behaves, to the last bit, like the mode from which the progress
+    /// was taken.
     fn resume(config: Self::Config, progress: &Progress) -> Self;
 
-    /// Begins now, with what the aircraft flies: what is measured at
-    /// engagement, what was aimed for at a change of mode.
+    /// Begins now, with the present targets: at engagement those measured, at a
+    /// change of mode those of the previous mode.
     fn enter(config: Self::Config, captured: Targets) -> Self {
         let progress = Progress {
             captured,
@@ -100,16 +100,16 @@ pub trait Guidance: Copy {
         Self::resume(config, &progress)
     }
 
-    /// The targets now; no time passes.
+    /// The present targets.
     fn targets(&self) -> Targets;
 
     /// `dt_s` seconds of the plant's time pass, with the aircraft as
     /// estimated; 0 while the plant is paused, which changes nothing.
     fn advance(&mut self, estimate: &Estimate, dt_s: f64);
 
-    /// How far it has come.
+    /// Its progress.
     fn progress(&self) -> Progress;
 
-    /// The altitude that was captured turned out to be this much higher, m.
+    /// Shifts the captured altitude, m, when a refined estimate is available.
     fn shift_altitude(&mut self, by_m: f64);
 }

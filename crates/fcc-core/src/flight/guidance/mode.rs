@@ -1,14 +1,14 @@
-//! The modes of guidance and the one table of how they change.
+//! The modes of guidance and their transition table.
 
 use core::fmt;
 
 use crate::schema;
 
 schema! {
-    /// What guidance flies, by its number in the record.
+    /// The mode of guidance, by its number in the record.
     ///
-    /// The table of changes, whole: rows are modes, columns inputs, `·` means that
-    /// nothing changes. The configured mode is the one that
+    /// The complete transition table: rows are modes, columns inputs, `·` means
+    /// no change. The configured mode is the one that
     /// [`GuidanceConfig`](super::GuidanceConfig) names.
     ///
     /// | | `Engage` | `SetPoint` | `Resume(mode)` | `Disengage` |
@@ -25,7 +25,7 @@ schema! {
     /// assert_eq!(after, Some(Mode::Hold));
     /// ```
     pub enum Mode {
-        /// Nothing is flown: the loop is not engaged.
+        /// No mode: the loop is not engaged.
         None = 0,
         /// [`Hold`](super::Hold).
         Hold = 1,
@@ -49,9 +49,9 @@ pub enum ModeInput {
     Engage,
     /// An airspeed, heading or altitude is commanded.
     SetPoint,
-    /// A flight that was cut off is to be gone on with in this mode.
+    /// An interrupted flight is to be continued in this mode.
     Resume(Mode),
-    /// The loop lets go.
+    /// The loop disengages.
     Disengage,
 }
 
@@ -59,8 +59,8 @@ impl Mode {
     /// Every mode, by its number.
     pub const ALL: [Self; 3] = [Self::None, Self::Hold, Self::TimedPattern];
 
-    /// The mode that an input leads to, entered anew even if it is the same:
-    /// the one table of changes. None if the input changes nothing.
+    /// The mode after an input, by the transition table; it is entered again
+    /// even if it is the same. None if the input changes nothing.
     #[must_use]
     pub fn after(self, input: ModeInput, configured: Self) -> Option<Self> {
         match (self, input) {
@@ -74,7 +74,7 @@ impl Mode {
         }
     }
 
-    /// As a configuration spells it.
+    /// Its name in a configuration.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -103,9 +103,9 @@ mod tests {
         assert_eq!(Mode::from_number(3), None);
     }
 
-    /// The table of [`Mode`]'s documentation, typed again.
+    /// The table of [`Mode`]'s documentation, written out again.
     #[test]
-    fn the_documented_table_holds() {
+    fn transitions_follow_the_documented_table() {
         use Mode::{Hold, None as Nothing, TimedPattern};
         let inputs = [
             ModeInput::Engage,

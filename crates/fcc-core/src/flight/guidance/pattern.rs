@@ -1,12 +1,12 @@
-//! The timed pattern of the thesis: no navigation needed.
+//! The timed pattern of the thesis, which needs no navigation.
 
 use core::f64::consts::FRAC_PI_2;
 
 use super::{Guidance, Mode, Progress, Targets};
 use crate::flight::navigation::Estimate;
 
-/// The timed pattern: hold, then legs that turn by a fixed angle and go up and
-/// back down in turn (thesis, section 6.3).
+/// The timed pattern: hold, then legs that turn by a fixed angle and
+/// alternately climb and descend (thesis, section 6.3).
 ///
 /// ```
 /// use fcc_core::flight::guidance::TimedPatternConfig;
@@ -17,7 +17,7 @@ use crate::flight::navigation::Estimate;
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct TimedPatternConfig {
-    /// How long to hold what was captured, s.
+    /// How long to hold the captured values, s.
     pub hold_s: f64,
     /// How long each leg takes, s; positive.
     pub leg_s: f64,
@@ -57,11 +57,11 @@ pub struct TimedPattern {
     elapsed_s: f64,
 }
 
-/// Sums of ticks end this close to a whole second, s.
+/// Tolerance for the sum of ticks at a whole second, s.
 const ROUNDING_S: f64 = 1e-6;
 
 impl TimedPattern {
-    /// Which leg is flown: 0 while holding, then 1, 2, ...
+    /// The present leg: 0 while holding, then 1, 2, ...
     pub fn leg(&self) -> u32 {
         let into_legs = self.elapsed_s + ROUNDING_S - self.config.hold_s;
         if into_legs < 0.0 {

@@ -1,4 +1,4 @@
-//! How far a mode has come.
+//! The progress of a mode.
 
 use core::fmt;
 
@@ -6,8 +6,8 @@ use super::{Mode, Targets};
 use crate::schema;
 
 schema! {
-    /// How far a mode has come: what an observer needs to know of it, and all that
-    /// is needed to go on with it elsewhere.
+    /// The progress of a mode: for observers, and all that is needed to
+    /// continue the mode elsewhere.
     ///
     /// ```
     /// use fcc_core::flight::guidance::{Mode, Progress};
@@ -18,23 +18,23 @@ schema! {
     /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Progress {
-        /// Which mode.
+        /// The mode.
         #[field(1)]
         pub mode: Mode,
-        /// Which part of it is flown: of a pattern, the leg.
+        /// The present part of the mode: of a pattern, the leg.
         #[field(2)]
         pub item: u32,
-        /// For how long it has been flown, s of the plant's time.
+        /// How long it has been active, s of the plant's time.
         #[field(3)]
         pub elapsed_s: f64,
-        /// What it captured when it was entered.
+        /// The values captured when it was entered.
         #[field(4, column = "captured_*")]
         pub captured: Targets,
     }
 }
 
 impl Progress {
-    /// Whether a flight can have come this far: a mode, and finite numbers.
+    /// Whether this is a valid progress: a mode, and finite numbers.
     pub fn is_valid(&self) -> bool {
         self.mode != Mode::None
             && self.captured.is_finite()
@@ -44,7 +44,7 @@ impl Progress {
 }
 
 impl fmt::Display for Progress {
-    /// The mode, and where it is: `timed-pattern leg 3`.
+    /// The mode and its present part: `timed-pattern leg 3`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.mode {
             Mode::None | Mode::Hold => write!(f, "{}", self.mode),

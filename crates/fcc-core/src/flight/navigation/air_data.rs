@@ -10,9 +10,9 @@ use crate::flight::Measurements;
 use crate::flight::atmosphere::{GRAVITY_MPS2, density_ratio};
 use crate::framework::Time;
 
-/// Complementary filter: the acceleration along the flight path in the short
-/// run, the airspeed sensor in the long. A gust that does not move the
-/// aircraft is not taken for a change of speed.
+/// Complementary filter: the acceleration along the flight path over short
+/// times, the airspeed sensor over long times. So a gust that does not
+/// accelerate the aircraft does not count as a change of speed.
 ///
 /// ```
 /// use fcc_core::flight::Measurements;
@@ -35,10 +35,10 @@ pub struct AirspeedChannel {
     news: SampleTracker,
 }
 
-/// Below this the flight-path angle is not worked out, m/s.
+/// Below this airspeed the flight-path angle is not computed, m/s.
 const MIN_AIRSPEED_MPS: f64 = 5.0;
 
-/// Larger angles of attack are not flight, rad.
+/// The largest angle of attack in normal flight, rad.
 const MAX_ALPHA_RAD: f64 = 0.3;
 
 impl AirspeedChannel {
@@ -50,7 +50,7 @@ impl AirspeedChannel {
         }
     }
 
-    /// Takes the measurements; indicated airspeed in m/s.
+    /// Processes the measurements; returns indicated airspeed in m/s.
     pub fn step(
         &mut self,
         now: Time,
@@ -64,7 +64,7 @@ impl AirspeedChannel {
             let sqrt_density = sqrt(density_ratio(vertical.altitude_m));
             let true_airspeed = (self.airspeed.value() / sqrt_density).max(MIN_AIRSPEED_MPS);
             let sin_path = limit_abs(vertical.climb_rate_mps / true_airspeed, 1.0);
-            // Angle of attack, the air taken as still.
+            // Angle of attack, assuming still air.
             let alpha = limit_abs(orientation.pitch_rad - asin(sin_path), MAX_ALPHA_RAD);
             let along_path = force.x_mps2 * cos(alpha) + force.z_mps2 * sin(alpha);
             self.airspeed

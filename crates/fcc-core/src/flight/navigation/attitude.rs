@@ -1,4 +1,4 @@
-//! Pitch, roll and heading from gyroscopes and what is measured outright.
+//! Pitch, roll and heading from gyroscopes and from direct measurements.
 
 use libm::{cos, sin};
 
@@ -7,7 +7,7 @@ use crate::blocks::{Complementary, wrap_pi};
 use crate::flight::Measurements;
 use crate::framework::Time;
 
-/// Pitch, roll and heading; the heading counts on through full turns.
+/// Pitch, roll and heading; the heading is continuous through full turns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Orientation {
     /// Right wing down, rad.
@@ -18,8 +18,8 @@ pub struct Orientation {
     pub heading_rad: f64,
 }
 
-/// Complementary filter over Euler angles (rates turned into angle rates as in
-/// Stevens, Lewis and Johnson 2016, equation 1.4-4).
+/// Complementary filter over Euler angles (body rates converted to angle rates
+/// as in Stevens, Lewis and Johnson 2016, equation 1.4-4).
 ///
 /// ```
 /// use fcc_core::flight::navigation::AttitudeChannel;
@@ -66,7 +66,7 @@ impl AttitudeChannel {
         }
     }
 
-    /// Takes the measurements; the orientation.
+    /// Processes the measurements; returns the orientation.
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) -> Orientation {
         if is_current(&measurements.body_rates, now) {
             let rates = measurements.body_rates.value;
@@ -98,7 +98,7 @@ impl AttitudeChannel {
         match self.heading_news.of(&measurements.heading_rad, dt_s) {
             NewSample::None => {}
             NewSample::First => {
-                // Keep counting turns from where the count was.
+                // Continue the present count of full turns.
                 let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
                 self.heading.reset(self.heading.value() + error);
             }

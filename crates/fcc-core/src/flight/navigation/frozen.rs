@@ -1,17 +1,17 @@
-//! Which sensors stand still while the aircraft moves.
+//! Detects sensors whose readings are frozen while the aircraft moves.
 //!
-//! A sensor that hangs often goes on sending its last value, with new times. A
-//! value that is the same to the last bit is no proof: in calm air a good
-//! sensor of coarse steps shows the same for long. So a quantity is frozen when
-//! its bits have stayed the same for a while *and* others say that the aircraft
-//! moved so that it must have changed: the gyroscopes for the attitude and the
-//! heading, attitude and heading for the gyroscopes, the climb for the
+//! A sensor that hangs often keeps sending its last value with new times. An
+//! unchanged value alone is no proof: in calm air a good sensor with coarse
+//! resolution may give the same value for long. So a quantity is frozen when
+//! its bits have stayed the same for some time *and* other quantities show a
+//! motion by which it must have changed: the gyroscopes for the attitude and
+//! the heading, attitude and heading for the gyroscopes, the climb for the
 //! altitude, a change of bank or pitch for airspeed and accelerometers. While
-//! nothing moves a frozen sensor goes unseen, and does no harm.
+//! nothing moves, a frozen sensor is not detected, and has no effect.
 //!
-//! What others say is summed up with a leak, so that their own small errors
-//! never add up to a movement; and a sensor with the least noise never repeats
-//! its bits, so that nothing here can be wrong about it.
+//! The motion shown by other quantities is integrated with a leak, so that
+//! their small errors never add up to a motion. A sensor with any noise never
+//! repeats its bits, so that it cannot be reported by mistake.
 
 use core::time::Duration;
 
@@ -23,31 +23,32 @@ use crate::blocks::wrap_pi;
 use crate::flight::Measurements;
 use crate::framework::Time;
 
-/// A sensor of few readings a second repeats one now and then.
+/// The least number of unchanged readings: a sensor with few readings per
+/// second repeats some of them.
 const FEWEST_REPEATS: u32 = 10;
-/// What others say is forgotten with this time constant, s: gyroscopes off by
-/// 0.5 °/s, or a climb by 1.5 m/s, never reach the limits below.
+/// The time constant of the leak, s: gyroscopes off by 0.5 °/s, or a climb by
+/// 1.5 m/s, never reach the limits below.
 const LEAK_S: f64 = 10.0;
-/// Turned so far, an attitude, a heading or gyroscopes must have shown it, rad
-/// (5°): ten times what a coarse attitude sensor resolves.
+/// The rotation that attitude, heading or gyroscopes must show, rad (5°): ten
+/// times the resolution of a coarse attitude sensor.
 const TURNED_RAD: f64 = 0.087;
-/// Climbed so far, a barometer must have shown it, m.
+/// The climb that a barometer must show, m.
 const CLIMBED_M: f64 = 15.0;
-/// Who changes bank or pitch by so much changes load and drag, rad (10°, 4°):
-/// well beyond what calm air does to an aircraft that is trimmed.
+/// Changes of bank and pitch that change load and drag, rad (10°, 4°): well
+/// beyond those of a trimmed aircraft in calm air.
 const BANKED_RAD: f64 = 0.175;
 const PITCHED_RAD: f64 = 0.07;
-/// What is the same is the same to the last bit, ...
+/// Unchanged means the same to the last bit, ...
 const EXACTLY: f64 = 0.0;
-/// ... but for a specific force that comes by way of an acceleration over the
-/// ground, which is rounded in between, m/s²: a tenth of what the best small
-/// accelerometers are noisy.
+/// ... except for a specific force computed from an acceleration over the
+/// ground, which involves rounding, m/s²: a tenth of the noise of the best
+/// small accelerometers.
 const SAME_FORCE_MPS2: f64 = 1e-3;
-/// The climb from the ground velocity is believed so long, else it is worked
-/// out from the pitch.
+/// The age up to which the climb rate is taken from the ground velocity;
+/// otherwise it is computed from the pitch.
 const CURRENT: Duration = Duration::from_millis(500);
 
-/// One quantity and for how long it has been the same.
+/// One quantity and how long it has been unchanged.
 #[derive(Clone, Copy, Debug)]
 struct StuckDetector<const N: usize> {
     values: [f64; N],
@@ -68,8 +69,8 @@ impl<const N: usize> StuckDetector<N> {
         }
     }
 
-    /// Whether the value is another than before, by more than `tolerance`;
-    /// `dt_s` of the plant's time have passed.
+    /// Whether the value differs from the previous one by more than
+    /// `tolerance`; `dt_s` of the plant's time have passed.
     fn has_changed(&mut self, values: [f64; N], tolerance: f64, taken: Time, dt_s: f64) -> bool {
         let differs = |(is, was): (&f64, &f64)| (is - was).abs() > tolerance;
         if taken.is_never() || values.iter().zip(&self.values).any(differs) {
@@ -84,15 +85,15 @@ impl<const N: usize> StuckDetector<N> {
         false
     }
 
-    /// Others say that it must have changed. Once frozen it stays so until it
-    /// does.
-    fn judge(&mut self, must_have_changed: bool, after_s: f64) {
+    /// Updates the result, given whether it must have changed. Once frozen it
+    /// stays frozen until it changes.
+    fn update(&mut self, must_have_changed: bool, after_s: f64) {
         let lasts = self.for_s >= after_s && self.repeats >= FEWEST_REPEATS;
         self.is_frozen |= lasts && must_have_changed;
     }
 }
 
-/// Sums up and forgets.
+/// An integrator with a leak.
 #[derive(Clone, Copy, Debug, Default)]
 struct LeakyIntegrator(f64);
 
@@ -106,8 +107,7 @@ impl LeakyIntegrator {
     }
 }
 
-/// Which of the quantities that control needs stand still while the aircraft
-/// moves.
+/// Which of the quantities needed by control are frozen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -125,10 +125,10 @@ pub(crate) struct Frozen {
 /// Roll, pitch and heading, rad, or their rates.
 type Angles = [f64; 3];
 
-/// Watches the six quantities that control needs.
+/// Monitors the six quantities needed by control.
 #[derive(Clone, Debug)]
 pub(crate) struct FrozenDetector {
-    /// 0 never calls one frozen.
+    /// 0 switches the check off.
     after_s: f64,
     roll: StuckDetector<1>,
     pitch: StuckDetector<1>,
@@ -137,24 +137,26 @@ pub(crate) struct FrozenDetector {
     force: StuckDetector<3>,
     airspeed: StuckDetector<1>,
     altitude: StuckDetector<1>,
-    /// Turned, as the gyroscopes say, since roll, pitch and heading changed.
+    /// Rotation by the gyroscopes since roll, pitch and heading changed.
     turned: [LeakyIntegrator; 3],
-    /// Turned otherwise than the gyroscopes say, since they changed.
+    /// Rotation by attitude and heading minus that by the gyroscopes, since the
+    /// gyroscopes changed.
     unsaid: [LeakyIntegrator; 3],
-    /// Climbed since the altitude changed.
+    /// Climb since the altitude changed.
     climbed: LeakyIntegrator,
-    /// Climb rate less what the pitch made of it, when the altitude changed.
+    /// Climb rate minus the one computed from the pitch, when the altitude
+    /// changed.
     climb_at_level_mps: f64,
     /// The attitude when specific force and airspeed changed.
     force_at: Angles,
     airspeed_at: Angles,
-    /// The measured attitude and heading of the tick before.
+    /// The measured attitude and heading of the previous tick.
     before: Option<Angles>,
 }
 
 impl FrozenDetector {
-    /// A value must have been the same for `after_s` of the plant's time; 0
-    /// never calls one frozen.
+    /// A value must have been unchanged for `after_s` of the plant's time; 0
+    /// switches the check off.
     pub(crate) const fn new(after_s: f64) -> Self {
         Self {
             after_s,
@@ -175,8 +177,8 @@ impl FrozenDetector {
         }
     }
 
-    /// Takes the measurements at `now`, `dt_s` seconds of the plant's time
-    /// after the last, and what navigation made of them.
+    /// Processes the measurements at `now`, `dt_s` seconds of the plant's time
+    /// after the last, and navigation's estimate.
     pub(crate) fn step(
         &mut self,
         now: Time,
@@ -210,7 +212,7 @@ impl FrozenDetector {
             self.force_at = angles;
         }
         self.force
-            .judge(manoeuvred(self.force_at, angles), self.after_s);
+            .update(manoeuvred(self.force_at, angles), self.after_s);
         let airspeed = measurements.airspeed_mps;
         if self
             .airspeed
@@ -219,7 +221,7 @@ impl FrozenDetector {
             self.airspeed_at = angles;
         }
         self.airspeed
-            .judge(manoeuvred(self.airspeed_at, angles), self.after_s);
+            .update(manoeuvred(self.airspeed_at, angles), self.after_s);
     }
 
     fn step_angles(
@@ -245,7 +247,7 @@ impl FrozenDetector {
             } else {
                 turned.add(rate * dt_s, dt_s);
             }
-            stuck.judge(turned.exceeds(TURNED_RAD), self.after_s);
+            stuck.update(turned.exceeds(TURNED_RAD), self.after_s);
         }
     }
 
@@ -273,7 +275,7 @@ impl FrozenDetector {
             unsaid.add(wrap_pi(is - was) - said * dt_s, dt_s);
             exceeds |= unsaid.exceeds(TURNED_RAD);
         }
-        self.rates.judge(exceeds, self.after_s);
+        self.rates.update(exceeds, self.after_s);
     }
 
     fn step_altitude(
@@ -299,7 +301,7 @@ impl FrozenDetector {
         };
         self.climbed.add(climb_mps * dt_s, dt_s);
         self.altitude
-            .judge(self.climbed.exceeds(CLIMBED_M), self.after_s);
+            .update(self.climbed.exceeds(CLIMBED_M), self.after_s);
     }
 
     /// Which quantities are frozen.
@@ -315,8 +317,8 @@ impl FrozenDetector {
     }
 }
 
-/// Rates of roll, pitch and heading as the gyroscopes say (Stevens, Lewis
-/// and Johnson 2016, equation 1.4-4).
+/// Rates of roll, pitch and heading from the gyroscopes (Stevens, Lewis and
+/// Johnson 2016, equation 1.4-4).
 fn angle_rates(measurements: &Measurements, [roll, pitch, _]: Angles) -> Angles {
     let r = measurements.body_rates.value;
     let (sin_roll, cos_roll) = (sin(roll), cos(roll));

@@ -1,9 +1,9 @@
-//! Navigation: where we are and how we move.
+//! Navigation: attitude, airspeed, altitude and their rates.
 //!
-//! Each sensor is good at something: a gyroscope in the short run, gravity and
-//! the compass in the long; accelerometers in the short run, the barometer in
-//! the long. Each channel here blends one such pair, and predicts through
-//! ticks in which nothing new arrived.
+//! Sensors differ in accuracy over time: gyroscopes are accurate over short
+//! times, gravity and the compass over long times; accelerometers over short
+//! times, the barometer over long times. Each channel here combines one such
+//! pair, and predicts through ticks in which nothing new arrived.
 
 mod air_data;
 mod attitude;
@@ -35,18 +35,18 @@ pub use vertical::VerticalChannel;
 /// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct NavigationConfig {
-    /// Above 1/this the gyroscopes say the attitude, below it the measured
-    /// pitch and roll, s.
+    /// Time constant of the attitude, s: the gyroscopes determine it over
+    /// shorter times, the measured pitch and roll over longer times.
     pub attitude_tau_s: f64,
-    /// The same for the heading, s.
+    /// Time constant of the heading, s, likewise.
     pub heading_tau_s: f64,
-    /// Above this the accelerometers say the climb rate, below it the
-    /// barometer, rad/s.
+    /// Bandwidth of the climb rate, rad/s: above it the accelerometers
+    /// determine it, below it the barometer.
     pub vertical_bandwidth_radps: f64,
-    /// Above 1/this the accelerometers say the airspeed, below it the
-    /// airspeed sensor, s.
+    /// Time constant of the airspeed, s: the accelerometers determine it over
+    /// shorter times, the airspeed sensor over longer times.
     pub airspeed_tau_s: f64,
-    /// Low pass on the side force, s.
+    /// Time constant of the low pass of the side force, s.
     pub side_force_tau_s: f64,
 }
 
@@ -63,12 +63,12 @@ impl Default for NavigationConfig {
 }
 
 schema! {
-    /// What navigation makes of the measurements.
+    /// Navigation's estimate.
     ///
     /// ```
     /// use fcc_core::flight::navigation::Estimate;
     ///
-    /// // The heading counts on: 370° is 10° after a turn to the right.
+    /// // The heading is continuous: 370° is 10° after a turn to the right.
     /// let turned = Estimate { heading_rad: 370.0_f64.to_radians(), ..Estimate::default() };
     /// let compass_rad = fcc_core::blocks::wrap_two_pi(turned.heading_rad);
     /// assert!((compass_rad.to_degrees() - 10.0).abs() < 1e-9);
@@ -81,7 +81,7 @@ schema! {
         /// Nose up, rad.
         #[field(2)]
         pub pitch_rad: f64,
-        /// Magnetic heading, rad, counted on through every full turn: 370° is 10°
+        /// Magnetic heading, rad, continuous through full turns: 370° is 10°
         /// after one turn to the right.
         #[field(3)]
         pub heading_rad: f64,
@@ -106,7 +106,7 @@ schema! {
     }
 }
 
-/// Turns measurements into an [`Estimate`].
+/// Computes an [`Estimate`] from measurements.
 ///
 /// ```
 /// use fcc_core::flight::Measurements;
@@ -121,7 +121,7 @@ schema! {
 /// };
 /// let mut navigation = Navigation::new(&NavigationConfig::default());
 /// navigation.step(now, &measured, 0.025);
-/// // 100 kt indicated at 10,000 ft are 116.4 kt true, as tables for pilots say.
+/// // 100 kt indicated at 10,000 ft are 116.4 kt true, by pilots' tables.
 /// let true_kt = navigation.estimate().true_airspeed_mps / 0.514_444;
 /// assert!((true_kt - 116.4).abs() < 0.1);
 /// ```
@@ -135,7 +135,7 @@ pub struct Navigation {
 }
 
 impl Navigation {
-    /// Navigation that knows nothing yet.
+    /// Navigation in its initial state.
     pub const fn new(config: &NavigationConfig) -> Self {
         Self {
             attitude: AttitudeChannel::new(config.attitude_tau_s, config.heading_tau_s),
@@ -160,7 +160,7 @@ impl Navigation {
         }
     }
 
-    /// Takes the measurements at `now`, `dt_s` seconds of the plant's time
+    /// Processes the measurements at `now`, `dt_s` seconds of the plant's time
     /// after the last.
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
         let attitude = self.attitude.step(now, measurements, dt_s);
@@ -198,27 +198,28 @@ impl Navigation {
         self.vertical.mark();
     }
 
-    /// The altitude where it was marked, m, as known by now; none if nothing
-    /// was marked.
+    /// The present estimate of the altitude at the mark, m; none if nothing was
+    /// marked.
     pub fn marked_altitude_m(&self) -> Option<f64> {
         self.vertical.marked_altitude_m()
     }
 
-    /// Forgets everything: the plant is not where it was.
+    /// Resets everything, after the plant was repositioned.
     pub fn reset(&mut self, config: &NavigationConfig) {
         *self = Self::new(config);
     }
 }
 
-/// A source that is silent for longer than this is not integrated any more,
-/// and when it returns, it is believed at once.
+/// A source that is silent for longer than this is no longer integrated, and
+/// when it returns, its value is adopted at once.
 const CURRENT: Duration = Duration::from_millis(500);
 
 fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
     reading.is_fresh(now, CURRENT)
 }
 
-/// Tells a new value from one seen before, and how to take it.
+/// Distinguishes new values from ones processed before, and determines how to
+/// use them.
 #[derive(Clone, Copy, Debug, Default)]
 struct SampleTracker {
     taken: Time,
@@ -227,9 +228,9 @@ struct SampleTracker {
 enum NewSample {
     /// Nothing new.
     None,
-    /// The first, or the first after a long silence: believe it at once.
+    /// The first, or the first after a long silence: adopt it at once.
     First,
-    /// One more, this many seconds after the one before.
+    /// A further one, this many seconds after the previous one.
     Next(f64),
 }
 
@@ -238,8 +239,8 @@ impl SampleTracker {
         Self { taken: Time::NEVER }
     }
 
-    /// `dt_s` is the plant's time since the last tick: while it stands still,
-    /// a measurement says nothing new.
+    /// `dt_s` is the plant's time since the last tick: while it does not
+    /// advance, a measurement is not new.
     fn of<T>(&mut self, reading: &Reading<T>, dt_s: f64) -> NewSample {
         if reading.is_never() || reading.taken <= self.taken {
             return NewSample::None;

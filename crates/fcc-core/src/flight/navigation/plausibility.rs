@@ -1,9 +1,10 @@
-//! Which measurements are taken at all.
+//! The plausibility gate for measurements.
 //!
-//! A value that is not finite, outside what any aircraft of this kind can do,
-//! or further from the last than any aircraft moves in between, is treated as
-//! one that did not arrive: the last good one stays, and grows old. A single
-//! outlier costs nothing then; one that stays is a loss of its sensor.
+//! A value that is not finite, outside the range of any aircraft of this kind,
+//! or further from the last one than any aircraft can move in the time between,
+//! is treated as if it had not arrived: the last good value is kept with its
+//! time. A single outlier then has no effect; a lasting one is a loss of its
+//! sensor.
 
 use core::f64::consts::PI;
 use core::time::Duration;
@@ -12,69 +13,71 @@ use crate::blocks::wrap_pi;
 use crate::flight::{Attitude, BodyRates, Measurements, Plant, SpecificForce, Surfaces};
 use crate::framework::Reading;
 
-/// Faster than sound is out of range, m/s.
+/// The largest plausible speed, that of sound, m/s.
 const MAX_AIRSPEED_MPS: f64 = 340.0;
-/// Below the Dead Sea and above the tropopause is out of range, m.
+/// The plausible altitudes: from below the Dead Sea to above the tropopause, m.
 const ALTITUDE_M: core::ops::RangeInclusive<f64> = -500.0..=20_000.0;
-/// More than 20 g is out of range, m/s².
+/// The largest plausible specific force, 20 g, m/s².
 const MAX_SPECIFIC_FORCE_MPS2: f64 = 200.0;
-/// More than two turns a second is out of range, rad/s.
+/// The largest plausible turn rate, two turns per second, rad/s.
 const MAX_RATE_RADPS: f64 = 12.6;
-/// Angles are good to two turns either way: -180..180 and 0..360 both pass.
+/// The largest plausible angle, two turns in either direction: -180..180 and
+/// 0..360 are both accepted.
 const MAX_ANGLE_RAD: f64 = 12.6;
 
-/// How far a value may be from the last good one: a part that sensors, gusts
-/// and landings are granted at once, and one that grows with the time between
-/// the two.
+/// The permitted distance of a value from the last good one: a constant part
+/// for sensor errors, gusts and landings, and a part that grows with the time
+/// between the two.
 ///
-/// Wide of what a light aircraft does, so that only what no aircraft does is
-/// kept out: a smaller step goes through the filters as noise does.
+/// The limits are wider than the motion of a light aircraft, so that only
+/// impossible values are rejected: a smaller step passes through the filters
+/// like noise.
 struct PlausibilityLimit {
     at_once: f64,
     per_s: f64,
 }
 
-/// 10° of a sensor that finds its way back after a gap, and a roll of half a
-/// turn a second: twice what trainers do.
+/// 10° for a sensor that recovers after a gap, and a roll rate of half a turn
+/// per second: twice that of training aircraft.
 const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.175,
     per_s: PI,
 };
-/// 15° of a compass that swings, and half a turn a second: a fast spin.
+/// 15° for a swinging compass, and half a turn per second, as in a fast spin.
 const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.26,
     per_s: PI,
 };
-/// A gust, and the roll acceleration of full aileron twice over.
+/// A gust, and twice the roll acceleration of full aileron.
 const RATES_RADPS: PlausibilityLimit = PlausibilityLimit {
     at_once: 1.0,
     per_s: 8.0,
 };
-/// 3 g at once, as a hard landing, and what a gust builds up.
+/// 3 g at once, as in a hard landing, and the build-up of a gust.
 const SPECIFIC_FORCE_MPS2: PlausibilityLimit = PlausibilityLimit {
     at_once: 30.0,
     per_s: 200.0,
 };
-/// 23 kt at once is the shear of a gust front; 2 g along the path.
+/// 23 kt at once, the shear of a gust front; 2 g along the path.
 const AIRSPEED_MPS: PlausibilityLimit = PlausibilityLimit {
     at_once: 12.0,
     per_s: 20.0,
 };
-/// 50 ft at once, of a static source in a gust; 60 m/s is a steep dive.
+/// 50 ft at once, for a static source in a gust; 60 m/s, as in a steep dive.
 const HEIGHT_M: PlausibilityLimit = PlausibilityLimit {
     at_once: 15.0,
     per_s: 60.0,
 };
 
-/// The reach grows for so long, s: through a few lost datagrams. A source that
-/// goes on to say what cannot be is not to be believed for its persistence
-/// before its loss was seen.
+/// The time for which the limit grows, s: a few lost datagrams. A source that
+/// keeps sending implausible values must not be accepted before its loss was
+/// detected.
 const GROWS_FOR_S: f64 = 0.1;
 
-/// A source that goes on for so many times the age at which a reading is too
-/// old has convinced us: it is the old value that was wrong, or the aircraft
-/// was put somewhere else. By then its loss was seen.
-const CONVINCED_AFTER: u32 = 4;
+/// After this many times the age at which a reading is too old, a source's new
+/// value is accepted: either the old value was wrong, or the aircraft was
+/// repositioned. By then its loss was detected.
+const ACCEPTED_AFTER: u32 = 4;
 
 impl PlausibilityLimit {
     fn holds(&self, difference: f64, gap_s: f64) -> bool {
@@ -82,10 +85,10 @@ impl PlausibilityLimit {
     }
 }
 
-/// Copies from `new` into `good` what can be true. Readings are too old at
+/// Copies the plausible values from `new` into `good`. Readings are too old at
 /// `max_age`.
 pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max_age: Duration) {
-    let convinced = CONVINCED_AFTER * max_age;
+    let convinced = ACCEPTED_AFTER * max_age;
     take(
         &mut good.attitude,
         &new.attitude,
@@ -185,8 +188,8 @@ fn forces(f: &SpecificForce) -> [f64; 3] {
     [f.x_mps2, f.y_mps2, f.z_mps2]
 }
 
-fn near(a: [f64; 3], b: [f64; 3], reach: &PlausibilityLimit, gap_s: f64) -> bool {
-    a.iter().zip(b).all(|(a, b)| reach.holds(b - a, gap_s))
+fn near(a: [f64; 3], b: [f64; 3], limit: &PlausibilityLimit, gap_s: f64) -> bool {
+    a.iter().zip(b).all(|(a, b)| limit.holds(b - a, gap_s))
 }
 
 /// False for NaN.
@@ -215,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_true_leaves_the_last_good_value_to_grow_old() {
+    fn an_implausible_value_leaves_the_last_good_one() {
         let mut good = Measurements::default();
         let mut new = flying(ms(1));
         plausibility_gate(&mut good, &new, MAX_AGE);
@@ -229,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_is_kept_out_until_it_lasts() {
+    fn a_jump_is_rejected_until_it_lasts() {
         let mut good = flying(ms(0));
         for at_ms in (25..1_000).step_by(25) {
             let mut new = flying(ms(at_ms));

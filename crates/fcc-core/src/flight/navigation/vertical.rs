@@ -20,14 +20,14 @@ pub struct VerticalState {
 }
 
 /// Kalman filter: vertical acceleration integrated twice, corrected by
-/// barometric altitude, the accelerometer's bias estimated along (the
-/// barometric-inertial loop of Blanchard 1971, its gains from the covariance
-/// as in Gelb 1974, table 4.2-1). It begins fast, knowing nothing, and slows
-/// down to its bandwidth as it learns.
+/// barometric altitude, with an estimate of the accelerometer's bias (the
+/// barometric-inertial loop of Blanchard 1971, its gains from the covariance as
+/// in Gelb 1974, table 4.2-1). It begins with a high bandwidth, without prior
+/// knowledge, and settles at its final bandwidth.
 ///
-/// An altitude can be marked: what comes later still says something about
-/// where the aircraft was then, and the marked altitude follows it (a
-/// fixed-point smoother, Gelb 1974, section 5.3).
+/// An altitude can be marked: later measurements still carry information about
+/// it, and refine the marked altitude (a fixed-point smoother, Gelb 1974,
+/// section 5.3).
 ///
 /// ```
 /// use fcc_core::flight::Measurements;
@@ -58,18 +58,18 @@ pub struct VerticalChannel {
     news: SampleTracker,
 }
 
-/// The altitude at an instant gone by, and how it goes with the present state.
+/// The altitude at a past instant, and its covariance with the present state.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
     altitude_m: f64,
     link: CrossCovariance,
 }
 
-/// An accelerometer whose bias is larger than this is broken, m/s².
+/// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
 
 impl VerticalChannel {
-    /// A filter that knows nothing yet; `bandwidth_radps` in rad/s.
+    /// A filter in its initial state; `bandwidth_radps` in rad/s.
     pub const fn new(bandwidth_radps: f64) -> Self {
         Self {
             state: VerticalState {
@@ -83,7 +83,7 @@ impl VerticalChannel {
         }
     }
 
-    /// Takes the measurements; altitude and climb rate.
+    /// Processes the measurements; returns altitude and climb rate.
     pub fn step(
         &mut self,
         now: Time,
@@ -91,8 +91,8 @@ impl VerticalChannel {
         orientation: &Orientation,
         dt_s: f64,
     ) -> VerticalState {
-        let felt = is_current(&measurements.specific_force, now);
-        let acceleration = if felt {
+        let measured = is_current(&measurements.specific_force, now);
+        let acceleration = if measured {
             let force = measurements.specific_force.value;
             let (sin_roll, cos_roll) = (sin(orientation.roll_rad), cos(orientation.roll_rad));
             let (sin_pitch, cos_pitch) = (sin(orientation.pitch_rad), cos(orientation.pitch_rad));
@@ -102,7 +102,7 @@ impl VerticalChannel {
         } else {
             0.0
         };
-        self.predict(acceleration, felt, dt_s);
+        self.predict(acceleration, measured, dt_s);
         match self.news.of(&measurements.altitude_m, dt_s) {
             NewSample::None => {}
             NewSample::First => self.begin(measurements.altitude_m.value),
@@ -119,23 +119,23 @@ impl VerticalChannel {
         });
     }
 
-    /// What is known by now of the marked altitude, m.
+    /// The present estimate of the marked altitude, m.
     pub fn marked_altitude_m(&self) -> Option<f64> {
         self.mark.map(|mark| mark.altitude_m)
     }
 
-    fn predict(&mut self, acceleration_mps2: f64, felt: bool, dt_s: f64) {
+    fn predict(&mut self, acceleration_mps2: f64, measured: bool, dt_s: f64) {
         let state = &mut self.state;
         state.altitude_m += state.climb_rate_mps * dt_s + 0.5 * acceleration_mps2 * dt_s * dt_s;
         state.climb_rate_mps += acceleration_mps2 * dt_s;
-        self.covariance.predict(felt, dt_s);
+        self.covariance.predict(measured, dt_s);
         if let Some(mark) = &mut self.mark {
-            mark.link.predict(felt, dt_s);
+            mark.link.predict(measured, dt_s);
         }
     }
 
-    /// Believes an altitude outright. A mark stays as it was: what comes now
-    /// says nothing about it any more.
+    /// Adopts an altitude. A mark is kept unchanged: later measurements carry
+    /// no more information about it.
     fn begin(&mut self, altitude_m: f64) {
         self.state = VerticalState {
             altitude_m,
@@ -195,13 +195,13 @@ mod tests {
         libm::sqrt(sum / errors.len() as f64)
     }
 
-    /// Level flight at 900 m. A straight line fitted to 5 s of samples is good
-    /// to 2σ/√N at its end, 0.11 m, and once as many came after it to σ/√(2N)
-    /// there, 0.04 m (Bar-Shalom, Li and Kirubarajan 2001, section 3.5). A
-    /// filter that knows neither slope nor bias, with an accelerometer that is
-    /// noisy, cannot be better than either.
+    /// Level flight at 900 m. A straight line fitted to 5 s of samples is
+    /// accurate to 2σ/√N at its end, 0.11 m, and after as many further samples
+    /// to σ/√(2N) there, 0.04 m (Bar-Shalom, Li and Kirubarajan 2001, section
+    /// 3.5). A filter without knowledge of slope and bias, with a noisy
+    /// accelerometer, cannot be better than either.
     #[test]
-    fn a_marked_altitude_is_known_better_later() {
+    fn a_marked_altitude_is_refined_later() {
         let mut noise = Noise(7);
         let mut at_once = [0.0; 60];
         let mut later = [0.0; 60];
@@ -233,9 +233,9 @@ mod tests {
         assert!((0.04..0.075).contains(&later), "{later}");
     }
 
-    /// An accelerometer that is 0.2 m/s² off is found out within a minute.
+    /// A bias of 0.2 m/s² is estimated within a minute.
     #[test]
-    fn the_bias_is_found() {
+    fn the_bias_is_estimated() {
         let mut channel = VerticalChannel::new(0.7);
         let mut state = VerticalState::default();
         for sample in 1..=2_400 {

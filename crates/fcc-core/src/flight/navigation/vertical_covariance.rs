@@ -1,28 +1,28 @@
-//! How sure the vertical channel is of its altitude, climb rate and bias.
+//! The covariance of the vertical channel's altitude, climb rate and bias.
 //!
-//! Only ratios matter to the gains, so the barometer's noise is fixed and the
-//! rest is stated beside it.
+//! The gains depend on ratios only, so the barometer's noise is fixed and the
+//! other densities are relative to it.
 
 /// The barometer's noise, as a spectral density, m² s: 0.76 m of one sigma, 40
 /// times a second.
 const ALTITUDE_NOISE: f64 = 0.0145;
 
-/// The accelerometer's bias wanders such that it is followed within about the
-/// inverse of this, rad/s.
+/// Bandwidth of the bias estimate, rad/s: a change of the bias is tracked
+/// within about the inverse of this.
 const BIAS_BANDWIDTH_RADPS: f64 = 0.1;
 
-/// What there is in place of a silent accelerometer: the aircraft may pull a
-/// tenth of a g for a second, m²/s³.
+/// The density used without an accelerometer, m²/s³: the aircraft may
+/// accelerate by a tenth of a g for a second.
 const UNFELT_NOISE: f64 = 1.0;
 
 /// One sigma of the climb rate before anything is known, m/s.
 const FIRST_CLIMB_RATE_MPS: f64 = 5.0;
 
 /// One sigma of the accelerometer's bias before anything is known, m/s²: 10 mg,
-/// and what gravity differs between the equator and the poles.
+/// and the difference of gravity between the equator and the poles.
 const FIRST_BIAS_MPS2: f64 = 0.1;
 
-/// The first altitude is taken for a sample of this length, s.
+/// The first altitude is weighted as a sample of this length, s.
 const FIRST_SAMPLE_S: f64 = 0.025;
 
 /// Covariance of altitude (h), climb rate (v) and the accelerometer's bias (b).
@@ -39,7 +39,7 @@ pub(super) struct VerticalCovariance {
     bb: f64,
 }
 
-/// What one metre of altitude error is worth.
+/// The gains per metre of altitude error.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gains {
     /// To the altitude, 0..=1.
@@ -53,9 +53,10 @@ pub(super) struct Gains {
 }
 
 impl VerticalCovariance {
-    /// Nothing is known. In the long run the barometer is believed below
-    /// `bandwidth_radps`, the accelerometer above: for white noise on both
-    /// that is the fourth root of the ratio of their densities.
+    /// The initial covariance. In the steady state the barometer determines
+    /// frequencies below `bandwidth_radps`, the accelerometer those above: for
+    /// white noise on both that is the fourth root of the ratio of their
+    /// densities.
     pub(super) const fn new(bandwidth_radps: f64) -> Self {
         let squared = bandwidth_radps * bandwidth_radps;
         let bias_squared = BIAS_BANDWIDTH_RADPS * BIAS_BANDWIDTH_RADPS;
@@ -73,7 +74,7 @@ impl VerticalCovariance {
         covariance
     }
 
-    /// An altitude was measured, and nothing else is known.
+    /// Restarts from a measured altitude, without other information.
     pub(super) const fn restart(&mut self) {
         self.hh = ALTITUDE_NOISE / FIRST_SAMPLE_S;
         self.vv = FIRST_CLIMB_RATE_MPS * FIRST_CLIMB_RATE_MPS;
@@ -84,8 +85,8 @@ impl VerticalCovariance {
     }
 
     /// `dt_s` seconds pass, with or without an accelerometer.
-    pub(super) fn predict(&mut self, felt: bool, dt_s: f64) {
-        if felt {
+    pub(super) fn predict(&mut self, measured: bool, dt_s: f64) {
+        if measured {
             // v -= b dt
             self.hv -= self.hb * dt_s;
             self.vv += (self.bb * dt_s - 2.0 * self.vb) * dt_s;
@@ -96,7 +97,7 @@ impl VerticalCovariance {
         self.hv += self.vv * dt_s;
         self.hb += self.vb * dt_s;
         self.vv += dt_s
-            * if felt {
+            * if measured {
                 self.acceleration_noise
             } else {
                 UNFELT_NOISE
@@ -104,7 +105,7 @@ impl VerticalCovariance {
         self.bb += self.bias_noise * dt_s;
     }
 
-    /// An altitude is taken, `since_s` seconds after the one before.
+    /// Corrects by an altitude, `since_s` seconds after the previous one.
     pub(super) fn correct(&mut self, since_s: f64) -> Gains {
         let per_variance = 1.0 / (self.hh + ALTITUDE_NOISE / since_s);
         let gains = Gains {
@@ -123,7 +124,7 @@ impl VerticalCovariance {
         gains
     }
 
-    /// How the present altitude goes with the state: wholly.
+    /// The covariance of the present altitude with the state.
     pub(super) const fn of_altitude(&self) -> CrossCovariance {
         CrossCovariance {
             h: self.hh,
@@ -133,7 +134,7 @@ impl VerticalCovariance {
     }
 }
 
-/// Covariance of something gone by with the present altitude, climb rate and
+/// Covariance of a past quantity with the present altitude, climb rate and
 /// bias.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CrossCovariance {
@@ -144,15 +145,15 @@ pub(super) struct CrossCovariance {
 
 impl CrossCovariance {
     /// As [`VerticalCovariance::predict`].
-    pub(super) fn predict(&mut self, felt: bool, dt_s: f64) {
-        if felt {
+    pub(super) fn predict(&mut self, measured: bool, dt_s: f64) {
+        if measured {
             self.v -= self.b * dt_s;
         }
         self.h += self.v * dt_s;
     }
 
-    /// As [`VerticalCovariance::correct`]; what a metre of altitude error is
-    /// worth to the thing gone by.
+    /// As [`VerticalCovariance::correct`]; returns the gain of the past
+    /// quantity per metre of altitude error.
     pub(super) fn correct(&mut self, gains: &Gains) -> f64 {
         let gain = self.h * gains.per_variance;
         self.v -= self.h * gains.climb_rate_per_s;
@@ -168,11 +169,11 @@ mod tests {
 
     const DT_S: f64 = 0.025;
 
-    /// The steady filter of a double integrator with both noises white, r and
-    /// q = ω⁴ r. By hand from its Riccati equation: 2 hv = hh²/r, vv = hh hv/r,
-    /// q = hv²/r, so the gains are √2 ω and ω². The bias adds a little.
+    /// The steady filter of a double integrator with both noises white, r and q
+    /// = ω⁴ r. From its Riccati equation: 2 hv = hh²/r, vv = hh hv/r, q =
+    /// hv²/r, so the gains are √2 ω and ω². The bias adds a little.
     #[test]
-    fn in_the_long_run_the_gains_are_the_textbooks() {
+    fn the_steady_gains_are_those_of_the_textbook() {
         let bandwidth = 0.6;
         let mut covariance = VerticalCovariance::new(bandwidth);
         let mut gains = covariance.correct(DT_S);
@@ -186,9 +187,9 @@ mod tests {
         assert!((0.97..1.05).contains(&climb_rate), "{climb_rate}");
     }
 
-    /// A straight line fitted to N samples: the variance of its end is 4/N of
-    /// a sample's, of its slope 12/(N³ dt²) (Bar-Shalom, Li and Kirubarajan
-    /// 2001, section 3.5). The bias is small enough not to matter at once.
+    /// A straight line fitted to N samples: the variance of its end is 4/N of a
+    /// sample's, of its slope 12/(N³ dt²) (Bar-Shalom, Li and Kirubarajan 2001,
+    /// section 3.5). The bias is small enough not to matter in this time.
     #[test]
     fn at_first_it_fits_a_straight_line() {
         let mut covariance = VerticalCovariance::new(0.01);

@@ -1,26 +1,26 @@
-//! The macro that declares what the values of a type are.
+//! The macro that declares the values of a type.
 
-/// Declares what the values of a struct or an enum are, beside it: see
+/// Declares the values of a struct or an enum together with it: see
 /// [`framework::schema`](crate::framework::schema).
 ///
-/// A struct becomes `repr(C)`. Each field has a number that stands for it in
-/// files, and may have a range and a name for its column, in which `*` stands
-/// for the names inside it. Fields are of types that have a schema: `f64`,
+/// A struct becomes `repr(C)`. Each field has a number that identifies it in
+/// files, and may have a range and a column name, in which `*` stands for the
+/// names of nested fields. Fields are of types that have a schema: `f64`,
 /// `bool`, `u64`, [`Flags`](crate::framework::Flags),
 /// [`Time`](crate::framework::Time), another struct or enum, or a
 /// [`Reading`](crate::framework::Reading) of one.
 ///
 /// An enum without data becomes `repr(u8)`; its first variant is 0 and the
-/// default. One with data has a number for each variant, and a name for what a
-/// variant holds:
+/// default. One with data has a number for each variant, and a name for the
+/// data of a variant:
 ///
 /// ```
 /// use fcc_core::framework::{Reading, Time, schema::Schema};
 ///
 /// fcc_core::schema! {
-///     /// What a valve does.
+///     /// The motion of a valve.
 ///     pub enum Motion {
-///         /// It stands.
+///         /// It is at rest.
 ///         Still = 0,
 ///         /// It turns.
 ///         Turning = 1,
@@ -28,13 +28,13 @@
 /// }
 ///
 /// fcc_core::schema! {
-///     /// What a valve tells.
+///     /// The state of a valve.
 ///     #[derive(Clone, Copy, PartialEq, Debug, Default)]
 ///     pub struct Valve {
 ///         /// How far it is open.
 ///         #[field(1, range = 0.0..=1.0, column = "measured_*")]
 ///         pub open: Reading<f64>,
-///         /// What it does.
+///         /// Its motion.
 ///         #[field(2)]
 ///         pub motion: Motion,
 ///     }
@@ -44,13 +44,13 @@
 /// }
 ///
 /// fcc_core::schema! {
-///     /// What may be asked of a valve.
+///     /// A command to a valve.
 ///     #[derive(Clone, Copy, PartialEq, Debug)]
 ///     pub enum Wanted {
 ///         /// Stop where it is.
 ///         #[field(1)]
 ///         Stop,
-///         /// Open so far.
+///         /// Open to this position.
 ///         #[field(2)]
 ///         Open(open: f64),
 ///         /// Turn back and forth.

@@ -1,4 +1,4 @@
-//! What a field is.
+//! The description of a field.
 
 use super::unit;
 
@@ -7,14 +7,14 @@ use super::unit;
 pub struct Field {
     /// Its name in the struct.
     pub name: &'static str,
-    /// The number that stands for it in files; never another's.
+    /// The number that identifies it in files, unique and never reused.
     pub number: u32,
     /// What it means: the lines of its doc comment.
     pub meaning: &'static str,
-    /// The least and the greatest that it can be, in its unit.
+    /// Its smallest and largest value, in its unit.
     pub range: Option<(f64, f64)>,
-    /// What its column is called in tables and arrays, `*` standing for the
-    /// name of what is inside; none for its own name.
+    /// The name of its column in tables and arrays, `*` standing for the name
+    /// of a nested field; none for its own name.
     pub column: Option<&'static str>,
     /// Bytes from the beginning of the struct.
     pub offset: usize,
@@ -22,14 +22,14 @@ pub struct Field {
     pub of: Type,
 }
 
-/// What a field is.
+/// The type of a field.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Type {
     /// A single value.
     Leaf(Kind),
     /// A struct.
     Struct(&'static Structure),
-    /// An enum that carries data: one of its fields is there.
+    /// An enum that carries data: one of its fields is present.
     Choice(&'static Structure),
 }
 
@@ -42,7 +42,7 @@ pub struct Structure {
     pub meaning: &'static str,
     /// Its fields, in their order.
     pub fields: &'static [Field],
-    /// What is worked out from them.
+    /// Values derived from them.
     pub derived: &'static [Field],
     /// Whether it is a [`Reading`](crate::framework::Reading).
     pub is_reading: bool,
@@ -50,7 +50,7 @@ pub struct Structure {
     pub bytes: usize,
 }
 
-/// What a single value is.
+/// The kind of a single value.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Kind {
     /// No or yes.
@@ -63,36 +63,36 @@ pub enum Kind {
     Count(u8),
     /// A whole number that may be negative, of so many bytes.
     Signed(u8),
-    /// An instant in ns on the loop's clock; the smallest number is never.
+    /// An instant in ns on the loop's clock; the smallest number means never.
     Instant,
     /// Anything measured or commanded.
     Number,
 }
 
-/// An enum that carries nothing.
+/// An enum without data.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Enumeration {
     /// Its name.
     pub name: &'static str,
     /// What it is: the lines of its doc comment.
     pub meaning: &'static str,
-    /// All that it can be, 0 first.
+    /// Its variants, 0 first.
     pub variants: &'static [Variant],
 }
 
-/// One of an enum.
+/// A variant of an enum.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Variant {
     /// Its name.
     pub name: &'static str,
-    /// The number that stands for it; never another's.
+    /// The number that identifies it, unique and never reused.
     pub number: u8,
     /// What it means: the lines of its doc comment.
     pub meaning: &'static str,
 }
 
 impl Field {
-    /// A field of which nothing is said yet.
+    /// A field without a declaration yet.
     pub(super) const ROOT: Self = Self {
         name: "",
         number: 0,
@@ -118,7 +118,7 @@ impl Field {
 }
 
 impl Type {
-    /// How many values are in it, whatever it is nested of.
+    /// The number of single values in it, nested ones included.
     pub const fn leaves(&self) -> usize {
         match self {
             Self::Leaf(_) => 1,

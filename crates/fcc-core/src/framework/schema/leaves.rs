@@ -1,11 +1,12 @@
-//! The single values that a schema is made of, and a reading of any of them.
+//! The schemas of single values, and of a reading of any of them.
 
 use core::mem::{offset_of, size_of};
 
 use super::{Field, Kind, Schema, Sink, Source, Structure, Type, Unknown, Value};
 use crate::framework::{Flags, Reading, Time};
 
-/// A type that is one value: how it becomes a [`Value`] and comes back.
+/// Implements a type that is a single value: its conversion to a [`Value`] and
+/// back.
 macro_rules! leaf {
     ($type:ty, $kind:expr, $self:ident => $write:expr, $pattern:pat => $read:expr) => {
         impl Schema for $type {
@@ -52,7 +53,7 @@ leaf!(i32, Kind::Signed(4), v => Value::Signed(v.into()), Value::Signed(v) => Se
 leaf!(i64, Kind::Signed(8), v => Value::Signed(v), Value::Signed(v) => Some(v));
 leaf!(Time, Kind::Instant, v => Value::Instant(v.as_nanos()), Value::Instant(v) => Some(Self::from_nanos(v)));
 leaf!(f64, Kind::Number, v => Value::Number(v), Value::Number(v) => Some(v));
-// None is a NaN: a value of a fixed layout has no room to be absent.
+// None is a NaN: a value of a fixed layout cannot be absent.
 leaf!(Option<f64>, Kind::Number,
     v => Value::Number(v.unwrap_or(f64::NAN)), Value::Number(v) => Some(Some(v).filter(|v| !v.is_nan())));
 

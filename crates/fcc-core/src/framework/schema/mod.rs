@@ -1,12 +1,13 @@
-//! What the values of a struct are: declared once, beside the struct.
+//! The schema of a struct: its values are declared once, together with the
+//! struct.
 //!
 //! [`schema!`](crate::schema) wraps a struct and takes, per field, the number
-//! that stands for it in files, its meaning (the doc comment) and, where there
-//! is one, its range; the [unit](unit::of) follows from the end of its name.
-//! From that declaration follow the messages of a recording and their
-//! description, the layout in shared memory, the columns of tables and arrays,
-//! and the comparison of a replay: each is a [`Sink`] that is handed every
-//! value with its [`Field`], or a [`Source`] that gives them back.
+//! that identifies it in files, its meaning (the doc comment) and, if it has
+//! one, its range; the [unit](unit::of) follows from the end of its name. From
+//! that declaration follow the messages of a recording and their description,
+//! the layout in shared memory, the columns of tables and arrays, and the
+//! comparison of a replay: each is a [`Sink`] that receives every value with
+//! its [`Field`], or a [`Source`] that supplies them.
 //!
 //! ```
 //! use fcc_core::framework::schema::{Field, Kind, Schema, Type, Value, Values};
@@ -31,8 +32,8 @@
 //! assert_eq!(values.as_slice(), [Value::Number(1.5), Value::Bool(true)]);
 //! ```
 //!
-//! A number is never given to another field, and never changes: a field that
-//! goes takes its number with it.
+//! A field's number never changes and is never given to another field, even
+//! after the field is removed.
 
 mod declare;
 mod field;
@@ -51,42 +52,43 @@ pub use values::Values;
 
 /// Plain data whose values are declared: see [`schema!`](crate::schema).
 pub trait Schema: Copy + Default + Send + 'static {
-    /// What it is, for whoever describes it.
+    /// Its type, for descriptions.
     const TYPE: Type;
 
     /// Its fields, in their order; none for a single value.
     const FIELDS: &'static [Field] = &[];
 
-    /// What is worked out from its fields for those who read or plot them, and
-    /// never read back.
+    /// Values derived from its fields for reading and plotting; never read
+    /// back.
     const DERIVED: &'static [Field] = &[];
 
-    /// What it is where it is in no other struct.
+    /// Its field when it is not nested in another struct.
     const ROOT: &'static Field = &Field {
         of: Self::TYPE,
         ..Field::ROOT
     };
 
-    /// Hands its values to a sink, in their order; `field` is what it is in the
-    /// struct around it.
+    /// Passes its values to a sink, in their order; `field` is its field in the
+    /// enclosing struct.
     fn write<W: Sink>(&self, field: &'static Field, sink: &mut W);
 
-    /// Takes its values from a source, in their order. What the source does not
-    /// have stays as it is.
+    /// Reads its values from a source, in their order. Values that the source
+    /// does not have are left unchanged.
     ///
     /// # Errors
-    /// When a value is none of those that are declared.
+    /// When a value is not a declared one.
     fn read<R: Source>(&mut self, field: &'static Field, source: &mut R) -> Result<(), Unknown>;
 
-    /// Hands all its values to a sink, for a struct that is in no other.
+    /// Passes all its values to a sink, for a struct that is not nested.
     fn visit<W: Sink>(&self, sink: &mut W) {
         self.write(Self::ROOT, sink);
     }
 
-    /// One of the values that a source has; the default where it has none.
+    /// Reads a value from a source, with the default for values that it does
+    /// not have.
     ///
     /// # Errors
-    /// When a value is none of those that are declared.
+    /// When a value is not a declared one.
     fn from_source<R: Source>(source: &mut R) -> Result<Self, Unknown> {
         let mut value = Self::default();
         value.read(Self::ROOT, source)?;
@@ -94,9 +96,9 @@ pub trait Schema: Copy + Default + Send + 'static {
     }
 }
 
-/// Takes the values of a struct, in the order of its fields.
+/// Receives the values of a struct, in the order of its fields.
 pub trait Sink {
-    /// A struct begins: `field` is what it is in the struct around it.
+    /// A struct begins: `field` is its field in the enclosing struct.
     fn begin(&mut self, _field: &'static Field) {}
 
     /// That struct ends.
@@ -105,22 +107,22 @@ pub trait Sink {
     /// A value.
     fn value(&mut self, field: &'static Field, value: Value);
 
-    /// A number worked out from the values before it.
+    /// A number derived from the values before it.
     fn derived(&mut self, _field: &'static Field, _value: f64) {}
 }
 
-/// Gives the values of a struct, in the order of its fields.
+/// Supplies the values of a struct, in the order of its fields.
 pub trait Source {
-    /// A struct begins: `field` is what it is in the struct around it.
+    /// A struct begins: `field` is its field in the enclosing struct.
     fn begin(&mut self, _field: &'static Field) {}
 
     /// That struct ends.
     fn end(&mut self, _field: &'static Field) {}
 
-    /// The value of a field; none if it is not there.
+    /// The value of a field; none if it is absent.
     fn value(&mut self, field: &'static Field) -> Option<Value>;
 
-    /// Which of the fields of an enum that carries data is there, by its number.
+    /// The number of the present field of an enum that carries data.
     fn variant(&mut self, _field: &'static Field) -> Option<u32> {
         None
     }

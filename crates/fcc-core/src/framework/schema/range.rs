@@ -9,7 +9,7 @@ pub const fn bounds(range: &RangeInclusive<f64>) -> (f64, f64) {
     (*range.start(), *range.end())
 }
 
-/// Whether every number is finite and within the range that is declared for it.
+/// Whether every number is finite and within its declared range.
 ///
 /// ```
 /// use fcc_core::framework::schema::in_range;

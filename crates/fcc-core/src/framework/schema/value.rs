@@ -1,4 +1,4 @@
-//! A single value, and what is none.
+//! A single value, and the error for an unknown one.
 
 use core::fmt;
 
@@ -24,8 +24,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// Its bits: equal only for what is the same to the last of them, a NaN and
-    /// the sign of zero included.
+    /// Its bits, which are equal only for identical values, a NaN and the sign
+    /// of zero included.
     pub const fn bits(self) -> u64 {
         match self {
             Self::Bool(value) => value as u64,
@@ -37,8 +37,8 @@ impl Value {
         }
     }
 
-    /// The value of a kind from its bits, of which those above the kind's bytes
-    /// mean nothing; none for bits of a `bool` that are neither 0 nor 1.
+    /// The value of a kind from its bits, of which those above the kind's size
+    /// are ignored; none for bits of a `bool` that are neither 0 nor 1.
     pub const fn from_bits(kind: Kind, bits: u64) -> Option<Self> {
         Some(match kind {
             Kind::Bool => match bits as u8 {
@@ -58,16 +58,16 @@ impl Value {
         })
     }
 
-    /// Whether it is an instant that never was.
+    /// Whether it is the instant `never`.
     pub const fn is_never(self) -> bool {
         matches!(self, Self::Instant(i64::MIN))
     }
 }
 
-/// A value that is none of those that its field can have.
+/// A value that its field cannot have.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Unknown {
-    /// What it should be.
+    /// The expected type.
     pub of: Type,
     /// The field.
     pub field: &'static Field,
@@ -81,8 +81,8 @@ impl fmt::Display for Unknown {
             Type::Struct(of) | Type::Choice(of) => of.name,
         };
         match self.field.name {
-            "" => write!(f, "not a {kind} that is known"),
-            name => write!(f, "{name} is not a {kind} that is known"),
+            "" => write!(f, "not a known {kind}"),
+            name => write!(f, "{name} is not a known {kind}"),
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Field, Sink, Source, Value};
 
-/// The values of a struct, one after another: taken from one, or to be given to
-/// one. Those beyond the first `N` are left out.
+/// The values of a struct, one after another, read from a struct or to be
+/// written to one. Values beyond the first `N` are left out.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Values<const N: usize> {
     values: [Value; N],
@@ -22,7 +22,7 @@ impl<const N: usize> Default for Values<N> {
 }
 
 impl<const N: usize> Values<N> {
-    /// Those that are there.
+    /// The values that are present.
     pub fn as_slice(&self) -> &[Value] {
         self.values.get(..self.count).unwrap_or_default()
     }

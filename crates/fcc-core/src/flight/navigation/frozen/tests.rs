@@ -1,4 +1,4 @@
-//! Sensors that hang, and good ones that only seem to.
+//! Frozen sensors, and good ones that may look frozen.
 
 use std::vec::Vec;
 
@@ -53,7 +53,7 @@ fn flying(tick: i64) -> Measurements {
     }
 }
 
-/// When, in s, each quantity is called frozen over 20 s.
+/// The times, in s, at which each quantity is reported as frozen over 20 s.
 fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
     let mut watch = FrozenDetector::new(AFTER_S);
     let estimate = Estimate::default();
@@ -70,7 +70,7 @@ fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
     seen
 }
 
-/// The flight with one quantity as it was at the start, but for its time.
+/// The flight with one quantity frozen at its first value, with new times.
 fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen)> {
     let start = flying(0);
     watch(|tick| {
@@ -81,16 +81,16 @@ fn with_frozen(freeze: fn(&mut Measurements, &Measurements)) -> Vec<(f64, Frozen
 }
 
 #[test]
-fn what_moves_is_not_frozen() {
+fn changing_values_are_not_frozen() {
     assert_eq!(watch(flying), [(0.0, Frozen::default())]);
 }
 
 #[test]
-fn each_is_seen_when_the_aircraft_moves_and_alone() {
+fn each_is_detected_when_the_aircraft_moves_and_no_other() {
     type Case = (fn(&mut Measurements, &Measurements), Frozen, f64);
     let none = Frozen::default();
     let cases: [Case; 6] = [
-        // 5° are rolled after half a second; the least time is 2 s.
+        // A roll of 5° takes half a second; the least time is 2 s.
         (
             |m, start| m.attitude.value = start.attitude.value,
             Frozen {
@@ -99,7 +99,7 @@ fn each_is_seen_when_the_aircraft_moves_and_alone() {
             },
             2.0,
         ),
-        // 5 °/s from 3 s on: 5° at 4 s, and a little leaks.
+        // 5 °/s from 3 s on: 5° at 4 s, minus a small leak.
         (
             |m, start| m.heading_rad.value = start.heading_rad.value,
             Frozen {
@@ -108,7 +108,7 @@ fn each_is_seen_when_the_aircraft_moves_and_alone() {
             },
             4.05,
         ),
-        // They go on saying 10 °/s from 3 s on, where it does not roll.
+        // They still show 10 °/s from 3 s on, where it does not roll.
         (
             |m, start| m.body_rates.value = start.body_rates.value,
             Frozen {
@@ -117,7 +117,7 @@ fn each_is_seen_when_the_aircraft_moves_and_alone() {
             },
             3.5,
         ),
-        // 10° of bank are there after a second.
+        // 10° of bank are reached after a second.
         (
             |m, start| m.specific_force.value = start.specific_force.value,
             Frozen {
@@ -134,7 +134,7 @@ fn each_is_seen_when_the_aircraft_moves_and_alone() {
             },
             2.0,
         ),
-        // 5 m/s from 3 s on: 15 m at 6 s, and what leaks (10 s).
+        // 5 m/s from 3 s on: 15 m at 6 s, minus the leak (10 s).
         (
             |m, start| m.altitude_m.value = start.altitude_m.value,
             Frozen {
@@ -155,7 +155,7 @@ fn each_is_seen_when_the_aircraft_moves_and_alone() {
 }
 
 #[test]
-fn in_calm_air_the_same_for_minutes_is_not_frozen() {
+fn in_calm_air_unchanged_values_are_not_frozen() {
     let calm = flying(0);
     let seen = watch(|tick| {
         let at = Time::from_nanos(tick * 25_000_000);
@@ -173,7 +173,7 @@ fn in_calm_air_the_same_for_minutes_is_not_frozen() {
 }
 
 #[test]
-fn one_that_moves_again_is_not_frozen_any_more() {
+fn a_value_that_changes_again_is_no_longer_frozen() {
     let start = flying(0);
     let seen = watch(|tick| {
         let mut measurements = flying(tick);
