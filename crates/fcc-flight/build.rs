@@ -1,4 +1,4 @@
-//! Tells the program which commit it was built from.
+//! Passes the commit from which it is built to the program.
 
 use std::process::Command;
 
@@ -12,9 +12,9 @@ fn main() {
     println!("cargo::rustc-env=FCCD_GIT_HASH={commit}");
 }
 
-/// What git prints; none outside a repository, or without git.
-fn git(words: &[&str]) -> Option<String> {
-    let output = Command::new("git").args(words).output().ok()?;
+/// The output of git; none outside a repository, or without git.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
     let printed = String::from_utf8(output.stdout).ok()?;
     let line = printed.trim();
     (output.status.success() && !line.is_empty()).then(|| line.to_owned())

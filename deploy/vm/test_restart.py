@@ -24,7 +24,7 @@ UNIT_STARTED = "39f53479d3a045ac8e11786248231fbf"
 # Nominally less than one; an emulated machine takes two, and nine on a busy host.
 RESTART_S = 60.0
 
-# The same goes for how old a flight may be that is taken up, 10 s unless configured.
+# The same goes for how old a flight may be that is recovered, 10 s unless configured.
 WARM = {"restart": {"mode": "warm", "max_age_s": 300.0}}
 # An altitude that was captured becomes surer for some seconds; what is kept is
 # a second old at most, and never further away than this.
@@ -88,7 +88,7 @@ def test_a_flight_that_was_killed_is_taken_up(
     assert killed[-1].state.phase == ENGAGED
     engaged = [record for record in taken_up if record.state.phase == ENGAGED]
     before_s = (engaged[0].woke_ns - taken_up[0].woke_ns) * 1e-9
-    figures.append(f"killed: flight taken up {before_s:.2f} s after the new loop's first tick")
+    figures.append(f"killed: flight recovered {before_s:.2f} s after the new loop's first tick")
     # It engages as it always does, and is told in the next tick what was flown.
     last = killed[-1].setpoints
     for record in engaged[1:]:

@@ -215,7 +215,7 @@ def test_a_switch_that_is_left_to_the_default_is_named(fccd: Path, tmp_path: Pat
     file.write_text("[x-plane]\n")
     ended = run([fccd, "check", file])
     assert ended.returncode == 0
-    switch = "x-plane.engage_switch is not given: what engages is sim/cockpit2/switches/generic"
+    switch = "x-plane.engage_switch is not given: the engage switch is sim/cockpit2/switches"
     assert switch in ended.stdout
     (remark,) = json.loads(run([fccd, "check", file, "--json"]).stdout)["remarks"]
     assert switch in remark

@@ -36,11 +36,11 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Settings
 
 SUCCESS = 0
-TAKEN_UP_S = 3.0
+RECOVERED_S = 3.0
 """Nominally 0.7 s; machines are busy with other things."""
 WARM = '[restart]\nmode = "warm"\n'
 # Half a minute to each leg: killed early in the first, the aircraft is far from where
-# it is to go, and what is taken up cannot be mistaken for what was captured anew.
+# it is to go, and a recovered flight cannot be mistaken for a new capture.
 PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
 
 _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
@@ -87,7 +87,7 @@ class Cockpit:
             aims = captured
             while guidance == PATTERN and aims.heading_deg == captured.heading_deg:
                 aims = Aims.of(daemon.wait_for("engaged "))
-            wait_until(self.state_file.exists, "what is flown is kept")
+            wait_until(self.state_file.exists, "the state of the flight is stored")
             # It is kept each second.
             Aims.of(daemon.wait_for("engaged "))
             aims = Aims.of(daemon.wait_for("engaged "))
@@ -123,8 +123,8 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     killed_at_s = simulator.progress().time_s
     begun_ns = time.monotonic_ns()
     with cockpit.daemon(WARM) as again:
-        again.wait_for("taking it up")
-        assert "timed-pattern, " in again.wait_for("the flight was taken up")
+        again.wait_for("recovering it")
+        assert "timed-pattern, " in again.wait_for("the flight was recovered")
         resumed = Aims.of(again.wait_for("engaged "))
         assert resumed.heading_deg == aims.heading_deg
         assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)
@@ -142,8 +142,8 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     assert ending.report["failsafes"] == 0
     took_s = (first_engaged_ns(ending) - begun_ns) * NS
     record_property("taken_up_after_s", took_s)
-    print(f"taken up {took_s:.3f} s after the process' start")
-    assert 0.0 < took_s < TAKEN_UP_S
+    print(f"recovered {took_s:.3f} s after the process' start")
+    assert 0.0 < took_s < RECOVERED_S
 
     truth = simulator.truth()
     time_s, altitude_ft = truth["time_s"], truth["altitude_ft"]
@@ -154,13 +154,13 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     # The stand-in's elevation and the altimeter's altitude differ by their datum.
     assert np.ptp(altitude_ft[arrived]) < 10.0
     assert np.ptp(truth["heading_deg"][arrived]) < 2.0
-    assert not cockpit.state_file.exists(), "a flight that was ended is not to be taken up"
+    assert not cockpit.state_file.exists(), "a flight that ended regularly is not recovered"
 
 
 def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill("")
     with cockpit.daemon("") as again:
-        assert "standing by" in again.wait_for('restart.mode is "cold"')
+        assert "staying in standby" in again.wait_for('restart.mode is "cold"')
         wait_until(lambda: not cockpit.simulator.progress().overridden, "the guard releases")
         again.wait_until_ready()
         assert "standby" in again.wait_for("heading")
@@ -178,7 +178,7 @@ def test_a_damaged_state_file_is_a_cold_restart(cockpit: Cockpit) -> None:
     whole = cockpit.state_file.read_bytes()
     cockpit.state_file.write_bytes(whole.replace(b'"altitude_m":', b'"altitude_m":1'))
     with cockpit.daemon(WARM) as again:
-        assert "is damaged; standing by" in again.wait_for(str(cockpit.state_file))
+        assert "is damaged; staying in standby" in again.wait_for(str(cockpit.state_file))
         again.wait_until_ready()
         assert "standby" in again.wait_for("heading")
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
@@ -187,7 +187,7 @@ def test_a_damaged_state_file_is_a_cold_restart(cockpit: Cockpit) -> None:
 def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill(WARM)
     with cockpit.daemon(WARM, guidance='mode = "hold"') as again:
-        assert "standing by" in again.wait_for("another configuration")
+        assert "staying in standby" in again.wait_for("another configuration")
         again.wait_until_ready()
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
@@ -204,14 +204,14 @@ def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
 def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> None:
     with cockpit.daemon(WARM) as daemon:
         cockpit.engage(daemon)
-        wait_until(cockpit.state_file.exists, "what is flown is kept")
+        wait_until(cockpit.state_file.exists, "the state of the flight is stored")
         daemon.end(signal.SIGTERM)
     assert not cockpit.state_file.exists()
     with cockpit.daemon(WARM) as again:
         again.wait_until_ready()
         ending = again.end(signal.SIGTERM)
     assert ending.states == ["standby -> stopped"]
-    assert "cut off" not in ending.said
+    assert "was interrupted" not in ending.said
 
 
 def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:

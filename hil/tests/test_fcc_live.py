@@ -92,7 +92,7 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
 
         wait_until(lambda: aims() == pytest.approx((1.0, 950.0)), "the set points are the new ones")
         assert commander.disengage() > tick
-        with pytest.raises(fcc.CommandError, match="set points are taken while engaged"):
+        with pytest.raises(fcc.CommandError, match="set points are accepted only while engaged"):
             commander.set(airspeed_mps=50.0)
         engaged = commander.engage()
         assert engaged > tick
@@ -104,7 +104,7 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
         assert json.loads(printed.stdout)["carried_out"] is True
         refused = command(fccd, instance, "set", "--airspeed-kt", "100")
         assert refused.returncode == REFUSED
-        assert "set points are taken while engaged" in refused.stderr
+        assert "set points are accepted only while engaged" in refused.stderr
         wrong = command(fccd, instance, "set", "--airspeed-kt", "-3")
         assert wrong.returncode == USAGE
         assert "airspeed is" in wrong.stderr

@@ -1,11 +1,11 @@
-//! Puts a flight together and flies it: what every program around a flight
-//! has in common, be it a daemon, a Python module or an app.
+//! Assembles a flight and flies it: the part common to all host programs, such
+//! as a daemon, a Python module or an app.
 //!
 //! | module | what it does |
 //! |---|---|
 //! | [`config`] | reads and checks the configuration file |
-//! | [`flight`] | makes a loop of a configuration, flies it and watches |
-//! | [`replay`] | flies a recording again and compares |
+//! | [`flight`] | assembles a flight from a configuration, flies and observes it |
+//! | [`replay`] | replays a recording and compares |
 
 pub mod config;
 pub mod flight;

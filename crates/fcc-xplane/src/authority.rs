@@ -188,7 +188,7 @@ impl Reported {
             LastReport::Trouble(Trouble::Unconfirmed(_)) => (status.control() == Control::Held)
                 .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
             LastReport::Nothing => Some(format!(
-                "X-Plane at {simulator} answers; what engages is {}",
+                "X-Plane at {simulator} answers; the engage switch is {}",
                 status.engage_switch()
             )),
             LastReport::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),

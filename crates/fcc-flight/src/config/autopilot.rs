@@ -11,17 +11,18 @@ use serde::{Deserialize, Serialize};
 use super::GuidanceSection;
 use super::units::{FOOT_PER_MINUTE_MPS, KNOT_MPS};
 
-/// `[autopilot]`: gains and limits. What is left out is as for a Cessna 172.
+/// `[autopilot]`: gains and limits. Omitted keys have the values for a Cessna
+/// 172.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AutopilotSection {
-    /// The airspeed at which the gains hold as they are.
+    /// The reference airspeed of the gains.
     pub reference_airspeed_kt: f64,
-    /// How the aircraft differs from the one that the gains were found on.
+    /// How the aircraft differs from the one for which the gains were tuned.
     pub scale: ScaleSection,
-    /// What the loops may ask of the aircraft.
+    /// The limits of the loops' commands.
     pub envelope: EnvelopeSection,
-    /// How sensors are blended.
+    /// How sensors are combined.
     pub navigation: NavigationSection,
     /// Heading, bank, aileron, rudder.
     pub heading: HeadingSection,
@@ -47,8 +48,8 @@ impl Default for AutopilotSection {
 }
 
 impl AutopilotSection {
-    /// The core's configuration: this section, the guidance, and how old a reading
-    /// may become.
+    /// The core's configuration: this section, the guidance, and the maximum
+    /// age of readings.
     pub fn to_core(
         &self,
         guidance: &GuidanceSection,
@@ -71,8 +72,8 @@ impl AutopilotSection {
     }
 }
 
-/// To five digits: the core's defaults are meant in the file's units, and a
-/// conversion there and back must not show.
+/// To five digits: the core's defaults are defined in the file's units, and
+/// conversion must not change their digits.
 fn rounded(value: f64) -> f64 {
     if value == 0.0 {
         return value;
@@ -86,8 +87,8 @@ fn rounded(value: f64) -> f64 {
     }
 }
 
-/// Declares a section of the file beside the core's struct: each field with
-/// its unit in the file and the factor that leads to the core's.
+/// Declares a section of the file for a struct of the core: each field with its
+/// unit in the file and the conversion factor to the core's unit.
 macro_rules! section {
     (
         $(#[$meta:meta])*
@@ -132,15 +133,15 @@ const SI: f64 = 1.0;
 section! {
     /// `[autopilot.scale]`: factors on the gains below.
     ScaleSection for Scale {
-        /// More where the elevator does less.
+        /// Larger where the elevator is less effective.
         elevator => elevator * SI,
-        /// More where the aileron does less.
+        /// Larger where the aileron is less effective.
         aileron => aileron * SI,
-        /// More where the rudder does less.
+        /// Larger where the rudder is less effective.
         rudder => rudder * SI,
-        /// More where the engine does less for the aircraft's weight.
+        /// Larger where the engine has less power for the aircraft's weight.
         throttle => throttle * SI,
-        /// Less than 1 for an aircraft that answers slowly.
+        /// Less than 1 for an aircraft that responds slowly.
         pace => pace * SI,
     }
 }
@@ -156,15 +157,17 @@ section! {
         max_pitch_deg => max_pitch_rad * DEGREE_RAD,
         /// Smallest pitch, negative.
         min_pitch_deg => min_pitch_rad * DEGREE_RAD,
-        /// Slowest indicated airspeed: below, altitude is traded for speed.
+        /// Lowest indicated airspeed: below it, the aircraft descends to gain
+        /// speed.
         min_airspeed_kt => min_airspeed_mps * KNOT_MPS,
-        /// Fastest indicated airspeed.
+        /// Highest indicated airspeed.
         max_airspeed_kt => max_airspeed_mps * KNOT_MPS,
-        /// Fastest climb.
+        /// Largest climb rate.
         max_climb_fpm => max_climb_mps * FOOT_PER_MINUTE_MPS,
-        /// Fastest descent.
+        /// Largest descent rate.
         max_sink_fpm => max_sink_mps * FOOT_PER_MINUTE_MPS,
-        /// Within this of an airspeed limit the climb limits close in.
+        /// Within this margin of an airspeed limit the climb limits are
+        /// reduced.
         airspeed_margin_kt => airspeed_margin_mps * KNOT_MPS,
     }
 }
@@ -190,23 +193,23 @@ section! {
     HeadingSection for HeadingConfig {
         /// Turn rate per heading error.
         heading_gain_per_s => heading_gain_per_s * SI,
-        /// Roll rate to plan the roll-out with.
+        /// Planned roll rate of the roll-out.
         rollout_rate_degps => rollout_rate_radps * DEGREE_RAD,
-        /// How far ahead the heading is looked at.
+        /// Prediction time of the heading.
         lead_s => lead_s * SI,
         /// Roll rate per bank error.
         roll_gain_per_s => roll_gain_per_s * SI,
-        /// Largest roll rate asked for.
+        /// Largest commanded roll rate.
         max_roll_rate_degps => max_roll_rate_radps * DEGREE_RAD,
-        /// Fastest change of the roll rate asked for.
+        /// Largest rate of change of the commanded roll rate.
         max_roll_acceleration_degps2 => max_roll_acceleration_radps2 * DEGREE_RAD,
-        /// Aileron that keeps up a roll rate.
+        /// Aileron for a steady roll rate.
         aileron_per_roll_rate => aileron_per_roll_rate * SI,
         /// Aileron per roll-rate error.
         roll_rate_gain => roll_rate_gain * SI,
         /// Aileron per integrated roll-rate error.
         roll_rate_integral_gain => roll_rate_integral_gain * SI,
-        /// Rudder that goes with the aileron.
+        /// Rudder per aileron.
         rudder_per_aileron => rudder_per_aileron * SI,
         /// Rudder per g of side force.
         rudder_per_side_g => side_force_gain * (1.0 / G_MPS2),
@@ -222,27 +225,27 @@ section! {
     AltitudeSection for AltitudeConfig {
         /// Climb rate per altitude error.
         altitude_gain_per_s => altitude_gain_per_s * SI,
-        /// Vertical deceleration to plan the capture with.
+        /// Planned vertical deceleration of the altitude capture.
         capture_g => capture_mps2 * G_MPS2,
-        /// Fastest change of the climb rate asked for.
+        /// Largest rate of change of the commanded climb rate.
         climb_acceleration_g => climb_acceleration_mps2 * G_MPS2,
         /// Path angle per climb-rate error over airspeed.
         climb_rate_gain => climb_rate_gain * SI,
         /// The same, integrated.
         climb_rate_integral_gain_per_s => climb_rate_integral_gain_per_s * SI,
-        /// How far the flight path lags behind the one asked for.
+        /// Lag of the flight path behind the commanded one.
         flight_path_lag_s => flight_path_lag_s * SI,
-        /// Angle of attack that carries 1 g at the reference airspeed.
+        /// Angle of attack for 1 g at the reference airspeed.
         angle_of_attack_per_g_deg => angle_of_attack_per_g_rad * DEGREE_RAD,
         /// Pitch rate per pitch error.
         pitch_gain_per_s => pitch_gain_per_s * SI,
-        /// Largest pitch rate asked for besides the turn's own.
+        /// Largest commanded pitch rate in addition to that of the turn.
         max_pitch_rate_degps => max_pitch_rate_radps * DEGREE_RAD,
         /// Elevator per pitch-rate error.
         pitch_rate_gain => pitch_rate_gain * SI,
         /// Elevator per integrated pitch-rate error.
         pitch_rate_integral_gain => pitch_rate_integral_gain * SI,
-        /// Elevator that goes with the turn's load.
+        /// Elevator for the load of a turn.
         elevator_per_g => elevator_per_g * SI,
     }
 }
@@ -256,9 +259,9 @@ section! {
         airspeed_integral_gain_per_s2 => airspeed_integral_gain_per_s2 * SI,
         /// Throttle that accelerates the aircraft by 1 g.
         throttle_per_g => throttle_per_mps2 * (1.0 / G_MPS2),
-        /// Drag of lift over weight at 1 g.
+        /// Induced drag over weight at 1 g.
         induced_drag_ratio => induced_drag_ratio * SI,
-        /// Fastest throttle.
+        /// Largest throttle rate.
         max_throttle_rate_per_s => max_throttle_rate_per_s * SI,
         /// Throttle for level flight at the reference airspeed.
         trim_throttle => trim_throttle * SI,

@@ -5,8 +5,8 @@ use std::time::Duration;
 use fcc_runtime::Budget;
 use serde::{Deserialize, Serialize};
 
-/// `[budget]`. A budget that is left out is none, but for the tick's: that is
-/// the period.
+/// `[budget]`. An omitted budget means none, except for the tick's, which
+/// defaults to the period.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BudgetSection {
@@ -28,8 +28,8 @@ pub struct BudgetSection {
     /// Driving the actuators.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub actuators_us: Option<u32>,
-    /// So many ticks in a row that overrun or are missed are failsafe; 0 for
-    /// never. Left out, as many as fill half a second.
+    /// The number of consecutive ticks that overrun or are missed that lead to
+    /// failsafe; 0 for never. Default: half a second's ticks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failsafe_after: Option<u32>,
 }
@@ -53,14 +53,14 @@ impl From<&BudgetSection> for Budget {
 #[derive(Clone, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WatchdogSection {
-    /// Whether a loop that hangs is ended.
+    /// Whether the program is ended when the loop hangs.
     pub enabled: bool,
-    /// A loop without progress for so long hangs; four periods, if those are
-    /// longer.
+    /// The loop counts as hung after this long without progress, or after four
+    /// periods, if those are longer.
     pub hang_after_ms: u64,
 }
 
-/// A tick may be late, and the next, before it is said to hang.
+/// Periods without progress that may be plain lateness.
 const FEWEST_PERIODS: u32 = 4;
 
 impl Default for WatchdogSection {
@@ -73,7 +73,7 @@ impl Default for WatchdogSection {
 }
 
 impl WatchdogSection {
-    /// How long a loop of this period may show no progress.
+    /// How long a loop of this period may make no progress.
     pub fn hang_after(&self, period: Duration) -> Duration {
         Duration::from_millis(self.hang_after_ms).max(FEWEST_PERIODS * period)
     }

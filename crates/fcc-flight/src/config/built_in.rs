@@ -21,17 +21,17 @@ pub struct BuiltInSection {
     pub wind_kt: f64,
     /// Turbulence.
     pub gusts: GustsChoice,
-    /// Whether the sensors are noisy, as a phone's are.
+    /// Whether the sensors are noisy, like those of a phone.
     pub noise: bool,
-    /// How late the sensors are.
+    /// The delay of the sensors.
     pub delay_ms: u16,
-    /// When the engage switch goes on.
+    /// When the engage switch is switched on.
     pub engage_at_s: f64,
-    /// The same seed flies the same flight.
+    /// The seed: the same seed gives the same flight.
     pub seed: u64,
 }
 
-/// How strong the gusts are (MIL-F-8785C).
+/// The severity of the gusts (MIL-F-8785C).
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GustsChoice {
@@ -47,7 +47,7 @@ pub enum GustsChoice {
 }
 
 impl GustsChoice {
-    /// Every choice, by the name that a configuration gives it.
+    /// Every choice, by its name in a configuration.
     pub const ALL: [(&str, Self); 4] = [
         ("none", Self::None),
         ("light", Self::Light),

@@ -7,7 +7,7 @@ use fcc_timer::CpuRequest;
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// The most that the kernel's own sets of CPUs can name here.
+/// The number of CPUs in the kernel's CPU sets as used here.
 const LAST_CPU: usize = 1_023;
 const AUTO: &str = "auto";
 const EXPECTED: &str = "\"auto\" or the number of a CPU, 0 to 1023";
@@ -15,7 +15,7 @@ const EXPECTED: &str = "\"auto\" or the number of a CPU, 0 to 1023";
 /// The CPU that the loop's thread is bound to.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum CpuChoice {
-    /// The best there is, if one is better than the others.
+    /// The best CPU, if one is better than the others.
     Auto,
     /// This one, counted from 0.
     Number(usize),
@@ -85,19 +85,19 @@ impl Visitor<'_> for Choice {
 mod tests {
     use crate::config::Config;
 
-    fn complaint(value: &str) -> String {
+    fn message(value: &str) -> String {
         let text = format!("[built-in]\n[realtime]\ncpu = {value}\n");
         let error = Config::parse(&text, "flight.toml").unwrap_err();
         error.to_string()
     }
 
     #[test]
-    fn what_is_no_cpu_is_answered_with_what_would_be() {
+    fn an_invalid_cpu_is_refused_with_the_choices() {
         for value in ["-1", "1024", "\"isolated\"", "true", "1.5"] {
-            let words = complaint(value);
-            assert!(words.contains("flight.toml:3"), "{words}");
-            assert!(words.contains("realtime.cpu"), "{words}");
-            assert!(words.contains("choose \"auto\" or the number"), "{words}");
+            let text = message(value);
+            assert!(text.contains("flight.toml:3"), "{text}");
+            assert!(text.contains("realtime.cpu"), "{text}");
+            assert!(text.contains("choose \"auto\" or the number"), "{text}");
         }
     }
 }

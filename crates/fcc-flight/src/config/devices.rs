@@ -1,21 +1,21 @@
-//! `[[sensor]]` and `[[actuator]]`: what measures and what is moved, beside a
-//! simulator or in place of its parts.
+//! `[[sensor]]` and `[[actuator]]`: sensors and actuators in addition to a
+//! simulator's, or instead of them.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Config, XPlaneSection};
 
-/// The most entries of a list. A reading has room for the number of its sensor
-/// only, and each costs time in every tick.
+/// The maximum number of entries of a list. A reading stores its sensor's
+/// number in a byte, and each entry costs time in every tick.
 pub(super) const MOST_ENTRIES: usize = 16;
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum SensorEntry {
-    /// The simulator's own, where it is not to be the last in the order.
+    /// The simulator's, if it is not to be the last in the order.
     Simulator(NoKeys),
-    /// An X-Plane that is read and never written to.
+    /// An X-Plane that is only read, never written to.
     XPlane(Box<XPlaneSection>),
 }
 
@@ -23,11 +23,11 @@ pub enum SensorEntry {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ActuatorEntry {
-    /// The simulator's own.
+    /// The simulator's.
     Simulator(NoKeys),
 }
 
-/// The keys of a kind that has none.
+/// The keys of a kind without keys.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NoKeys {}
@@ -43,8 +43,8 @@ impl Config {
         listed.chain((!is_listed).then_some(&SIMULATOR))
     }
 
-    /// Whether the simulator is moved: it is, unless there is a list of
-    /// actuators and it is not among them.
+    /// Whether the simulator's controls are driven: yes, unless there is a list
+    /// of actuators that does not contain it.
     pub fn moves_simulator(&self) -> bool {
         self.actuator.as_ref().is_none_or(|list| !list.is_empty())
     }
@@ -57,10 +57,10 @@ impl SensorEntry {
     }
 }
 
-/// The key of what is wrong in an entry of a list, as far as it can be told: the
-/// reader of TOML says where the list begins and not which entry it complains of.
-/// None where `key` is in no entry.
-pub(super) fn in_entry(text: &str, key: &str, complaint: &str) -> Option<String> {
+/// The key of an error in an entry of a list, as far as it can be determined:
+/// the TOML reader reports the beginning of the list, not the entry. None where
+/// `key` is in no entry.
+pub(super) fn in_entry(text: &str, key: &str, message: &str) -> Option<String> {
     let (list, _) = key.split_once('[')?;
     let table: toml::Table = toml::from_str(text).ok()?;
     let entries = table.get(list)?.as_array()?.iter().cloned();
@@ -69,10 +69,10 @@ pub(super) fn in_entry(text: &str, key: &str, complaint: &str) -> Option<String>
         _ => ActuatorEntry::deserialize(entry).is_err(),
     };
     let at = entries.map(is_wrong).position(|is_wrong| is_wrong)?;
-    let unknown = complaint.strip_prefix("unknown field `");
+    let unknown = message.strip_prefix("unknown field `");
     let name = match unknown.and_then(|rest| rest.split('`').next()) {
         Some(name) => format!(".{name}"),
-        None if complaint.starts_with("unknown variant") => ".kind".to_owned(),
+        None if message.starts_with("unknown variant") => ".kind".to_owned(),
         None => String::new(),
     };
     Some(format!("{list}[{at}]{name}"))
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn a_simulator_gives_both_and_comes_last_unless_it_is_listed() {
+    fn a_simulator_provides_both_and_is_last_unless_it_is_listed() {
         assert_eq!(kinds("[built-in]\n"), (vec!["simulator"], true));
         assert_eq!(
             kinds("[built-in]\n[[sensor]]\nkind = \"x-plane\"\n"),
@@ -115,36 +115,36 @@ mod tests {
         );
     }
 
-    fn complaint(text: &str) -> String {
+    fn message(text: &str) -> String {
         Config::parse(text, "test").unwrap_err().to_string()
     }
 
     #[test]
-    fn what_is_wrong_in_an_entry_is_said_with_its_line() {
+    fn an_error_in_an_entry_is_reported_with_its_line() {
         let two = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\n[[sensor]]\n";
         assert_eq!(
-            complaint(&format!("{two}kind = \"x-plane\"\nrate_hz = 0\n")),
+            message(&format!("{two}kind = \"x-plane\"\nrate_hz = 0\n")),
             "test:6: sensor[1].rate_hz: is 0: choose 1 to 1000"
         );
-        let unknown = complaint(&format!("{two}kind = \"x-plane\"\nrate = 10\n"));
+        let unknown = message(&format!("{two}kind = \"x-plane\"\nrate = 10\n"));
         assert!(
             unknown.starts_with("test:6: sensor[1].rate: there is no such key"),
             "{unknown}"
         );
-        let kind = complaint(&format!("{two}kind = \"gyroscope\"\n"));
+        let kind = message(&format!("{two}kind = \"gyroscope\"\n"));
         assert_eq!(
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose \"simulator\" or \"x-plane\""
         );
-        let value = complaint(&format!("{two}kind = \"x-plane\"\nengines = true\n"));
+        let value = message(&format!("{two}kind = \"x-plane\"\nengines = true\n"));
         assert!(value.starts_with("test:4: sensor[1]: is true"), "{value}");
-        let missing = complaint(two);
+        let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");
-        let rows = complaint(&format!("{two}kind = \"x-plane\"\ninput = \"data\"\n"));
+        let rows = message(&format!("{two}kind = \"x-plane\"\ninput = \"data\"\n"));
         assert!(rows.starts_with("test:4: sensor[1].local_port: "), "{rows}");
-        let single = complaint("[built-in]\n[sensor]\nkind = \"x-plane\"\n");
+        let single = message("[built-in]\n[sensor]\nkind = \"x-plane\"\n");
         assert!(single.contains("[[sensor]]"), "{single}");
-        let twice = complaint(
+        let twice = message(
             "[built-in]\n[[sensor]]\nkind = \"simulator\"\n[[sensor]]\nkind = \"simulator\"\n",
         );
         assert_eq!(
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_read_back_as_they_were() {
+    fn lists_are_restored_unchanged() {
         let text = "actuator = []\n[built-in]\n[[sensor]]\nkind = \"x-plane\"\nrate_hz = 50\n\
                     [[sensor]]\nkind = \"simulator\"\n";
         let written = Config::parse(text, "test").unwrap().to_toml().unwrap();

@@ -88,12 +88,12 @@ mod tests {
     }
 
     #[test]
-    fn anything_else_is_answered_with_the_choices() {
+    fn anything_else_is_refused_with_the_choices() {
         for value in ["1", "\"on\"", "[]"] {
-            let words = parsed(value).unwrap_err();
-            assert!(words.contains("flight.toml:3"), "{words}");
-            assert!(words.contains("loop.early_wake.enabled"), "{words}");
-            assert!(words.contains("\"auto\", true or false"), "{words}");
+            let message = parsed(value).unwrap_err();
+            assert!(message.contains("flight.toml:3"), "{message}");
+            assert!(message.contains("loop.early_wake.enabled"), "{message}");
+            assert!(message.contains("\"auto\", true or false"), "{message}");
         }
     }
 }

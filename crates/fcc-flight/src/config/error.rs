@@ -1,4 +1,4 @@
-//! What is wrong with a configuration file, and where.
+//! The errors of a configuration file, and where they are.
 
 use std::fmt;
 use std::io;
@@ -6,7 +6,7 @@ use std::str::Utf8Error;
 
 use serde::Serialize;
 
-/// What is wrong with a configuration file.
+/// The errors of a configuration file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum ConfigError {
@@ -14,10 +14,10 @@ pub enum ConfigError {
     Unreadable {
         /// Its name.
         file: String,
-        /// Why.
+        /// The reason.
         source: io::Error,
     },
-    /// The file says what it may not: each problem with its place.
+    /// The file is invalid: each problem with its location.
     Invalid {
         /// Its name.
         file: String,
@@ -26,19 +26,19 @@ pub enum ConfigError {
     },
 }
 
-/// One thing that is wrong, and where.
+/// One problem and its location.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Problem {
-    /// Line of the file, from 1; none for what the file does not say.
+    /// Line of the file, from 1; none for what is not in the file.
     pub line: Option<usize>,
     /// The key, with its sections: `autopilot.envelope.max_bank_deg`.
     pub key: Option<String>,
-    /// What is wrong and what would be right.
+    /// What is wrong and what is permitted.
     pub message: String,
 }
 
 impl ConfigError {
-    /// The file is no text.
+    /// The file is not text.
     pub(super) fn not_text(file: &str, bytes: &[u8], error: Utf8Error) -> Self {
         let good = bytes.get(..error.valid_up_to()).unwrap_or_default();
         let line = good.split(|byte| *byte == b'\n').count();

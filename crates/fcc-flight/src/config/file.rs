@@ -4,11 +4,12 @@ use std::fs::{self, File};
 use std::io::{Error, ErrorKind, Read as _, Result};
 use std::path::Path;
 
-/// The most that a configuration has; the longest in config/ has a hundredth.
+/// The maximum size of a configuration; the longest in config/ has a hundredth
+/// of it.
 const MOST_BYTES: u64 = 1_000_000;
 
-/// Reads a file. What is none is refused before it is opened: a pipe would be
-/// waited for, a device may have no end.
+/// Reads a file. Anything else is refused before it is opened: opening a pipe
+/// would wait, and a device may have no end.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     let kind = fs::metadata(path)?;
     if kind.is_dir() {
@@ -17,7 +18,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
     if !kind.is_file() {
         return Err(Error::new(
             ErrorKind::InvalidInput,
-            "it is a pipe or a device, and no file",
+            "it is a pipe or a device, not a file",
         ));
     }
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! `[guidance]`: the mode that is flown once engaged.
+//! `[guidance]`: the mode after engaging.
 
 use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use serde::{Deserialize, Serialize};
@@ -10,15 +10,15 @@ const LEG_S: f64 = 20.0;
 const TURN_DEG: f64 = 90.0;
 const CLIMB_FT: f64 = 150.0;
 
-/// `[guidance]`: the mode that is flown once engaged.
+/// `[guidance]`: the mode after engaging.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(try_from = "Keys", tag = "mode", rename_all = "kebab-case")]
 pub enum GuidanceSection {
-    /// Keep what was captured.
+    /// Hold the captured values.
     Hold,
     /// The timed pattern of the thesis.
     TimedPattern {
-        /// How long to hold what was captured.
+        /// How long to hold the captured values.
         hold_s: f64,
         /// How long each leg takes.
         leg_s: f64,
@@ -29,8 +29,8 @@ pub enum GuidanceSection {
     },
 }
 
-/// The section as it is written: flat, so that what is wrong with a key is
-/// said of that key.
+/// The section as it is written: flat, so that an error is reported for its
+/// key.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {

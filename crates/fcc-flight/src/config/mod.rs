@@ -1,9 +1,9 @@
 //! The configuration file.
 //!
-//! TOML with units in the key names; unknown keys are refused. Inside is SI:
-//! each section has one struct in the file's units and one way into the
-//! core's. What may be left out has a default; what is out of its range is
-//! refused with line, key and range.
+//! TOML with units in the key names; unknown keys are refused. Internally
+//! everything is SI: each section has a struct in the file's units and a
+//! conversion to the core's. Optional keys have defaults; a value out of its
+//! range is refused with line, key and range.
 
 mod autopilot;
 mod budget;
@@ -59,23 +59,23 @@ pub struct Config {
     /// Rate and timer.
     #[serde(rename = "loop")]
     pub tick: LoopSection,
-    /// What is asked of the kernel.
+    /// What is requested from the kernel.
     pub realtime: RealtimeSection,
     /// How long ticks may take.
     pub budget: BudgetSection,
-    /// When the loop hangs.
+    /// When the loop counts as hung.
     pub watchdog: WatchdogSection,
     /// The engage switch.
     pub engage: EngageSection,
-    /// What happens when sensors fall silent.
+    /// What happens when sensors become silent.
     pub failsafe: FailsafeSection,
     /// Where flights are recorded.
     pub recording: RecordingSection,
-    /// What becomes of a flight that was cut off.
+    /// What to do about an interrupted flight.
     pub restart: RestartSection,
-    /// Who may watch, live.
+    /// Live telemetry.
     pub telemetry: TelemetrySection,
-    /// The mode that is flown once engaged.
+    /// The mode after engaging.
     pub guidance: GuidanceSection,
     /// Gains and limits.
     pub autopilot: AutopilotSection,
@@ -85,24 +85,24 @@ pub struct Config {
     /// The aircraft is the built-in one.
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
-    /// Sensors beside the simulator's, the most preferred first.
+    /// Sensors in addition to the simulator's, the most preferred first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensor: Vec<SensorEntry>,
-    /// What is moved; the simulator where there is no list.
+    /// The actuators; the simulator's without a list.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
-/// Everything that is wrong, in the order of the text; the configuration if
-/// nothing is.
+/// All errors, in the order of the text, or the configuration if there are
+/// none.
 fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
     let read::Read {
         config,
         mut problems,
         places,
     } = read;
-    // What could not be read may be the section that is missed, and a line is
-    // wrong once.
+    // A section that could not be read may be reported as missing; report each
+    // line once.
     let unread: Vec<_> = problems.iter().map(|problem| problem.line).collect();
     let more = ranges::check(&config, &places);
     problems.extend(more.into_iter().filter(|problem| match problem.line {
@@ -128,8 +128,8 @@ pub enum Aircraft<'a> {
     BuiltIn(&'a BuiltInSection),
 }
 
-/// So long the thread that fetches what the loop reports may be held up before
-/// records are lost: at 200 Hz or less.
+/// How long the thread that reads the loop's messages may be delayed before
+/// records are lost, at 200 Hz or less.
 const FETCHED_WITHIN_S: f64 = 20.0;
 
 impl Config {
@@ -165,8 +165,8 @@ impl Config {
         checked(read::read(text), file)
     }
 
-    /// Checks a text for who flies an aircraft of their own: no `[x-plane]`
-    /// and no `[built-in]` is needed.
+    /// Checks a text for programs with their own aircraft: neither `[x-plane]`
+    /// nor `[built-in]` is needed.
     ///
     /// # Errors
     /// As [`Config::parse`].
@@ -186,7 +186,7 @@ impl Config {
         Ok(Self::parse_without_aircraft(text, file)?.autopilot_config())
     }
 
-    /// What a text leaves to a default that whoever flies should know.
+    /// Defaults of a text that the user should know about.
     pub fn remarks(&self, text: &str) -> Vec<String> {
         let places = read::read(text).places;
         let mut remarks = Vec::new();
@@ -194,7 +194,7 @@ impl Config {
             && !places.has("x-plane.engage_switch")
         {
             remarks.push(format!(
-                "x-plane.engage_switch is not given: what engages is {}",
+                "x-plane.engage_switch is not given: the engage switch is {}",
                 section.engage_switch
             ));
         }
@@ -213,7 +213,7 @@ impl Config {
         }
     }
 
-    /// What the loop is told.
+    /// The loop's configuration.
     pub fn loop_config(&self) -> LoopConfig {
         let most = LoopConfig::default().messages_capacity;
         LoopConfig {
@@ -228,7 +228,7 @@ impl Config {
         }
     }
 
-    /// The aircraft; the built-in one where a program did not say (a file has
+    /// The aircraft; the built-in one if a program did not choose (a file has
     /// to).
     pub fn aircraft(&self) -> Aircraft<'_> {
         static DEFAULT: std::sync::LazyLock<BuiltInSection> =

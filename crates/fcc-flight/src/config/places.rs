@@ -1,23 +1,23 @@
-//! Where the keys of a configuration text are.
+//! The positions of the keys in a configuration text.
 
 use std::ops::Range;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Where the keys of a text are.
+/// The positions of the keys in a text.
 pub(super) struct Places<'a> {
     text: &'a str,
     table: Spanned<DeTable<'a>>,
 }
 
 impl<'a> Places<'a> {
-    /// Of a text, and of what could be made of it.
+    /// For a text and the table that was read from it.
     pub(super) const fn new(text: &'a str, table: Spanned<DeTable<'a>>) -> Self {
         Self { text, table }
     }
 
-    /// Whether the text gives a key.
+    /// Whether the text contains a key.
     pub(super) fn has(&self, key: &str) -> bool {
         let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
         let sections = sections.split('.').filter(|section| !section.is_empty());
@@ -31,7 +31,7 @@ impl<'a> Places<'a> {
         table.contains_key(name)
     }
 
-    /// The line of a key or, if the text leaves it out, of its section.
+    /// The line of a key or, if it is not in the text, of its section.
     pub(super) fn nearest_line(&self, key: &str) -> Option<usize> {
         let mut table = self.table.get_ref();
         let mut found = None;
@@ -53,14 +53,14 @@ impl<'a> Places<'a> {
         found
     }
 
-    /// The sections and the key that a place in the text belongs to; none of
-    /// them where it belongs to no key.
+    /// The sections and the key at a position in the text; empty if there is no
+    /// key.
     pub(super) fn path_at(&self, offset: usize) -> Vec<String> {
         path_to(self.table.get_ref(), offset).unwrap_or_default()
     }
 
-    /// The key at a place in a text that is no TOML: the nearest section above, and what
-    /// stands before the equals sign.
+    /// The key at a position in a text that is not valid TOML: the nearest
+    /// section above, and the text before the equals sign.
     pub(super) fn key_by_lines(text: &str, offset: usize) -> Option<String> {
         let line = line_of(text, &(offset..offset));
         let (key, _) = text.lines().nth(line - 1)?.split_once('=')?;
@@ -86,7 +86,7 @@ fn indexed(part: &str) -> (&str, Option<usize>) {
     parts.map_or((part, None), |(name, index)| (name, Some(index)))
 }
 
-/// The names that lead to the innermost key or value around a place.
+/// The path to the innermost key or value around a position.
 fn path_to(table: &DeTable<'_>, offset: usize) -> Option<Vec<String>> {
     table.iter().find_map(|(name, value)| {
         let is_in = |span: Range<usize>| span.contains(&offset);

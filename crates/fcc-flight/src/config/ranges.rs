@@ -1,4 +1,4 @@
-//! What the numbers of a configuration may be.
+//! The permitted ranges of a configuration's numbers.
 //!
 //! One table of ranges for all numeric keys; a test shows that no key is
 //! missing from it.
@@ -134,11 +134,10 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
         .map(|(_, least, most)| (*least, *most))
 }
 
-/// Everything that is wrong with the values of a configuration, in the order
-/// of the text.
+/// All errors in the values of a configuration, in the order of the text.
 pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let mut complain = |key: &str, message: String| {
+    let mut report = |key: &str, message: String| {
         problems.push(Problem {
             line: places.nearest_line(key),
             key: Some(key.to_owned()),
@@ -150,19 +149,19 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             for (key, least, most) in RANGES {
                 for (key, value) in numbers_at(&values, key) {
                     if !(*least..=*most).contains(&value) {
-                        complain(&key, format!("is {value}: choose {least} to {most}"));
+                        report(&key, format!("is {value}: choose {least} to {most}"));
                     }
                 }
             }
         }
         // TOML has no integers above i64.
-        Err(_) => complain(
+        Err(_) => report(
             "built-in.seed",
             format!("is too large: choose 0 to {}", i64::MAX),
         ),
     }
-    relations(config, &mut complain);
-    lists(config, &mut complain);
+    relations(config, &mut report);
+    lists(config, &mut report);
     if let Some(section) = &config.x_plane {
         x_plane("x-plane", section, &mut problems, places);
     }
@@ -184,11 +183,11 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
     problems
 }
 
-/// What one value means for another.
-fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
+/// Constraints between values.
+fn relations(config: &Config, report: &mut impl FnMut(&str, String)) {
     let early = &config.tick.early_wake;
     if early.min_us > early.max_us {
-        complain(
+        report(
             "loop.early_wake.min_us",
             format!(
                 "is {}: choose no more than max_us, {}",
@@ -197,7 +196,7 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
         );
     }
     if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
-        complain(
+        report(
             "realtime.priority",
             format!(
                 "is {HIGHEST_PRIORITY}: choose at most {}, or the watchdog cannot have a higher \
@@ -208,7 +207,7 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
     }
     let envelope = &config.autopilot.envelope;
     if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
-        complain(
+        report(
             "autopilot.envelope.min_airspeed_kt",
             format!(
                 "is {}: choose less than max_airspeed_kt, {}",
@@ -224,12 +223,12 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
         ("budget.control_us", budget.control_us),
         ("budget.actuators_us", budget.actuators_us),
     ];
-    // The rate may be out of its own range here.
+    // The rate itself may be out of range here.
     let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
     if let Some(tick_us) = budget.tick_us
         && f64::from(tick_us) > period_us
     {
-        complain(
+        report(
             "budget.tick_us",
             format!(
                 "is {tick_us}: choose no more than the period, {period_us}: a tick that takes \
@@ -241,23 +240,23 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
         if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
             && stage_us > tick_us
         {
-            complain(
+            report(
                 key,
                 format!("is {stage_us}: choose no more than tick_us, {tick_us}"),
             );
         }
     }
     if config.x_plane.is_some() && config.built_in.is_some() {
-        complain(
+        report(
             "built-in",
-            "stands beside [x-plane]: keep the section of the aircraft that is to be flown"
+            "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
                 .to_owned(),
         );
     }
 }
 
-/// What the lists of sensors and actuators may be.
-fn lists(config: &Config, complain: &mut impl FnMut(&str, String)) {
+/// Constraints on the lists of sensors and actuators.
+fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
     let actuators = config.actuator.as_deref().unwrap_or_default();
     let simulators = |list: &str, are: Vec<bool>| {
         let at = are
@@ -273,14 +272,14 @@ fn lists(config: &Config, complain: &mut impl FnMut(&str, String)) {
     let twice = simulators("sensor", sensors.collect());
     let moved = simulators("actuator", vec![true; actuators.len()]);
     for key in twice.iter().chain(&moved) {
-        complain(key, "is the simulator a second time: keep one".to_owned());
+        report(key, "is the simulator a second time: keep one".to_owned());
     }
     for (list, length) in [
         ("sensor", config.sensor.len()),
         ("actuator", actuators.len()),
     ] {
         if length > MOST_ENTRIES {
-            complain(
+            report(
                 list,
                 format!("has {length} entries: keep at most {MOST_ENTRIES}"),
             );
@@ -288,7 +287,7 @@ fn lists(config: &Config, complain: &mut impl FnMut(&str, String)) {
     }
 }
 
-/// What the adapter itself refuses, other than what a range has refused.
+/// Errors found by the adapter itself, other than those of ranges.
 fn x_plane(at: &str, section: &XPlaneSection, problems: &mut Vec<Problem>, places: &Places<'_>) {
     let Err(error) = XPlaneConfig::from(section).validate() else {
         return;
@@ -341,7 +340,7 @@ mod tests {
         super::check(config, &super::super::read::read(text).places)
     }
 
-    /// A new key without a range would be a key whose nonsense is believed.
+    /// A new key without a range would accept any value.
     #[test]
     fn every_number_has_a_range() {
         let mut config = Config {
@@ -385,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_watchdog_has_room_above_the_loop() {
+    fn a_watchdog_has_a_priority_above_the_loop() {
         let mut config = Config {
             built_in: Some(BuiltInSection::default()),
             ..Config::default()

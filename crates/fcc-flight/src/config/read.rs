@@ -1,8 +1,8 @@
-//! Reads a text into a configuration, and notes everything that is wrong.
+//! Reads a text into a configuration, and collects all errors.
 //!
-//! The reader of values stops at the first that it cannot take. So what it
-//! complains of is noted and taken out of the text, and it reads again: the
-//! rest is read as if that key were not given. Nothing here knows a section.
+//! The reader of values stops at the first error. So the key of each error is
+//! removed from the table, and reading is repeated: the rest is read as if that
+//! key were not given. This file is independent of the sections.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -13,7 +13,7 @@ use super::places::{Places, line_of};
 use super::wording::plainly;
 use super::{Config, Problem};
 
-/// A configuration as far as it could be read, and what is wrong with the rest.
+/// A configuration as far as it could be read, and the errors in the rest.
 pub(super) struct Read<'t> {
     pub(super) config: Config,
     pub(super) problems: Vec<Problem>,
@@ -25,7 +25,7 @@ pub(super) fn read(text: &str) -> Read<'_> {
     let (mut table, broken) = DeTable::parse_recoverable(text);
     let places = Places::new(text, table.clone());
     let mut problems: Vec<Problem> = broken.iter().map(|error| syntax(text, error)).collect();
-    // What is wrong with a line is often seen twice.
+    // An error in a line is often found twice.
     problems.dedup_by_key(|problem| problem.line);
     let config = loop {
         let error = match Config::deserialize(Deserializer::from(table.clone())) {
@@ -34,7 +34,7 @@ pub(super) fn read(text: &str) -> Read<'_> {
         };
         let path = error.span().map(|span| places.path_at(span.start));
         let path = path.unwrap_or_default();
-        // What is missing may have been taken out.
+        // A missing field may have been removed before.
         let section = path.join(".") + ".";
         let in_section = |problem: &Problem| {
             let key = problem.key.as_deref().unwrap_or_default();
@@ -43,7 +43,7 @@ pub(super) fn read(text: &str) -> Read<'_> {
         if !(error.message().starts_with("missing field") && problems.iter().any(in_section)) {
             problems.push(value(text, &places, &path, &error));
         }
-        if !take_out(&mut table, &path) {
+        if !remove(&mut table, &path) {
             break Config::default();
         }
     };
@@ -54,7 +54,8 @@ pub(super) fn read(text: &str) -> Read<'_> {
     }
 }
 
-/// Where the text is no TOML. What was recovered of it says nothing of keys.
+/// An error of TOML's syntax. The table recovered from such a text is not
+/// reliable for keys.
 fn syntax(text: &str, error: &Error) -> Problem {
     let span = error.span();
     let line = span.as_ref().map(|span| line_of(text, span));
@@ -68,7 +69,7 @@ fn syntax(text: &str, error: &Error) -> Problem {
 
 fn value(text: &str, places: &Places<'_>, path: &[String], error: &Error) -> Problem {
     let key = (!path.is_empty()).then(|| path.join("."));
-    // The entry of a list is read as a whole, and its keys have no places then.
+    // The entry of a list is read as a whole, so its keys have no positions.
     let inside = key
         .as_deref()
         .and_then(|key| in_entry(text, key, error.message()));
@@ -84,9 +85,9 @@ fn value(text: &str, places: &Places<'_>, path: &[String], error: &Error) -> Pro
     }
 }
 
-/// Takes what a path leads to out of a table, a list as a whole; whether there
-/// was something.
-fn take_out(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
+/// Removes the value at a path from a table, a list as a whole; returns whether
+/// there was one.
+fn remove(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
     let mut inner = table.get_mut();
     for (depth, part) in path.iter().enumerate() {
         let (name, is_list) = match part.split_once('[') {

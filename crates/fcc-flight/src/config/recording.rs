@@ -12,16 +12,15 @@ use serde::{Deserialize, Serialize};
 pub struct RecordingSection {
     /// Whether flights are recorded.
     pub enabled: bool,
-    /// Where recordings go; made if it is missing.
+    /// The folder for recordings; created if it is missing.
     pub folder: PathBuf,
-    /// A file that grows to this size is ended and another begun; 0 for no
-    /// limit.
+    /// When a file reaches this size, a new one is begun; 0 for no limit.
     pub max_file_mb: u64,
-    /// A file that covers this much of a flight is ended and another begun; 0
-    /// for no limit.
+    /// When a file covers this much of a flight, a new one is begun; 0 for no
+    /// limit.
     pub max_file_minutes: u64,
-    /// The oldest recordings are deleted to keep all below this; 0 to delete
-    /// none.
+    /// The oldest recordings are deleted to keep the total below this; 0 to
+    /// delete none.
     pub keep_total_mb: u64,
     /// How they are compressed.
     pub compression: CompressionChoice,

@@ -1,4 +1,4 @@
-//! `[restart]`: what becomes of a flight that was cut off.
+//! `[restart]`: what to do about an interrupted flight.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,32 +9,32 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, PartialEq, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RestartSection {
-    /// What a daemon does that was started again in flight.
+    /// What a daemon does that is restarted in flight.
     pub mode: RestartMode,
-    /// Where it is kept what is flown. Left out, a file named after the
-    /// instance, in systemd's state directory or beside the recordings.
+    /// Where the flight's state is stored. Default: a file named after the
+    /// instance, in systemd's state directory or next to the recordings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub state_file: Option<PathBuf>,
-    /// A flight that was cut off longer ago is not taken up.
+    /// A flight that was interrupted longer ago is not recovered.
     pub max_age_s: f64,
 }
 
-/// What a daemon does that was started again in flight.
+/// What a daemon does that is restarted in flight.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RestartMode {
-    /// Stand by, and say that a flight was cut off.
+    /// Stay in standby, and report that a flight was interrupted.
     #[default]
     Cold,
-    /// Take it up again.
+    /// Continue it.
     Warm,
 }
 
 impl RestartMode {
-    /// For how long navigation has to have watched before the autopilot takes
-    /// over. Who takes up a flight has no second to spare: after 0.4 s the
-    /// climb rate, the slowest to settle, is known to half, and the rest comes
-    /// within another second.
+    /// How long navigation needs to settle before the autopilot engages.
+    /// In-flight recovery does not wait a full second: after 0.4 s the climb
+    /// rate, the slowest to settle, is half settled, and fully within another
+    /// second.
     pub(super) const fn settling(self) -> Duration {
         match self {
             Self::Cold => Duration::from_secs(1),

@@ -14,12 +14,12 @@ use super::{CpuChoice, EarlyWakeChoice};
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoopSection {
-    /// Ticks a second.
+    /// Ticks per second.
     pub rate_hz: f64,
     /// Which timer wakes the loop.
     #[serde(with = "timer_name")]
     pub timer: TimerKind,
-    /// Waking before the deadline, to be there on time.
+    /// Waking before the deadline, to begin on time.
     pub early_wake: EarlyWakeSection,
 }
 
@@ -33,12 +33,12 @@ impl Default for LoopSection {
     }
 }
 
-/// The fewest ticks that a ring has room for.
+/// The minimum capacity of a ring, ticks.
 const FEWEST_TICKS: usize = 256;
 
 impl LoopSection {
-    /// The ticks of so many seconds, at most `most`: room in a ring. All of it is
-    /// in memory from the start.
+    /// The capacity of a ring: the ticks of this many seconds, at most `most`.
+    /// All of it is allocated at the start.
     pub(crate) fn ticks_in(&self, seconds: f64, most: usize) -> usize {
         let ticks = (seconds * self.rate_hz).ceil() as usize;
         ticks.min(most).max(FEWEST_TICKS)
@@ -73,9 +73,9 @@ pub struct EarlyWakeSection {
     pub min_us: f64,
     /// The longest margin.
     pub max_us: f64,
-    /// Added to what was measured.
+    /// Added to the measured margin.
     pub guard_us: f64,
-    /// Which share of the wake-ups shall be before the deadline.
+    /// The share of wake-ups that is to be before the deadline.
     pub quantile: f64,
     /// The largest share of a core that may be spent spinning.
     pub cpu_cap_percent: f64,
@@ -118,16 +118,16 @@ pub struct RealtimeSection {
     /// The CPU that the loop's thread is bound to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpu: Option<CpuChoice>,
-    /// How long CPUs may take to wake from their sleep.
+    /// The permitted wake-up latency of CPUs from idle states.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cpu_dma_latency_us: Option<u32>,
     /// Whether to keep the process' memory from being paged out.
     pub lock_memory: bool,
     /// How much stack to touch before the first tick.
     pub stack_prefault_kib: u32,
-    /// How late the kernel may make a wake-up to save power.
+    /// By how much the kernel may delay a wake-up to save power.
     pub timer_slack_ns: u64,
-    /// Whether a refused wish ends the program at once.
+    /// Whether a denied request ends the program at once.
     pub strict: bool,
 }
 
@@ -163,11 +163,11 @@ impl From<&RealtimeSection> for RealtimeRequest {
     }
 }
 
-/// What comes next: watch on, or end the program.
+/// What follows a release: standby, or the end of the program.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Then {
-    /// Release the controls and watch on.
+    /// Release the controls and stay in standby.
     #[default]
     Standby,
     /// Release the controls and end the program.
@@ -196,7 +196,7 @@ impl From<Then> for AfterFailsafe {
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EngageSection {
-    /// What switching off means.
+    /// The effect of switching off.
     pub switch_off: Then,
 }
 
@@ -204,14 +204,14 @@ pub struct EngageSection {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FailsafeSection {
-    /// Readings older than this are a loss of their sensor.
+    /// Readings older than this count as a loss of their sensor.
     pub sensor_max_age_ms: u64,
-    /// Readings that stay the same to the last bit for so long while the
-    /// aircraft moves are a loss of their sensor; 0 for never.
+    /// Readings that stay the same to the last bit for this long while the
+    /// aircraft moves count as a loss of their sensor; 0 for never.
     pub sensor_frozen_s: f64,
     /// How long wings are held level before the controls are released.
     pub hold_s: f64,
-    /// What comes after.
+    /// What follows after that.
     pub then: Then,
 }
 

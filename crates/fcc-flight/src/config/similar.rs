@@ -1,12 +1,11 @@
-//! Names that are meant where others were given.
+//! Suggestions for mistyped names.
 
 use super::Config;
 
-/// Less alike than this, two names have nothing to do with each other: 1 is the
-/// same (Winkler, 1990).
+/// The minimum similarity of a suggestion: 1 means equal (Winkler, 1990).
 const ALIKE: f64 = 0.8;
 
-/// The name that is most like the one given, if one is like it.
+/// The name most similar to the given one, if one is similar enough.
 pub(super) fn most_alike<'k>(
     given: &str,
     known: impl IntoIterator<Item = &'k str>,
@@ -20,7 +19,7 @@ pub(super) fn most_alike<'k>(
         .map(|(_, name)| name)
 }
 
-/// The key, with its sections, that is called so in another section.
+/// The key of this name in another section, with its sections.
 pub(super) fn elsewhere(name: &str) -> Option<String> {
     let config = Config {
         x_plane: Some(super::XPlaneSection::default()),

@@ -1,4 +1,4 @@
-//! `[telemetry]`: who may watch, live.
+//! `[telemetry]`: live telemetry.
 
 use fcc_telemetry::Instance;
 use serde::{Deserialize, Serialize};
@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TelemetrySection {
-    /// Whether what happens is published in shared memory.
+    /// Whether the flight is published in shared memory.
     pub enabled: bool,
-    /// What watchers call this daemon.
+    /// The instance name of this daemon.
     #[serde(with = "instance_name")]
     pub instance: Instance,
     /// Whether programs of the same user may give commands.

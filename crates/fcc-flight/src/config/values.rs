@@ -1,5 +1,5 @@
-//! A configuration by its keys: for programs that ask for one value, and that
-//! fly with others.
+//! Access to a configuration by its keys, for programs that read or change
+//! single values.
 
 use toml::Value;
 use toml::map::Entry;
@@ -7,7 +7,7 @@ use toml::map::Entry;
 use super::wording::renamed;
 use super::{Config, ConfigError, Problem};
 
-/// What the configuration is called in messages when no file is meant.
+/// The configuration's name in messages without a file.
 const NO_FILE: &str = "config";
 
 impl Config {
@@ -42,11 +42,11 @@ impl Config {
     }
 
     /// The configuration with other values for some keys; a key with a table
-    /// changes the whole section. All is checked as a file is.
+    /// changes the whole section. Everything is checked like a file.
     ///
     /// # Errors
-    /// When there is no such key, or a value is out of its range: the words of
-    /// [`Config::parse`], without lines, as there is no file.
+    /// When there is no such key, or a value is out of its range: the messages
+    /// of [`Config::parse`], without lines, as there is no file.
     pub fn with_values<'k>(
         &self,
         changes: impl IntoIterator<Item = (&'k str, Value)>,
@@ -60,7 +60,7 @@ impl Config {
     }
 }
 
-/// Puts a value in its place; none if a section on the way is a value.
+/// Sets a value at its key; none if a section on the path is a value.
 fn put(values: &mut Value, key: &str, value: Value) -> Option<()> {
     let (sections, name) = match key.rsplit_once('.') {
         Some((sections, name)) => (Some(sections), name),
@@ -94,7 +94,7 @@ fn invalid(key: Option<&str>, message: String) -> ConfigError {
     }
 }
 
-/// The lines of a text that nobody wrote lead nowhere.
+/// Lines of a generated text are meaningless to users.
 fn without_lines(error: ConfigError) -> ConfigError {
     match error {
         ConfigError::Invalid { file, mut problems } => {
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_in_the_words_of_a_file() {
+    fn errors_have_the_messages_of_a_file() {
         let words =
             |key: &str, value: Value| plain().with_values([(key, value)]).unwrap_err().to_string();
         assert_eq!(
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_whole_configuration_reads_back_as_itself() {
+    fn the_whole_configuration_is_restored_unchanged() {
         let text = plain().to_toml().unwrap();
         let again = Config::parse(&text, "again").unwrap().to_toml().unwrap();
         assert_eq!(text, again);

@@ -1,29 +1,29 @@
-//! What the TOML reader complains of, in words that say what would be right.
+//! Rewords the TOML reader's errors to say what is permitted.
 //!
-//! It speaks of fields, variants and `f64`; who writes a configuration file
-//! knows keys, values and numbers.
+//! The reader's messages are about fields, variants and `f64`; users of a
+//! configuration file know keys, values and numbers.
 
 use super::ranges::range_of;
 use super::similar::{elsewhere, most_alike};
 
-/// A complaint of the reader about `key`, in plainer words.
-pub(super) fn plainly(complaint: &str, key: Option<&str>) -> String {
+/// Rewords the reader's error about `key`.
+pub(super) fn reword(message: &str, key: Option<&str>) -> String {
     let range = key.and_then(range_of);
     let range = range.map(|(least, most)| format!("{least} to {most}"));
     let plain = key
         .and_then(renamed)
-        .or_else(|| unknown_key(complaint))
-        .or_else(|| unknown_value(complaint))
-        .or_else(|| wrong_type(complaint, range.as_deref()))
-        .or_else(|| missing_key(complaint));
-    plain.unwrap_or_else(|| match complaint {
-        "duplicate key" => "stands here a second time: keep one".to_owned(),
+        .or_else(|| unknown_key(message))
+        .or_else(|| unknown_value(message))
+        .or_else(|| wrong_type(message, range.as_deref()))
+        .or_else(|| missing_key(message));
+    plain.unwrap_or_else(|| match message {
+        "duplicate key" => "is given a second time: keep one".to_owned(),
         "wanted string or table" => "choose a text in quotes".to_owned(),
         other => other.replace('\n', " "),
     })
 }
 
-/// Keys by their former names, and what they are called now.
+/// Former names of keys, and their present names.
 const RENAMED: &[(&str, &str)] = &[
     ("budget.guidance_us", "the key is called guide_us"),
     ("budget.navigation_us", "the key is called estimate_us"),
@@ -33,7 +33,7 @@ const RENAMED: &[(&str, &str)] = &[
     ),
 ];
 
-/// What a key of a former version is called now.
+/// The present name of a key of a former version.
 pub(super) fn renamed(key: &str) -> Option<String> {
     let (_, now) = RENAMED.iter().find(|(former, _)| {
         key.strip_prefix(former)
@@ -42,10 +42,8 @@ pub(super) fn renamed(key: &str) -> Option<String> {
     Some(format!("is a former name: {now}"))
 }
 
-fn unknown_key(complaint: &str) -> Option<String> {
-    let (name, expected) = complaint
-        .strip_prefix("unknown field `")?
-        .split_once("`, ")?;
+fn unknown_key(message: &str) -> Option<String> {
+    let (name, expected) = message.strip_prefix("unknown field `")?.split_once("`, ")?;
     let known = expected.strip_prefix("expected ");
     let meant = most_alike(name, known.map(names).into_iter().flatten())
         .map(str::to_owned)
@@ -53,12 +51,12 @@ fn unknown_key(complaint: &str) -> Option<String> {
     let meant = meant.map_or_else(String::new, |name| format!(", did you mean `{name}`"));
     Some(match known {
         Some(known) => format!("there is no such key{meant}: choose {known}"),
-        None => format!("there is no such key{meant}: take it out"),
+        None => format!("there is no such key{meant}: remove it"),
     })
 }
 
-fn unknown_value(complaint: &str) -> Option<String> {
-    let rest = complaint.strip_prefix("unknown variant `")?;
+fn unknown_value(message: &str) -> Option<String> {
+    let rest = message.strip_prefix("unknown variant `")?;
     let (value, expected) = rest.split_once("`, expected ")?;
     let meant = most_alike(value, names(expected))
         .map_or_else(String::new, |name| format!(", did you mean \"{name}\""));
@@ -68,15 +66,15 @@ fn unknown_value(complaint: &str) -> Option<String> {
     ))
 }
 
-/// The names that stand in backticks.
+/// The names in backticks.
 fn names(expected: &str) -> impl Iterator<Item = &str> {
     expected.split('`').skip(1).step_by(2)
 }
 
-fn wrong_type(complaint: &str, range: Option<&str>) -> Option<String> {
-    let rest = complaint
+fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
+    let rest = message
         .strip_prefix("invalid type: ")
-        .or_else(|| complaint.strip_prefix("invalid value: "))?;
+        .or_else(|| message.strip_prefix("invalid value: "))?;
     let (found, expected) = rest.rsplit_once(", expected ")?;
     let found = ["string ", "integer ", "floating point ", "boolean "]
         .into_iter()
@@ -98,10 +96,8 @@ fn wrong_type(complaint: &str, range: Option<&str>) -> Option<String> {
     })
 }
 
-fn missing_key(complaint: &str) -> Option<String> {
-    let name = complaint
-        .strip_prefix("missing field `")?
-        .strip_suffix('`')?;
+fn missing_key(message: &str) -> Option<String> {
+    let name = message.strip_prefix("missing field `")?.strip_suffix('`')?;
     Some(format!(
         "the key `{name}` is missing: add it as in the examples in the folder config/"
     ))

@@ -14,49 +14,49 @@ pub struct XPlaneSection {
     pub simulator: Simulator,
     /// UDP port to receive on; 0 for any that is free.
     pub local_port: u16,
-    /// How measurements come.
+    /// How measurements are received.
     pub input: InputChoice,
-    /// The version whose rows come, for `input = "data"`.
+    /// The version that sends the rows, for `input = "data"`.
     pub data_version: u8,
     /// Column of the magnetic heading in the attitude row, for
     /// `input = "data"`.
     pub magnetic_heading_column: u8,
-    /// How surfaces go.
+    /// How control surfaces are written.
     pub output: OutputChoice,
-    /// How often each dataref is asked for.
+    /// The rate at which each dataref is requested.
     pub rate_hz: u16,
-    /// How many engines take the throttle.
+    /// The number of engines whose throttle is written.
     pub engines: u8,
-    /// The dataref that engages: on from 0.5 up.
+    /// The dataref of the engage switch: on from 0.5 upwards.
     pub engage_switch: String,
-    /// After so long without a dataref's value it is asked for again.
+    /// A dataref without a value for this long is requested again.
     pub resubscribe_s: f64,
-    /// After so long without a datagram the simulator counts as silent.
+    /// The simulator counts as silent after this long without a datagram.
     pub silent_after_ms: u64,
     /// The most datagrams read in one tick.
     pub datagrams_per_tick: u16,
-    /// After so long without a reading, that of the next sensor in the order
-    /// is taken.
+    /// After this long without a reading, that of the next sensor in the order
+    /// is used.
     pub fallback_after_ms: u64,
 }
 
-/// How measurements come.
+/// How measurements are received.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum InputChoice {
-    /// By subscribed datarefs.
+    /// As subscribed datarefs.
     Rref,
-    /// By rows of Data Output.
+    /// As rows of Data Output.
     Data,
 }
 
-/// How surfaces go.
+/// How control surfaces are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OutputChoice {
-    /// By datarefs.
+    /// As datarefs.
     Dref,
-    /// By rows.
+    /// As rows.
     Data,
 }
 

@@ -1,4 +1,4 @@
-//! Puts sensors, autopilot and actuators together as a configuration says.
+//! Assembles sensors, autopilot and actuators from a configuration.
 
 use std::io::ErrorKind;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::config::{
     Aircraft, BuiltInSection, Config, SensorEntry, WatchdogSection, XPlaneSection,
 };
 
-/// A flight that is put together and lacks only its clock.
+/// An assembled flight, complete except for its clock.
 pub struct Assembly {
     /// Sampled in this order, which is that of preference.
     pub sensors: Vec<Box<dyn Sensor<Measurements>>>,
@@ -30,21 +30,21 @@ pub struct Assembly {
     pub autopilot: Autopilot,
     /// Driven in this order.
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
-    /// What the loop is told.
+    /// The loop's configuration.
     pub loop_config: LoopConfig,
-    /// When the loop hangs.
+    /// When the loop counts as hung.
     pub(super) watchdog: WatchdogSection,
-    /// How it is to be taken up if it is cut off; not with an aircraft that
-    /// ends when the program does.
+    /// How it is recovered after an interruption; none for an aircraft that
+    /// ends with the program.
     pub(super) restart: Option<RestartRequest>,
-    /// What is true of a simulated aircraft, tick by tick; none where only
-    /// sensors tell.
+    /// The truth of a simulated aircraft, tick by tick; none if there is only
+    /// sensor data.
     pub(super) truth: Option<TruthReceiver>,
-    /// Who has control of it; none of what ends when the program does.
+    /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
 }
 
-/// Why a flight could not be put together.
+/// Why a flight could not be assembled.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum AssemblyError {
@@ -63,7 +63,7 @@ impl AssemblyError {
     }
 }
 
-/// What a flight controls: by what it is sensed and driven.
+/// The plant of a flight: its sensors and actuators.
 struct Plant {
     sensors: Vec<Box<dyn Sensor<Measurements>>>,
     actuators: Vec<Box<dyn Actuator<Surfaces>>>,
@@ -71,10 +71,10 @@ struct Plant {
     authority: Option<Arc<dyn ControlAuthority>>,
 }
 
-/// Puts a flight together.
+/// Assembles a flight.
 ///
 /// # Errors
-/// When the aircraft or a sensor cannot be had.
+/// When the aircraft or a sensor cannot be created.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
@@ -132,8 +132,8 @@ fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
     })
 }
 
-/// Who has control of a configuration's plant, for a program that only gives
-/// back what another one held; none where nothing can be left held.
+/// Who has control of a configuration's plant, for a program that only releases
+/// what another one held; none if nothing can be left held.
 pub fn authority_without_connection(config: &Config) -> Option<Arc<dyn ControlAuthority>> {
     match config.aircraft() {
         Aircraft::BuiltIn(_) => None,
@@ -144,9 +144,9 @@ pub fn authority_without_connection(config: &Config) -> Option<Arc<dyn ControlAu
 }
 
 impl Assembly {
-    /// Who observes a flight by this configuration, whatever program flies it:
-    /// what keeps it for a restart, the recorder, the score, live telemetry and
-    /// the log of events. Each once.
+    /// The observers of a flight with this configuration, in any program: the
+    /// restart state, the recorder, the score, live telemetry and the event
+    /// log. Each once.
     pub fn observers(
         &mut self,
         config: &Config,
@@ -162,13 +162,13 @@ impl Assembly {
         }
         let guidance = &self.autopilot.config().guidance;
         observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
-        // There is nothing to watch where time does not pass.
+        // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
             let airspeeds_mps = self.autopilot.config().envelope.allowed_airspeeds();
             observers.push(Box::new(Live::new(&config.telemetry, airspeeds_mps)));
         }
-        // The last, so that it has what the others report at their end.
+        // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
     }

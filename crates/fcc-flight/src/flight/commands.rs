@@ -1,5 +1,5 @@
-//! Commands from other programs: sends them to the loop, and sees in what the
-//! loop tells what became of each.
+//! Commands from other programs: sends them to the loop, and finds the result
+//! of each in the loop's messages.
 
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
@@ -13,7 +13,7 @@ use fcc_telemetry::{FlightEvent, FlightRecord, event_words};
 /// Commands that were sent and whose outcome is not known yet, oldest first.
 #[derive(Debug)]
 pub(super) struct Commands {
-    /// What the aircraft's envelope allows.
+    /// The airspeeds permitted by the envelope, m/s.
     airspeeds_mps: RangeInclusive<f64>,
     waiting: VecDeque<Waiting>,
 }
@@ -21,7 +21,7 @@ pub(super) struct Commands {
 #[derive(Debug)]
 struct Waiting {
     asked: Asked,
-    /// What the loop has not read of it.
+    /// The number of its parts that the loop has not read yet.
     unread: VecDeque<LoopCommand<AutopilotCommand>>,
     /// The tick that read the last of it.
     read_in: Option<u64>,
@@ -38,7 +38,7 @@ impl Commands {
         }
     }
 
-    /// Sends a command to the loop; the verdict if it is known at once.
+    /// Sends a command to the loop; returns the verdict if it is known at once.
     pub(super) fn send(
         &mut self,
         asked: Asked,
@@ -62,11 +62,11 @@ impl Commands {
         None
     }
 
-    /// Takes an event of the loop; it comes before the record of its tick.
+    /// Processes an event of the loop; it comes before the record of its tick.
     pub(super) fn event(&mut self, event: &FlightEvent) {
         match event.kind {
-            // The loop reads in the sequence of sending, and somebody else's
-            // command is none that waits here.
+            // The loop reads in the order of sending, and another sender's
+            // command matches none that waits here.
             EventKind::CommandReceived(command) => {
                 let first = self.waiting.iter_mut().find(|w| w.read_in.is_none());
                 if let Some(waiting) = first
@@ -89,8 +89,8 @@ impl Commands {
         }
     }
 
-    /// Takes the record of a tick; the next verdict that it allows. To be
-    /// asked again until there is none.
+    /// Processes the record of a tick; returns the next verdict that it
+    /// permits. Call it again until there is none.
     pub(super) fn verdict(&mut self, record: &FlightRecord) -> Option<(u64, Verdict)> {
         let first = self.waiting.front()?;
         let tick = first.read_in.filter(|tick| *tick <= record.tick.number)?;
@@ -109,7 +109,9 @@ impl Commands {
                     .refusal
                     .unwrap_or_else(|| match waiting.asked.command {
                         FlightCommand::Set(_) => {
-                            format!("the state is {state}: set points are taken while engaged")
+                            format!(
+                                "the state is {state}: set points are accepted only while engaged"
+                            )
                         }
                         _ => format!("the state is {state}"),
                     }),
@@ -159,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn an_order_is_answered_by_the_record_of_the_tick_that_read_it() {
+    fn a_command_is_answered_by_the_record_of_the_tick_that_read_it() {
         let mut commands = Commands::new(30.0..=60.0);
         waiting(&mut commands, 1, FlightCommand::Engage);
         assert_eq!(commands.verdict(&record(4, State::Standby)), None);
@@ -172,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_says_what_blocks() {
+    fn a_refusal_names_the_engage_inhibits() {
         let mut commands = Commands::new(30.0..=60.0);
         waiting(&mut commands, 1, FlightCommand::Engage);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
@@ -193,7 +195,7 @@ mod tests {
         let [heading, altitude] = HEADING.for_the_loop()[..] else {
             panic!("two commands");
         };
-        // Somebody else's command is not mistaken for one that waits.
+        // Another sender's command is not mistaken for one that waits.
         commands.event(&event(
             3,
             EventKind::CommandReceived(LoopCommand::Disengage),

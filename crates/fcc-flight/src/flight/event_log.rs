@@ -1,15 +1,15 @@
-//! What happened in a flight, for its outcome.
+//! The event log of a flight, for its outcome.
 
 use fcc_telemetry::FlightEvent;
 
 use super::observer::{FlightTime, Observer, Report, Reports};
 use super::outcome::{EventEntry, Outcome};
 
-/// The most events that are kept: a flight may take weeks, and the recording
-/// has them all.
+/// The maximum number of stored events: a flight may take weeks, and the
+/// recording has them all.
 const MOST_EVENTS: usize = 10_000;
 
-/// Keeps what happened, for the outcome.
+/// Stores events, for the outcome.
 #[derive(Default)]
 pub(super) struct EventLog(Vec<EventEntry>);
 

@@ -20,34 +20,34 @@ use super::plan::{Length, Pace, Plan};
 use super::run_statistics::RunStatistics;
 use crate::config::{LoopSection, WatchdogSection};
 
-/// How long the end of a flight waits for the plant to show that it has its
-/// controls back. Sending a release is not enough: a simulator that hangs loses
-/// it, and would fly on with its controls held when it comes back.
+/// How long the end of a flight waits for the plant to confirm the release of
+/// its controls. Sending a release is not enough: a simulator that hangs loses
+/// it, and would continue with its controls held.
 const GIVE_BACK_WITHIN: Duration = Duration::from_secs(5);
 
 /// Why a flight did not begin.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum FlyError {
-    /// The loop's timer cannot be had.
+    /// The loop's timer cannot be created.
     #[error("the loop's timer: {0}")]
     Timer(#[from] TimerError),
     /// The loop's thread could not start.
     #[error(transparent)]
     Spawn(#[from] SpawnError),
-    /// The program around it cannot fly.
+    /// The host program cannot fly.
     #[error(transparent)]
     Host(io::Error),
     /// Another program controls this plant.
     #[error("another fccd on this machine flies {0}: end that one first, or fly another")]
     Taken(PlantId),
-    /// There is no watchdog, and a flight without one was not asked for.
+    /// There is no watchdog, and a flight without one was not requested.
     #[error("the watchdog: {0}")]
     Watchdog(#[source] io::Error),
 }
 
-/// Flies an assembly until it is told to stop, by the plan, by the program
-/// around it or by the aircraft's switch.
+/// Flies an assembly until it is stopped by the plan, by the host program or by
+/// the aircraft's switch.
 ///
 /// # Errors
 /// When the flight does not begin; what happens later is in the outcome.
@@ -112,14 +112,14 @@ pub fn fly(
             run_in_lockstep(machine, &mut link, &mut observers, host, plan.length)?
         }
     };
-    let report = give_back(report, authority.as_ref(), &mut observers, host);
+    let report = await_release(report, authority.as_ref(), &mut observers, host);
     let refused = observers.monitor.was_refused() && !matches!(plan.length, Length::Open);
     let released = report.released;
     let mut outcome = Outcome::new(timer_name, plan.pace, report);
-    // The controls were given back before; the disk may take its time now.
+    // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);
-    // A beacon may have led to where another program flies.
+    // A beacon may have led to a simulator that another program controls.
     if released {
         refuse_if_taken(host)?;
     }
@@ -132,7 +132,7 @@ fn refuse_if_taken(host: &dyn Host) -> Result<(), FlyError> {
         .map_or(Ok(()), |plant| Err(FlyError::Taken(plant)))
 }
 
-/// A loop that is about to run in its own thread.
+/// A loop to be run in its own thread.
 struct RealTime<'a> {
     flight_loop: Loop<Pilot>,
     link: Link<Pilot>,
@@ -163,7 +163,7 @@ impl RealTime<'_> {
         let mut run_statistics = RunStatistics::new(self.period)?;
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
-        // At once, not only in the report of a flight that may take days.
+        // Reported at once, not only at the end of a flight that may take days.
         report_denied(
             &granted,
             watchdog.as_ref().map(|(_, granted)| granted),
@@ -232,16 +232,16 @@ fn run_in_lockstep(
     Ok(report)
 }
 
-/// Waits until the plant shows that it has its controls back, if they were ever
-/// taken, and says in the report whether it does.
-fn give_back(
+/// Waits until the plant confirms the release of its controls, if they were
+/// taken, and stores in the report whether it did.
+fn await_release(
     report: LoopReport,
     authority: Option<&Arc<dyn ControlAuthority>>,
     observers: &mut Observers,
     host: &mut dyn Host,
 ) -> LoopReport {
-    // A loop that hung had its controls given back by the watchdog, and may yet
-    // take them again: the host does not end its own watch for a release.
+    // After a hang the watchdog has released the controls, but the loop might
+    // still take them again, so the host keeps its release helper.
     if matches!(report.ending, fcc_runtime::Ending::Hung) {
         host.end(false);
         return report;
@@ -253,7 +253,7 @@ fn give_back(
             .is_ok_and(|released| released.is_over());
         if !released {
             observers.remark(format!(
-                "{plant} did not show that it has its controls back{}",
+                "{plant} did not confirm the release of its controls{}",
                 host.continues_release()
             ));
         }

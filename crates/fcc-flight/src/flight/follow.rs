@@ -1,5 +1,4 @@
-//! Follows a running loop: fetches its messages, and hands them to those who
-//! observe.
+//! Reads the messages of a running loop, and passes them to the observers.
 
 use std::sync::Arc;
 use std::thread;
@@ -16,23 +15,24 @@ use super::pilot::Pilot;
 use super::plan::Length;
 use super::run_statistics::RunStatistics;
 
-/// How often the loop's messages are fetched: often enough to look alive, and
-/// seldom enough to cost nothing.
+/// The interval at which the loop's messages are read: short enough for a live
+/// display, long enough to cost little.
 const FETCH_EVERY: Duration = Duration::from_millis(20);
 
-/// A loop, and those that observe it.
+/// A loop and its observers.
 pub(super) struct Follower<'a> {
     pub(super) link: &'a mut Link<Pilot>,
     pub(super) observers: &'a mut Observers,
     pub(super) host: &'a mut dyn Host,
-    /// Only of a loop in real time: one in lockstep gives its own account.
+    /// Only for a loop in real time: one in lockstep returns its own
+    /// statistics.
     pub(super) run_statistics: Option<&'a mut RunStatistics>,
     pub(super) length: Length,
 }
 
 impl Follower<'_> {
-    /// Fetches all there is, stops the loop when its time is up, and lets each
-    /// observer act.
+    /// Reads all messages, stops the loop when its time is over, and polls each
+    /// observer.
     pub(super) fn drain(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             self.take(&message);
@@ -43,7 +43,7 @@ impl Follower<'_> {
         self.observers.poll(&mut self.link.commands, self.host);
     }
 
-    /// Follows a loop in its own thread until it is over, or hangs.
+    /// Follows a loop in its own thread until it ends or hangs.
     pub(super) fn follow(
         &mut self,
         authority: Option<&Arc<dyn ControlAuthority>>,
@@ -88,10 +88,10 @@ impl Follower<'_> {
             },
         }));
         self.observers.remark(if hung.released {
-            "the watchdog gave the controls back and ends the program".to_owned()
+            "the watchdog released the controls and ends the program".to_owned()
         } else {
             format!(
-                "the watchdog ends the program; it is not known that the controls are back{}",
+                "the watchdog ends the program; the release of the controls is not confirmed{}",
                 self.host.continues_release()
             )
         });

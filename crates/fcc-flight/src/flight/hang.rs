@@ -1,11 +1,11 @@
-//! What is left to do when the loop hangs: give the controls back, save the
-//! recording, end.
+//! What happens when the loop hangs: the controls are released, the recording
+//! is saved, the program ends.
 //!
-//! The watchdog's thread cannot use the loop's actuator, which is in the hands
-//! of whoever hangs. It gives the controls back by a way of its own. Then it
-//! leaves the orderly end (what is in the ring, the recording, the account) to
-//! the main thread, for a while: should that one hang too, on a terminal or on
-//! a disk, the program ends without it.
+//! The watchdog's thread cannot use the loop's actuator, which belongs to the
+//! hung thread. It releases the controls independently. Then it leaves the
+//! orderly end (messages in the ring, the recording, the statistics) to the
+//! main thread, for a limited time: if that one hangs too, on a terminal or a
+//! disk, the program ends without it.
 
 use std::io;
 use std::sync::Arc;
@@ -19,32 +19,33 @@ use fcc_timer::RealtimeGranted;
 
 use super::pilot::Pilot;
 
-/// How long the watchdog waits for the plant to show that it has its controls
-/// back.
+/// How long the watchdog waits for the plant to confirm the release of its
+/// controls.
 const GIVE_BACK_WITHIN: Duration = Duration::from_secs(1);
-/// How long the main thread may take to end in good order.
+/// How long the main thread may take to end orderly.
 const GRACE: Duration = Duration::from_secs(3);
 
-/// A loop that hung, and what became of the controls.
+/// A hang of the loop, and the result of the release.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hung {
-    /// How long it had shown no progress.
+    /// How long it had made no progress.
     pub(super) silent: Duration,
-    /// Whether the plant shows that it has its controls back.
+    /// Whether the plant confirmed the release of its controls.
     pub(super) released: bool,
 }
 
-/// Learns from the watchdog that the loop hung.
+/// Receives a hang of the loop from the watchdog.
 pub(super) struct HangWatch {
     told: Receiver<Hung>,
 }
 
 impl HangWatch {
-    /// Starts the watchdog, if one is wanted: `hang_after`. Gives also what the
-    /// kernel granted it. `last_resort` ends the program if nobody else does.
+    /// Starts the watchdog, if `hang_after` is given. Also returns what the
+    /// kernel granted it. `last_resort` ends the program if the main thread
+    /// does not.
     ///
     /// # Errors
-    /// When there is no thread to be had.
+    /// When no thread can be created.
     pub(super) fn start(
         hang_after: Option<Duration>,
         loop_priority: Option<u8>,
@@ -62,10 +63,10 @@ impl HangWatch {
         let stop = link.stop.clone();
         let (tell, told) = mpsc::channel();
         let granted = watch(link.heartbeat.clone(), &config, move |Hang { silent }| {
-            // Should it wake up once more, it lets go by itself.
+            // If it wakes up once more, it releases by itself.
             stop.stop();
-            let released = authority.is_none_or(|authority| give_back(authority.as_ref()));
-            // If nobody listens any more, the program is about to end.
+            let released = authority.is_none_or(|authority| release_controls(authority.as_ref()));
+            // If the receiver no longer exists, the program is about to end.
             let _ = tell.send(Hung { silent, released });
             thread::sleep(GRACE);
             last_resort(released);
@@ -73,14 +74,14 @@ impl HangWatch {
         Ok(Some((Self { told }, granted)))
     }
 
-    /// The hang, once the controls were given back.
+    /// The hang, after the release of the controls.
     pub(super) fn hung(&self) -> Option<Hung> {
         self.told.try_recv().ok()
     }
 }
 
-/// Whether the plant has its controls, back or still.
-fn give_back(authority: &dyn ControlAuthority) -> bool {
+/// Releases the controls; whether they are free now.
+fn release_controls(authority: &dyn ControlAuthority) -> bool {
     authority.held().is_none_or(|plant| {
         authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)

@@ -1,4 +1,4 @@
-//! The program that a flight is flown in.
+//! The host program of a flight.
 
 use std::io;
 use std::sync::Arc;
@@ -6,25 +6,24 @@ use std::sync::Arc;
 use fcc_core::framework::{ControlAuthority, PlantId};
 use fcc_runtime::StopHandle;
 
-/// What only the program around a flight can do: catch signals, keep other
-/// programs from the same plant, give controls back when the process dies.
+/// What only the host program can do: catch signals, keep other programs from
+/// the same plant, release controls when the process dies.
 ///
-/// Every method does nothing unless it is written: `()` is a program that does
-/// none of it.
+/// By default every method does nothing: `()` is a host that does none of this.
 pub trait Host {
-    /// A flight is about to begin, and none of its threads exists; `authority`
-    /// where its plant can be held.
+    /// A flight is about to begin, and none of its threads exists yet;
+    /// `authority` is given if its plant can be held.
     ///
     /// # Errors
-    /// When no flight can begin here.
+    /// When no flight can begin.
     fn prepare(&mut self, _authority: Option<&Arc<dyn ControlAuthority>>) -> io::Result<()> {
         Ok(())
     }
 
-    /// The loop is there and does not run yet; `stop` ends it, from any thread.
+    /// The loop exists but does not run yet; `stop` ends it, from any thread.
     ///
     /// # Errors
-    /// When the program could not be told to end the flight.
+    /// When the program could not be stopped by the user.
     fn attach(&mut self, _stop: &StopHandle) -> io::Result<()> {
         Ok(())
     }
@@ -35,31 +34,32 @@ pub trait Host {
     /// Called 50 times a second in real time.
     fn poll(&mut self) {}
 
-    /// The plant, if another program controls it: the flight ends.
+    /// The plant, if another program controls it; the flight then ends.
     fn taken_by_another(&self) -> Option<PlantId> {
         None
     }
 
-    /// The next command takes control by itself.
+    /// Called before a command that takes control by itself.
     fn before_control(&mut self) {}
 
-    /// What is done when the loop hangs and was given time to end in good
-    /// command, in the watchdog's thread; it is told whether the controls were
-    /// given back.
+    /// What is done when the loop hangs and the program has not ended orderly
+    /// in time, in the watchdog's thread; its argument is whether the controls
+    /// were released.
     fn last_resort(&self) -> Box<dyn FnOnce(bool) + Send> {
         Box::new(|_| ())
     }
 
-    /// What goes on where the plant does not show that it has its controls
-    /// back, in words that follow on a comma or semicolon; may be empty.
+    /// What continues if the plant did not confirm the release of its controls,
+    /// as text that is appended to a message and begins with a semicolon; may
+    /// be empty.
     fn continues_release(&self) -> &'static str {
         ""
     }
 
-    /// The flight is over, and the plant has its controls or has not.
+    /// The flight is over; whether the release of the controls is confirmed.
     fn end(&mut self, _released: bool) {}
 
-    /// Whether somebody ended the flight from outside.
+    /// Whether the flight was ended from outside.
     fn was_interrupted(&self) -> bool {
         false
     }

@@ -1,15 +1,16 @@
-//! Faults on purpose, for tests of what happens then. Only in programs built
-//! with the feature `fault-injection`.
+//! Fault injection for tests. Only in programs built with the feature
+//! `fault-injection`.
 //!
-//! The environment says what goes wrong:
-//! - `FCCD_PANIC_AT_S`: so many seconds after engaging, control panics;
-//! - `FCCD_NAN_AT_S`: so many seconds after engaging, control commands NaN;
-//! - `FCCD_HANG_AT_S`: so many seconds after engaging, control never returns;
-//! - `FCCD_SLOW_AT_S`: so many seconds after engaging, control begins to take
+//! The environment selects the fault:
+//! - `FCCD_PANIC_AT_S`: this many seconds after engaging, control panics;
+//! - `FCCD_NAN_AT_S`: this many seconds after engaging, control commands NaN;
+//! - `FCCD_HANG_AT_S`: this many seconds after engaging, control never returns;
+//! - `FCCD_SLOW_AT_S`: this many seconds after engaging, control begins to take
 //!   `FCCD_SLOW_MS` longer, in `FCCD_SLOW_TICKS` ticks (all, if not given);
-//! - `FCCD_BLOCK_AT_S`: so many seconds after the first tick, a sensor blocks;
-//! - `FCCD_PAUSE_AT_S`: so many seconds after the loop's start, nobody fetches
-//!   what it tells, for `FCCD_PAUSE_S` (for ever, if not given).
+//! - `FCCD_BLOCK_AT_S`: this many seconds after the first tick, a sensor
+//!   blocks;
+//! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
+//!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
 
 use std::fmt;
 use std::thread;
@@ -19,7 +20,7 @@ use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
 
-/// An autopilot that goes wrong when it is told to.
+/// An autopilot with injected faults.
 #[derive(Debug)]
 pub struct Faulty {
     autopilot: Autopilot,
@@ -30,7 +31,7 @@ pub struct Faulty {
     engaged_at: Time,
 }
 
-/// Control that takes longer than it should.
+/// An injected delay of control.
 #[derive(Debug)]
 struct Slow {
     at_s: Option<f64>,
@@ -55,7 +56,7 @@ impl Slow {
     }
 }
 
-/// A sensor that gives nothing, and blocks when it is told to.
+/// A sensor without readings that blocks at a given time.
 #[derive(Debug)]
 pub(super) struct Blocking {
     at_s: Option<f64>,
@@ -63,7 +64,7 @@ pub(super) struct Blocking {
 }
 
 impl Default for Blocking {
-    /// Reads from the environment when it is to block.
+    /// Reads the time of blocking from the environment.
     fn default() -> Self {
         Self {
             at_s: number("FCCD_BLOCK_AT_S"),
@@ -89,7 +90,7 @@ impl Sensor<Measurements> for Blocking {
     }
 }
 
-/// A main thread that waits for something, and fetches nothing meanwhile.
+/// An injected pause of the main thread, which reads no messages meanwhile.
 #[derive(Debug)]
 pub(super) struct Pause {
     at_s: Option<f64>,
@@ -104,7 +105,7 @@ impl Pause {
         }
     }
 
-    /// Waits when it is time to.
+    /// Waits when it is due.
     pub(super) fn look(&mut self) {
         if self
             .at_s
@@ -123,7 +124,7 @@ fn number(name: &str) -> Option<f64> {
 }
 
 impl Faulty {
-    /// Reads from the environment what is to go wrong.
+    /// Reads the faults from the environment.
     pub fn new(autopilot: Autopilot) -> Self {
         Self {
             autopilot,

@@ -1,4 +1,4 @@
-//! Lets others watch a flight, live.
+//! Live telemetry of a flight.
 
 use std::ops::RangeInclusive;
 
@@ -11,8 +11,8 @@ use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
 use crate::config::TelemetrySection;
 
-/// Lets others watch a flight and give it commands; where that cannot be, nothing
-/// comes of it.
+/// Publishes a flight and receives commands; without effect if that is not
+/// possible.
 pub(super) struct Live {
     section: TelemetrySection,
     publisher: Option<Publisher>,
@@ -20,7 +20,7 @@ pub(super) struct Live {
 }
 
 impl Live {
-    /// Commands are held to these airspeeds, m/s.
+    /// Commands are limited to these airspeeds, m/s.
     pub(super) fn new(section: &TelemetrySection, airspeeds_mps: RangeInclusive<f64>) -> Self {
         Self {
             section: section.clone(),
@@ -31,8 +31,8 @@ impl Live {
 }
 
 impl Observer for Live {
-    /// Begins to publish. Without shared memory the flight
-    /// goes on, and reports it.
+    /// Begins to publish. Without shared memory the flight continues, and this
+    /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
         let start = if self.section.commands {
             Publisher::start_with_commands
@@ -41,13 +41,11 @@ impl Observer for Live {
         };
         match start(&self.section.instance) {
             Ok(publisher) => self.publisher = Some(publisher),
-            Err(error) => reports.mention(format!(
-                "no live telemetry, so nobody can watch this flight: {error}"
-            )),
+            Err(error) => reports.mention(format!("no live telemetry for this flight: {error}")),
         }
     }
 
-    /// Says who flies: from here on it can be watched.
+    /// Publishes the flight's facts: from here on it can be watched.
     fn begin(&mut self, facts: &Facts<'_>, _: &mut Reports) {
         let Some((publisher, granted)) = self.publisher.as_mut().zip(facts.granted) else {
             return;
@@ -63,7 +61,7 @@ impl Observer for Live {
             memory_locked: granted.memory_locked.into(),
             requests_denied: refusals.len() as u32,
             refusals: Text::new(&refusals.join("\n")),
-            // By what it is sensed.
+            // Named by its sensors.
             aircraft: Text::new(&facts.sensors.join(", ")),
             ..Info::of_this_process()
         });
@@ -98,8 +96,8 @@ impl Observer for Live {
         }
     }
 
-    /// Sends the loop what other programs command, and publishes now what
-    /// was handed over.
+    /// Sends other programs' commands to the loop, and publishes what was
+    /// collected.
     fn poll(&mut self, access: &mut Access<'_>) {
         let Some(publisher) = &mut self.publisher else {
             return;
@@ -115,13 +113,13 @@ impl Observer for Live {
         }
     }
 
-    /// Publishes the last, and then nothing more.
+    /// Publishes the last messages and ends.
     fn end(&mut self, _: &str, _: &mut Outcome, _: &mut Reports) {
         self.publisher = None;
     }
 }
 
-/// How the recorder does, for who watches.
+/// The recorder's status, for live telemetry.
 fn recorder(now: &recording::RecorderStatus) -> RecorderStatus {
     let name = now.file.as_ref().and_then(|file| file.file_name());
     RecorderStatus {

@@ -1,9 +1,8 @@
-//! Makes a loop of a configuration, and flies it.
+//! Assembles a flight from a configuration, and flies it.
 //!
-//! The loop runs in its own thread and knows nothing of what is here. This
-//! side fetches its messages, hands them to each [`Observer`], and gathers the
-//! [`Outcome`]. What only the program around a flight can do is asked of its
-//! [`Host`].
+//! The loop runs in its own thread and is independent of this module. This
+//! module reads its messages, passes them to each [`Observer`], and collects
+//! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
 mod assemble;
 #[cfg(feature = "live")]

@@ -1,4 +1,4 @@
-//! Where a flight is in its time, and whether it is over.
+//! The elapsed time of a flight, and whether it is over.
 
 use fcc_core::framework::{EventKind, Message, State};
 use fcc_telemetry::FlightMessage;
@@ -6,7 +6,7 @@ use fcc_telemetry::FlightMessage;
 use super::observer::FlightTime;
 use super::plan::Length;
 
-/// Sees from the loop's messages where the flight is.
+/// Determines the flight's time from the loop's messages.
 #[derive(Default)]
 pub(super) struct Monitor {
     start_ns: Option<i64>,
@@ -16,7 +16,7 @@ pub(super) struct Monitor {
 }
 
 impl Monitor {
-    /// Takes a message of the loop; when it was.
+    /// Processes a message of the loop; returns its time.
     pub(super) fn take(&mut self, message: &FlightMessage) -> FlightTime {
         match message {
             Message::Tick(record) => {
@@ -50,15 +50,15 @@ impl Monitor {
         }
     }
 
-    /// When the last tick was.
+    /// The time of the last tick.
     pub(super) const fn at(&self) -> FlightTime {
         self.at
     }
 
-    /// Whether a flight of this length is over: its time is up, or it cannot be
-    /// flown.
+    /// Whether a flight of this length is over: its time has passed, or it
+    /// cannot be flown.
     pub(super) fn is_over(&self, length: Length) -> bool {
-        // Sums of ticks end this close to a whole second.
+        // Tolerance for the sum of ticks at a whole second.
         const ROUNDING_S: f64 = 1e-6;
         let time_s = self.at.time_s;
         let time_is_up = match length {
@@ -77,8 +77,8 @@ impl Monitor {
         self.refused
     }
 
-    /// Seconds since the first thing the loop reported; an event before the
-    /// first tick is at 0.
+    /// Seconds since the loop's first message; an event before the first tick
+    /// is at 0.
     fn seconds(&mut self, nanos: i64) -> f64 {
         if nanos == i64::MIN {
             return 0.0;

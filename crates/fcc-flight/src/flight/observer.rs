@@ -1,4 +1,4 @@
-//! Who observes a flight, and what it may do beside.
+//! The observers of a flight.
 
 use fcc_core::flight::AutopilotCommand;
 use fcc_record::RecorderStatus;
@@ -11,13 +11,13 @@ use super::plan::Pace;
 
 /// Observes a flight: a recorder, live telemetry, a status line, a score.
 ///
-/// Called in the thread that fetches the loop's messages, never in the loop's.
-/// Observers do not know each other: what one [reports](Reports), all others
-/// get. Every call may come in any flight: no record before an event, reports
-/// before the beginning, an end without a record.
+/// Called in the thread that reads the loop's messages, never in the loop's.
+/// Observers are independent of each other: what one [reports](Reports), all
+/// others receive. The calls of a flight may be incomplete: an event before any
+/// record, reports before the beginning, an end without a record.
 pub trait Observer {
-    /// The flight is about to begin, and no loop runs yet: what takes its time
-    /// is done here.
+    /// The flight is about to begin, and no loop runs yet: time-consuming
+    /// preparations are done here.
     fn prepare(&mut self, _reports: &mut Reports) {}
 
     /// The loop begins.
@@ -26,57 +26,57 @@ pub trait Observer {
     /// A tick.
     fn record(&mut self, _record: &FlightRecord, _at: &FlightTime) {}
 
-    /// Something that happened in the loop, and the same in words.
-    fn event(&mut self, _event: &FlightEvent, _words: &str, _at: &FlightTime) {}
+    /// An event of the loop, and its description.
+    fn event(&mut self, _event: &FlightEvent, _description: &str, _at: &FlightTime) {}
 
-    /// Something that the loop itself does not know.
+    /// Something reported from outside the loop.
     fn report(&mut self, _report: &Report, _at: &FlightTime) {}
 
-    /// All messages that there are have been handed over; called 50 times a
-    /// second, and in lockstep after each tick.
+    /// All available messages have been passed on; called 50 times a second,
+    /// and in lockstep after each tick.
     fn poll(&mut self, _access: &mut Access<'_>) {}
 
     /// The loop ends, or hangs.
     fn stopping(&mut self) {}
 
-    /// The flight is over and the controls are given back: this may wait, for a
-    /// while. What it adds to the outcome, if anything. Nothing is handed over
-    /// later.
+    /// The flight is over and the controls are released: this may wait, for a
+    /// limited time. Adds its part to the outcome, if any. No other call
+    /// follows.
     fn end(&mut self, _ending: &str, _outcome: &mut Outcome, _reports: &mut Reports) {}
 }
 
-/// What is known of a flight when it begins.
+/// The facts of a flight at its beginning.
 #[derive(Clone, Copy, Debug)]
 pub struct Facts<'a> {
-    /// Ticks a second.
+    /// Ticks per second.
     pub rate_hz: f64,
     /// What wakes the loop.
     pub timer: &'static str,
-    /// What the sensors are called, in the loop's command.
+    /// The names of the sensors, in the loop's order.
     pub sensors: &'a [String],
-    /// What the actuators are called, in the loop's command.
+    /// The names of the actuators, in the loop's order.
     pub actuators: &'a [String],
     /// The time of day, ns since 1970.
     pub started_unix_ns: u64,
-    /// What is added to the loop's clock to get the time of day, ns.
+    /// The offset from the loop's clock to the time of day, ns.
     pub clock_offset_ns: i64,
-    /// How fast time passes.
+    /// The pace of time.
     pub pace: Pace,
     /// What the kernel granted the loop's thread; none in lockstep.
     pub granted: Option<&'a RealtimeGranted>,
 }
 
-/// When something was in a flight.
+/// A time in a flight.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct FlightTime {
-    /// Since the first that the loop reported, s.
+    /// Since the loop's first message, s.
     pub time_s: f64,
     /// The tick.
     pub tick: u64,
-    /// That tick's wake-up, ns on the loop's clock; the smallest number there
-    /// is before the first tick.
+    /// That tick's wake-up, ns on the loop's clock; the smallest possible
+    /// number before the first tick.
     pub woke_ns: i64,
-    /// When the loop was engaged, s; none while it is not.
+    /// When the loop engaged, s; none while it is not engaged.
     pub engaged_at_s: Option<f64>,
 }
 
@@ -92,33 +92,33 @@ impl Default for FlightTime {
     }
 }
 
-/// Something that the loop itself does not know.
+/// Something reported from outside the loop.
 #[derive(Clone, Debug)]
 pub enum Report {
-    /// It is part of the flight, and is kept.
+    /// A remark that is part of the flight and is recorded.
     Remark(String),
-    /// It is for whoever is there, and no part of the flight.
+    /// A message for the user that is not recorded.
     Mention(String),
-    /// How recording goes.
+    /// The status of the recording.
     Recording(RecorderStatus),
 }
 
-/// Takes what an observer has to report.
+/// Collects the reports of an observer.
 #[derive(Default, Debug)]
 pub struct Reports(Vec<Report>);
 
 impl Reports {
-    /// Something that is part of the flight, and is kept.
+    /// Adds a remark that is part of the flight and is recorded.
     pub fn remark(&mut self, words: impl Into<String>) {
         self.0.push(Report::Remark(words.into()));
     }
 
-    /// Something for whoever is there, and no part of the flight.
+    /// Adds a message for the user that is not recorded.
     pub fn mention(&mut self, words: impl Into<String>) {
         self.0.push(Report::Mention(words.into()));
     }
 
-    /// How recording goes.
+    /// The status of the recording.
     pub fn recording(&mut self, status: RecorderStatus) {
         self.0.push(Report::Recording(status));
     }
@@ -129,12 +129,12 @@ impl Reports {
     }
 }
 
-/// What an observer may do beside observing.
+/// What an observer may do in addition to observing.
 pub struct Access<'a> {
     /// Commands to the loop.
     pub commands: &'a mut CommandSender<AutopilotCommand>,
-    /// What there is to report.
+    /// The reports.
     pub reports: &'a mut Reports,
-    /// To be called right before a command that takes control by itself.
+    /// To be called directly before a command that takes control by itself.
     pub before_control: &'a mut dyn FnMut(),
 }

@@ -1,4 +1,4 @@
-//! All who observe a flight.
+//! All observers of a flight.
 
 use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::Message;
@@ -11,7 +11,7 @@ use super::monitor::Monitor;
 use super::observer::{Access, Facts, Observer, Reports};
 use super::outcome::Outcome;
 
-/// All who observe a flight, each handed the same in turn.
+/// All observers of a flight, each called in turn.
 pub(super) struct Observers {
     all: Vec<Box<dyn Observer>>,
     names: Names,
@@ -37,7 +37,7 @@ impl Observers {
         self.each(|observer, reports| observer.begin(facts, reports));
     }
 
-    /// Hands over a message of the loop.
+    /// Passes on a message of the loop.
     pub(super) fn take(&mut self, message: &FlightMessage) {
         let at = self.monitor.take(message);
         match message {
@@ -55,7 +55,7 @@ impl Observers {
         }
     }
 
-    /// Lets each do what there is to do.
+    /// Polls each observer.
     pub(super) fn poll(
         &mut self,
         commands: &mut CommandSender<AutopilotCommand>,
@@ -70,7 +70,7 @@ impl Observers {
         });
     }
 
-    /// Hands over something that no observer reports.
+    /// Passes on a remark that is not from an observer.
     pub(super) fn remark(&mut self, words: impl Into<String>) {
         self.reports.remark(words);
         self.deliver(None);
@@ -80,8 +80,8 @@ impl Observers {
         self.each(|observer, _| observer.stopping());
     }
 
-    /// Ends each; in their order, so that what one reports at its end the next
-    /// still get.
+    /// Ends each, in their order, so that the following ones receive what one
+    /// reports at its end.
     pub(super) fn end(mut self, ending: &str, outcome: &mut Outcome) {
         self.each(|observer, reports| observer.end(ending, outcome, reports));
     }
@@ -95,7 +95,7 @@ impl Observers {
         }
     }
 
-    /// Hands over what was reported, but to its own reporter.
+    /// Passes on what was reported, except to its reporter.
     fn deliver(&mut self, reporter: Option<usize>) {
         let at = self.monitor.at();
         for report in self.reports.take() {
@@ -108,7 +108,8 @@ impl Observers {
     }
 }
 
-/// What sensors and actuators are called: the loop knows them by their places.
+/// The names of sensors and actuators, which the loop identifies by their
+/// index.
 #[derive(Clone)]
 pub(super) struct Names {
     pub(super) sensors: Vec<String>,
@@ -124,8 +125,8 @@ impl Names {
     }
 }
 
-/// Names that tell apart: of several devices of one name, all but the first
-/// have a number.
+/// Unique names: of several devices with one name, all but the first get a
+/// number.
 fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<String> {
     let mut seen: Vec<&str> = Vec::new();
     names

@@ -1,4 +1,4 @@
-//! How a flight ended, for people and for tools.
+//! The outcome of a flight, for users and tools.
 
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport};
@@ -11,52 +11,52 @@ use super::plan::Pace;
 /// The scheduling of a loop without a thread of its own.
 const NOT_ASKED: &str = "not asked for";
 
-/// How a flight ended.
+/// The outcome of a flight.
 #[derive(Debug, Serialize)]
 pub struct Outcome {
-    /// How well the loop kept time.
+    /// The timing of the loop.
     pub timing: TimingReport,
-    /// How well the pattern was flown; none without a pattern.
+    /// The score of the pattern; none without a pattern.
     pub flight: Option<FlightScore>,
-    /// What that was scored by.
+    /// The basis of the score.
     pub scored_by: ScoredBy,
-    /// What happened, in order.
+    /// The events, in order.
     pub events: Vec<EventEntry>,
     /// Why the loop ended.
     pub ending: String,
-    /// How often it fell into failsafe.
+    /// How often it entered failsafe.
     pub failsafes: u64,
     /// Ticks that overran their budget.
     pub overruns: u64,
-    /// Whether control was given back.
+    /// Whether control was released.
     pub released: bool,
-    /// Records that nobody fetched in time.
+    /// Records that were not read in time.
     pub records_dropped: u64,
-    /// What of the flight got onto the disk; none if it was not recorded.
+    /// What was recorded of the flight; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
-    /// How fast time passed.
+    /// The pace of time.
     #[serde(skip)]
     pub pace: Pace,
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
-    /// What it means for whoever flew it.
+    /// The conclusion for the user.
     #[serde(skip)]
     pub conclusion: Conclusion,
 }
 
-/// What a flight's end means for whoever flew it; of several the worst.
+/// The conclusion of a flight for the user; of several the worst.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Conclusion {
-    /// It was flown as it should.
+    /// It was flown as planned.
     Completed,
-    /// It was flown as it should, but not recorded, or not as a whole.
+    /// It was flown as planned, but not recorded, or not completely.
     NotRecorded,
-    /// It was not flown as it should: the timer failed, or engaging was refused.
+    /// It was not flown as planned: the timer failed, or engaging was refused.
     Failed,
-    /// It fell into failsafe.
+    /// It entered failsafe.
     Failsafe,
-    /// A part of the loop panicked; the controls were released.
+    /// A component of the loop panicked; the controls were released.
     Panicked,
     /// The loop hung; its watchdog released the controls.
     Hung,
@@ -64,18 +64,18 @@ pub enum Conclusion {
     NotReleased,
 }
 
-/// Something that happened once.
+/// An event.
 #[derive(Clone, Debug, Serialize)]
 pub struct EventEntry {
     /// Since the loop's first tick.
     pub time_s: f64,
-    /// In which tick.
+    /// Its tick.
     pub tick: u64,
-    /// What it was, in words.
+    /// Its description.
     pub text: String,
 }
 
-/// What of a flight got onto the disk.
+/// What was recorded of a flight.
 #[derive(Clone, Debug, Serialize)]
 pub struct RecordingOutcome {
     /// Every file of the recording, in order.
@@ -86,8 +86,8 @@ pub struct RecordingOutcome {
     pub bytes: u64,
     /// Records and events that were dropped: the disk was too slow or full.
     pub not_recorded: u64,
-    /// Why the flight's end is not recorded, and what of it is lost; none if it
-    /// is.
+    /// Why the flight's end is not recorded, and what is lost; none if it is
+    /// recorded.
     pub stopped: Option<String>,
 }
 
@@ -127,21 +127,21 @@ impl Outcome {
         }
     }
 
-    /// What was to be recorded is not, or not as a whole: that does not end a
-    /// flight, but its end says so.
+    /// A requested recording is missing or incomplete: that does not end a
+    /// flight, but is reported in its conclusion.
     pub(super) fn was_not_recorded(&mut self) {
         if self.conclusion == Conclusion::Completed {
             self.conclusion = Conclusion::NotRecorded;
         }
     }
 
-    /// Says more exactly why a flight ended than the loop can.
+    /// Gives a more specific reason for the end of a flight than the loop does.
     pub(super) fn explain(&mut self, interrupted: bool, refused: bool) {
         self.interrupted = interrupted;
         if interrupted {
             "interrupted by a signal".clone_into(&mut self.ending);
         } else if refused {
-            "engaging was refused; the last event says why".clone_into(&mut self.ending);
+            "engaging was refused; see the last event".clone_into(&mut self.ending);
             if matches!(
                 self.conclusion,
                 Conclusion::Completed | Conclusion::NotRecorded
@@ -152,7 +152,7 @@ impl Outcome {
     }
 }
 
-/// What the kernel granted, as other tools read it.
+/// What the kernel granted, in the form for other tools.
 fn realtime(granted: &RealtimeGranted) -> Realtime {
     Realtime {
         policy: if granted.policy.is_empty() {

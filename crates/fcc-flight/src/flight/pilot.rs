@@ -1,12 +1,12 @@
-//! What the loop runs, and by which sensors: with faults on purpose, if the
-//! program is built so.
+//! The controller and sensors of the loop, with injected faults if the program
+//! is built with that feature.
 
 type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
 
-/// What the loop runs.
+/// The loop's controller.
 #[cfg(not(feature = "fault-injection"))]
 pub type Pilot = fcc_core::flight::Autopilot;
-/// What the loop runs: an autopilot that goes wrong when it is told to.
+/// The loop's controller: an autopilot with injected faults.
 #[cfg(feature = "fault-injection")]
 pub type Pilot = super::injection::Faulty;
 

@@ -1,30 +1,30 @@
-//! How a flight is to go.
+//! The plan of a flight.
 
-/// How fast time passes.
+/// The pace of time.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Pace {
-    /// As it does.
+    /// Real time.
     RealTime,
-    /// As fast as the machine can: each tick follows the last at once.
+    /// As fast as possible: each tick follows the last at once.
     Lockstep,
 }
 
 /// When a flight is over. One of a given length is also over when it cannot be
-/// flown: engaging is refused, or the loop falls into failsafe.
+/// flown: engaging is refused, or the loop enters failsafe.
 #[derive(Clone, Copy, Debug)]
 pub enum Length {
-    /// When it is told to stop.
+    /// When it is stopped.
     Open,
-    /// So many seconds after engaging.
+    /// This many seconds after engaging.
     Engaged(f64),
-    /// So many seconds after the first tick.
+    /// This many seconds after the first tick.
     Whole(f64),
 }
 
-/// How a flight is to go.
+/// The plan of a flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// How fast time passes.
+    /// The pace of time.
     pub pace: Pace,
     /// When it is over.
     pub length: Length,

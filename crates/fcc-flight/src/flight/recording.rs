@@ -1,4 +1,4 @@
-//! A flight's recording, as the flight sees it.
+//! The recording of a flight.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -15,10 +15,10 @@ use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
 use crate::config::{Aircraft, Config};
 
-/// So long a disk may be held up before records are lost: at 136 Hz or less.
+/// How long a disk may be delayed before records are lost, at 136 Hz or less.
 const WRITTEN_WITHIN_S: f64 = 60.0;
 
-/// How a flight is to be recorded.
+/// A request to record a flight.
 #[derive(Clone, Debug)]
 pub struct RecordingRequest {
     settings: RecorderSettings,
@@ -26,8 +26,8 @@ pub struct RecordingRequest {
 }
 
 impl RecordingRequest {
-    /// Records a configuration's flight, if it says so; `as_given` is the text
-    /// of its file.
+    /// The request for a configuration, if it enables recording; `as_given` is
+    /// the text of its file.
     pub fn of(config: &Config, as_given: Option<String>) -> Option<Self> {
         let section = &config.recording;
         let settings = RecorderSettings::from(section);
@@ -42,7 +42,7 @@ impl RecordingRequest {
     }
 }
 
-/// What is known of a flight by its configuration and its machine.
+/// Facts about a flight from its configuration and its machine.
 pub fn about(config: &Config, as_given: Option<String>) -> About {
     let aircraft = match config.aircraft() {
         Aircraft::XPlane(_) => "x-plane",
@@ -98,7 +98,7 @@ fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>
     }
 }
 
-/// How often the others learn how the recorder does.
+/// The interval at which the recorder's status is reported.
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
 /// Records a flight.
@@ -122,12 +122,12 @@ impl Recording {
 }
 
 impl Observer for Recording {
-    /// Repairs what the last flight may have left.
+    /// Repairs what the last flight may have left unfinished.
     fn prepare(&mut self, reports: &mut Reports) {
         match repair_last(&self.settings.folder) {
             Ok(None) => {}
             Ok(Some(repaired)) => reports.mention(format!(
-                "{}: was cut off, repaired: {} ticks",
+                "{}: was unfinished, repaired: {} ticks",
                 repaired.path.display(),
                 repaired.ticks
             )),
@@ -135,7 +135,8 @@ impl Observer for Recording {
         }
     }
 
-    /// Begins to record; without a recorder the flight goes on, and reports it.
+    /// Begins to record; without a recorder the flight continues, and this is
+    /// reported.
     fn begin(&mut self, facts: &Facts<'_>, reports: &mut Reports) {
         let about = About {
             timer: facts.timer.to_owned(),
@@ -190,7 +191,7 @@ impl Observer for Recording {
         }
     }
 
-    /// Ends the recording and waits for the disk, for a while.
+    /// Ends the recording and waits for the disk, for a limited time.
     fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
         let Some(recorder) = self.recorder.take() else {
             outcome.was_not_recorded();

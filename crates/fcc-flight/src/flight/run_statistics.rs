@@ -1,4 +1,4 @@
-//! The account of a loop that cannot give its own.
+//! The statistics of a loop that cannot return its own.
 
 use std::time::Duration;
 
@@ -9,8 +9,8 @@ use fcc_timer::{Expiry, RealtimeGranted, TimerError, TimingStats};
 
 use super::hang::Hung;
 
-/// Keeps count, from what the loop tells, of what the loop itself would say at
-/// its end: for one that hangs.
+/// Collects, from the loop's messages, the statistics that the loop would
+/// return at its end: for one that hangs.
 pub(super) struct RunStatistics {
     timing: TimingStats,
     ticks: u64,
@@ -20,10 +20,10 @@ pub(super) struct RunStatistics {
 }
 
 impl RunStatistics {
-    /// Nothing yet.
+    /// Empty statistics.
     ///
     /// # Errors
-    /// When the period cannot be kept statistics of.
+    /// When no statistics can be kept for the period.
     pub(super) fn new(period: Duration) -> Result<Self, TimerError> {
         Ok(Self {
             timing: TimingStats::new(period)?,
@@ -34,7 +34,7 @@ impl RunStatistics {
         })
     }
 
-    /// Takes a message of the loop.
+    /// Processes a message of the loop.
     pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => {
@@ -63,12 +63,12 @@ impl RunStatistics {
         }
     }
 
-    /// The last record there is.
+    /// The last record.
     pub(super) const fn last(&self) -> &FlightRecord {
         &self.last
     }
 
-    /// The account of a loop that hung.
+    /// The report of a loop that hung.
     pub(super) fn report(
         &self,
         hung: Hung,

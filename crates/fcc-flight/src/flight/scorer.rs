@@ -1,4 +1,4 @@
-//! Scores how well the pattern is flown.
+//! Scores the flown pattern.
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::framework::{EventKind, LoopCommand, State};
@@ -10,8 +10,8 @@ use super::observer::{FlightTime, Observer, Reports};
 use super::outcome::Outcome;
 use super::truth_recorder::TruthReceiver;
 
-/// Scores a pattern from the truth where there is one, and from what was
-/// measured where there is none.
+/// Scores a pattern from the truth, or from the measurements if there is no
+/// truth.
 pub(super) struct Scorer {
     log: Option<FlightLog>,
     truth: Option<TruthReceiver>,
@@ -47,8 +47,8 @@ impl Observer for Scorer {
         if is_first {
             log.clear();
         }
-        // Where there is truth, a tick without it is left out: sensors and
-        // truth do not mix in one score.
+        // If there is truth, a tick without it is left out: measurements and
+        // truth are not mixed in one score.
         let sample = match truth {
             Some(truth) => Some(true_sample(at.time_s, &truth)),
             None if self.truth.is_some() => None,
@@ -64,7 +64,7 @@ impl Observer for Scorer {
             event.kind,
             EventKind::CommandReceived(LoopCommand::Controller(_))
         ) {
-            // What is flown is not the pattern from its beginning: no score.
+            // The pattern is not flown from its beginning: no score.
             self.log = None;
         }
     }
@@ -74,12 +74,12 @@ impl Observer for Scorer {
             Some(_) => ScoredBy::Truth,
             None => ScoredBy::Measurement,
         };
-        // A flight with a leg that was not flown to its end has no score.
+        // A flight with an incomplete leg has no score.
         outcome.flight = self.log.take().and_then(|log| log.score().ok());
     }
 }
 
-/// A sample of a flight as it truly was, for scoring.
+/// A sample of the true flight, for scoring.
 pub fn true_sample(time_s: f64, truth: &Truth) -> Sample {
     Sample {
         time_s,

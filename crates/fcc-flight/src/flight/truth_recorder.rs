@@ -1,12 +1,12 @@
-//! What is true of the built-in aircraft, tick by tick, for scoring.
+//! The truth of the built-in aircraft, tick by tick, for scoring.
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick};
 use fcc_sim::{SimSensor, Truth};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// The built-in aircraft's sensor, which also leaves the truth of each tick in
-/// a ring. A full ring drops: scoring must not hold up a flight.
+/// The built-in aircraft's sensor, which also writes the truth of each tick to
+/// a ring. A full ring drops truths: scoring must not delay a flight.
 pub(super) struct TruthRecorder {
     sensor: SimSensor,
     truth: Producer<(u64, Truth)>,
@@ -17,7 +17,7 @@ pub(super) struct TruthReceiver {
     truth: Consumer<(u64, Truth)>,
 }
 
-/// Taps a sensor; the ring holds `capacity` ticks.
+/// Records the truth of a sensor; the ring holds `capacity` ticks.
 pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TruthRecorder, TruthReceiver) {
     let (producer, consumer) = RingBuffer::new(capacity);
     (
@@ -44,7 +44,7 @@ impl Sensor<Measurements> for TruthRecorder {
 }
 
 impl TruthReceiver {
-    /// The truth of a tick, if it was kept; earlier ones are passed over.
+    /// The truth of a tick, if it is in the ring; earlier ones are skipped.
     pub(super) fn of_tick(&mut self, number: u64) -> Option<Truth> {
         while let Ok((tick, truth)) = self.truth.peek().copied() {
             if tick > number {

@@ -1,24 +1,24 @@
-//! Time that goes on while no program runs, and that nobody can set.
+//! Time that continues while no program runs, and that cannot be set.
 
 use std::fs;
 use std::time::Duration;
 
 use nix::time::{ClockId, clock_gettime};
 
-/// The kernel's name for the time since it was last started.
+/// The kernel's identifier of the present boot.
 const BOOT_ID: &str = "/proc/sys/kernel/random/boot_id";
 
-/// An instant that another process of the same boot can compare with its own.
+/// An instant that can be compared across processes of the same boot.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct BootInstant {
-    /// Which boot.
+    /// The identifier of the boot.
     pub(super) boot: String,
-    /// Since then, suspended time included, ns.
+    /// The time since the boot, suspended time included, ns.
     pub(super) ns: u64,
 }
 
 impl BootInstant {
-    /// Now; none where the kernel does not say.
+    /// Now; none if the kernel does not provide it.
     pub(super) fn now() -> Option<Self> {
         let boot = fs::read_to_string(BOOT_ID).ok()?;
         Self {
@@ -28,7 +28,7 @@ impl BootInstant {
         .again()
     }
 
-    /// Now, in the same boot: no process outlives one.
+    /// Now, in the same boot, since a process cannot outlive a boot.
     pub(super) fn again(&self) -> Option<Self> {
         let since = Duration::from(clock_gettime(ClockId::CLOCK_BOOTTIME).ok()?);
         Some(Self {
@@ -37,7 +37,7 @@ impl BootInstant {
         })
     }
 
-    /// How long after `earlier` this is; none across a reboot, and for what is
+    /// The time since `earlier`; none across a reboot, and if `earlier` is
     /// later.
     pub(super) fn since(&self, earlier: &Self) -> Option<Duration> {
         let ns = self.ns.checked_sub(earlier.ns)?;

@@ -1,5 +1,4 @@
-//! Keeps the state file as it is wanted, in a thread that may wait for the
-//! disk.
+//! Writes the state file in a thread that may wait for the disk.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
@@ -12,26 +11,26 @@ use super::state_file::{self, Saved};
 /// How long the end of a flight waits for the disk.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Keeps the state file. Of what is asked while the disk is busy, only the last
-/// counts.
+/// Writes the state file. Of several requests while the disk is busy, only the
+/// last is executed.
 pub(super) struct Keeper {
-    desk: Arc<CommandServer>,
+    desk: Arc<Requests>,
     trouble: Receiver<String>,
 }
 
 #[derive(Default)]
-struct CommandServer {
+struct Requests {
     slot: Mutex<Slot>,
     filled: Condvar,
 }
 
 #[derive(Default)]
 struct Slot {
-    asked: Option<Asked>,
+    requested: Option<Request>,
     is_over: bool,
 }
 
-enum Asked {
+enum Request {
     Keep(Saved),
     Clear,
 }
@@ -40,20 +39,20 @@ impl Keeper {
     /// Starts the thread.
     ///
     /// # Errors
-    /// When there is none to be had.
+    /// When no thread can be created.
     pub(super) fn start(path: PathBuf) -> io::Result<Self> {
-        let desk = Arc::<CommandServer>::default();
+        let desk = Arc::<Requests>::default();
         let theirs = Arc::clone(&desk);
-        // Trouble that lasts is said once; more of it finds no room.
+        // A lasting problem is reported once; the channel has no room for more.
         let (say, trouble) = mpsc::sync_channel(1);
         thread::Builder::new()
             .name("fcc-state".to_owned())
             .spawn(move || {
                 let mut failing = false;
-                while let Some(asked) = theirs.next() {
-                    let done = match asked {
-                        Asked::Keep(saved) => state_file::write(&path, &saved),
-                        Asked::Clear => state_file::remove(&path),
+                while let Some(requested) = theirs.next() {
+                    let done = match requested {
+                        Request::Keep(saved) => state_file::write(&path, &saved),
+                        Request::Clear => state_file::remove(&path),
                     };
                     if let Err(error) = &done
                         && !failing
@@ -71,26 +70,26 @@ impl Keeper {
         Ok(Self { desk, trouble })
     }
 
-    /// Keeps this, instead of what was kept before.
+    /// Stores this state, replacing the previous one.
     pub(super) fn keep(&self, saved: Saved) {
-        self.desk.ask(Asked::Keep(saved));
+        self.desk.request(Request::Keep(saved));
     }
 
-    /// Keeps nothing.
+    /// Removes the stored state.
     pub(super) fn clear(&self) {
-        self.desk.ask(Asked::Clear);
+        self.desk.request(Request::Clear);
     }
 
-    /// What went wrong, in words; none if nothing new did.
+    /// A description of a new problem; none if there is none.
     pub(super) fn trouble(&self) -> Option<String> {
         self.trouble.try_recv().ok()
     }
 
-    /// Waits, for a while, until all is on the disk.
+    /// Waits, for a limited time, until everything is on the disk.
     pub(super) fn end(self) {
         self.desk.slot().is_over = true;
         self.desk.filled.notify_one();
-        // The thread's end of the channel goes with the thread.
+        // The thread's end of the channel is dropped with the thread.
         while !matches!(
             self.trouble.recv_timeout(PATIENCE),
             Err(RecvTimeoutError::Disconnected | RecvTimeoutError::Timeout)
@@ -98,22 +97,22 @@ impl Keeper {
     }
 }
 
-impl CommandServer {
+impl Requests {
     fn slot(&self) -> MutexGuard<'_, Slot> {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn ask(&self, asked: Asked) {
-        self.slot().asked = Some(asked);
+    fn request(&self, requested: Request) {
+        self.slot().requested = Some(requested);
         self.filled.notify_one();
     }
 
-    /// Waits for what is asked next; none at the end.
-    fn next(&self) -> Option<Asked> {
+    /// Waits for the next request; none at the end.
+    fn next(&self) -> Option<Request> {
         let mut slot = self.slot();
         loop {
-            if let Some(asked) = slot.asked.take() {
-                return Some(asked);
+            if let Some(requested) = slot.requested.take() {
+                return Some(requested);
             }
             if slot.is_over {
                 return None;

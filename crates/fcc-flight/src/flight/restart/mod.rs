@@ -1,17 +1,17 @@
-//! Restart in the air: a daemon that was killed in flight and started again
-//! takes up what was flown, or stands by and says so.
+//! In-flight recovery: a daemon that was killed in flight and started again
+//! continues what was flown, or stays in standby and reports it.
 //!
-//! While the loop is engaged, what it flies is [kept](keeper) in a small
+//! While the loop is engaged, its state is [stored](keeper) in a small
 //! [file](state_file): at every change of the set points, and each second. A
-//! flight that ends as it should takes the file away, so one that is found at
-//! the start is of a flight that was cut off. How old it is, is told by the
-//! kernel's own clock of this boot; what the time of day is does not matter.
+//! flight that ends regularly removes the file, so a file found at the start
+//! belongs to an interrupted flight. Its age is measured by the kernel's clock
+//! since boot; the time of day is not used.
 
 mod boot_clock;
 mod keeper;
 mod observer;
+mod recovery;
 mod state_file;
-mod taking_up;
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -27,24 +27,25 @@ use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
+use recovery::{Next, Recovery};
 use state_file::{Saved, StateFileError};
-use taking_up::{Next, TakingUp};
 
-/// What is flown is kept at least this often.
+/// The state is stored at least at this interval.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
-/// Set points that change by less are kept at their time, not at once.
+/// Set points that change by less are stored at the next interval, not at once.
 const CHANGE: Targets = Targets {
     airspeed_mps: 0.1,
     heading_rad: 0.002,
     altitude_m: 0.3,
 };
-/// A flight that was taken up and then lasted so long counts as sound.
-const SOUND_AFTER: Duration = Duration::from_secs(60);
-/// One that is cut off so often in a row, each time before it was sound, is not
-/// taken up again: what cuts it off may be what it does.
-const MOST_TAKE_UPS: u32 = 3;
+/// A recovered flight that lasts this long counts as stable.
+const STABLE_AFTER: Duration = Duration::from_secs(60);
+/// A flight that is interrupted this many times in a row, each time before it
+/// was stable, is not recovered again, since the flight itself may be the
+/// cause.
+const MAX_RECOVERIES: u32 = 3;
 
-/// What is to be known of a flight to restart it.
+/// What in-flight recovery needs to know about a flight.
 #[derive(Clone, Debug)]
 pub(super) struct RestartRequest {
     mode: RestartMode,
@@ -54,7 +55,7 @@ pub(super) struct RestartRequest {
 }
 
 impl RestartRequest {
-    /// As a configuration says.
+    /// The request for a configuration.
     pub(super) fn of(config: &Config) -> Self {
         let section = &config.restart;
         let path = section.state_file.clone().unwrap_or_else(|| {
@@ -70,13 +71,13 @@ impl RestartRequest {
     }
 }
 
-/// Where systemd says that state is to be kept.
+/// The state directory given by systemd.
 fn state_directory() -> Option<PathBuf> {
     let folders = std::env::var_os("STATE_DIRECTORY")?;
     std::env::split_paths(&folders).next()
 }
 
-/// Tells configurations apart that fly differently.
+/// A fingerprint that differs for configurations that fly differently.
 fn fingerprint(config: &Config) -> u32 {
     let flown = Config {
         guidance: config.guidance,
@@ -90,41 +91,42 @@ fn fingerprint(config: &Config) -> u32 {
     crc32fast::hash(toml::to_string(&flown).unwrap_or_default().as_bytes())
 }
 
-/// Keeps what is flown, and takes up what was.
+/// Stores the state of the flight, and recovers an interrupted one.
 pub(super) struct Restart {
-    wish: RestartRequest,
+    request: RestartRequest,
     boot: Option<BootInstant>,
-    /// Held until the process ends, however it does.
+    /// Held until the process ends in any way.
     _lock: File,
     keeper: Keeper,
     kept: Option<(Instant, Progress)>,
     engaged_since: Option<Instant>,
-    take_ups: u32,
+    recoveries: u32,
     switch_on: bool,
-    /// The loop broke: what ends now was cut off.
+    /// The loop failed: the flight counts as interrupted.
     is_broken: bool,
-    taking_up: Option<TakingUp>,
+    recovery: Option<Recovery>,
 }
 
 impl Restart {
-    /// Looks at what the last flight left, and keeps this one from here on.
-    /// Gives what there is to say; without a place to keep it, only that.
-    pub(super) fn begin(wish: RestartRequest) -> (Option<Self>, Option<String>) {
-        let lock = match prepare(&wish.path) {
+    /// Evaluates the state left by the last flight, and stores that of this one
+    /// from here on. Returns a message, if there is one; without a usable file,
+    /// only that.
+    pub(super) fn begin(request: RestartRequest) -> (Option<Self>, Option<String>) {
+        let lock = match prepare(&request.path) {
             Ok(lock) => lock,
-            Err(words) => return (None, Some(words)),
+            Err(message) => return (None, Some(message)),
         };
-        let read = state_file::read(&wish.path);
+        let read = state_file::read(&request.path);
         if let Err(error @ (StateFileError::Foreign | StateFileError::Unreadable(_))) = &read {
-            return (None, Some(format!("{}: {error}", wish.path.display())));
+            return (None, Some(format!("{}: {error}", request.path.display())));
         }
-        let keeper = match Keeper::start(wish.path.clone()) {
+        let keeper = match Keeper::start(request.path.clone()) {
             Ok(keeper) => keeper,
             Err(error) => return (None, Some(format!("no thread for the state file: {error}"))),
         };
         let now = BootInstant::now();
-        let (taking_up, words) = judge(&wish, read, now.as_ref());
-        if taking_up.is_none() {
+        let (recovery, message) = evaluate(&request, read, now.as_ref());
+        if recovery.is_none() {
             keeper.clear();
         }
         let this = Self {
@@ -133,19 +135,19 @@ impl Restart {
             keeper,
             kept: None,
             engaged_since: None,
-            take_ups: 0,
+            recoveries: 0,
             switch_on: false,
             is_broken: false,
-            taking_up,
-            wish,
+            recovery,
+            request,
         };
-        (Some(this), words)
+        (Some(this), message)
     }
 
-    /// Takes what the loop tells.
+    /// Processes a message of the loop.
     pub(super) fn take(&mut self, message: &FlightMessage) {
-        if let Some(taking_up) = &mut self.taking_up {
-            taking_up.take(message);
+        if let Some(recovery) = &mut self.recovery {
+            recovery.take(message);
         }
         match message {
             Message::Event(event) => self.event(event),
@@ -163,14 +165,14 @@ impl Restart {
 
     fn event(&mut self, event: &FlightEvent) {
         match event.kind {
-            // A loop that broke did not end its flight.
+            // A loop that failed did not end its flight regularly.
             EventKind::StateChanged {
                 from: State::Engaged,
                 ..
             } if !self.is_broken => {
                 self.kept = None;
                 self.engaged_since = None;
-                self.take_ups = 0;
+                self.recoveries = 0;
                 self.keeper.clear();
             }
             EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
@@ -178,58 +180,60 @@ impl Restart {
         }
     }
 
-    /// Goes on with taking up, if there is something to be taken up. `relieve`
-    /// is called right before control is taken. Gives what is new, in words.
+    /// Continues the recovery, if there is a flight to recover.
+    /// `before_control` is called directly before control is taken. Returns a
+    /// message about new developments.
     pub(super) fn poll(
         &mut self,
         commands: &mut CommandSender<AutopilotCommand>,
-        relieve: impl FnOnce(),
+        before_control: impl FnOnce(),
     ) -> Option<String> {
-        if let Some(words) = self.keeper.trouble() {
-            return Some(words);
+        if let Some(message) = self.keeper.trouble() {
+            return Some(message);
         }
-        let taking_up = self.taking_up.as_mut()?;
-        let next = taking_up.go_on(
+        let recovery = self.recovery.as_mut()?;
+        let next = recovery.next(
             self.boot.as_ref().and_then(BootInstant::again),
-            self.wish.max_age,
+            self.request.max_age,
         );
         match next {
             Next::Wait => None,
             Next::Command(resume) => {
-                relieve();
-                taking_up.command(commands, resume);
+                before_control();
+                recovery.command(commands, resume);
                 None
             }
-            Next::Taken(words) => {
-                self.take_ups = taking_up.take_ups() + 1;
-                self.taking_up = None;
-                // With the number of take-ups in it.
+            Next::Recovered(message) => {
+                self.recoveries = recovery.recoveries() + 1;
+                self.recovery = None;
+                // Including the number of recoveries.
                 self.kept = None;
-                Some(words)
+                Some(message)
             }
-            Next::LeftAlone(words) => {
-                self.taking_up = None;
+            Next::NotRecovered(message) => {
+                self.recovery = None;
                 self.keeper.clear();
-                Some(words)
+                Some(message)
             }
         }
     }
 
-    /// The flight is over; waits, for a while, for the disk.
+    /// The flight is over; waits for the disk, for a limited time.
     pub(super) fn end(self) {
         self.keeper.end();
     }
 
     fn keep(&mut self, resume: Resume) {
         let since = *self.engaged_since.get_or_insert_with(Instant::now);
-        if self.take_ups > 0 && since.elapsed() >= SOUND_AFTER {
-            self.take_ups = 0;
+        if self.recoveries > 0 && since.elapsed() >= STABLE_AFTER {
+            self.recoveries = 0;
         }
         let is_due = self.kept.is_none_or(|(at, progress)| {
             at.elapsed() >= KEEP_EVERY || differ(&progress, &resume.progress)
         });
-        // What is to be taken up stays until that is decided.
-        if !is_due || self.taking_up.is_some() {
+        // The state of the flight to recover is kept until the recovery is
+        // decided.
+        if !is_due || self.recovery.is_some() {
             return;
         }
         self.kept = Some((Instant::now(), resume.progress));
@@ -239,49 +243,49 @@ impl Restart {
         };
         self.keeper.keep(Saved {
             at,
-            config: self.wish.fingerprint,
+            config: self.request.fingerprint,
             switch_on: self.switch_on,
-            take_ups: self.take_ups,
+            recoveries: self.recoveries,
             resume,
         });
     }
 }
 
-/// Makes the folder, and sees to it that no other daemon keeps its flight in
-/// the same file.
+/// Creates the folder, and ensures that no other daemon uses the same file.
 fn prepare(path: &Path) -> Result<File, String> {
-    let words = |doing: &str, error: &dyn std::fmt::Display| {
+    let message = |doing: &str, error: &dyn std::fmt::Display| {
         format!(
-            "{}: {doing}, so a restart would not know of this flight: {error}",
+            "{}: {doing}, so this flight cannot be recovered after a restart: {error}",
             path.display()
         )
     };
     if let Some(folder) = path.parent()
         && !folder.as_os_str().is_empty()
     {
-        fs::create_dir_all(folder).map_err(|error| words("there is no folder for it", &error))?;
+        fs::create_dir_all(folder)
+            .map_err(|error| message("its folder cannot be created", &error))?;
     }
     let lock = File::create(path.with_extension("flight.lock"))
-        .map_err(|error| words("cannot be locked", &error))?;
+        .map_err(|error| message("cannot be locked", &error))?;
     match lock.try_lock() {
         Ok(()) => Ok(lock),
-        Err(fs::TryLockError::WouldBlock) => Err(words(
-            "another fccd keeps its flight there",
+        Err(fs::TryLockError::WouldBlock) => Err(message(
+            "another fccd uses it",
             &"give this one another restart.state_file",
         )),
-        Err(fs::TryLockError::Error(error)) => Err(words("cannot be locked", &error)),
+        Err(fs::TryLockError::Error(error)) => Err(message("cannot be locked", &error)),
     }
 }
 
-/// What is to become of what was found, and what to say of it.
-fn judge(
-    wish: &RestartRequest,
+/// What to do with the state that was found, and the message about it.
+fn evaluate(
+    request: &RestartRequest,
     read: Result<Option<Saved>, StateFileError>,
     now: Option<&BootInstant>,
-) -> (Option<TakingUp>, Option<String>) {
+) -> (Option<Recovery>, Option<String>) {
     let stands_by = |why: &str| {
-        let words = format!("{}: {why}; standing by", wish.path.display());
-        (None, Some(words))
+        let message = format!("{}: {why}; staying in standby", request.path.display());
+        (None, Some(message))
     };
     let saved = match read {
         Ok(Some(saved)) => saved,
@@ -289,29 +293,31 @@ fn judge(
         Err(error) => return stands_by(&error.to_string()),
     };
     let Some(age) = now.and_then(|now| now.since(&saved.at)) else {
-        return stands_by("a flight was cut off before this machine was last started");
+        return stands_by("a flight was interrupted before this machine was last started");
     };
-    let cut_off = format!("a flight was cut off {:.1} s ago", age.as_secs_f64());
-    if wish.mode == RestartMode::Cold {
-        return stands_by(&format!("{cut_off}, and restart.mode is \"cold\""));
+    let interrupted = format!("a flight was interrupted {:.1} s ago", age.as_secs_f64());
+    if request.mode == RestartMode::Cold {
+        return stands_by(&format!("{interrupted}, and restart.mode is \"cold\""));
     }
-    if age > wish.max_age {
+    if age > request.max_age {
         return stands_by(&format!(
-            "{cut_off}, longer than restart.max_age_s, {} s",
-            wish.max_age.as_secs_f64()
+            "{interrupted}, longer than restart.max_age_s, {} s",
+            request.max_age.as_secs_f64()
         ));
     }
-    if saved.config != wish.fingerprint {
-        return stands_by(&format!("{cut_off}, and flown by another configuration"));
-    }
-    if saved.take_ups >= MOST_TAKE_UPS {
+    if saved.config != request.fingerprint {
         return stands_by(&format!(
-            "{cut_off}, and taken up {} times in a row before",
-            saved.take_ups
+            "{interrupted}, and flown with another configuration"
         ));
     }
-    let words = format!("{}: {cut_off}; taking it up", wish.path.display());
-    (Some(TakingUp::new(saved)), Some(words))
+    if saved.recoveries >= MAX_RECOVERIES {
+        return stands_by(&format!(
+            "{interrupted}, and recovered {} times in a row before",
+            saved.recoveries
+        ));
+    }
+    let message = format!("{}: {interrupted}; recovering it", request.path.display());
+    (Some(Recovery::new(saved)), Some(message))
 }
 
 fn is_on(record: &FlightRecord) -> bool {
@@ -319,8 +325,8 @@ fn is_on(record: &FlightRecord) -> bool {
     !switch.is_never() && switch.value == Switch::On
 }
 
-/// Whether another mode is flown, or what it captured differs by more than
-/// small change.
+/// Whether the mode differs, or its captured values differ by more than a small
+/// change.
 fn differ(kept: &Progress, now: &Progress) -> bool {
     let (was, is) = (kept.captured, now.captured);
     kept.mode != now.mode

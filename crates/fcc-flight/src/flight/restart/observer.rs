@@ -1,4 +1,4 @@
-//! Restart in the air as an observer of the flight.
+//! In-flight recovery as an observer of the flight.
 
 use fcc_core::framework::Message;
 use fcc_telemetry::{FlightEvent, FlightRecord};
@@ -7,8 +7,8 @@ use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
 use super::super::outcome::Outcome;
 use super::{Restart, RestartRequest};
 
-/// Keeps what is flown from the flight's beginning to its end, and takes up
-/// what was.
+/// Stores the state of the flight from its beginning to its end, and recovers
+/// an interrupted one.
 pub(in crate::flight) struct RestartKeeper {
     request: Option<RestartRequest>,
     restart: Option<Restart>,

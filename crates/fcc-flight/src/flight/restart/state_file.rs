@@ -1,9 +1,9 @@
-//! The state file: what was flown, for whoever starts next.
+//! The state file: the state of the flight, for the next start.
 //!
-//! One line that says what it is, with the version and a CRC-32 of the rest,
-//! and the rest, which is JSON. It is written beside its place, synced and
-//! moved there, so that a cut leaves the old one or the new one and never a
-//! part of one; the CRC is for disks that do not keep their word.
+//! A header line with the version and a CRC-32 of the rest, followed by JSON.
+//! It is written to a temporary file, synced and renamed, so that an
+//! interruption leaves either the old or the new file and never a part of one;
+//! the CRC is for disks that do not honour a sync.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
@@ -15,27 +15,27 @@ use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
 
-/// Begins every state file.
+/// The beginning of every state file.
 const NAME: &str = "fccd-flight";
-/// The present layout.
+/// The version of the layout.
 const VERSION: u32 = 2;
 
-/// What is kept of a flight.
+/// The stored state of a flight.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) struct Saved {
-    /// When this was flown.
+    /// The time of this state.
     pub(super) at: BootInstant,
-    /// A fingerprint of the configuration that it was flown by.
+    /// A fingerprint of the configuration.
     pub(super) config: u32,
     /// Whether the engage switch was on.
     pub(super) switch_on: bool,
-    /// How often in a row the flight was taken up after a restart.
-    pub(super) take_ups: u32,
+    /// The number of consecutive recoveries of the flight.
+    pub(super) recoveries: u32,
     /// What was flown.
     pub(super) resume: Resume,
 }
 
-/// The same in the file's words.
+/// The same as stored in the file.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Page {
@@ -43,7 +43,8 @@ struct Page {
     boottime_ns: u64,
     config: u32,
     switch_on: bool,
-    take_ups: u32,
+    #[serde(rename = "take_ups")]
+    recoveries: u32,
     mode: String,
     elapsed_s: f64,
     airspeed_mps: f64,
@@ -55,13 +56,13 @@ struct Page {
     rudder: f64,
 }
 
-/// Why there is nothing to be had from a file.
+/// Why a file cannot be used.
 #[derive(thiserror::Error, Debug)]
 pub(super) enum StateFileError {
     #[error("cannot be read: {0}")]
     Unreadable(#[from] io::Error),
-    /// Never to be written over.
-    #[error("is no state file of fccd: choose another restart.state_file")]
+    /// Not a state file; never overwritten.
+    #[error("is not a state file of fccd: choose another restart.state_file")]
     Foreign,
     #[error("is of another version of fccd ({0}, and this one writes {VERSION})")]
     Version(u32),
@@ -69,7 +70,7 @@ pub(super) enum StateFileError {
     Damaged,
 }
 
-/// Reads a file; none where there is none.
+/// Reads a file; none if it does not exist.
 pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
     match fs::read(path) {
         Ok(bytes) => decode(&bytes).map(Some),
@@ -78,7 +79,7 @@ pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
     }
 }
 
-/// Writes a file; once this returns, it is on the disk.
+/// Writes a file; when this returns, it is on the disk.
 pub(super) fn write(path: &Path, saved: &Saved) -> io::Result<()> {
     let new = path.with_extension("flight.new");
     let mut file = File::create(&new)?;
@@ -88,7 +89,7 @@ pub(super) fn write(path: &Path, saved: &Saved) -> io::Result<()> {
     sync_folder(path)
 }
 
-/// Removes a file; once this returns, it is gone for good.
+/// Removes a file; when this returns, the removal is on the disk.
 pub(super) fn remove(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
@@ -113,7 +114,7 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
         boottime_ns: saved.at.ns,
         config: saved.config,
         switch_on: saved.switch_on,
-        take_ups: saved.take_ups,
+        recoveries: saved.recoveries,
         mode: progress.mode.to_string(),
         elapsed_s: progress.elapsed_s,
         airspeed_mps: targets.airspeed_mps,
@@ -164,7 +165,7 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
         },
         config: page.config,
         switch_on: page.switch_on,
-        take_ups: page.take_ups,
+        recoveries: page.recoveries,
         resume: Resume {
             progress: Progress {
                 mode: mode.ok_or(StateFileError::Damaged)?,
@@ -199,7 +200,7 @@ mod tests {
             },
             config: 0xfedc_ba98,
             switch_on: true,
-            take_ups: 2,
+            recoveries: 2,
             resume: Resume {
                 progress: Progress {
                     mode,
@@ -222,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn a_written_state_is_restored() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fccd.flight");
         assert!(read(&path).unwrap().is_none());
@@ -237,11 +238,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_ours_is_told_from_what_is_broken() {
+    fn foreign_files_are_distinguished_from_damaged_ones() {
         let good = encode(&saved(Mode::Hold, 3.5)).unwrap();
         let said = |bytes: &[u8]| decode(bytes).unwrap_err().to_string();
-        assert!(said(b"root:x:0:0:root:/root:/bin/bash\n").contains("no state file of fccd"));
-        assert!(said(&[0xff; 40]).contains("no state file of fccd"));
+        assert!(said(b"root:x:0:0:root:/root:/bin/bash\n").contains("not a state file of fccd"));
+        assert!(said(&[0xff; 40]).contains("not a state file of fccd"));
         assert!(said(b"fccd-flight 3 00000000\n{}").contains("another version"));
         assert!(said(b"").contains("damaged"), "a disk that lost it");
         assert!(said(&good[..good.len() - 1]).contains("damaged"));
@@ -249,10 +250,10 @@ mod tests {
     }
 
     proptest! {
-        /// CRC-32 finds every burst of up to 32 bits (Peterson and Brown 1961);
-        /// the line before it has no room for another meaning.
+        /// CRC-32 detects every burst of up to 32 bits (Peterson and Brown
+        /// 1961); a change in the header line makes it invalid.
         #[test]
-        fn one_changed_byte_is_noticed(place in any::<prop::sample::Index>(), by in 1_u8..) {
+        fn one_changed_byte_is_detected(place in any::<prop::sample::Index>(), by in 1_u8..) {
             let mut bytes = encode(&saved(Mode::TimedPattern, 3.0)).unwrap();
             let place = place.index(bytes.len());
             bytes[place] ^= by;

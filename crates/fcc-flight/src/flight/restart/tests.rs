@@ -1,4 +1,4 @@
-//! What is made of a state file that is found at the start.
+//! The evaluation of a state file that is found at the start.
 
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::{Setpoints, Surfaces};
@@ -26,25 +26,25 @@ const FLOWN: Resume = Resume {
     },
 };
 
-/// A folder with what a flight left.
-struct Left {
+/// A folder with the state folder_with_state by a flight.
+struct Folder {
     folder: TempDir,
-    wish: RestartRequest,
+    request: RestartRequest,
 }
 
-impl Left {
+impl Folder {
     fn new(mode: RestartMode) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let wish = RestartRequest {
+        let request = RestartRequest {
             mode,
             max_age: Duration::from_secs(60),
             path: folder.path().join("fccd.flight"),
             fingerprint: 7,
         };
-        Self { folder, wish }
+        Self { folder, request }
     }
 
-    /// Leaves a flight that was cut off so many seconds ago.
+    /// Stores the state of a flight that was interrupted this many seconds ago.
     fn leave(&self, seconds_ago: u64, change: impl FnOnce(&mut Saved)) {
         let mut at = BootInstant::now().unwrap();
         at.ns = at.ns.saturating_sub(seconds_ago * 1_000_000_000);
@@ -52,57 +52,57 @@ impl Left {
             at,
             config: 7,
             switch_on: true,
-            take_ups: 0,
+            recoveries: 0,
             resume: FLOWN,
         };
         change(&mut saved);
-        state_file::write(&self.wish.path, &saved).unwrap();
+        state_file::write(&self.request.path, &saved).unwrap();
     }
 
-    /// Whether it is to be taken up, and what is said.
+    /// Whether it is to be recovered, and the message.
     fn found(&self) -> (bool, String) {
-        let (restart, words) = Restart::begin(self.wish.clone());
-        let restart = restart.expect("there is a place to keep it");
+        let (restart, words) = Restart::begin(self.request.clone());
+        let restart = restart.expect("the path is usable");
         let taking_up = restart.taking_up.is_some();
         restart.end();
         (taking_up, words.unwrap_or_default())
     }
 
     fn is_kept(&self) -> bool {
-        self.wish.path.exists()
+        self.request.path.exists()
     }
 }
 
 #[test]
-fn nothing_left_is_nothing_said() {
+fn without_a_state_file_nothing_is_reported() {
     for mode in [RestartMode::Cold, RestartMode::Warm] {
-        assert_eq!(Left::new(mode).found(), (false, String::new()));
+        assert_eq!(Folder::new(mode).found(), (false, String::new()));
     }
 }
 
 #[test]
-fn a_young_flight_is_taken_up_where_that_is_wanted() {
-    let left = Left::new(RestartMode::Warm);
-    left.leave(2, |_| {});
-    let (taken, said) = left.found();
-    assert!(taken && said.contains("taking it up"), "{said}");
-    assert!(left.is_kept(), "until it is decided");
+fn a_recent_flight_is_recovered_if_configured() {
+    let folder_with_state = Folder::new(RestartMode::Warm);
+    folder_with_state.leave(2, |_| {});
+    let (recovered, said) = folder_with_state.found();
+    assert!(recovered && said.contains("recovering it"), "{said}");
+    assert!(folder_with_state.is_kept(), "until it is decided");
 }
 
 #[test]
-fn a_cold_restart_says_so_once() {
-    let left = Left::new(RestartMode::Cold);
-    left.leave(2, |_| {});
-    let (taken, said) = left.found();
+fn a_cold_restart_is_reported_once() {
+    let folder_with_state = Folder::new(RestartMode::Cold);
+    folder_with_state.leave(2, |_| {});
+    let (recovered, said) = folder_with_state.found();
     assert!(
-        !taken && said.contains("restart.mode is \"cold\""),
+        !recovered && said.contains("restart.mode is \"cold\""),
         "{said}"
     );
-    assert_eq!(left.found(), (false, String::new()));
+    assert_eq!(folder_with_state.found(), (false, String::new()));
 }
 
 #[test]
-fn what_cannot_be_trusted_is_not_taken_up() {
+fn an_unsuitable_state_is_not_recovered() {
     type Change = fn(&mut Saved);
     let reasons: [(&str, u64, Change); 4] = [
         ("longer than restart.max_age_s, 60 s", 61, |_| {}),
@@ -110,52 +110,57 @@ fn what_cannot_be_trusted_is_not_taken_up() {
             saved.at.boot = "another".to_owned();
         }),
         ("another configuration", 2, |saved| saved.config = 8),
-        ("taken up 3 times in a row", 2, |saved| saved.take_ups = 3),
+        ("recovered 3 times in a row", 2, |saved| {
+            saved.recoveries = 3
+        }),
     ];
     for (because, seconds_ago, change) in reasons {
-        let left = Left::new(RestartMode::Warm);
-        left.leave(seconds_ago, change);
-        let (taken, said) = left.found();
-        assert!(!taken && said.contains(because), "{said}");
-        assert!(said.contains("standing by"), "{said}");
-        assert!(!left.is_kept());
+        let folder_with_state = Folder::new(RestartMode::Warm);
+        folder_with_state.leave(seconds_ago, change);
+        let (recovered, said) = folder_with_state.found();
+        assert!(!recovered && said.contains(because), "{said}");
+        assert!(said.contains("staying in standby"), "{said}");
+        assert!(!folder_with_state.is_kept());
     }
 }
 
 #[test]
-fn a_damaged_file_is_said_and_a_foreign_one_is_left_alone() {
-    let left = Left::new(RestartMode::Warm);
-    fs::write(&left.wish.path, "fccd-flight 2 0\n{").unwrap();
-    let (taken, said) = left.found();
-    assert!(!taken && said.contains("damaged"), "{said}");
+fn a_damaged_file_is_reported_and_a_foreign_one_kept() {
+    let folder_with_state = Folder::new(RestartMode::Warm);
+    fs::write(&folder_with_state.request.path, "fccd-flight 2 0\n{").unwrap();
+    let (recovered, said) = folder_with_state.found();
+    assert!(!recovered && said.contains("damaged"), "{said}");
 
-    fs::write(&left.wish.path, "my diary\n").unwrap();
-    let (restart, said) = Restart::begin(left.wish.clone());
+    fs::write(&folder_with_state.request.path, "my diary\n").unwrap();
+    let (restart, said) = Restart::begin(folder_with_state.request.clone());
     assert!(restart.is_none());
-    assert!(said.unwrap().contains("no state file of fccd"));
-    assert_eq!(fs::read_to_string(&left.wish.path).unwrap(), "my diary\n");
+    assert!(said.unwrap().contains("not a state file of fccd"));
+    assert_eq!(
+        fs::read_to_string(&folder_with_state.request.path).unwrap(),
+        "my diary\n"
+    );
 }
 
 #[test]
 fn two_daemons_do_not_share_a_file() {
-    let left = Left::new(RestartMode::Warm);
-    left.leave(2, |_| {});
-    let (first, _) = Restart::begin(left.wish.clone());
-    let (second, said) = Restart::begin(left.wish.clone());
+    let folder_with_state = Folder::new(RestartMode::Warm);
+    folder_with_state.leave(2, |_| {});
+    let (first, _) = Restart::begin(folder_with_state.request.clone());
+    let (second, said) = Restart::begin(folder_with_state.request.clone());
     assert!(first.is_some() && second.is_none());
     assert!(said.unwrap().contains("another fccd"));
 }
 
 #[test]
-fn a_place_that_cannot_be_is_said() {
-    let mut left = Left::new(RestartMode::Warm);
-    fs::write(left.folder.path().join("file"), "").unwrap();
-    left.wish.path = left.folder.path().join("file/fccd.flight");
-    let (restart, said) = Restart::begin(left.wish.clone());
+fn an_impossible_path_is_reported() {
+    let mut folder_with_state = Folder::new(RestartMode::Warm);
+    fs::write(folder_with_state.folder.path().join("file"), "").unwrap();
+    folder_with_state.request.path = folder_with_state.folder.path().join("file/fccd.flight");
+    let (restart, said) = Restart::begin(folder_with_state.request.clone());
     assert!(restart.is_none());
     assert!(
         said.unwrap()
-            .contains("a restart would not know of this flight")
+            .contains("this flight cannot be recovered after a restart")
     );
 }
 
@@ -167,7 +172,7 @@ fn event(kind: EventKind<AutopilotCommand>) -> FlightMessage {
     })
 }
 
-/// A tick in which this is flown.
+/// A tick with this state engaged.
 fn engaged(resume: &Resume) -> FlightMessage {
     Message::Tick(FlightRecord {
         setpoints: Setpoints {
@@ -184,15 +189,15 @@ const ENDS: EventKind<AutopilotCommand> = EventKind::StateChanged {
     to: State::Stopped,
 };
 
-/// Mode and progress come from the record; the file has what was flown last.
+/// Mode and progress come from the record; the file has the last ones.
 #[test]
-fn what_the_record_says_is_kept_until_the_flight_ends_as_it_should() {
+fn the_recorded_state_is_stored_until_the_flight_ends_regularly() {
     let mut pattern = FLOWN;
     pattern.progress.mode = Mode::TimedPattern;
     pattern.progress.elapsed_s = 45.0;
     for (broken, is_left) in [(false, false), (true, true)] {
-        let left = Left::new(RestartMode::Warm);
-        let (restart, _) = Restart::begin(left.wish.clone());
+        let folder_with_state = Folder::new(RestartMode::Warm);
+        let (restart, _) = Restart::begin(folder_with_state.request.clone());
         let mut restart = restart.unwrap();
         restart.take(&engaged(&FLOWN));
         restart.take(&engaged(&pattern));
@@ -201,7 +206,7 @@ fn what_the_record_says_is_kept_until_the_flight_ends_as_it_should() {
         }
         restart.take(&event(ENDS));
         restart.end();
-        let kept = state_file::read(&left.wish.path).unwrap();
+        let kept = state_file::read(&folder_with_state.request.path).unwrap();
         assert_eq!(kept.map(|saved| saved.resume), is_left.then_some(pattern));
     }
 }

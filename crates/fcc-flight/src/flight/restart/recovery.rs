@@ -1,9 +1,10 @@
-//! Taking up a flight that was cut off: when, and when not.
+//! In-flight recovery: the conditions for continuing an interrupted flight.
 //!
-//! The sensors have to say that the aircraft flies, which is what
-//! [`engage_inhibits`](fcc_core::framework::Controller::engage_inhibits) look at before any
-//! engaging: everything fresh, faster than the envelope's floor, not upset. And
-//! a hand that has switched off in the meantime has the last word.
+//! The sensors have to show that the aircraft flies, which is what the
+//! [`engage_inhibits`](fcc_core::framework::Controller::engage_inhibits) check
+//! before any engagement: all readings fresh, airspeed above the envelope's
+//! floor, no upset. If the engage switch was switched off in the meantime, the
+//! flight is not recovered.
 
 use std::time::Duration;
 
@@ -20,55 +21,55 @@ use crate::flight::pilot::Pilot;
 const M_FT: f64 = 1.0 / 0.304_8;
 const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
-/// A flight that is to be taken up.
+/// A flight that is to be recovered.
 #[derive(Debug)]
-pub(super) struct TakingUp {
+pub(super) struct Recovery {
     saved: Saved,
-    ordered: Option<Resume>,
-    /// Of the newest tick.
-    seen: Option<Seen>,
+    commanded: Option<Resume>,
+    /// The status in the latest tick.
+    status: Option<Status>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct Status {
     state: State,
     engage_inhibits: Flags,
     switched_off: bool,
 }
 
-/// What comes next.
+/// The next step of a recovery.
 #[derive(Debug)]
 pub(super) enum Next {
     /// Nothing yet.
     Wait,
-    /// Now is the time to command this.
+    /// Command this now.
     Command(Resume),
-    /// It is flown again.
-    Taken(String),
-    /// It is not.
-    LeftAlone(String),
+    /// It was recovered.
+    Recovered(String),
+    /// It is not recovered.
+    NotRecovered(String),
 }
 
-impl TakingUp {
+impl Recovery {
     pub(super) const fn new(saved: Saved) -> Self {
         Self {
             saved,
-            ordered: None,
-            seen: None,
+            commanded: None,
+            status: None,
         }
     }
 
-    /// How often in a row the flight had been taken up before.
-    pub(super) const fn take_ups(&self) -> u32 {
-        self.saved.take_ups
+    /// The number of consecutive recoveries of the flight before this one.
+    pub(super) const fn recoveries(&self) -> u32 {
+        self.saved.recoveries
     }
 
-    /// Takes what the loop tells.
+    /// Processes a message of the loop.
     pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => {
                 let switch = record.measurements.engage_switch;
-                self.seen = Some(Seen {
+                self.status = Some(Status {
                     state: record.state.state(),
                     engage_inhibits: record.engage_inhibits,
                     switched_off: !switch.is_never() && switch.value == Switch::Off,
@@ -76,53 +77,53 @@ impl TakingUp {
             }
             Message::Event(event) => {
                 if matches!(event.kind, EventKind::EngageRefused { .. }) {
-                    self.ordered = None;
+                    self.commanded = None;
                 }
             }
         }
     }
 
-    /// What comes next.
-    pub(super) fn go_on(&self, now: Option<BootInstant>, max_age: Duration) -> Next {
-        let Some(seen) = self.seen else {
+    /// The next step of a recovery.
+    pub(super) fn next(&self, now: Option<BootInstant>, max_age: Duration) -> Next {
+        let Some(status) = self.status else {
             return Next::Wait;
         };
         let age = now.and_then(|now| now.since(&self.saved.at));
         let age = age.unwrap_or(Duration::MAX);
-        match (seen.state, &self.ordered) {
-            (State::Engaged, Some(resume)) => return Next::Taken(taken_up(resume, age)),
+        match (status.state, &self.commanded) {
+            (State::Engaged, Some(resume)) => return Next::Recovered(recovered(resume, age)),
             (State::Standby, None) => {}
             (State::Standby, Some(_)) => return Next::Wait,
-            _ => return Next::LeftAlone("the flight that was cut off is not taken up".to_owned()),
+            _ => return Next::NotRecovered("the interrupted flight is not recovered".to_owned()),
         }
-        if self.saved.switch_on && seen.switched_off {
-            return Next::LeftAlone(
-                "the flight that was cut off is not taken up: it was switched off since".to_owned(),
+        if self.saved.switch_on && status.switched_off {
+            return Next::NotRecovered(
+                "the interrupted flight is not recovered: it was switched off since".to_owned(),
             );
         }
         if age > max_age {
-            let mut words = format!(
-                "the flight that was cut off was not taken up within restart.max_age_s, {} s",
+            let mut message = format!(
+                "the interrupted flight was not recovered within restart.max_age_s, {} s",
                 max_age.as_secs_f64()
             );
-            for (n, bit) in seen.engage_inhibits.iter().enumerate() {
-                words.push_str(if n == 0 { ": " } else { ", " });
-                words.push_str(Pilot::flag_name(bit));
+            for (n, bit) in status.engage_inhibits.iter().enumerate() {
+                message.push_str(if n == 0 { ": " } else { ", " });
+                message.push_str(Pilot::flag_name(bit));
             }
-            return Next::LeftAlone(words);
+            return Next::NotRecovered(message);
         }
-        if !seen.engage_inhibits.is_empty() {
+        if !status.engage_inhibits.is_empty() {
             return Next::Wait;
         }
-        // The mode's time went on while nobody flew it.
+        // The mode's time continued during the interruption.
         let mut resume = self.saved.resume;
         resume.progress.elapsed_s += age.as_secs_f64();
         Next::Command(resume)
     }
 
-    /// Commands it: engage first, for engaging forgets what was ordered before.
-    /// Without room for both neither is sent, for engaged alone it would fly
-    /// something else; it is tried again.
+    /// Sends the commands: engage first, since engaging discards earlier
+    /// commands. Without room for both, neither is sent, since engaging alone
+    /// would fly something else; it is tried again.
     pub(super) fn command(
         &mut self,
         commands: &mut CommandSender<AutopilotCommand>,
@@ -136,19 +137,19 @@ impl TakingUp {
             let sent = both
                 .into_iter()
                 .all(|command| commands.send(command).is_ok());
-            self.ordered = sent.then_some(resume);
+            self.commanded = sent.then_some(resume);
         }
     }
 }
 
-fn taken_up(resume: &Resume, age: Duration) -> String {
+fn recovered(resume: &Resume, age: Duration) -> String {
     let Targets {
         airspeed_mps,
         heading_rad,
         altitude_m,
     } = resume.progress.captured;
     format!(
-        "the flight was taken up {:.2} s after it was last kept: {}, {:.1} s after it captured \
+        "the flight was recovered {:.2} s after its last stored state: {}, {:.1} s after it captured \
          heading {:.0}°, altitude {:.0} ft, airspeed {:.1} kt",
         age.as_secs_f64(),
         resume.progress.mode,
@@ -170,7 +171,7 @@ mod tests {
     use crate::config::Config;
 
     #[test]
-    fn both_orders_are_sent_or_neither() {
+    fn both_commands_are_sent_or_neither() {
         let resume = Resume {
             progress: Progress {
                 mode: Mode::Hold,
@@ -182,7 +183,7 @@ mod tests {
             at: BootInstant::now().unwrap(),
             config: 0,
             switch_on: true,
-            take_ups: 0,
+            recoveries: 0,
             resume,
         };
         for (room, sent) in [(1, 0), (2, 2), (3, 2)] {
@@ -197,10 +198,10 @@ mod tests {
                 actuators: Vec::new(),
             };
             let (_machine, mut link) = Machine::new(parts, &config).unwrap();
-            let mut taking_up = TakingUp::new(saved.clone());
+            let mut taking_up = Recovery::new(saved.clone());
             taking_up.command(&mut link.commands, resume);
             assert_eq!(room - link.commands.room(), sent);
-            assert_eq!(taking_up.ordered.is_some(), sent == 2);
+            assert_eq!(taking_up.commanded.is_some(), sent == 2);
         }
     }
 }
