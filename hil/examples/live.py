@@ -32,7 +32,11 @@ def reading(value: Any) -> Any:
     """Return the layout of a value and when it was taken."""
 
     class Reading(ctypes.Structure):
-        _fields_ = (("value", value), ("taken_ns", ctypes.c_int64))
+        _fields_ = (
+            ("value", value),
+            ("taken_ns", ctypes.c_int64),
+            ("source", ctypes.c_uint8),
+        )
 
     return Reading
 

@@ -68,6 +68,9 @@ pub enum EventCode {
     OverrunsOver = 15,
     /// The loop hung (how long without progress).
     Hung = 16,
+    /// Readings are taken from another sensor than before (which, one bit each;
+    /// the sensor before); the index is the sensor now.
+    SourceChanged = 17,
 }
 
 impl Event {
@@ -152,6 +155,10 @@ fn numbers(event: &FlightEvent) -> (EventCode, u32, [u64; 3]) {
             (EventCode::OverrunsOver, 0, [count, first, last])
         }
         EventKind::Hung { silent_ns } => (EventCode::Hung, 0, [silent_ns, 0, 0]),
+        EventKind::SourceChanged(change) => {
+            let values = [change.readings.bits().into(), change.from.into(), 0];
+            (EventCode::SourceChanged, change.to.into(), values)
+        }
         // One that this version has no number for still has its words.
         _ => (EventCode::Remark, 0, NONE),
     }

@@ -1,7 +1,7 @@
 //! What a loop that runs the autopilot tells of itself.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{EventKind, EventOf, MessageOf, RecordOf};
+use fcc_core::flight::{Autopilot, Measurements};
+use fcc_core::framework::{EventKind, EventOf, MessageOf, Readings, RecordOf, SourceChange};
 
 use crate::schema::{Words, words};
 
@@ -37,6 +37,14 @@ pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]
         }
         EventKind::ActuatorRecovered { index } => {
             format!("actuator {}: works again", name(actuators, index))
+        }
+        EventKind::SourceChanged(SourceChange { readings, from, to }) => {
+            let names = readings
+                .iter()
+                .map(|bit| Measurements::NAMES.get(bit as usize));
+            let names: Vec<_> = names.flatten().copied().collect();
+            let (from, to) = (name(sensors, from.into()), name(sensors, to.into()));
+            format!("{}: from {to} instead of {from}", names.join(", "))
         }
         kind => kind.words::<Autopilot>().to_string(),
     }

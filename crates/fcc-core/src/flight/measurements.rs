@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::Surfaces;
 use crate::framework::{Reading, Switch};
-use crate::schema;
+use crate::{readings, schema};
 
 schema! {
     /// What an aircraft's sensors measure, each with the time it was taken.
@@ -53,6 +53,21 @@ schema! {
         pub plant: Reading<Plant>,
     }
 }
+
+readings!(Measurements {
+    attitude: "attitude",
+    heading_rad: "heading",
+    body_rates: "body rates",
+    specific_force: "acceleration",
+    airspeed_mps: "airspeed",
+    altitude_m: "altitude",
+    angle_of_attack_rad: "angle of attack",
+    position: "position",
+    velocity: "velocity",
+    surfaces: "surfaces",
+    engage_switch: "engage switch",
+    plant: "the plant's state",
+});
 
 schema! {
     /// Pitch and roll, rad.

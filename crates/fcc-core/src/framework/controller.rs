@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::schema::Schema;
-use super::{Flags, Reading, Tick, Time};
+use super::{Flags, Reading, Readings, Tick, Time};
 use crate::schema;
 
 schema! {
@@ -27,7 +27,7 @@ schema! {
 /// clock, allocate nothing and do not panic.
 pub trait Controller: Send {
     /// What the sensors measure.
-    type Measurements: Schema;
+    type Measurements: Schema + Readings;
     /// What the controller makes of the measurements, for those who watch.
     type Estimate: Schema;
     /// What the controller aims for, for those who watch.

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{
-    ActuatorFault, Cause, Controller, Flags, LoopCommand, SensorFault, Stage, State, Time,
+    ActuatorFault, Cause, Controller, Flags, LoopCommand, Readings, SensorFault, SourceChange,
+    Stage, State, Time,
 };
 use crate::schema;
 
@@ -186,6 +187,10 @@ schema! {
             #[field(1)]
             silent_ns: u64,
         },
+        /// Readings are taken from another sensor than before: the one before
+        /// grew too old, or one that is preferred came back.
+        #[field(27)]
+        SourceChanged(change: SourceChange),
     }
 }
 
@@ -300,6 +305,14 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                 "the loop hung: no progress for {:.1} s",
                 ms(silent_ns) * 1e-3
             ),
+            EventKind::SourceChanged(SourceChange { readings, from, to }) => {
+                for (n, bit) in readings.iter().enumerate() {
+                    let separator = if n > 0 { ", " } else { "" };
+                    let name = C::Measurements::NAMES.get(bit as usize);
+                    write!(f, "{separator}{}", name.unwrap_or(&"a reading"))?;
+                }
+                write!(f, ": from sensor {to} instead of {from}")
+            }
         }
     }
 }

@@ -7,6 +7,7 @@ mod files;
 mod flights;
 mod identical;
 mod incomplete;
+mod sources;
 
 use fcc_core::framework::State;
 use fcc_flight::config::Config;

@@ -9,6 +9,7 @@ mod autopilot;
 mod budget;
 mod built_in;
 mod cpu;
+mod devices;
 mod early_wake;
 mod error;
 mod guidance;
@@ -35,6 +36,7 @@ pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use cpu::CpuChoice;
+pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
@@ -80,6 +82,12 @@ pub struct Config {
     /// The aircraft is the built-in one.
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
+    /// Sensors beside the simulator's, the most preferred first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensor: Vec<SensorEntry>,
+    /// What is moved; the simulator where there is no list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
 /// Which aircraft a configuration flies.

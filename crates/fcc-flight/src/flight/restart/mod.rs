@@ -89,6 +89,8 @@ fn fingerprint(config: &Config) -> u32 {
         guidance: config.guidance,
         autopilot: config.autopilot.clone(),
         x_plane: config.x_plane.clone(),
+        sensor: config.sensor.clone(),
+        actuator: config.actuator.clone(),
         ..Config::default()
     };
     // A configuration that was read can be written.
