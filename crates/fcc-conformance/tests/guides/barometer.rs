@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::os::unix::net::{SocketAddr, UnixDatagram};
 use std::time::Duration;
 
-use fcc_conformance::{SensorBench, VanishingSource, sensor_conformance};
+use fcc_conformance::{SensorBench, Ticks, VanishingSource, sensor_conformance};
 use fcc_core::flight::Measurements;
 use fcc_core::flight::atmosphere::pressure_altitude_m;
 use fcc_core::framework::{Reading, Sensor, SensorFault, Tick, Time};
@@ -130,7 +130,8 @@ fn a_pressure_becomes_the_altitude_of_the_standard_atmosphere() {
     let mut measured = Measurements::default();
     let message = 89_874.6_f64.to_le_bytes();
     bench.chip.send_to_addr(&message, &bench.at).unwrap();
-    let sampled = bench.barometer.sample(&Tick::default(), &mut measured);
+    let tick = Ticks::default().next_tick();
+    let sampled = bench.barometer.sample(&tick, &mut measured);
     assert_eq!(sampled, Ok(()));
     let altitude_m = measured.altitude_m.value;
     assert!((altitude_m - 1_000.0).abs() < 0.1, "{altitude_m} m");
@@ -144,11 +145,12 @@ fn what_cannot_be_a_pressure_is_left_out() {
         let mut bench = Bench::new();
         let mut measured = Measurements::default();
         bench.provide();
-        let first = bench.barometer.sample(&Tick::default(), &mut measured);
+        let tick = Ticks::default().next_tick();
+        let first = bench.barometer.sample(&tick, &mut measured);
         assert_eq!(first, Ok(()));
         let before = measured;
         bench.chip.send_to_addr(&message, &bench.at).unwrap();
-        let second = bench.barometer.sample(&Tick::default(), &mut measured);
+        let second = bench.barometer.sample(&tick, &mut measured);
         assert_eq!(second, Err(SensorFault::Malformed));
         assert_eq!(measured, before);
     }
