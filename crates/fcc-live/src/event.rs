@@ -61,7 +61,7 @@ pub enum EventCode {
     TimerFailed = 13,
     /// Ticks begin to overrun (how long it took, its budget, the stage that
     /// took longest); the index is the stage whose budget it was. Stages: 0 the
-    /// timer, 1 sensors, 2 navigation, 3 guidance, 4 control, 5 actuators, 6
+    /// timer, 1 sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6
     /// the whole tick.
     Overrun = 14,
     /// No tick has overrun for a second (count, first and last tick).

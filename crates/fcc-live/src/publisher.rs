@@ -21,21 +21,19 @@ const WAITING: usize = 2_048;
 /// end waits longer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What goes to the publishing thread.
-#[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are records, and the ring's slots are made for them"
-)]
+/// What goes to the publishing thread: plain data of a fixed size, which could
+/// as well go to another process.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) enum Item {
     /// Each tick.
     Record(FlightRecord),
     /// What happened once.
     Event(Event),
     /// Who publishes; once, and again if it changes.
-    Info(Box<Info>),
+    Info(Info),
     /// How recording goes.
-    Recorder(Box<RecorderStatus>),
+    Recorder(RecorderStatus),
 }
 
 /// Publishes what happens to whoever watches.
@@ -83,6 +81,7 @@ impl Publisher {
         let seen = Arc::clone(&left_out);
         let thread = std::thread::Builder::new()
             .name(thread::NAME.to_owned())
+            .stack_size(thread::STACK_BYTES)
             .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &say))
             .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
         match start.recv_timeout(PATIENCE) {
@@ -118,12 +117,12 @@ impl Publisher {
 
     /// Publishes who publishes; before this nobody can watch.
     pub fn describe(&mut self, info: Info) {
-        self.put(Item::Info(Box::new(info)));
+        self.put(Item::Info(info));
     }
 
     /// Tells how recording goes: it is in the next status.
     pub fn recorder(&mut self, status: RecorderStatus) {
-        self.put(Item::Recorder(Box::new(status)));
+        self.put(Item::Recorder(status));
     }
 
     /// The next command from another program, if there is one. Each wants its

@@ -16,11 +16,14 @@ use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
-use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
+use super::{Event, Info, PublishError, RecorderStatus, Status};
 use fcc_telemetry::{FlightWords, Instance};
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
+
+/// Where the memory of the process is locked, all of a stack is in memory.
+pub(super) const STACK_BYTES: usize = 512 << 10;
 
 /// How long it sleeps if nobody wakes it.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -178,10 +181,10 @@ impl Publishing {
             }
             Item::Info(info) => {
                 if !self.paused {
-                    let _ = self.infos.send_copy(*info);
+                    let _ = self.infos.send_copy(info);
                 }
             }
-            Item::Recorder(status) => self.recorder = *status,
+            Item::Recorder(status) => self.recorder = status,
         }
     }
 
@@ -217,7 +220,7 @@ impl Publishing {
             recorded: self.recorder.recorded,
             not_recorded: self.recorder.not_recorded,
             recording_bytes: self.recorder.bytes,
-            recording: Text::new(&self.recorder.name),
+            recording: self.recorder.name,
         };
         let _ = self.statuses.send_copy(status);
     }

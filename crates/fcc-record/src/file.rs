@@ -143,8 +143,8 @@ impl RecordingFile {
         self.bytes.clear();
         encode(record, &mut self.bytes);
         self.write_bytes(Topic::Record, log_ns)?;
-        if let Some(pose) = foxglove::pose(record, &mut self.attitude, log_ns) {
-            self.write(Topic::Attitude, log_ns, &pose)?;
+        if let Some(transform) = foxglove::transform(record, &mut self.attitude, log_ns) {
+            self.write(Topic::Attitude, log_ns, &transform)?;
         }
         if let Some(location) = foxglove::location(record, &mut self.position, log_ns) {
             self.write(Topic::Position, log_ns, &location)?;

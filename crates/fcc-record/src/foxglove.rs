@@ -1,7 +1,7 @@
 //! What of a flight goes into Foxglove's well-known messages.
 //!
 //! Its 3D view has x east, y north, z up, and bodies with x forward, y left,
-//! z up. The heading there is the measured one, magnetic.
+//! z up. The attitude there is the estimated one, its heading magnetic.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,7 +10,7 @@ use fcc_core::framework::{EventKind, Reading, State};
 use prost_types::Timestamp;
 
 use super::utc::SECOND_NS;
-use super::wire::{LocationFix, Log, Pose, PoseInFrame, Quaternion, Vector3, log};
+use super::wire::{FrameTransform, LocationFix, Log, Quaternion, Vector3, log};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 
 /// The frame that attitude is given in.
@@ -71,26 +71,28 @@ pub(super) fn location(
     })
 }
 
-/// The attitude of a record, if it has a new one; stamped with `unix_ns`.
-pub(super) fn pose(
+/// How the aircraft lies in the local frame, if a record has a new attitude;
+/// stamped with `unix_ns`. It stays where it is: places are on the map.
+pub(super) fn transform(
     record: &FlightRecord,
     thinned: &mut Thinned,
     unix_ns: u64,
-) -> Option<PoseInFrame> {
+) -> Option<FrameTransform> {
     let measured = &record.measurements;
     if measured.heading_rad.is_never() || !thinned.lets_through(&measured.attitude) {
         return None;
     }
-    Some(PoseInFrame {
+    let estimate = &record.estimate;
+    let attitude = Attitude {
+        pitch_rad: estimate.pitch_rad,
+        roll_rad: estimate.roll_rad,
+    };
+    Some(FrameTransform {
         timestamp: Some(timestamp(unix_ns)),
-        frame_id: LOCAL_FRAME.to_owned(),
-        pose: Some(Pose {
-            position: Some(Vector3::default()),
-            orientation: Some(orientation(
-                measured.attitude.value,
-                measured.heading_rad.value,
-            )),
-        }),
+        parent_frame_id: LOCAL_FRAME.to_owned(),
+        child_frame_id: BODY_FRAME.to_owned(),
+        translation: Some(Vector3::default()),
+        rotation: Some(orientation(attitude, estimate.heading_rad)),
     })
 }
 

@@ -74,7 +74,7 @@ impl Topic {
             Self::Record => "fcc.v2.Record",
             Self::Event => "fcc.v2.Event",
             Self::Position => "foxglove.LocationFix",
-            Self::Attitude => "foxglove.PoseInFrame",
+            Self::Attitude => "foxglove.FrameTransform",
             Self::Log => "foxglove.Log",
         }
     }
@@ -86,7 +86,7 @@ impl Topic {
                 return describe(&messages(), "fcc/v2/flight.proto", PACKAGE).into();
             }
             Self::Position => descriptors!("location_fix").as_slice(),
-            Self::Attitude => descriptors!("pose_in_frame"),
+            Self::Attitude => descriptors!("frame_transform"),
             Self::Log => descriptors!("log"),
         };
         described.into()

@@ -12,10 +12,34 @@ pub const FALLBACK_AFTER: Duration = Duration::from_millis(100);
 /// Writes its part of the measurements `M` once a tick.
 ///
 /// The loop holds sensors as `Box<dyn Sensor<M>>`: a simulated plant and a
-/// board's own sensors differ in configuration and in no line of the loop. A sensor that has nothing new leaves `into` as it is: each
+/// board's own sensors differ in configuration and in no line of the loop. A sensor
+/// that has nothing new leaves `into` as it is: each
 /// [`Reading`](super::Reading) carries its own time, and grows old by itself.
 /// `into` is this sensor's own: where there are several, the loop takes each
 /// reading from the most preferred that has a fresh one.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::framework::{Reading, Sensor, SensorFault, Tick};
+///
+/// /// A thermometer that always says 19 °C.
+/// struct Thermometer;
+///
+/// impl Sensor<Reading<f64>> for Thermometer {
+///     fn sample(&mut self, tick: &Tick, into: &mut Reading<f64>) -> Result<(), SensorFault> {
+///         *into = Reading::new(19.0, tick.woke);
+///         Ok(())
+///     }
+///
+///     fn name(&self) -> &'static str {
+///         "thermometer"
+///     }
+/// }
+///
+/// let (tick, mut measured) = (Tick::default(), Reading::default());
+/// assert!(Thermometer.sample(&tick, &mut measured).is_ok());
+/// assert_eq!(measured.value, 19.0);
+/// ```
 pub trait Sensor<M>: Send {
     /// Takes what is there and returns. Never waits, allocates, locks, logs or
     /// panics.
@@ -44,6 +68,12 @@ pub trait Sensor<M>: Send {
 
 schema! {
     /// What can go wrong when a sensor is sampled.
+    ///
+    /// ```
+    /// use fcc_core::framework::SensorFault;
+    ///
+    /// assert_ne!(SensorFault::Silent.to_string(), "");
+    /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug)]
     #[name("SensorFaultKind")]
     #[non_exhaustive]
