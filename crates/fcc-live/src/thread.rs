@@ -23,7 +23,12 @@ use fcc_telemetry::{FlightWords, Instance};
 pub(super) const NAME: &str = "fcc-live";
 
 /// Where the memory of the process is locked, all of a stack is in memory.
-pub(super) const STACK_BYTES: usize = 512 << 10;
+/// iceoryx2 that is not optimized needs more than a flight has.
+pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
+    2 << 20
+} else {
+    512 << 10
+};
 
 /// How long it sleeps if nobody wakes it.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
