@@ -1,24 +1,43 @@
-//! What a loop that runs the autopilot tells of itself.
+//! What a loop tells of itself, in words; and what a flight's loop tells.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{EventKind, EventOf, MessageOf, RecordOf};
+use fcc_core::framework::{Controller, EventKind, EventOf};
 
-use crate::schema::{Words, words};
+#[cfg(feature = "flight")]
+pub use of_flights::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
 
-/// The record of one tick of a flight.
-pub type FlightRecord = RecordOf<Autopilot>;
+#[cfg(feature = "flight")]
+mod of_flights {
+    use fcc_core::flight::Autopilot;
+    use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 
-/// The words of a flight's record, as they lie in shared memory and in arrays.
-pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
+    use crate::recording::FoxgloveViews;
+    use crate::schema::{Words, words};
+    use crate::telemetry::Telemetry;
 
-/// Something that happened in a flight.
-pub type FlightEvent = EventOf<Autopilot>;
+    /// The record of one tick of a flight.
+    pub type FlightRecord = RecordOf<Autopilot>;
 
-/// A record or an event of a flight.
-pub type FlightMessage = MessageOf<Autopilot>;
+    /// The words of a flight's record, as they lie in shared memory and in arrays.
+    pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
+
+    /// Something that happened in a flight.
+    pub type FlightEvent = EventOf<Autopilot>;
+
+    /// A record or an event of a flight.
+    pub type FlightMessage = MessageOf<Autopilot>;
+
+    impl Telemetry for Autopilot {
+        type Words = FlightWords;
+        type Views = FoxgloveViews;
+    }
+}
 
 /// An event in words, with the names of the parts it speaks of.
-pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> String {
+pub fn event_words<C: Controller>(
+    event: &EventOf<C>,
+    sensors: &[String],
+    actuators: &[String],
+) -> String {
     let name = |names: &[String], index: u16| {
         names
             .get(usize::from(index))
@@ -38,6 +57,6 @@ pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]
         EventKind::ActuatorRecovered { index } => {
             format!("actuator {}: works again", name(actuators, index))
         }
-        kind => kind.words::<Autopilot>().to_string(),
+        kind => kind.words::<C>().to_string(),
     }
 }

@@ -17,7 +17,7 @@ use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
-use crate::{FlightWords, Instance};
+use crate::{Instance, RecordWords as _, Telemetry};
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
@@ -32,15 +32,15 @@ pub(super) type Started = Result<(), PublishError>;
 
 /// Publishes what comes by the ring, until nobody can put anything there, and
 /// takes commands if there are rings for them.
-pub(super) fn publish(
+pub(super) fn publish<C: Telemetry>(
     instance: &Instance,
     commands: Option<Rings>,
-    mut items: Consumer<Item>,
+    mut items: Consumer<Item<C>>,
     left_out: &AtomicU64,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::open(instance, commands) {
+    let mut thread = match Publishing::<C>::open(instance, commands) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this; if it has given up, nobody does.
@@ -85,10 +85,10 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
     }
 }
 
-struct Publishing {
+struct Publishing<C: Telemetry> {
     desk: Option<CommandServer>,
-    records: Out<Published>,
-    service: Service<Published>,
+    records: Out<Published<C>>,
+    service: Service<Published<C>>,
     events: Out<Event>,
     statuses: Out<Status>,
     infos: Out<Info>,
@@ -101,7 +101,7 @@ struct Publishing {
     access: Access,
 }
 
-impl Publishing {
+impl<C: Telemetry> Publishing<C> {
     fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
@@ -156,7 +156,7 @@ impl Publishing {
         }
     }
 
-    fn take(&mut self, item: Item) {
+    fn take(&mut self, item: Item<C>) {
         match item {
             Item::Record(record) => {
                 self.lateness.take(&record.tick);
@@ -164,7 +164,7 @@ impl Publishing {
                 if self.paused
                     || self
                         .records
-                        .send_copy(Published(FlightWords::of(&record)))
+                        .send_copy(Published(C::Words::of_record(&record)))
                         .is_err()
                 {
                     self.not_published += 1;

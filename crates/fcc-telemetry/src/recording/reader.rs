@@ -9,7 +9,7 @@ use mcap::records::Record;
 use super::about::About;
 use super::damage::Damage;
 use super::end::{End, RunStatistics};
-use super::items::{Items, Messages};
+use super::items::{AnyMessage, Items, Messages, RecordedMessage};
 use super::raw::{Found, RawReader};
 use super::schema;
 use super::summary;
@@ -188,7 +188,7 @@ impl Recording {
     /// Reads message by message.
     fn count(&self, mut go_on: impl FnMut(u64) -> bool) -> Result<Option<Verified>, OpenError> {
         let mut run_statistics = RunStatistics::default();
-        let mut messages = self.messages()?;
+        let mut messages = self.messages::<AnyMessage>()?;
         while let Some(message) = messages.next() {
             run_statistics.take(&message);
             if run_statistics.ticks().is_multiple_of(CHECK_EVERY) && !go_on(messages.bytes_read()) {
@@ -222,7 +222,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file cannot be opened any more.
-    pub fn messages(&self) -> Result<Messages, OpenError> {
+    pub fn messages<M: RecordedMessage>(&self) -> Result<Messages<M>, OpenError> {
         self.items().map(Messages::new)
     }
 
@@ -231,7 +231,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file cannot be opened any more.
-    pub fn items(&self) -> Result<Items, OpenError> {
+    pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
         self.raw()
             .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
     }
