@@ -3,7 +3,7 @@
 #![no_main]
 
 use std::collections::VecDeque;
-use std::net::{Ipv4Addr, SocketAddrV4};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::sync::Mutex;
 use std::time::Duration;
 
@@ -14,8 +14,8 @@ use fcc_xplane::{
     DataRows, Errno, Input, Output, Port, RowsVersion, Simulator, XPlane, XPlaneConfig,
 };
 
-const SIMULATOR: SocketAddrV4 = SocketAddrV4::new(Ipv4Addr::new(10, 0, 0, 1), 49_000);
-const STRANGER: SocketAddrV4 = SocketAddrV4::new(Ipv4Addr::new(10, 0, 0, 2), 49_000);
+const SIMULATOR: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::new(10, 0, 0, 1)), 49_000);
+const STRANGER: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::new(10, 0, 0, 2)), 49_000);
 
 #[derive(Arbitrary, Debug)]
 struct Flight {
@@ -71,12 +71,12 @@ impl Message {
 
 /// Shared with the sensor, which owns its port.
 #[derive(Default)]
-struct Script(Mutex<VecDeque<(Vec<u8>, SocketAddrV4)>>);
+struct Script(Mutex<VecDeque<(Vec<u8>, SocketAddr)>>);
 
 struct Scripted(std::sync::Arc<Script>);
 
 impl Port for Scripted {
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
         let next = self.0.0.lock().expect("one thread").pop_front();
         Ok(next.map(|(datagram, from)| {
             let length = datagram.len().min(into.len());
@@ -85,7 +85,7 @@ impl Port for Scripted {
         }))
     }
 
-    fn send(&self, datagram: &[u8], _: SocketAddrV4) -> Result<(), Errno> {
+    fn send(&self, datagram: &[u8], _: SocketAddr) -> Result<(), Errno> {
         assert!(matches!(datagram.len(), 7..=11 | 77 | 413 | 509));
         Ok(())
     }

@@ -70,6 +70,7 @@ class Settings:
     aircraft: str = "c172p"
     seed: int = 1
     host: str = "127.0.0.1"
+    """Of IPv4 or of IPv6."""
     port: int = 49_000
     """0 takes any free port."""
     frame_rate_hz: float = 60.0
@@ -236,7 +237,9 @@ class StandIn:
 
     def _open(self) -> socket.socket:
         settings = self.settings
-        opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        is_ipv6 = ":" in settings.host
+        family = socket.AF_INET6 if is_ipv6 else socket.AF_INET
+        opened = socket.socket(family, socket.SOCK_DGRAM)
         try:
             opened.bind((settings.host, settings.port))
         except OSError as error:
@@ -246,6 +249,8 @@ class StandIn:
                 "is X-Plane or another stand-in running? Choose another with --port"
             ) from error
         opened.setblocking(False)
+        if is_ipv6:
+            return opened  # The beacon is of IPv4.
         opened.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 1)
         opened.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_LOOP, 1)
         if settings.host != "0.0.0.0":
@@ -263,7 +268,8 @@ class StandIn:
             except ConnectionError:
                 # A client is gone and the kernel says so; nothing is lost.
                 continue
-            self._inbound.offer(now_s, sender, datagram)
+            # Of IPv6 there are four parts.
+            self._inbound.offer(now_s, sender[:2], datagram)
         for sender, datagram in self._inbound.due(now_s):
             try:
                 self._handle(sender, datagram)

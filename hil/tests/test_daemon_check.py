@@ -57,8 +57,8 @@ WRONG = {
         "x-plane.engage_switch",
         "letters, digits, / _ [ ]",
     ),
-    "a name for an address": (
-        '[x-plane]\nsimulator = "localhost:49000"\n',
+    "no address": (
+        '[x-plane]\nsimulator = "192.168.1.300:49000"\n',
         2,
         "x-plane.simulator",
         "127.0.0.1:49000",
@@ -86,10 +86,7 @@ WRONG = {
     ),
     "a leg of a hold": ('[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n', 2, "guidance", "leg_s"),
     "a section by its former name": (
-        '[x-plane]
-[course]
-kind = "hold"
-',
+        '[x-plane]\n[course]\nkind = "hold"\n',
         2,
         "course",
         "is called [guidance], its kind mode",

@@ -48,6 +48,8 @@ LEG = {
     "lateral_acceleration_g",
 }
 
+NOT_RECORDED = 14
+
 _RUN_S = 60.0
 
 
@@ -109,6 +111,7 @@ def test_fly_as_json(fccd: Path) -> None:
     report = json.loads(ended.stdout)
     assert_timing(report["timing"])
     assert set(report["flight"]) == {"legs", "worst"}
+    assert report["scored_by"] == "truth"
     # 20 s of hold and one leg of 20 s; the second has only begun.
     (leg,) = report["flight"]["legs"]
     assert set(leg) == LEG
@@ -123,7 +126,28 @@ def test_fly_says_how_it_goes_each_second_and_is_quiet_if_asked(fccd: Path) -> N
     assert len(lines) == 2 + 5 + 1, "2 s before engaging, 5 after, both ends counted"
     quiet = run([fccd, "fly", "--seconds", "5", "--lockstep", "--quiet"])
     assert "altitude" not in quiet.stderr
-    assert "Missed" in quiet.stdout
+
+
+def test_lockstep_prints_no_times_and_what_it_scored(fccd: Path) -> None:
+    ended = run([fccd, "fly", "--seconds", "45", "--lockstep", "--quiet"])
+    assert ended.returncode == 0, ended.stderr
+    assert "Missed" not in ended.stdout, "no time passes that could be kept"
+    assert "scored by how the simulated aircraft truly flew" in ended.stdout
+    for column in ("≤2° s", "overshoot", "hdg RMS", "turn loss", "airspeed", "lateral"):
+        assert ended.stdout.count(column) >= 2, "in the table, and below it what it means"
+    in_real_time = run([fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"])
+    assert "Missed" in in_real_time.stdout
+
+
+def test_a_flight_that_was_not_recorded_does_not_end_as_if_it_was(
+    fccd: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("in the way of a folder")
+    ended = run(
+        [fccd, "fly", "--seconds", "1", "--lockstep", "--recordings", tmp_path / "file"]
+    )
+    assert ended.returncode == NOT_RECORDED, ended.stderr
+    assert "NOT RECORDED" in ended.stdout
 
 
 @pytest.mark.parametrize(
@@ -150,6 +174,7 @@ def test_help_names_the_exit_codes(fccd: Path) -> None:
     assert ended.returncode == 0
     assert "3  the flight fell into failsafe" in ended.stdout
     assert "12  another program has the simulator" in ended.stdout
+    assert "14  the flight went as it should, but was not recorded" in ended.stdout
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -7,6 +7,7 @@ import socket
 import time
 from pathlib import Path
 
+import pytest
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
 from deaf_simulator import DeafSimulator
 from fault_flights import AT_ONCE_S, NS, Flown
@@ -16,6 +17,7 @@ from fcc_hil.process import StandInProcess
 from fcc_hil.standin import BEACON_GROUP, Mode, Settings
 
 SUCCESS = 0
+FAILURE = 1
 FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
@@ -48,6 +50,46 @@ def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_pa
     assert ending.exit_code == SUCCESS
     said = [text for text in ending.events if "does not send" in text]
     assert len(said) == 1, said
+
+
+@pytest.mark.parametrize(("host", "written"), [("::1", "[::1]"), ("127.0.0.1", "localhost")])
+def test_it_is_flown_by_ipv6_and_by_its_host_name(
+    fccd: Path, tmp_path: Path, host: str, written: str
+) -> None:
+    with StandInProcess(Settings(host=host, port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        text = config.read_text().replace('"127.0.0.1:', f'"{written}:')
+        config.write_text(text)
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["released"] is True
+
+
+def test_a_killed_daemon_that_flew_by_ipv6_leaves_a_guard_that_releases(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with StandInProcess(Settings(host="::1", port=0)) as simulator:
+        config = write_config(tmp_path, simulator.port)
+        config.write_text(config.read_text().replace('"127.0.0.1:', '"[::1]:'))
+        with start(fccd, tmp_path, config) as daemon:
+            engage(simulator, daemon)
+            daemon.end(signal.SIGKILL)
+            assert_released(simulator)
+
+
+def test_a_host_name_without_an_address_is_said_before_the_flight(
+    fccd: Path, tmp_path: Path
+) -> None:
+    config = write_config(tmp_path, 49_000)
+    config.write_text(config.read_text().replace('"127.0.0.1:49000"', '"sim.invalid"'))
+    with start(fccd, tmp_path, config) as daemon:
+        ending = daemon.end()
+    assert ending.exit_code == FAILURE
+    assert "cannot find X-Plane at sim.invalid:49000" in ending.said
+    assert "IP address" in ending.said
 
 
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import live
@@ -34,12 +34,12 @@ from fault_flights import (
     at_once,
 )
 from recordings import RECORD, attachments, in_sequence, only_recording
-from stuck_terminal import StuckTerminal
 
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import BEACON_GROUP, Settings
 
 SUCCESS = 0
+NOT_RECORDED = 14
 TAKEN = 12
 
 NORMAL_HZ = 40
@@ -57,14 +57,19 @@ UNTIL_STOPPED = ["--seconds", "3600"]
 
 
 def fly(
-    fccd: Path, scratch: Path, config: str, *words: str | Path, before: tuple[str, ...] = ()
+    fccd: Path,
+    scratch: Path,
+    config: str,
+    *words: str | Path,
+    before: tuple[str, ...] = (),
+    environment: Mapping[str, str] | None = None,
 ) -> DaemonUnderTest:
     """Start a flight of the built-in aircraft; `before` is a program that starts it."""
     scratch.mkdir(exist_ok=True)
     path = scratch / "fccd.toml"
     path.write_text(f"[built-in]\nengage_at_s = 1.5\n{HOLD}{config}")
     starts: list[str | Path] = [*before, fccd, "fly", "--config", path, "--json"]
-    return DaemonUnderTest([*starts, *UNTIL_STOPPED, *words], scratch)
+    return DaemonUnderTest([*starts, *UNTIL_STOPPED, *words], scratch, environment)
 
 
 def a_full_disk(fccd: Path, scratch: Path) -> Ending:
@@ -127,23 +132,21 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
             watcher.wait()
 
 
-def a_full_ring(fccd: Path, scratch: Path) -> Flown:
-    """Fly at 1 kHz, and hold the terminal until what waits to be fetched finds no room."""
+def a_full_ring(faulty_fccd: Path, scratch: Path) -> Flown:
+    """Fly at 1 kHz, and let nobody fetch until what waits finds no room."""
+    recordings = scratch / "recordings"
     config = f"[loop]\nrate_hz = {FAST_HZ}\n[telemetry]\nenabled = false\n"
-    with StuckTerminal(fccd, scratch, config) as daemon:
-        wait_until(lambda: b"standby -> engaged" in daemon.hear(), "it is engaged")
-        daemon.hold()
-        # The ring has room for 4,096 ticks. Nobody knows from outside that it is full:
-        # twice that time passes before somebody reads again.
-        time.sleep(2 * RING_S)
-        heard = len(daemon.hear())
-        wait_until(lambda: b"records lost" in daemon.hear()[heard:], "it tells of the gap", 30.0)
-        exit_code = daemon.end()
-    return Flown.of(Ending(exit_code, {}, ""), daemon.recordings)
+    paused = {"FCCD_PAUSE_AT_S": "3", "FCCD_PAUSE_S": str(2 * RING_S)}
+    words = ("--recordings", recordings)
+    with fly(faulty_fccd, scratch, config, *words, environment=paused) as daemon:
+        daemon.wait_for("records lost", within_s=30.0)
+        return Flown.of(daemon.end(signal.SIGTERM), recordings)
 
 
 @pytest.fixture(scope="module")
-def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, object]:
+def flights(
+    fccd: Path, faulty_fccd: Path, tmp_path_factory: pytest.TempPathFactory
+) -> dict[str, object]:
     """All flights, side by side."""
     scratch = tmp_path_factory.mktemp("host_environment")
     assert shutil.which("prlimit"), "install util-linux"
@@ -151,7 +154,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, o
         "disk": lambda: a_full_disk(fccd, scratch / "disk"),
         "configuration": lambda: a_changed_configuration(fccd, scratch / "configuration"),
         "watcher": lambda: a_hung_watcher(fccd, scratch / "watcher"),
-        "ring": lambda: a_full_ring(fccd, scratch / "ring"),
+        "ring": lambda: a_full_ring(faulty_fccd, scratch / "ring"),
     }
     return at_once(made)
 
@@ -161,7 +164,7 @@ def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
 ) -> None:
     ending = flights["disk"]
     assert isinstance(ending, Ending)
-    assert ending.exit_code == SUCCESS
+    assert ending.exit_code == NOT_RECORDED
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     recording = ending.report["recording"]
     assert "all before is safe" in recording["stopped"]
@@ -196,7 +199,7 @@ def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> Non
 def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> None:
     flown = flights["ring"]
     assert isinstance(flown, Flown)
-    assert flown.ending.exit_code == SUCCESS
+    assert flown.ending.exit_code == NOT_RECORDED
     kinds = [event.kind.WhichOneof("kind") for event in flown.events]
     gap = flown.events[kinds.index("records_dropped")].records_dropped
     assert gap.count == flown.records[-1].records_dropped > 0

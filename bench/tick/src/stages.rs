@@ -8,7 +8,7 @@ use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, Controller, Message, MessageOf, RecordOf, Sensor, Tick};
 use fcc_xplane::{Errno, Port, XPlane, XPlaneActuator, XPlaneSensor};
 use rtrb::{Consumer, Producer, RingBuffer};
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 
 use crate::support::{FLIGHT_TIME, FakeXPlane, Scripted, position_reply};
 use crate::{Flight, PERIOD};
@@ -161,11 +161,11 @@ impl Stages {
 struct Wire(Arc<Scripted>);
 
 impl Port for Wire {
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
         self.0.receive(into)
     }
 
-    fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno> {
+    fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno> {
         self.0.send(black_box(datagram), to)
     }
 }

@@ -37,6 +37,8 @@ pub enum Exit {
     Taken = 12,
     /// A recording is damaged or cut off: what is said is of the rest of it.
     Incomplete = 13,
+    /// The flight went as it should, but was not recorded, or not as a whole.
+    NotRecorded = 14,
 }
 
 /// For `--help`.
@@ -56,7 +58,8 @@ Exit codes:
  11  the daemon refused the command
  12  another program has the simulator or the local port
  13  a recording is damaged or cut off: the result is of the rest (report,
-     replay), or a part of it is lost (list, recover)";
+     replay), or a part of it is lost (list, recover)
+ 14  the flight went as it should, but was not recorded, or not as a whole";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {
@@ -68,6 +71,7 @@ impl From<Conclusion> for Exit {
     fn from(conclusion: Conclusion) -> Self {
         match conclusion {
             Conclusion::Completed => Self::Success,
+            Conclusion::NotRecorded => Self::NotRecorded,
             Conclusion::Failed => Self::Failure,
             Conclusion::Failsafe => Self::Failsafe,
             Conclusion::Panicked => Self::Panicked,

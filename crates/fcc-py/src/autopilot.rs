@@ -1,5 +1,7 @@
 //! The autopilot, stepped by hand.
 
+use std::ops::RangeInclusive;
+
 use fcc_core::flight::{AutopilotCommand, Surfaces};
 use fcc_core::framework::Controller;
 use numpy::{PyArray2, ToPyArray};
@@ -137,7 +139,8 @@ impl PyAutopilot {
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
         self.stepped.must_be_engaged()?;
-        let commands = checked_commands(airspeed_mps, heading_rad, altitude_m)?;
+        let allowed = self.stepped.autopilot.config().envelope.allowed_airspeeds();
+        let commands = checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)?;
         self.stepped.command(commands);
         Ok(())
     }
@@ -198,14 +201,18 @@ pub(crate) fn matrix<const N: usize>(
     rows.into_flattened().to_pyarray(py).reshape([count, N])
 }
 
-/// Commands for the controller: airspeed in m/s, 5 to 340; heading in rad, any
+/// Commands for the controller: airspeed in m/s, as the envelope allows; heading in rad, any
 /// number of turns; altitude in m, -500 to 20,000.
 pub(crate) fn checked_commands(
     airspeed_mps: Option<f64>,
     heading_rad: Option<f64>,
     altitude_m: Option<f64>,
+    airspeeds_mps: &RangeInclusive<f64>,
 ) -> PyResult<Vec<AutopilotCommand>> {
-    let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, 5.0, 340.0);
+    // What is said is taken: the limits are even in knots.
+    let [least, most] =
+        [airspeeds_mps.start(), airspeeds_mps.end()].map(|mps| (mps * 100.0).round() / 100.0);
+    let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, least, most);
     let altitude = |m| within("altitude_m", finite("altitude_m", m)?, -500.0, 20_000.0);
     [
         airspeed_mps.map(|mps| airspeed(mps).map(AutopilotCommand::Airspeed)),

@@ -1,4 +1,4 @@
-//! The loop's actuators: driven, watched, and released whatever happens.
+//! The loop's actuators: driven, monitored, and released on every exit path.
 
 use fcc_core::framework::{Actuator, ActuatorFault, EventKind, Tick};
 
@@ -9,7 +9,7 @@ use crate::telemetry_producer::Events;
 struct Watched<A> {
     actuator: Box<dyn Actuator<A>>,
     health: Health<ActuatorFault>,
-    /// It was told to release and did not.
+    /// A release was requested and failed.
     release_pending: bool,
 }
 
@@ -50,7 +50,7 @@ impl<A> Actuators<A> {
         }
     }
 
-    /// Hands the outputs to every actuator, after one that fails too.
+    /// Passes the outputs to every actuator, even if one fails.
     pub(crate) fn apply<O>(&mut self, tick: &Tick, outputs: &A, events: &mut Events<O>) {
         for (index, watched) in (0..).zip(&mut self.all) {
             let result = watched.actuator.apply(tick, outputs);
@@ -66,17 +66,17 @@ impl<A> Actuators<A> {
         }
     }
 
-    /// Tells every actuator to give control back. One that fails or panics
-    /// does not keep the others from being released.
+    /// Requests every actuator to give control back, even if one fails or
+    /// panics.
     ///
     /// # Errors
-    /// The words of the first panic.
+    /// The message of the first panic.
     pub(crate) fn release<O>(&mut self, tick: &Tick, events: &mut Events<O>) -> Result<(), String> {
         let mut panic = Ok(());
         for (index, watched) in (0..).zip(&mut self.all) {
             match panics::caught(|| watched.actuator.release()) {
                 Ok(result) => {
-                    // A release that works says nothing of writes that did not.
+                    // A successful release does not end the fault of a write.
                     if result.is_err() || watched.release_pending {
                         watched.note(index, result, tick, events);
                     }
@@ -92,7 +92,7 @@ impl<A> Actuators<A> {
         panic
     }
 
-    /// Whether no actuator owes a release.
+    /// Whether every release succeeded.
     pub(crate) fn are_released(&self) -> bool {
         self.all.iter().all(|watched| !watched.release_pending)
     }

@@ -1,15 +1,15 @@
-//! Reads what is asked of the loop from outside.
+//! Reads the commands to the loop.
 
 use fcc_core::framework::{Controller, EventKind, LoopCommand, Tick};
 use rtrb::Consumer;
 
 use crate::telemetry_producer::Events;
 
-/// Commands read in one tick at most: enough for hands and for a ground station,
-/// and a bound to what a flood of them can cost.
-const ORDERS_PER_TICK: usize = 16;
+/// Most commands read in one tick: enough for a pilot and a ground station, and a
+/// limit to their cost.
+const COMMANDS_PER_TICK: usize = 16;
 
-/// What a tick's commands ask of the loop itself.
+/// A command to the loop itself.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum StateRequest {
     None,
@@ -18,7 +18,7 @@ pub(crate) enum StateRequest {
     Stop,
 }
 
-/// Reads this tick's commands and hands the controller its own.
+/// Reads this tick's commands and passes the controller its own.
 ///
 /// A command to the loop itself ends the reading, and the rest wait for the
 /// next tick: "engage, then heading 090" must not become "heading 090, then
@@ -29,12 +29,12 @@ pub(crate) fn read<C: Controller>(
     tick: &Tick,
     events: &mut Events<C::Command>,
 ) -> StateRequest {
-    for _ in 0..ORDERS_PER_TICK {
+    for _ in 0..COMMANDS_PER_TICK {
         let Ok(command) = ring.pop() else {
             break;
         };
-        // Told before it is carried out: one that panics the controller is
-        // the one that must be in the recording.
+        // Reported before it is carried out, so that a command at which the
+        // controller panics is in the recording.
         events.push(tick, EventKind::CommandReceived(command));
         match command {
             LoopCommand::Controller(command) => controller.command(&command),

@@ -1,4 +1,4 @@
-//! What a loop is made of, and what it is told before it starts.
+//! The parts of a loop and its configuration.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use fcc_timer::{RealtimeRequest, Timer};
 
 use crate::overruns::Budget;
 
-/// What a loop is made of.
+/// The parts of a loop.
 pub struct Parts<C: Controller> {
     /// When to wake.
     pub timer: Box<dyn Timer>,
@@ -19,7 +19,7 @@ pub struct Parts<C: Controller> {
     pub actuators: Vec<Box<dyn Actuator<C::Outputs>>>,
 }
 
-/// What a loop is told before it starts.
+/// The configuration of a loop.
 #[derive(Clone, Debug)]
 pub struct LoopConfig {
     /// What switching off the engage switch means.
@@ -44,7 +44,7 @@ pub struct LoopConfig {
     /// loop's thread a real-time priority. No by default: it wakes as it was
     /// built. Concerns [`Loop::spawn`](crate::Loop::spawn) alone.
     pub early_wake_needs_priority: bool,
-    /// What [`Loop::spawn`](crate::Loop::spawn) asks of the kernel for its
+    /// What [`Loop::spawn`](crate::Loop::spawn) requests of the kernel for its
     /// thread.
     pub realtime: RealtimeRequest,
 }
@@ -68,7 +68,7 @@ impl Default for LoopConfig {
 /// What comes when failsafe is over and the actuators are released.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum AfterFailsafe {
-    /// Watch on, ready to engage again.
+    /// Stay in standby, ready to engage again.
     #[default]
     Standby,
     /// End the loop.

@@ -1,4 +1,4 @@
-//! The loop's changes of state: what leads to them, and what they lead to.
+//! The loop's state transitions: their causes and their effects.
 
 use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tick};
 
@@ -9,8 +9,8 @@ use crate::report::Ending;
 use crate::switch::SwitchEdge;
 
 impl<C: Controller> Machine<C> {
-    /// Decides in which state this tick goes on. Letting go is looked at
-    /// before taking over, so that of two hands the careful one wins.
+    /// Decides the state of this tick. Inputs that end control are processed
+    /// before those that engage, so that the safer of two commands wins.
     pub(crate) fn decide(&mut self, tick: &Tick, command: StateRequest) {
         let before = self.state;
         if !before.holds_control() && !self.actuators.are_released() {
@@ -73,12 +73,12 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    /// Falls into failsafe.
+    /// Enters failsafe.
     pub(crate) fn fail(&mut self, cause: Cause, tick: &Tick) {
         self.apply_input(Input::Fault(cause), tick);
     }
 
-    /// Leaves failsafe: its time is up, or there is nothing safe to send.
+    /// Leaves failsafe: its time is over, or there are no safe outputs to send.
     pub(crate) fn end_failsafe(&mut self, tick: &Tick) {
         match self.after_failsafe {
             AfterFailsafe::Standby => self.apply_input(Input::FailsafeOver, tick),
@@ -91,8 +91,8 @@ impl<C: Controller> Machine<C> {
         self.apply_input(Input::Stop, tick);
     }
 
-    /// Puts an input into the transition table, and does what the change of
-    /// state asks for.
+    /// Applies an input to the transition table, and performs the actions of the
+    /// transition.
     fn apply_input(&mut self, input: Input, tick: &Tick) {
         let from = self.state;
         let to = from.after(input, self.switch_off);
@@ -119,7 +119,7 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    /// Ends the loop from outside a tick's decisions. Asks nothing of the
+    /// Ends the loop from outside a tick's decisions. Does not call the
     /// controller: it may be the part that panicked.
     pub(crate) fn stop_with(&mut self, ending: Ending) {
         let at = self.record.tick;
@@ -133,7 +133,7 @@ impl<C: Controller> Machine<C> {
         self.release(&at, ReleaseReport::Always);
     }
 
-    /// Keeps the first reason to end, but a panic on the way out says more.
+    /// Keeps the first reason to end, except that a later panic replaces it.
     fn end_by(&mut self, ending: Ending) {
         let keep = match &self.ending {
             None => false,
@@ -156,25 +156,25 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    /// Tells every actuator to give control back.
+    /// Requests every actuator to give control back.
     pub(crate) fn release(&mut self, at: &Tick, report: ReleaseReport) {
         let panic = self.actuators.release(at, &mut self.telemetry.events).err();
         let ok = self.actuators.are_released();
         if ok || report == ReleaseReport::Always {
             self.telemetry.events.push(at, EventKind::Released { ok });
         }
-        if let Some(words) = panic {
+        if let Some(message) = panic {
             self.telemetry.events.push(at, EventKind::Panicked);
-            self.end_by(Ending::Panicked(words));
+            self.end_by(Ending::Panicked(message));
             self.enter(State::Stopped, at);
         }
     }
 }
 
-/// Which outcome of a release is told.
+/// Which result of a release is reported.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ReleaseReport {
     Always,
-    /// Of asking again each tick until it works: that it failed was told.
+    /// For repeated attempts: the failure was reported already.
     OnSuccess,
 }

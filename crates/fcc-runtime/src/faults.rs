@@ -1,14 +1,14 @@
-//! Whether one sensor or actuator works, tick after tick.
+//! The health of one sensor or actuator.
 
-/// What changed for the people who watch.
+/// A change of the health.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Change<F> {
     Fault(F),
     Recovered,
 }
 
-/// The present fault of one part, so that only changes are told: a silent
-/// sensor would otherwise fill a recording with the same sentence.
+/// The present fault of one part, so that only changes are reported: a silent
+/// sensor would otherwise fill a recording with the same event.
 #[derive(Debug)]
 pub(crate) struct Health<F> {
     present: Option<F>,
@@ -19,7 +19,7 @@ impl<F: Copy + PartialEq> Health<F> {
         Self { present: None }
     }
 
-    /// Takes a tick's result.
+    /// Processes a tick's result.
     pub(crate) fn update(&mut self, result: Result<(), F>) -> Option<Change<F>> {
         let before = self.present;
         self.present = result.err();

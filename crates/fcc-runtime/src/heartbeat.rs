@@ -1,77 +1,77 @@
-//! Whether the loop makes progress, for who watches from another thread.
+//! Whether the loop makes progress, readable from another thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI32, AtomicU64, Ordering};
 
 use fcc_timer::realtime;
 
-const NOT_BEGUN: u64 = 0;
-const OVER: u64 = u64::MAX;
+const NOT_STARTED: u64 = 0;
+const ENDED: u64 = u64::MAX;
 
-/// The loop's heartbeat: one plain store a tick, which any thread may feel.
+/// The loop's heartbeat: one atomic store a tick, which any thread may read.
 #[derive(Clone, Debug, Default)]
 pub struct Heartbeat(Arc<Beats>);
 
 #[derive(Debug)]
 struct Beats {
     count: AtomicU64,
-    /// The loop's thread, as the kernel numbers it; 0 before it began.
+    /// The kernel's number of the loop's thread; 0 before it starts.
     thread: AtomicI32,
 }
 
 impl Default for Beats {
     fn default() -> Self {
         Self {
-            count: AtomicU64::new(NOT_BEGUN),
+            count: AtomicU64::new(NOT_STARTED),
             thread: AtomicI32::new(0),
         }
     }
 }
 
-/// What a heartbeat feels like.
+/// A reading of the heartbeat.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum HeartbeatReading {
-    /// The loop has not begun.
+    /// The loop has not started.
     NotStarted,
-    /// It runs; the number goes up with every tick.
+    /// The loop runs; the number increases with every tick.
     Beat(u64),
-    /// The loop is over.
+    /// The loop has ended.
     Ended,
 }
 
 impl Heartbeat {
-    /// How it feels now.
+    /// The present reading.
     pub fn read(&self) -> HeartbeatReading {
         match self.0.count.load(Ordering::Relaxed) {
-            NOT_BEGUN => HeartbeatReading::NotStarted,
-            OVER => HeartbeatReading::Ended,
+            NOT_STARTED => HeartbeatReading::NotStarted,
+            ENDED => HeartbeatReading::Ended,
             count => HeartbeatReading::Beat(count),
         }
     }
 
-    /// The loop begins, on this thread.
+    /// The loop starts, on this thread.
     pub(crate) fn begin(&self) {
         self.0
             .thread
             .store(realtime::this_thread(), Ordering::Relaxed);
-        self.0.count.store(NOT_BEGUN + 1, Ordering::Release);
+        self.0.count.store(NOT_STARTED + 1, Ordering::Release);
     }
 
-    /// A tick begins. Only the loop's thread writes, so this needs no
+    /// A tick starts. Only the loop's thread writes, so this needs no
     /// read-modify-write.
     pub(crate) fn beat(&self) {
         let count = self.0.count.load(Ordering::Relaxed);
-        if count != OVER {
+        if count != ENDED {
             self.0.count.store(count + 1, Ordering::Relaxed);
         }
     }
 
-    /// The loop is over.
+    /// The loop has ended.
     pub(crate) fn end(&self) {
-        self.0.count.store(OVER, Ordering::Relaxed);
+        self.0.count.store(ENDED, Ordering::Relaxed);
     }
 
-    /// The loop's thread; 0 if it has not begun.
+    /// The loop's thread; 0 if it has not started.
     pub(crate) fn thread(&self) -> i32 {
         self.0.thread.load(Ordering::Relaxed)
     }

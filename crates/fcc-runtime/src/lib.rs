@@ -1,26 +1,27 @@
 //! Runs a [`Controller`](fcc_core::framework::Controller) on a timer.
 //!
-//! Put the [`Parts`] together, make a [`Loop`] of them, and run it here or in
-//! a thread of its own. Once a tick, in one thread and in one direction:
+//! Make a [`Loop`] of the [`Parts`] and run it in this thread or in one of its
+//! own. Once a tick, in one thread and in one direction:
 //!
 //! ```text
 //! timer ─► commands ─► sensors ─► estimate ─► decide ─► guide ─► control ─► actuators ─► record
 //! ```
 //!
-//! What the loop promises, whatever it runs:
+//! What the loop guarantees for every controller:
 //!
 //! - Between the wake-up and the last actuator write it allocates nothing,
-//!   takes no lock and waits for nobody. Commands come in and messages go out by
+//!   takes no lock and never waits. Commands come in and messages go out by
 //!   one lock-free ring each; a full ring drops and counts.
-//! - The actuators are released on every way out: let go, switched off, the
-//!   failsafe's end, a command to stop, the stop flag, a timer that fails, a
+//! - The actuators are released on every exit path: disengaged, switched off,
+//!   the end of failsafe, a command to stop, the stop flag, a timer failure, a
 //!   panic in a part, the loop being dropped.
-//! - A tick that overruns its [`Budget`] is counted and told of, and the phase
-//!   is kept; as many in a row as configured lead to failsafe. A loop that
-//!   hangs is seen by a watchdog ([`watch`]).
+//! - A tick that overruns its [`Budget`] is counted and reported, and the
+//!   phase is kept; a configured number in a row leads to failsafe. A watchdog
+//!   detects a loop that hangs ([`watch`]).
 //! - Outputs that the controller itself calls invalid are never sent.
-//! - It changes its state by [`State::after`](fcc_core::framework::State::after)
-//!   and by nothing else, and each change is an [`Event`].
+//! - Its state changes only by
+//!   [`State::after`](fcc_core::framework::State::after), and each change is an
+//!   [`Event`].
 //!
 //! [`Machine`] is the loop without its thread: one call, one tick. The thread,
 //! tests and simulations faster than real time all run that same code.
@@ -112,7 +113,7 @@ mod switch;
 mod telemetry_producer;
 mod watchdog;
 
-// The words a loop is spoken with, so that its users need no other crate.
+// The types of a loop's messages, so that its users need no other crate.
 pub use fcc_core::framework::{
     Event, EventKind, EventOf, EventWords, LoopCommand, Message, MessageOf, Record, RecordOf,
     StageTimes,

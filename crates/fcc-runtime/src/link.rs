@@ -1,4 +1,4 @@
-//! The other end of a loop's two rings, and its stop flag.
+//! The caller's ends of a loop's two rings, and its stop flag.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,7 +8,7 @@ use rtrb::{Consumer, Producer};
 
 use crate::heartbeat::Heartbeat;
 
-/// How the world outside speaks with a loop.
+/// A loop's connections to its caller.
 pub struct Link<C: Controller> {
     /// Commands in.
     pub commands: CommandSender<C::Command>,
@@ -16,7 +16,7 @@ pub struct Link<C: Controller> {
     pub messages: MessageReceiver<C>,
     /// The stop flag.
     pub stop: StopHandle,
-    /// Whether it makes progress.
+    /// Whether the loop makes progress.
     pub heartbeat: Heartbeat,
 }
 
@@ -43,7 +43,7 @@ impl<O> CommandSender<O> {
     /// Sends a command; it is read in one of the next ticks.
     ///
     /// # Errors
-    /// The command itself, if the loop has not read the ones before, or is over.
+    /// The command itself, if the ring is full or the loop has ended.
     pub fn send(&mut self, command: LoopCommand<O>) -> Result<(), CommandsFull<O>> {
         if self.ring.is_abandoned() {
             return Err(CommandsFull(command));
@@ -54,14 +54,14 @@ impl<O> CommandSender<O> {
     }
 }
 
-/// A command that could not be sent: the ring is full, or the loop is over.
+/// A command that could not be sent: the ring is full, or the loop has ended.
 #[derive(thiserror::Error, Clone, Copy, PartialEq, Eq, Debug)]
 #[error(
     "the loop takes no more commands now: it is over, or many wait; send again in the next tick"
 )]
 pub struct CommandsFull<O>(pub LoopCommand<O>);
 
-/// Fetches what a loop tells of itself; never waits.
+/// Receives a loop's messages; never waits.
 pub struct MessageReceiver<C: Controller> {
     ring: Consumer<MessageOf<C>>,
 }
@@ -76,9 +76,9 @@ impl<C: Controller> MessageReceiver<C> {
         self.ring.pop().ok()
     }
 
-    /// Whether the loop is gone and everything it told was fetched.
+    /// Whether the loop has ended and all messages were received.
     pub fn is_over(&self) -> bool {
-        // In this order: what was told last was told before the loop left.
+        // In this order: the last message was sent before the loop ended.
         self.ring.is_abandoned() && self.ring.is_empty()
     }
 }
@@ -90,17 +90,17 @@ pub struct StopHandle {
 }
 
 impl StopHandle {
-    /// Asks the loop to end. Async-signal-safe: a single atomic store.
+    /// Requests the loop to end. Async-signal-safe: a single atomic store.
     pub fn stop(&self) {
         self.flag.store(true, Ordering::Release);
     }
 
-    /// Whether the loop was asked to end.
+    /// Whether the loop was requested to end.
     pub fn is_set(&self) -> bool {
         self.flag.load(Ordering::Acquire)
     }
 
-    /// The flag itself, for what registers flags with signals.
+    /// The flag itself, to register with a signal handler.
     pub fn flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.flag)
     }

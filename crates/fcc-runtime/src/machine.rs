@@ -61,8 +61,8 @@ pub struct Machine<C: Controller> {
 }
 
 impl<C: Controller> Machine<C> {
-    /// Puts the parts together, in [`State::Standby`]. Everything the loop
-    /// will ever allocate is allocated here.
+    /// Assembles the parts, in [`State::Standby`]. All the loop's memory is
+    /// allocated here.
     ///
     /// # Errors
     /// When the timer's period cannot be kept statistics of.
@@ -112,7 +112,7 @@ impl<C: Controller> Machine<C> {
     /// Starts the timer; to be called once, on the thread that will step.
     ///
     /// # Errors
-    /// What the timer says.
+    /// The timer's error.
     pub fn start(&mut self) -> Result<(), TimerError> {
         self.cpu_at_start_ns = usage::thread_cpu_ns();
         self.timer.start()?;
@@ -132,7 +132,7 @@ impl<C: Controller> Machine<C> {
         Some(usage::page_faults().all().saturating_sub(before))
     }
 
-    /// Waits for the timer and performs one tick; gives the state after it.
+    /// Waits for the timer and performs one tick; returns the state after it.
     /// A timer that fails or ends stops the machine.
     pub fn step(&mut self) -> State {
         if self.state == State::Stopped {
@@ -144,14 +144,13 @@ impl<C: Controller> Machine<C> {
                 Ok(Ok(None)) => continue,
                 Ok(Err(TimerError::Ended)) => self.stop_with(Ending::TimerEnded),
                 Ok(Err(error)) => self.stop_with(Ending::TimerFailed(error)),
-                Err(words) => self.stop_with(Ending::Panicked(words)),
+                Err(message) => self.stop_with(Ending::Panicked(message)),
             }
             return self.state;
         }
     }
 
-    /// Waits for the deadline, or comes back before it: a timer that wakes
-    /// early leaves time to rehearse.
+    /// Waits for the deadline, or returns `None` after a warm-up before it.
     fn wait(&mut self) -> Result<Option<Expiry>, TimerError> {
         match self.timer.wait_or_warm_up()? {
             Wake::Deadline(expiry) => Ok(Some(expiry)),
@@ -183,8 +182,8 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    /// Performs the tick of a deadline; gives the state after it. Allocates
-    /// nothing and waits for nobody, but for a tick in which a part panics.
+    /// Performs the tick of a deadline; returns the state after it. Allocates
+    /// nothing and never waits, except in a tick in which a part panics.
     ///
     /// A panic in a part stops the machine and releases the actuators; it does
     /// not leave this call.
@@ -192,8 +191,8 @@ impl<C: Controller> Machine<C> {
         self.perform(expiry, None)
     }
 
-    /// Performs a tick again, of which is recorded how long its stages took:
-    /// the overruns of now are those of then.
+    /// Repeats a recorded tick with the recorded stage times, so that its
+    /// overruns are those of the recording.
     pub fn tick_again(&mut self, expiry: Expiry, stages: StageTimes) -> State {
         self.perform(expiry, Some(stages))
     }
@@ -206,8 +205,8 @@ impl<C: Controller> Machine<C> {
         let tick = self.tick_of(&expiry);
         self.record = Record::new(tick, self.state);
         self.overruns.begin(&tick, &mut self.telemetry.events);
-        if let Err(words) = panics::caught(|| self.run_stages(&tick)) {
-            self.stop_with(Ending::Panicked(words));
+        if let Err(message) = panics::caught(|| self.run_stages(&tick)) {
+            self.stop_with(Ending::Panicked(message));
         }
         if let Some(stages) = recorded {
             self.record.stages = stages;
@@ -221,8 +220,8 @@ impl<C: Controller> Machine<C> {
         self.state
     }
 
-    /// One turn, in one direction: all that happens between the wake-up and
-    /// the last actuator write.
+    /// The stages of a tick: everything between the wake-up and the last actuator
+    /// write.
     fn run_stages(&mut self, tick: &Tick) {
         let command = commands::read(
             &mut self.commands,
@@ -257,8 +256,7 @@ impl<C: Controller> Machine<C> {
         self.record.setpoints = self.controller.setpoints();
     }
 
-    /// Works out the outputs for the present state; those that are not valid
-    /// never get out of here.
+    /// Computes the outputs for the present state; never returns invalid ones.
     fn compute_outputs(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
         if self.state == State::Engaged {
             self.controller.guide(tick, &self.measurements);
@@ -274,13 +272,13 @@ impl<C: Controller> Machine<C> {
             if self.controller.outputs_are_valid(&outputs) {
                 return Some(outputs);
             }
-            // Nothing safe is left to send: holding on would help nobody.
+            // There are no safe outputs to send, so control is released.
             self.end_failsafe(tick);
         }
         None
     }
 
-    /// Completes this tick's record and sends it off with the tick's events.
+    /// Completes this tick's record and sends it with the tick's events.
     fn send_record(&mut self) {
         self.record.state = self.state.into();
         self.record.measurements = self.measurements;
@@ -288,8 +286,8 @@ impl<C: Controller> Machine<C> {
         self.record.actuator_faults = self.actuators.faults();
         self.record.records_dropped = self.telemetry.records_dropped();
         self.record.overruns = self.overruns.total();
-        // A system call of 0.2 µs, here where nothing waits for it: each tick,
-        // so that a fault is found beside what happened in its tick.
+        // A system call of 0.2 µs, after the last actuator write: in each tick,
+        // so that a fault is in the record of the tick that caused it.
         self.record.page_faults = self.page_faults().unwrap_or(0);
         self.telemetry.send(&self.record);
     }
@@ -309,7 +307,7 @@ impl<C: Controller> Machine<C> {
         &self.controller
     }
 
-    /// Ends the loop, if it has not ended, and gives the account of it.
+    /// Ends the loop, if it has not ended, and returns its report.
     pub fn finish(mut self) -> LoopReport {
         let page_faults = self.page_faults();
         self.close();

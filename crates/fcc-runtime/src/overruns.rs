@@ -1,7 +1,7 @@
-//! Whether ticks keep to their budget.
+//! Whether ticks stay within their budget.
 //!
-//! Stage times come from a clock, so a decision made of them is no function of
-//! the tick's inputs. They are in the record, though: a replay hands them back
+//! Stage times are read from a clock, so a decision based on them is not a
+//! function of the tick's inputs. They are in the record: a replay passes them back
 //! ([`Machine::tick_again`](crate::Machine::tick_again)), and the same ticks
 //! overrun.
 
@@ -27,7 +27,7 @@ pub struct Budget {
     pub control: Option<Duration>,
     /// Driving the actuators.
     pub actuators: Option<Duration>,
-    /// So many ticks in a row that overrun or are missed lead to failsafe; 0
+    /// This many ticks in a row that overrun or are missed lead to failsafe; 0
     /// for never. `None` for as many as fill half a second, at least
     /// [`FEWEST_FOR_FAILSAFE`](Self::FEWEST_FOR_FAILSAFE): a light aircraft
     /// trimmed for level flight hardly moves in that time, and a kernel without
@@ -36,7 +36,7 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// The least that half a second is taken for, where ticks are long.
+    /// The minimum, for long periods.
     pub const FEWEST_FOR_FAILSAFE: u32 = 4;
     const DEFAULT_FAILSAFE_AFTER: Duration = Duration::from_millis(500);
 
@@ -53,10 +53,10 @@ impl Budget {
     }
 }
 
-/// After so long without one, overruns that follow are told anew.
+/// After this long without one, further overruns are reported again.
 const OVER_AFTER: Duration = Duration::from_secs(1);
 
-/// Overruns with less than [`OVER_AFTER`] between them: told as one.
+/// Overruns with less than [`OVER_AFTER`] between them: reported as one.
 struct Series {
     count: u64,
     first: u64,
@@ -64,7 +64,7 @@ struct Series {
     last_at: Time,
 }
 
-/// Counts overruns, and tells of them.
+/// Counts and reports overruns.
 pub(crate) struct Overruns {
     budget: Budget,
     period_ns: u64,
@@ -96,7 +96,7 @@ impl Overruns {
         }
     }
 
-    /// Takes in how a tick begins: periods may have passed unserved.
+    /// Processes the start of a tick: periods may have passed unserved.
     pub(crate) fn begin<O>(&mut self, tick: &Tick, events: &mut Events<O>) {
         if tick.missed == 0 {
             return;
@@ -113,7 +113,7 @@ impl Overruns {
         self.note(tick, tick.missed, overrun, events);
     }
 
-    /// Takes in how long a tick took.
+    /// Processes the duration of a tick.
     pub(crate) fn end<O>(&mut self, tick: &Tick, stages: &StageTimes, events: &mut Events<O>) {
         let Some((of, budget_ns)) = self.overrun(stages) else {
             self.row = 0;
@@ -131,8 +131,8 @@ impl Overruns {
         self.note(tick, 1, overrun, events);
     }
 
-    /// Whose budget was overrun and what it was: a stage's before the whole
-    /// tick's, since it says more.
+    /// Which budget was exceeded and its length: a stage's before the whole
+    /// tick's, because it is more specific.
     fn overrun(&self, stages: &StageTimes) -> Option<(Stage, u64)> {
         let all = Stage::TIMED.into_iter().chain([Stage::Tick]);
         all.filter_map(|stage| Some((stage, self.budget.of(stage)?.as_nanos() as u64)))

@@ -1,4 +1,4 @@
-//! The account of a loop that is over.
+//! The report of a loop that has ended.
 
 use std::fmt;
 use std::time::Duration;
@@ -6,22 +6,23 @@ use std::time::Duration;
 use fcc_core::framework::Cause;
 use fcc_timer::{RealtimeGranted, TimerError, TimingSummary};
 
-/// The account of a loop that is over.
+/// The report of a loop that has ended.
 #[derive(Debug)]
 pub struct LoopReport {
     /// Why it ended.
     pub ending: Ending,
     /// Ticks performed.
     pub ticks: u64,
-    /// What the timer calls itself: `timerfd`, `posix`, ...
+    /// The timer's name: `timerfd`, `posix`, ...
     pub timer: &'static str,
-    /// How well the ticks kept time, missed ones included.
+    /// Timing statistics, including missed ticks.
     pub timing: TimingSummary,
-    /// How often it fell into failsafe.
+    /// How often it entered failsafe.
     pub failsafes: u64,
-    /// Why it did so the last time.
+    /// The cause of the last time.
     pub last_failsafe: Option<Cause>,
-    /// Whether every actuator gave control back. If not, it may still be held.
+    /// Whether every actuator gave control back. If not, control may still be
+    /// held.
     pub released: bool,
     /// Failed samples of sensors.
     pub sensor_faults: u64,
@@ -29,16 +30,16 @@ pub struct LoopReport {
     pub actuator_faults: u64,
     /// Ticks that overran their budget.
     pub overruns: u64,
-    /// Records that nobody fetched in time.
+    /// Records lost because they were not read in time.
     pub records_dropped: u64,
-    /// Events that nobody fetched in time.
+    /// Events lost because they were not read in time.
     pub events_dropped: u64,
     /// CPU time that the loop's thread spent from the timer's start on.
     pub cpu_time: Duration,
     /// Page faults of the loop's thread from the timer's start on; none where
     /// they were not counted.
     pub page_faults: Option<u64>,
-    /// What the kernel granted the loop's thread; `None` if it had none of its
+    /// What the kernel granted the loop's thread; `None` without a thread of its
     /// own.
     pub granted: Option<RealtimeGranted>,
 }
@@ -55,16 +56,16 @@ pub enum Ending {
     SwitchedOff,
     /// Failsafe was over, and that is configured to end the loop.
     FailsafeOver,
-    /// A part panicked, with these words.
+    /// A part panicked, with this message.
     Panicked(String),
     /// The timer failed.
     TimerFailed(TimerError),
-    /// The timer had no more deadlines to give.
+    /// The timer had no more deadlines.
     TimerEnded,
-    /// It hung, and its watchdog ended it. Nobody is left to give an account
-    /// but who watched it.
+    /// It hung, and its watchdog ended it. The report is made by the caller, from
+    /// the records received.
     Hung,
-    /// Whoever stepped the [`Machine`](crate::Machine) finished it.
+    /// The caller finished the [`Machine`](crate::Machine).
     Finished,
 }
 
@@ -75,7 +76,7 @@ impl fmt::Display for Ending {
             Self::StopFlag => f.write_str("told to stop"),
             Self::SwitchedOff => f.write_str("switched off"),
             Self::FailsafeOver => f.write_str("failsafe was over"),
-            Self::Panicked(words) => write!(f, "a part panicked: {words}"),
+            Self::Panicked(message) => write!(f, "a part panicked: {message}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),
             Self::Hung => f.write_str("the loop hung"),

@@ -1,4 +1,4 @@
-//! The loop in a thread: this one or its own.
+//! Runs the loop in this thread or in one of its own.
 
 use std::sync::mpsc::{self, SyncSender};
 use std::thread::{self, JoinHandle};
@@ -16,12 +16,12 @@ use crate::report::{Ending, LoopReport};
 /// The name of a loop's own thread, as `top -H` and panic messages show it.
 pub const THREAD_NAME: &str = "fcc-loop";
 
-/// A loop that is put together and has not started.
+/// A loop that has not started.
 ///
 /// Once one runs, a panic in a tick is not printed by the process' panic hook,
 /// which may wait for a terminal or a pipe before the actuators are released;
-/// its words and its place are in the [`LoopReport`]. Other panics are printed
-/// as ever.
+/// its message and its location are in the [`LoopReport`]. Other panics are
+/// printed as before.
 pub struct Loop<C: Controller> {
     machine: Machine<C>,
     realtime: RealtimeRequest,
@@ -45,8 +45,8 @@ impl<C: Controller> Loop<C> {
         Ok((this, link))
     }
 
-    /// Runs in this thread until the loop stops or its timer ends. The thread
-    /// stays as it is: it is yours, and so are its real-time request.
+    /// Runs in this thread until the loop stops or its timer ends. Makes no
+    /// real-time requests for it.
     pub fn run_here(mut self) -> LoopReport {
         panics::keep_quiet();
         if let Err(error) = self.machine.start() {
@@ -55,12 +55,12 @@ impl<C: Controller> Loop<C> {
         run(self.machine)
     }
 
-    /// Runs in a thread of its own, once the kernel has granted or refused
-    /// each real-time wish and the timer has started.
+    /// Runs in a thread of its own. Returns when the kernel has granted or denied
+    /// each real-time request and the timer has started.
     ///
     /// # Errors
-    /// When there is no thread to be had, when a wish that must be granted was
-    /// refused, or when the timer does not start. Nothing runs then.
+    /// When no thread can be created, when a request that must be granted was
+    /// denied, or when the timer does not start. Nothing runs then.
     pub fn spawn(self) -> Result<LoopHandle, SpawnError>
     where
         C: 'static,
@@ -138,8 +138,8 @@ fn run<C: Controller>(mut machine: Machine<C>) -> LoopReport {
     machine.finish()
 }
 
-/// A loop that runs in a thread of its own. Dropping it stops the loop and
-/// waits for it, one period at most: nobody is left in control unwatched.
+/// A loop that runs in a thread of its own. Dropping it stops the loop and waits
+/// for it, one period at most, so that none keeps control without a handle.
 #[derive(Debug)]
 pub struct LoopHandle {
     granted: RealtimeGranted,
@@ -153,23 +153,23 @@ impl LoopHandle {
         &self.granted
     }
 
-    /// Whether the loop is over.
+    /// Whether the loop has ended.
     pub fn is_finished(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
     }
 
-    /// Asks the loop to end at its next tick.
+    /// Requests the loop to end at its next tick.
     pub fn stop(&self) {
         self.stop.stop();
     }
 
-    /// Leaves the loop alone for good: for one that hangs, which nobody can
-    /// wait for.
+    /// Detaches the loop's thread: for one that hangs, for which waiting would
+    /// not end.
     pub fn abandon(mut self) {
         drop(self.thread.take());
     }
 
-    /// Waits for the loop's end; does not cause it.
+    /// Waits until the loop has ended; does not stop it.
     ///
     /// # Panics
     /// With a panic of this crate's own; one of a part is in the report.
@@ -181,7 +181,7 @@ impl LoopHandle {
         let thread = self.thread.take().expect("a handle joins once");
         match thread.join() {
             Ok(report) => report,
-            // The machine catches what its parts do; this is a fault of ours.
+            // Panics of parts are caught; this one is a defect of this crate.
             Err(payload) => panic::resume_unwind(payload),
         }
     }
@@ -197,14 +197,14 @@ impl Drop for LoopHandle {
     }
 }
 
-/// Why a loop's own thread could not start.
+/// Why a loop could not start in its own thread.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum SpawnError {
-    /// The system gave no thread.
+    /// No thread could be created.
     #[error("no thread for the loop: {0}")]
     Thread(#[source] io::Error),
-    /// A real-time wish that must be granted was refused.
+    /// A real-time request that must be granted was denied.
     #[error(transparent)]
     Realtime(RealtimeDenied),
     /// The timer did not start.

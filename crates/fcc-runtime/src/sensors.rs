@@ -1,4 +1,4 @@
-//! The loop's sensors and how they do.
+//! The loop's sensors and their health.
 
 use fcc_core::framework::{EventKind, Sensor, SensorFault, Tick};
 
@@ -10,7 +10,7 @@ struct Watched<M> {
     health: Health<SensorFault>,
 }
 
-/// The loop's sensors and how they do.
+/// The loop's sensors and their health.
 pub(crate) struct Sensors<M> {
     all: Vec<Watched<M>>,
     faults: u64,
@@ -28,7 +28,7 @@ impl<M> Sensors<M> {
         }
     }
 
-    /// Samples every sensor, one that fails included: the others go on.
+    /// Samples every sensor, even if one fails.
     pub(crate) fn sample<O>(&mut self, tick: &Tick, into: &mut M, events: &mut Events<O>) {
         for (index, watched) in (0..).zip(&mut self.all) {
             let result = watched.sensor.sample(tick, into);

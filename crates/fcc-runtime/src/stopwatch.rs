@@ -1,10 +1,9 @@
-//! Measures how long each stage of a tick takes.
+//! Measures the duration of each stage of a tick.
 
 use fcc_timer::Timer;
 
-/// Times one stage after the other. What it reads goes into the record, and
-/// what is decided of it is decided of the record (see
-/// [`overruns`](crate::overruns)).
+/// Measures one stage after the other. Its readings are stored in the record, and
+/// decisions use the values in the record (see [`overruns`](crate::overruns)).
 pub(crate) struct Stopwatch {
     lap_ns: i64,
 }

@@ -1,52 +1,53 @@
-//! From the engage switch's position to what the hand on it meant.
+//! Edges of the engage switch.
 
 use std::time::Duration;
 
 use fcc_core::framework::{Reading, Switch, Time};
 
-/// What a hand did to the engage switch.
+/// A change of the engage switch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum SwitchEdge {
     On,
     Off,
 }
 
-/// Watches the engage switch for the moments it is thrown.
+/// Detects the edges of the engage switch.
 ///
-/// A loop that starts, or hears from the switch again, while the switch is
-/// already on must not grab the controls: before an on counts, an off must
-/// have been seen since the start or the last silence. An off counts after a
-/// silence too: who switched off while nobody listened still wants it off.
+/// If the switch is already on when the loop starts, or when its readings
+/// resume, the loop must not take control: an on edge counts only if an off
+/// reading was received since the start or since the last gap in the readings.
+/// An off edge counts across a gap too: the pilot switched off meanwhile.
 #[derive(Debug)]
 pub(crate) struct EngageSwitch {
     max_age: Duration,
-    last_heard: Option<Switch>,
-    off_seen_since_silence: bool,
+    last_position: Option<Switch>,
+    off_since_gap: bool,
 }
 
 impl EngageSwitch {
     pub(crate) const fn new(max_age: Duration) -> Self {
         Self {
             max_age,
-            last_heard: None,
-            off_seen_since_silence: false,
+            last_position: None,
+            off_since_gap: false,
         }
     }
 
-    /// Takes this tick's reading; a stale one is no reading.
+    /// Processes this tick's reading; a stale one is ignored.
     pub(crate) fn watch(&mut self, reading: Reading<Switch>, now: Time) -> Option<SwitchEdge> {
         let Some(position) = reading.fresh(now, self.max_age) else {
-            self.off_seen_since_silence = false;
+            self.off_since_gap = false;
             return None;
         };
-        let before = self.last_heard.replace(position);
+        let before = self.last_position.replace(position);
         match position {
             Switch::Off => {
-                self.off_seen_since_silence = true;
+                self.off_since_gap = true;
                 (before == Some(Switch::On)).then_some(SwitchEdge::Off)
             }
-            Switch::On => (before == Some(Switch::Off) && self.off_seen_since_silence)
-                .then_some(SwitchEdge::On),
+            Switch::On => {
+                (before == Some(Switch::Off) && self.off_since_gap).then_some(SwitchEdge::On)
+            }
         }
     }
 }
@@ -55,8 +56,8 @@ impl EngageSwitch {
 mod tests {
     use super::*;
 
-    /// One reading per second, each fresh for 1.5 s; `None` is a second in
-    /// which nothing came.
+    /// One reading per second, each fresh for 1.5 s; `None` is a second without a
+    /// reading.
     fn watched<const N: usize>(positions: [Option<Switch>; N]) -> [Option<SwitchEdge>; N] {
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut reading = Reading::new(Switch::Off, Time::NEVER);
@@ -94,12 +95,12 @@ mod tests {
     }
 
     #[test]
-    fn one_missing_reading_is_no_silence() {
+    fn one_missing_reading_is_no_gap() {
         assert_eq!(watched([OFF, None, ON]), [None, None, Some(SwitchEdge::On)]);
     }
 
     #[test]
-    fn after_a_silence_the_off_must_be_seen_again() {
+    fn after_a_gap_an_off_is_required_again() {
         assert_eq!(watched([OFF, None, None, ON]), [None; 4]);
         assert_eq!(
             watched([OFF, None, None, ON, OFF, ON]),
@@ -115,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn an_off_counts_through_a_silence() {
+    fn an_off_counts_across_a_gap() {
         assert_eq!(
             watched([OFF, ON, None, None, None, OFF]),
             [

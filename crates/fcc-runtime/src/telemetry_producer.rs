@@ -1,15 +1,15 @@
-//! What goes out of the loop: records and events, by a ring that never waits.
+//! The producer of records and events: a ring that never waits.
 
 use std::collections::VecDeque;
 
 use fcc_core::framework::{Controller, Event, EventKind, Message, MessageOf, RecordOf, Tick};
 use rtrb::Producer;
 
-/// Slots of the ring that records may not take, so that events get through
-/// when nobody has fetched records for a while.
+/// Slots of the ring reserved for events, for when records have not been read
+/// for a while.
 pub(crate) const EVENT_SLOTS: usize = 64;
 
-/// What was lost between two things that were not.
+/// A run of lost records or events.
 #[derive(Default)]
 struct Gap {
     count: u64,
@@ -27,8 +27,8 @@ impl Gap {
     }
 }
 
-/// Events of a tick, and those that found no room in the ring yet. Filled
-/// while the tick runs, emptied after its last actuator write.
+/// Events of a tick, and earlier ones that the ring had no space for. Filled
+/// during the tick, sent after its last actuator write.
 pub(crate) struct Events<O> {
     waiting: VecDeque<Event<O>>,
     lost: Gap,
@@ -44,9 +44,9 @@ impl<O> Events<O> {
         }
     }
 
-    /// Keeps an event for the end of the tick; counts it if there is no room.
+    /// Stores an event until the end of the tick; counts it if there is no space.
     pub(crate) fn push(&mut self, tick: &Tick, kind: EventKind<O>) {
-        // Never beyond its first size: growing would allocate.
+        // Never beyond its capacity: growing would allocate.
         if self.waiting.len() < EVENT_SLOTS {
             self.waiting.push_back(Event {
                 tick: tick.number,
@@ -60,7 +60,7 @@ impl<O> Events<O> {
     }
 }
 
-/// The loop's end of the ring of messages.
+/// The producer of the message ring.
 pub(crate) struct TelemetryProducer<C: Controller> {
     ring: Producer<MessageOf<C>>,
     pub(crate) events: Events<C::Command>,
@@ -78,10 +78,10 @@ impl<C: Controller> TelemetryProducer<C> {
         }
     }
 
-    /// Sends what waits and this tick's record, or counts the record as lost.
+    /// Sends pending events and this tick's record, or counts the record as lost.
     pub(crate) fn send(&mut self, record: &RecordOf<C>) {
         self.send_events(&record.tick);
-        // A gap is told right before the record that ends it.
+        // A gap is reported right before the record that ends it.
         let needed = 1 + usize::from(self.lost.count > 0);
         if self.ring.slots() >= EVENT_SLOTS + needed {
             self.send_gap(&record.tick);
@@ -92,7 +92,7 @@ impl<C: Controller> TelemetryProducer<C> {
         }
     }
 
-    /// Sends what waits and will have no record after it.
+    /// Sends what is pending after the last record.
     pub(crate) fn close(&mut self, tick: &Tick) {
         self.send_events(tick);
         self.send_gap(tick);
@@ -100,12 +100,12 @@ impl<C: Controller> TelemetryProducer<C> {
         self.events.waiting.clear();
     }
 
-    /// Records that found no room, since the start.
+    /// Records lost since the start.
     pub(crate) const fn records_dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// Events that found no room, since the start.
+    /// Events lost since the start.
     pub(crate) const fn events_dropped(&self) -> u64 {
         self.events.dropped
     }

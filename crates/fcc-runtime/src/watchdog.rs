@@ -1,11 +1,11 @@
-//! Watches, from a thread of its own, that the loop makes progress.
+//! Monitors the loop's progress from a thread of its own.
 //!
 //! A part that never returns (a controller in an endless loop, a sensor whose
-//! read blocks) cannot be caught from inside: the loop's own objects are in its
-//! hands. So this thread, at a higher real-time priority than the loop's, feels
-//! the loop's [`Heartbeat`]. When it stands still for too long, the thread takes
-//! the loop's real-time priority away, so that on one core too the rest of the
-//! process can run again, and does what it was told to do then.
+//! read blocks) cannot be stopped from inside, because the loop's thread is
+//! executing it. So this thread, at a higher real-time priority than the loop's,
+//! reads the loop's [`Heartbeat`]. If it does not advance for too long, this
+//! thread takes the loop's real-time priority away, so that the rest of the
+//! process can run even on one core, and calls the configured function.
 
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -18,20 +18,19 @@ use crate::heartbeat::{Heartbeat, HeartbeatReading};
 /// The name of the watchdog's thread.
 const THREAD_NAME: &str = "fcc-watchdog";
 
-/// How often the heartbeat is felt while it may stand still: the watchdog is late
-/// by at most this share of the time, and costs ten wake-ups a second at most
-/// settings.
+/// How often the heartbeat is read within the time limit: the watchdog is late by
+/// at most this share of it.
 const LOOKS: u32 = 10;
 
 /// `SCHED_FIFO` has no higher priority.
 const HIGHEST_PRIORITY: u8 = 99;
 
-/// How a watchdog watches.
+/// The configuration of a watchdog.
 #[derive(Clone, Debug)]
 pub struct WatchdogConfig {
-    /// A loop without progress for so long hangs.
+    /// A loop without progress for this long hangs.
     pub hang_after: Duration,
-    /// The loop's real-time priority; the watchdog wishes for the next higher.
+    /// The loop's real-time priority; the watchdog requests the next higher.
     /// `None` for the ordinary scheduler.
     pub loop_priority: Option<u8>,
 }
@@ -39,15 +38,15 @@ pub struct WatchdogConfig {
 /// A loop that hangs.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Hang {
-    /// How long it has shown no progress.
+    /// How long it has made no progress.
     pub silent: Duration,
 }
 
-/// Watches a loop until it is over; `on_hang` is called in the watchdog's
-/// thread should it hang. Gives what the kernel granted that thread.
+/// Monitors a loop until it ends; if it hangs, `on_hang` is called in the
+/// watchdog's thread. Returns what the kernel granted that thread.
 ///
 /// # Errors
-/// When there is no thread to be had.
+/// When no thread can be created.
 pub fn watch(
     heartbeat: Heartbeat,
     config: &WatchdogConfig,
@@ -64,12 +63,12 @@ pub fn watch(
     thread::Builder::new()
         .name(THREAD_NAME.to_owned())
         .spawn(move || {
-            // Nothing is strict here, so nothing is an error.
+            // Nothing is strict here, so this is never an error.
             let granted = request.apply().unwrap_or_else(|refused| refused.granted);
             // The receiver waits below.
             let _ = sender.send(granted);
             if let Some(hang) = wait_for_hang(&heartbeat, hang_after) {
-                // A refusal leaves it as it is; what follows is tried anyway.
+                // If this fails, the rest is attempted anyway.
                 let _ = realtime::take_priority_from(heartbeat.thread());
                 on_hang(hang);
             }
@@ -79,11 +78,10 @@ pub fn watch(
         .map_err(|_| io::Error::other("the watchdog's thread ended before it began to watch"))
 }
 
-/// Returns when the loop hangs, or with none when it is over.
+/// Returns when the loop hangs, or `None` when it has ended.
 ///
-/// Only time in which this thread itself could look counts: a process that is
-/// stopped and continued, or a machine that stands still, stops both threads
-/// alike and is no hang.
+/// Only time in which this thread itself ran counts: a process that is stopped
+/// and continued, or a suspended machine, stops both threads and is not a hang.
 fn wait_for_hang(heartbeat: &Heartbeat, hang_after: Duration) -> Option<Hang> {
     let look_every = hang_after / LOOKS;
     let mut last = heartbeat.read();

@@ -3,6 +3,8 @@
 //!
 //!     cargo run -p fcc-sim --example trim_table
 
+#![expect(clippy::print_stdout, reason = "all that it does is to print")]
+
 use fcc_sim::units::{DEGREE_RAD, FOOT_M, KNOT_MPS};
 use fcc_sim::{Airframe, trim};
 

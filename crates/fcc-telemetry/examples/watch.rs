@@ -4,6 +4,8 @@
 //! cargo run -p fcc-telemetry --example watch -- fccd [SECONDS]
 //! ```
 
+#![expect(clippy::print_stdout, reason = "all that it does is to print")]
+
 use std::error::Error;
 use std::thread::sleep;
 use std::time::{Duration, Instant};

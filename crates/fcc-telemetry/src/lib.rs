@@ -6,6 +6,8 @@
 
 #[cfg(feature = "flight")]
 mod flight;
+#[cfg(feature = "flight")]
+mod flight_table;
 mod instance;
 #[cfg(feature = "live")]
 pub mod live;
@@ -23,14 +25,14 @@ pub mod units;
 
 #[cfg(feature = "flight")]
 pub use flight::FlightLog;
+#[cfg(feature = "flight")]
+pub use flight_table::{ScoredBy, flight_table};
 pub use instance::{Instance, InstanceError};
 pub use message::event_words;
 #[cfg(feature = "flight")]
 pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, score};
-#[cfg(feature = "flight")]
-pub use table::flight_table;
 pub use table::{recordings_table, timing_table};
 pub use telemetry::{RecordWords, Telemetry, Views};
 pub use timing::{DeniedRequest, Lateness, Period, Realtime, TimingReport};

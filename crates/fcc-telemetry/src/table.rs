@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
 use super::recording::{Entry, Wholeness};
-use super::score::{FlightScore, LegScore};
 use super::timing::TimingReport;
 
 /// One line under the header, and no other.
@@ -142,32 +141,6 @@ fn or_unknown(text: String) -> String {
     }
 }
 
-/// The columns of a leg's figures.
-pub(crate) const LEG_COLUMNS: [&str; 10] = [
-    "Leg",
-    "≤2° s",
-    "overshoot °",
-    "hdg RMS °",
-    "≤10 ft s",
-    "overshoot ft",
-    "alt RMS ft",
-    "turn loss ft",
-    "airspeed kt",
-    "lateral g",
-];
-
-/// A row per leg and the worst of each column.
-pub fn flight_table(score: &FlightScore) -> String {
-    let mut table = table(&LEG_COLUMNS);
-    for (index, leg) in score.legs.iter().enumerate() {
-        table.add_row(leg_cells((index + 1).to_string(), leg));
-    }
-    if let Some(worst) = &score.worst {
-        table.add_row(leg_cells("worst".to_owned(), worst));
-    }
-    table.to_string()
-}
-
 /// A row per recording.
 pub fn recordings_table(entries: &[Entry]) -> String {
     let mut table = table(&[
@@ -201,23 +174,6 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         ]);
     }
     table.to_string()
-}
-
-/// The cells of a leg, under [`LEG_COLUMNS`].
-pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
-    let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
-    vec![
-        name,
-        settle(leg.heading_settle_s),
-        format!("{:.2}", leg.heading_overshoot_deg),
-        format!("{:.2}", leg.heading_rms_deg),
-        settle(leg.altitude_settle_s),
-        format!("{:.2}", leg.altitude_overshoot_ft),
-        format!("{:.2}", leg.altitude_rms_ft),
-        format!("{:.2}", leg.turn_loss_ft),
-        format!("{:.2}", leg.airspeed_error_kt),
-        format!("{:.3}", leg.lateral_acceleration_g),
-    ]
 }
 
 #[cfg(test)]

@@ -108,7 +108,10 @@ fn what_cannot_be_flown_does_not_leave_the_program() {
         ..NewSetpoints::default()
     });
     let words = commander.command(nonsense).unwrap_err().to_string();
-    assert!(words.contains("altitude is inf m"), "{words}");
+    assert!(
+        words.contains("altitude is inf m: choose -500 to 20000 m"),
+        "{words}"
+    );
     assert_eq!(publisher.next_command(), None);
 }
 

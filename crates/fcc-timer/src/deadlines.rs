@@ -1,8 +1,8 @@
-//! The grid of deadlines, and where on it a timer stands.
+//! The grid of deadlines and a timer's position on it.
 //!
-//! Every timer asks the kernel to be woken at [`Deadlines::alarm_ns`] and
-//! hands the wake-up to [`Deadlines::woken`] or its sister: numbers, due
-//! times and misses are worked out here and nowhere else.
+//! Every timer has the kernel wake it at [`Deadlines::alarm_ns`] and passes the
+//! wake-up to [`Deadlines::woken`] or [`Deadlines::woken_uncounted`]: numbers,
+//! due times and misses are calculated here only.
 
 use nix::errno::Errno;
 use nix::sys::time::TimeValLike as _;
@@ -14,7 +14,7 @@ use crate::{Expiry, TimerError};
 
 /// Below this, the wake-up alone takes longer than the period.
 const SHORTEST_PERIOD: Duration = Duration::from_micros(10);
-/// Above this it is no control loop, and nanoseconds stay far from overflow.
+/// Longer is not a control loop; also keeps nanoseconds far from overflow.
 const LONGEST_PERIOD: Duration = Duration::from_secs(3600);
 
 /// A period known to be within the range that timers serve.
@@ -58,7 +58,7 @@ impl Deadlines {
         }
     }
 
-    /// Has the kernel wake the thread so long before its deadlines from now on.
+    /// Sets how long before its deadlines the kernel wakes the thread.
     pub(crate) const fn wake_early(&mut self, margin_ns: i64) {
         self.early_ns = margin_ns;
     }
@@ -74,15 +74,15 @@ impl Deadlines {
             .saturating_add(self.period_ns.saturating_mul(number as i64))
     }
 
-    /// When the kernel shall wake the thread for the next deadline: at the
-    /// deadline, or early by a margin, where the rest of the time is spun.
+    /// When the kernel wakes the thread for the next deadline: at the deadline,
+    /// or earlier by the margin.
     pub(crate) const fn alarm_ns(&self) -> i64 {
         self.due_ns(self.next()).saturating_sub(self.early_ns)
     }
 
-    /// Serves the latest deadline. To be called as soon as the kernel has
-    /// woken the thread, with the number of deadlines it says have passed since
-    /// the one served before.
+    /// Serves the latest deadline. To be called as soon as the kernel has woken
+    /// the thread, with the kernel's count of deadlines passed since the previous
+    /// one served.
     pub(crate) fn woken(&mut self, passed: u64, woke_ns: i64) -> Expiry {
         self.served = self.served.saturating_add(passed);
         let scheduled_ns = self.due_ns(self.served);
@@ -97,8 +97,8 @@ impl Deadlines {
         }
     }
 
-    /// The same when nobody has counted: how many deadlines have passed is
-    /// worked out from the clock, which has reached the next one.
+    /// The same without a count: the number of passed deadlines is calculated from
+    /// the clock, which has reached the next one.
     pub(crate) fn woken_uncounted(&mut self, woke_ns: i64) -> Expiry {
         let since_start = woke_ns.saturating_sub(self.start_ns).max(0).unsigned_abs();
         let latest = since_start / self.period_ns.unsigned_abs();
@@ -108,16 +108,16 @@ impl Deadlines {
 
 /// Now on `CLOCK_MONOTONIC`, ns. It is read without a system call.
 pub(crate) fn monotonic_ns() -> i64 {
-    // Linux always has this clock: there is no error to hand on.
+    // Linux always has this clock, so the call cannot fail.
     clock_gettime(ClockId::CLOCK_MONOTONIC).map_or(0, |now| now.num_nanoseconds())
 }
 
-/// A time or length of time as the kernel wants it. Negative becomes 0.
+/// A time or duration in the kernel's format. Negative becomes 0.
 pub(crate) fn timespec(ns: i64) -> nix::sys::time::TimeSpec {
     Duration::from_nanos(u64::try_from(ns).unwrap_or(0)).into()
 }
 
-/// Makes an error of the system's answer to `call`.
+/// Makes an error from the system's answer to `call`.
 pub(crate) fn os_error(call: &'static str) -> impl FnOnce(Errno) -> TimerError {
     move |errno| TimerError::Os {
         call,

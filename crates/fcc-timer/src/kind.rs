@@ -31,7 +31,7 @@ impl TimerKind {
     /// Every kind, in the order they are shown in.
     pub const ALL: [Self; 3] = [Self::Timerfd, Self::Posix, Self::Nanosleep];
 
-    /// What people and configuration call it.
+    /// Its name in configuration and reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,7 +54,7 @@ impl TimerKind {
         })
     }
 
-    /// Makes a timer of this kind that wakes early and spins to its deadlines.
+    /// Makes a timer of this kind that wakes early and spins until its deadlines.
     ///
     /// # Errors
     /// As [`build`](Self::build), and when a value of `early` is out of range.
@@ -88,7 +88,7 @@ impl FromStr for TimerKind {
     }
 }
 
-/// A name that is no timer's.
+/// A name that no timer has.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[error("there is no timer `{0}`: choose timerfd, posix or nanosleep")]
 pub struct UnknownTimer(String);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_answered_with_the_choices() {
+    fn an_unknown_name_is_rejected_with_the_choices() {
         let message = "hpet".parse::<TimerKind>().unwrap_err().to_string();
         for kind in TimerKind::ALL {
             assert!(message.contains(kind.name()), "{message}");

@@ -2,15 +2,15 @@
 //!
 //! Three periodic timers behind one trait, [`Timer`]: [`TimerFd`],
 //! [`PosixTimer`] and [`Nanosleep`], all on `CLOCK_MONOTONIC` with absolute
-//! deadlines, so that a late tick is late once and the phase is kept. A fourth,
+//! deadlines, so that a late tick delays no other and the phase is kept. A fourth,
 //! [`ManualTimer`], never waits: it drives a loop in lockstep with a simulator
-//! or a test. Below the kernel's own floor of some tens of microseconds the
-//! first three get by waking early and spinning the rest: [`EarlyWake`].
+//! or a test. The first three reach a lateness below the kernel's own tens of
+//! microseconds by waking early and spinning until the deadline: [`EarlyWake`].
 //!
-//! Around them, what a real-time thread needs of the kernel: [`realtime`] asks
-//! for scheduling, a CPU and locked memory and reads back what was granted,
-//! [`TimingStats`] counts periods and lateness in fixed memory, and the
-//! functions of [`usage`] tell the thread's CPU time and page faults.
+//! Also what a real-time thread needs of the kernel: [`realtime`] requests
+//! scheduling, a CPU and locked memory and reads back what was granted,
+//! [`TimingStats`] records periods and lateness in fixed memory, and the
+//! functions of [`usage`] return the thread's CPU time and page faults.
 //!
 //! ```
 //! use fcc_timer::{TimerKind, TimingStats};

@@ -5,14 +5,13 @@ use std::time::Duration;
 use crate::deadlines::{Deadlines, Period};
 use crate::{Expiry, Timer, TimerError, Wake};
 
-/// A timer whose clock stands still until it is asked to wait, and then jumps
-/// to the next deadline. The clock begins at 0.
+/// A timer whose clock advances only in a wait, to the next deadline. The clock
+/// starts at 0.
 ///
-/// A loop on it runs as fast as its work allows, and always the same way. What
-/// a kernel does to a loop now and then can be arranged: a tick that takes long
-/// ([`advance`](Self::advance)) and a thread that wakes late
-/// ([`late_at`](Self::late_at)). Either is missed deadlines when it lasts long
-/// enough, by the same rule as for the other timers.
+/// A loop on it runs as fast as its work allows, and is reproducible. Delays can
+/// be simulated: a tick that takes long ([`advance`](Self::advance)) and a thread
+/// that wakes late ([`late_at`](Self::late_at)). Either misses deadlines if it
+/// is long enough, by the same rule as for the other timers.
 ///
 /// ```
 /// use fcc_timer::{ManualTimer, Timer};
@@ -61,14 +60,14 @@ impl ManualTimer {
         self
     }
 
-    /// Has each wait rehearse, as a timer does that wakes early in good time.
+    /// Returns a warm-up before each deadline, like a timer that wakes early.
     #[must_use]
     pub const fn with_warm_up(mut self) -> Self {
         self.warms_up = true;
         self
     }
 
-    /// Lets time pass, as a tick's work does.
+    /// Advances the clock, as a tick's work does.
     pub fn advance(&mut self, by: Duration) {
         self.now_ns = self.now_ns.saturating_add(by.as_nanos() as i64);
     }

@@ -9,9 +9,8 @@ use crate::early::{Alarm, Early};
 use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
 /// A periodic timer made of sleeps. Nothing runs in the kernel between two
-/// waits, so nothing is counted there: the clock tells which deadlines have
-/// passed. The only one of the timers that the timer slack makes late when the
-/// thread is not real-time.
+/// waits, so passed deadlines are calculated from the clock. It is the only
+/// timer here that the timer slack delays if the thread is not real-time.
 #[derive(Debug)]
 pub struct Nanosleep {
     period: Period,
@@ -34,7 +33,7 @@ impl Nanosleep {
         })
     }
 
-    /// Has it wake early and spin to its deadlines.
+    /// Makes it wake early and spin until its deadlines.
     ///
     /// # Errors
     /// When a value is out of its range.
@@ -90,7 +89,7 @@ impl Timer for Nanosleep {
     }
 }
 
-/// One sleep after the other: there is no timer in the kernel to set.
+/// A sleep has no kernel timer to set.
 #[derive(Debug)]
 struct Sleep;
 

@@ -1,4 +1,4 @@
-//! What every periodic timer promises.
+//! What every periodic timer guarantees.
 
 use std::time::Duration;
 
@@ -11,9 +11,10 @@ use std::time::Duration;
 /// nothing missed, and a tick of 3.5 periods makes the next one late and two
 /// missed.
 pub trait Timer: Send {
-    /// Sets the grid of deadlines going: from now, or where a timer wakes early
-    /// up to 10 ms later, so that the kernel's ticks fall beside its deadlines. To be called on the thread
-    /// that will wait; calling it again begins a new grid, with numbers from 1.
+    /// Starts the grid of deadlines: now, or for a timer that wakes early up to
+    /// 10 ms later, so that no kernel tick falls between wake-up and deadline.
+    /// Call it on the thread that will wait; another call starts a new grid,
+    /// numbered from 1.
     ///
     /// # Errors
     /// When the operating system refuses.
@@ -28,9 +29,9 @@ pub trait Timer: Send {
     fn wait(&mut self) -> Result<Expiry, TimerError>;
 
     /// Waits like [`wait`](Self::wait), but a timer that wakes early and has
-    /// time left may come back once before the deadline, with
-    /// [`Wake::WarmUp`]: do what warms the caches for the tick and changes
-    /// nothing, and call again.
+    /// time left may return once before the deadline, with [`Wake::WarmUp`]:
+    /// run what loads the caches for the tick and has no effect, then call
+    /// this again.
     ///
     /// # Errors
     /// Those of `wait`.
@@ -49,17 +50,17 @@ pub trait Timer: Send {
     /// Now, in nanoseconds on the same clock as the deadlines.
     fn now_ns(&self) -> i64;
 
-    /// What people and configuration call it: `timerfd`, `posix`, ...
+    /// Its name in configuration and reports: `timerfd`, `posix`, ...
     fn name(&self) -> &'static str;
 }
 
-/// What a wait ended with.
+/// The result of a wait.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Wake {
-    /// The deadline is near. What it will be, but for the time of waking, and
-    /// unless the machine is elsewhere meanwhile.
+    /// The deadline is near. The expiry is the one expected: its wake-up time is
+    /// that of now, and a later deadline is served if the thread is delayed.
     WarmUp(Expiry),
-    /// The deadline has come.
+    /// The deadline is reached.
     Deadline(Expiry),
 }
 
@@ -70,32 +71,32 @@ pub struct Expiry {
     pub number: u64,
     /// When it was due, ns on the timer's clock.
     pub scheduled_ns: i64,
-    /// When the waiting thread went on, ns on the timer's clock: after the
-    /// kernel woke it and, where it was woken early, the deadline had come.
+    /// When the waiting thread continued, ns on the timer's clock: after the
+    /// kernel woke it and, with early wake, after the deadline was reached.
     pub woke_ns: i64,
-    /// Deadlines passed unserved since the one served before.
+    /// Deadlines that passed unserved since the previous one served.
     pub missed: u64,
     /// How long before the deadline the kernel was asked to wake the thread,
     /// ns; 0 for a timer that does not wake early ([`crate::EarlyWake`]).
     pub early_wake_ns: u64,
-    /// How long the thread then rehearsed and spun towards the deadline, ns.
+    /// How long the thread then warmed up and spun until the deadline, ns.
     pub spun_ns: u64,
-    /// How late the kernel woke the thread, ns after the time it was asked to:
-    /// the lateness that there would be without waking early. Where the thread
-    /// did not sleep, the lateness that there is.
+    /// How late the kernel woke the thread, ns after the requested time: the
+    /// lateness without early wake. If the thread did not sleep, its lateness
+    /// after the deadline.
     pub kernel_lateness_ns: i64,
 }
 
 impl Expiry {
-    /// How late the thread woke, ns after the deadline. Not to be mixed up
-    /// with the period, which is the time since it woke before.
+    /// How late the thread woke, ns after the deadline. The period is something
+    /// else: the time since the previous wake-up.
     #[must_use]
     pub const fn lateness_ns(&self) -> i64 {
         self.woke_ns.saturating_sub(self.scheduled_ns)
     }
 }
 
-/// Why a timer could not be made, started or waited for.
+/// Why a timer could not be created, started or waited for.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum TimerError {
@@ -104,25 +105,26 @@ pub enum TimerError {
     Os {
         /// The call that failed.
         call: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The period is outside what a timer can serve.
     #[error("a period of {0:?} cannot be timed: choose one between 10 µs and 1 hour")]
     Period(Duration),
-    /// An early wake with a value that makes no sense.
+    /// An early-wake value that is out of its range.
     #[error("early wake: {0}")]
     EarlyWake(&'static str),
-    /// `wait` before `start`.
+    /// `wait` was called before `start`.
     #[error("the timer was not started: call start() on the thread that will wait")]
     NotStarted,
-    /// No deadline is left: the timer of a run of known length is over.
+    /// No deadline is left: the timer of a run of known length has ended.
     #[error("the timer has no deadline left")]
     Ended,
-    /// `wait` on another thread than `start`, where the expiries do not come.
+    /// `wait` was called on another thread than `start`; expiries are delivered
+    /// to that thread only.
     #[error("the timer was started on another thread: call start() on the thread that waits")]
     WrongThread,
-    /// Every real-time signal already belongs to a timer.
+    /// Every real-time signal is used by a timer already.
     #[error("all real-time signals are taken: use fewer POSIX timers at a time, or a timerfd")]
     NoSignal,
 }

@@ -42,7 +42,7 @@ impl TimerFd {
         })
     }
 
-    /// Has it wake early and spin to its deadlines.
+    /// Makes it wake early and spin until its deadlines.
     ///
     /// # Errors
     /// When a value is out of its range.
@@ -93,7 +93,7 @@ impl Timer for TimerFd {
     }
 }
 
-/// The timer as the kernel has it.
+/// The kernel's timer.
 #[derive(Debug)]
 struct File {
     descriptor: Descriptor,

@@ -1,7 +1,7 @@
-//! What a thread has used: CPU time and page faults.
+//! CPU time and page faults of a thread.
 //!
-//! Two readings and a subtraction tell what a stretch of work cost. None of
-//! these functions allocates.
+//! The difference of two readings is the cost of the work between them. None
+//! of these functions allocates.
 
 use nix::sys::resource::{UsageWho, getrusage};
 use nix::sys::time::TimeValLike as _;
@@ -26,21 +26,21 @@ pub fn process_cpu_ns() -> i64 {
 }
 
 fn read(clock: ClockId) -> i64 {
-    // Linux always has these clocks: there is no error to hand on.
+    // Linux always has these clocks, so the call cannot fail.
     clock_gettime(clock).map_or(0, |time| time.num_nanoseconds())
 }
 
-/// How often the kernel had to fetch a page for a thread.
+/// How often the kernel had to provide a page for a thread.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct PageFaults {
-    /// The page was in memory already, or was new: about a microsecond each.
+    /// The page was in memory already, or new: about 1 µs each.
     pub minor: u64,
     /// The page had to be read from a disk: milliseconds each.
     pub major: u64,
 }
 
 impl PageFaults {
-    /// Of both kinds.
+    /// Both kinds together.
     #[must_use]
     pub const fn all(self) -> u64 {
         self.minor.saturating_add(self.major)

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::sync::atomic::Ordering;
 use core::time::Duration;
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use fcc_core::flight::Surfaces;
@@ -41,7 +41,7 @@ pub struct XPlaneActuator<P: Port = UdpPort> {
 #[derive(Debug)]
 struct Held {
     /// Where: it is given back there, wherever a beacon points by then.
-    simulator: SocketAddrV4,
+    simulator: SocketAddr,
     /// When the overrides were last set.
     asserted: Time,
     confirmation: Confirmation,

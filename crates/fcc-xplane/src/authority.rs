@@ -1,7 +1,7 @@
 //! Who has control of X-Plane, seen from outside the loop.
 
 use core::fmt;
-use std::net::{Ipv4Addr, SocketAddrV4, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -76,8 +76,8 @@ impl ControlAuthority for XPlaneAuthority {
     /// has one name, whichever of them it goes by.
     fn unique(&self, plant: &PlantId) -> PlantId {
         address(plant)
-            .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator.ip()))
-            .and_then(|simulator| name(SocketAddrV4::new(Ipv4Addr::LOCALHOST, simulator.port())))
+            .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator))
+            .and_then(|simulator| name((Ipv4Addr::LOCALHOST, simulator.port()).into()))
             .unwrap_or(*plant)
     }
 
@@ -114,17 +114,18 @@ impl ControlAuthority for XPlaneAuthority {
     }
 }
 
-fn name(simulator: SocketAddrV4) -> Option<PlantId> {
+fn name(simulator: SocketAddr) -> Option<PlantId> {
     PlantId::new(format_args!("{NAME}{simulator}"))
 }
 
-fn address(plant: &PlantId) -> Option<SocketAddrV4> {
+fn address(plant: &PlantId) -> Option<SocketAddr> {
     plant.as_str().strip_prefix(NAME)?.parse().ok()
 }
 
 /// The kernel binds a socket to no other.
-fn is_of_this_machine(ip: Ipv4Addr) -> bool {
-    UdpSocket::bind((ip, 0)).is_ok()
+fn is_of_this_machine(mut address: SocketAddr) -> bool {
+    address.set_port(0);
+    UdpSocket::bind(address).is_ok()
 }
 
 /// What was reported last.
@@ -230,13 +231,16 @@ mod tests {
     #[test]
     fn another_address_of_this_machine_is_the_same_simulator() {
         let authority = XPlaneAuthority::without_connection(&XPlaneConfig::default());
-        let unique = |ip: [u8; 4]| {
-            let plant = name(SocketAddrV4::new(ip.into(), 49_000)).unwrap();
+        let unique = |address: &str| {
+            let plant = name(address.parse().unwrap()).unwrap();
             authority.unique(&plant).as_str().to_owned()
         };
-        assert_eq!(unique([127, 0, 0, 1]), "X-Plane at 127.0.0.1:49000");
-        assert_eq!(unique([127, 9, 9, 9]), "X-Plane at 127.0.0.1:49000");
-        // Of a block kept for documents (RFC 5737), so nobody's.
-        assert_eq!(unique([192, 0, 2, 1]), "X-Plane at 192.0.2.1:49000");
+        for here in ["127.0.0.1:49000", "127.9.9.9:49000", "[::1]:49000"] {
+            assert_eq!(unique(here), "X-Plane at 127.0.0.1:49000");
+        }
+        // Of blocks kept for documents (RFC 5737, RFC 3849), so nobody's.
+        for elsewhere in ["192.0.2.1:49000", "[2001:db8::1]:49000"] {
+            assert_eq!(unique(elsewhere), format!("X-Plane at {elsewhere}"));
+        }
     }
 }

@@ -1,8 +1,9 @@
 //! What a user may choose, and what is refused.
 
 use core::time::Duration;
-use std::net::{Ipv4Addr, SocketAddrV4};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
+use crate::address::{self, Simulator};
 use crate::protocol::{PathError, beacon, check_path, rref};
 
 /// The port on which X-Plane listens.
@@ -58,7 +59,7 @@ pub struct XPlaneConfig {
 impl Default for XPlaneConfig {
     fn default() -> Self {
         Self {
-            simulator: Simulator::At(SocketAddrV4::new(Ipv4Addr::LOCALHOST, XPLANE_PORT)),
+            simulator: Simulator::At((Ipv4Addr::LOCALHOST, XPLANE_PORT).into()),
             local_port: 0,
             input: Input::Rref,
             output: Output::Dref,
@@ -71,17 +72,6 @@ impl Default for XPlaneConfig {
             beacon: beacon::GROUP,
         }
     }
-}
-
-/// Where X-Plane is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Simulator {
-    /// At this IPv4 address. For X-Plane on this machine say 127.0.0.1:
-    /// datagrams count only if they come from this very IP address.
-    At(SocketAddrV4),
-    /// Wherever the first beacon of an X-Plane that flies comes from. While it
-    /// speaks, beacons of others change nothing.
-    Beacon,
 }
 
 /// How measurements come.
@@ -163,10 +153,14 @@ pub enum XPlaneConfigError {
         source: PathError,
     },
     /// An address to which nothing can be sent.
+    #[error("simulator {0}: give the IP address and port of one machine, such as 127.0.0.1:49000")]
+    Simulator(SocketAddr),
+    /// An address that every network of this machine may have.
     #[error(
-        "simulator {0}: give the IPv4 address and port of one machine, such as 127.0.0.1:49000"
+        "simulator {0} is an address within one network: give the network's interface too, such \
+         as [fe80::1%2]:49000, where 2 is its number in `ip link`"
     )]
-    Simulator(SocketAddrV4),
+    NoInterface(SocketAddr),
     /// Rows are the input, but there is no port to receive them on.
     #[error(
         "input by Data Output needs local_port: the one that is set as the target port in X-Plane"
@@ -211,12 +205,8 @@ impl XPlaneConfig {
                 source,
             }
         })?;
-        if let Simulator::At(address) = self.simulator {
-            let ip = address.ip();
-            let one_machine = !(ip.is_unspecified() || ip.is_broadcast() || ip.is_multicast());
-            if address.port() == 0 || !one_machine {
-                return Err(XPlaneConfigError::Simulator(address));
-            }
+        if let Simulator::At(at) = self.simulator {
+            address::check(at)?;
         }
         if let Input::Data(rows) = self.input {
             let column = rows.magnetic_heading_column;
@@ -286,7 +276,7 @@ mod tests {
         assert!(complaint(|c| c.engage_switch.clear()).contains("is empty"));
         assert!(complaint(|c| c.engage_switch = "sim/größe".into()).contains("no dataref has"));
         assert!(complaint(|c| c.engage_switch = "sim/a\0b".into()).contains("no dataref has"));
-        let nowhere = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, 49_000);
+        let nowhere = (Ipv4Addr::UNSPECIFIED, 49_000).into();
         assert!(complaint(|c| c.simulator = Simulator::At(nowhere)).contains("127.0.0.1:49000"));
         let rows = Input::Data(DataRows::of(RowsVersion::XPlane12));
         assert!(complaint(|c| c.input = rows).contains("local_port"));

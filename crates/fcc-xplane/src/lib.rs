@@ -31,7 +31,7 @@
 //! | `subscriptions`, `missing` | what to ask for, when again, and what never comes |
 //! | `controls`, `confirmation`, `release_monitor`, `release` | writing, whether it takes effect, giving back |
 //! | `authority`, `status` | who has control, and how the connection is, seen from outside the loop |
-//! | `port`, `discovery` | sockets and the beacon |
+//! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
 //! # What may go wrong out there
 //!
@@ -47,6 +47,7 @@
 #![forbid(unsafe_code)]
 
 mod actuator;
+mod address;
 mod authority;
 mod config;
 mod confirmation;
@@ -72,9 +73,10 @@ mod units;
 mod values;
 
 pub use actuator::XPlaneActuator;
+pub use address::{AddressError, HostName, Simulator};
 pub use authority::XPlaneAuthority;
 pub use config::{
-    DataRows, Input, Output, RowsVersion, Simulator, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
+    DataRows, Input, Output, RowsVersion, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
 pub use fcc_core::framework::Released;

@@ -5,7 +5,7 @@
 //! are ever split.
 
 use core::sync::atomic::{AtomicBool, AtomicI64, AtomicU8, AtomicU32, AtomicU64, Ordering};
-use std::net::{Ipv4Addr, SocketAddrV4};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
 use fcc_core::framework::Time;
 
@@ -72,12 +72,17 @@ pub(crate) fn count(counter: &AtomicU64) {
 
 /// No address has so many bits.
 const ANYWHERE: u64 = u64::MAX;
+/// Nor these: the address that was configured.
+const CONFIGURED: u64 = u64::MAX - 1;
 /// No address is nought.
 const NOWHERE: u64 = 0;
 
 #[derive(Debug)]
 pub(crate) struct SharedState {
-    /// IPv4 address and port in the low 48 bits; 0 while unknown.
+    /// Where the simulator is, if that is known from the start.
+    configured: Option<SocketAddr>,
+    /// [`CONFIGURED`], or IPv4 address and port in the low 48 bits, as a beacon
+    /// told; 0 while unknown.
     simulator: AtomicU64,
     /// The same of where control may be taken, or [`ANYWHERE`].
     allowed: AtomicU64,
@@ -94,9 +99,10 @@ pub(crate) struct SharedState {
 }
 
 impl SharedState {
-    pub(crate) fn new(simulator: Option<SocketAddrV4>) -> Self {
+    pub(crate) fn new(simulator: Option<SocketAddr>) -> Self {
         Self {
-            simulator: AtomicU64::new(simulator.map_or(0, pack)),
+            configured: simulator,
+            simulator: AtomicU64::new(simulator.map_or(NOWHERE, |_| CONFIGURED)),
             allowed: AtomicU64::new(ANYWHERE),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
@@ -109,25 +115,36 @@ impl SharedState {
         }
     }
 
-    pub(crate) fn simulator(&self) -> Option<SocketAddrV4> {
+    pub(crate) fn simulator(&self) -> Option<SocketAddr> {
         match self.simulator.load(Ordering::Relaxed) {
-            0 => None,
+            NOWHERE => None,
+            CONFIGURED => self.configured,
             packed => Some(unpack(packed)),
         }
     }
 
-    pub(crate) fn set_simulator(&self, address: SocketAddrV4) {
-        self.simulator.store(pack(address), Ordering::Relaxed);
+    pub(crate) fn set_simulator(&self, address: SocketAddr) {
+        self.simulator.store(self.pack(address), Ordering::Relaxed);
+    }
+
+    /// An address as a number. Only a beacon tells of another one than the
+    /// configured, and beacons are of IPv4.
+    fn pack(&self, address: SocketAddr) -> u64 {
+        match address {
+            configured if Some(configured) == self.configured => CONFIGURED,
+            SocketAddr::V4(at) => (u64::from(at.ip().to_bits()) << 16) | u64::from(at.port()),
+            SocketAddr::V6(_) => NOWHERE,
+        }
     }
 
     /// Whether control may be taken there.
-    pub(crate) fn is_allowed(&self, simulator: SocketAddrV4) -> bool {
+    pub(crate) fn is_allowed(&self, simulator: SocketAddr) -> bool {
         let allowed = self.allowed.load(Ordering::Acquire);
-        allowed == ANYWHERE || allowed == pack(simulator)
+        allowed == ANYWHERE || (allowed != NOWHERE && allowed == self.pack(simulator))
     }
 
-    pub(crate) fn allow(&self, simulator: Option<SocketAddrV4>) {
-        let allowed = simulator.map_or(NOWHERE, pack);
+    pub(crate) fn allow(&self, simulator: Option<SocketAddr>) {
+        let allowed = simulator.map_or(NOWHERE, |simulator| self.pack(simulator));
         self.allowed.store(allowed, Ordering::Release);
     }
 
@@ -223,14 +240,10 @@ impl SharedState {
     }
 }
 
-fn pack(address: SocketAddrV4) -> u64 {
-    (u64::from(address.ip().to_bits()) << 16) | u64::from(address.port())
-}
-
-fn unpack(packed: u64) -> SocketAddrV4 {
+fn unpack(packed: u64) -> SocketAddr {
     let [_, _, a, b, c, d, high, low] = packed.to_be_bytes();
     let port = u16::from_be_bytes([high, low]);
-    SocketAddrV4::new(Ipv4Addr::new(a, b, c, d), port)
+    SocketAddrV4::new(Ipv4Addr::new(a, b, c, d), port).into()
 }
 
 #[cfg(test)]
@@ -239,9 +252,22 @@ mod tests {
 
     #[test]
     fn an_address_comes_back_as_it_was() {
-        let address: SocketAddrV4 = "192.168.250.7:49000".parse().unwrap();
-        assert_eq!(SharedState::new(Some(address)).simulator(), Some(address));
-        assert_eq!(SharedState::new(None).simulator(), None);
+        let [told, v4, v6] = ["192.168.250.7:49000", "10.0.0.1:49000", "[fe80::1%2]:49000"]
+            .map(|text| text.parse::<SocketAddr>().unwrap());
+        for configured in [v4, v6] {
+            let state = SharedState::new(Some(configured));
+            assert_eq!(state.simulator(), Some(configured));
+            state.allow(None);
+            assert!(!state.is_allowed(configured) && !state.is_allowed(told));
+            state.allow(Some(configured));
+            assert!(state.is_allowed(configured) && !state.is_allowed(told));
+        }
+        let state = SharedState::new(None);
+        assert_eq!(state.simulator(), None);
+        state.set_simulator(told);
+        assert_eq!(state.simulator(), Some(told));
+        state.allow(Some(told));
+        assert!(state.is_allowed(told) && !state.is_allowed(v4) && !state.is_allowed(v6));
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Opening a connection.
 
 use std::io;
-use std::net::SocketAddrV4;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
-use crate::config::{Simulator, XPlaneConfig, XPlaneConfigError};
+use crate::address::{HostName, Simulator};
+use crate::config::{XPlaneConfig, XPlaneConfigError};
 use crate::link::SharedState;
 use crate::port::{Port, UdpPort};
 use crate::protocol::PathError;
@@ -36,6 +37,17 @@ pub enum OpenError {
         /// What the operating system said.
         source: io::Error,
     },
+    /// The simulator's host name has no address.
+    #[error(
+        "cannot find X-Plane at {host}: {source}; check the name and the network, or give its IP \
+         address (a name that ends in .local needs the package libnss-mdns)"
+    )]
+    NoSuchHost {
+        /// The name.
+        host: HostName,
+        /// What the operating system said.
+        source: io::Error,
+    },
     /// Beacons cannot be listened for.
     #[error(
         "cannot listen for X-Plane's beacon on {group}: {source}; give X-Plane's address instead"
@@ -49,47 +61,58 @@ pub enum OpenError {
 }
 
 impl XPlane {
-    /// Opens the sockets. Nothing is sent before the first tick, and X-Plane
-    /// need not run yet.
+    /// Opens the sockets, and looks up the simulator's host name, which may wait
+    /// for the network. Nothing is sent before the first tick, and X-Plane need
+    /// not run yet.
     ///
     /// # Errors
-    /// When the configuration is refused, or a port cannot be had.
+    /// When the configuration is refused, the name has no address, or a port
+    /// cannot be had.
     pub fn open(config: &XPlaneConfig) -> Result<(XPlaneSensor, XPlaneActuator), OpenError> {
         config.validate()?;
-        let port = bind(config.local_port)?;
+        let simulator = config.simulator.locate()?;
+        // Beacons are of IPv4, and so is whom they tell of.
+        let peer = simulator.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |at| at.ip());
+        let port = bind(config.local_port, peer)?;
         let beacons = match config.simulator {
-            Simulator::At(_) => None,
+            Simulator::At(_) | Simulator::Named(_) => None,
             Simulator::Beacon => {
                 let group = config.beacon;
                 let listen = UdpPort::listen(group);
                 Some(listen.map_err(|source| OpenError::Beacon { group, source })?)
             }
         };
-        Self::over(config, port, beacons)
+        Self::join(config, simulator, port, beacons)
     }
 
     /// The same over a port of the caller's own: for tests, and for networks
     /// that are not UDP sockets.
     ///
     /// # Errors
-    /// When the configuration is refused.
+    /// When the configuration is refused, or the name has no address.
     pub fn over<P: Port>(
         config: &XPlaneConfig,
         port: P,
         beacons: Option<P>,
     ) -> Result<(XPlaneSensor<P>, XPlaneActuator<P>), OpenError> {
         config.validate()?;
+        Self::join(config, config.simulator.locate()?, port, beacons)
+    }
+
+    fn join<P: Port>(
+        config: &XPlaneConfig,
+        simulator: Option<SocketAddr>,
+        port: P,
+        beacons: Option<P>,
+    ) -> Result<(XPlaneSensor<P>, XPlaneActuator<P>), OpenError> {
         let port = Arc::new(port);
-        let link = Arc::new(SharedState::new(match config.simulator {
-            Simulator::At(address) => Some(address),
-            Simulator::Beacon => None,
-        }));
+        let link = Arc::new(SharedState::new(simulator));
         let sensor = XPlaneSensor::new(config, Arc::clone(&port), beacons, Arc::clone(&link))?;
         let actuator = XPlaneActuator::new(config, port, link)?;
         Ok((sensor, actuator))
     }
 }
 
-fn bind(port: u16) -> Result<UdpPort, OpenError> {
-    UdpPort::bind(port).map_err(|source| OpenError::Bind { port, source })
+fn bind(port: u16, peer: IpAddr) -> Result<UdpPort, OpenError> {
+    UdpPort::bind(port, peer).map_err(|source| OpenError::Bind { port, source })
 }

@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use std::io;
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, SocketAddrV4, UdpSocket};
 
 use nix::sys::socket::{setsockopt, sockopt::UdpGsoSegment};
 use socket2::{Domain, Protocol, Socket, Type};
@@ -21,20 +21,20 @@ pub trait Port: Send + Sync {
     ///
     /// # Errors
     /// The operating system's error number.
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno>;
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno>;
 
     /// Sends a datagram off, or fails at once.
     ///
     /// # Errors
     /// The operating system's error number.
-    fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno>;
+    fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno>;
 
     /// Sends datagrams of `size` bytes that lie back to back; every one, even
     /// if another fails.
     ///
     /// # Errors
     /// The first failure's error number.
-    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddrV4) -> Result<(), Errno> {
+    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddr) -> Result<(), Errno> {
         send_one_by_one(self, datagrams, size, to)
     }
 
@@ -51,7 +51,7 @@ fn send_one_by_one<P: Port + ?Sized>(
     port: &P,
     datagrams: &[u8],
     size: usize,
-    to: SocketAddrV4,
+    to: SocketAddr,
 ) -> Result<(), Errno> {
     let mut outcome = Ok(());
     for datagram in datagrams.chunks(size.max(1)) {
@@ -64,7 +64,7 @@ fn send_one_by_one<P: Port + ?Sized>(
 /// Nothing else that is sent here is longer.
 const SEGMENT_BYTES: usize = dref::WRITE_BYTES;
 
-/// A non-blocking IPv4 UDP socket.
+/// A non-blocking UDP socket, of IPv4 or of IPv6.
 ///
 /// Datagrams of one size go through the kernel's stack at one go where it can
 /// cut them apart itself (`UDP_SEGMENT`, Linux 4.18); on the wire they are what
@@ -79,18 +79,23 @@ pub struct UdpPort {
 }
 
 impl UdpPort {
-    /// Binds to a local port, 0 for any that is free.
+    /// Binds to a local port, 0 for any that is free, to send to and receive
+    /// from addresses of the same kind as `peer`.
     ///
     /// # Errors
     /// When the operating system refuses, for one because the port is taken.
-    pub fn bind(port: u16) -> io::Result<Self> {
-        let mut bound = Self::bind_to(SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, port))?;
-        bound.scratch = ScratchPort::open().ok().map(Box::new);
+    pub fn bind(port: u16, peer: IpAddr) -> io::Result<Self> {
+        let mut bound = Self::bind_to((any_address(peer), port).into())?;
+        bound.scratch = ScratchPort::open(peer).ok().map(Box::new);
         Ok(bound)
     }
 
-    pub(crate) fn bind_to(address: SocketAddrV4) -> io::Result<Self> {
-        let socket = socket()?;
+    pub(crate) fn bind_to(address: SocketAddr) -> io::Result<Self> {
+        let socket = socket(Domain::for_address(address))?;
+        if address.is_ipv6() {
+            // IPv4 is another socket's, wherever the system's default is.
+            socket.set_only_v6(true)?;
+        }
         socket.bind(&address.into())?;
         socket.set_nonblocking(true)?;
         let cuts = setsockopt(&socket, UdpGsoSegment, &(SEGMENT_BYTES as i32)).is_ok();
@@ -107,7 +112,7 @@ impl UdpPort {
     /// # Errors
     /// When the operating system refuses.
     pub(crate) fn listen(group: SocketAddrV4) -> io::Result<Self> {
-        let socket = socket()?;
+        let socket = socket(Domain::IPV4)?;
         socket.set_reuse_address(true)?;
         socket.bind(&SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, group.port()).into())?;
         if group.ip().is_multicast() {
@@ -138,8 +143,16 @@ impl UdpPort {
     }
 }
 
-fn socket() -> io::Result<Socket> {
-    Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))
+fn socket(domain: Domain) -> io::Result<Socket> {
+    Socket::new(domain, Type::DGRAM, Some(Protocol::UDP))
+}
+
+/// To bind to, for who sends to `peer`.
+pub(crate) const fn any_address(peer: IpAddr) -> IpAddr {
+    match peer {
+        IpAddr::V4(_) => IpAddr::V4(Ipv4Addr::UNSPECIFIED),
+        IpAddr::V6(_) => IpAddr::V6(Ipv6Addr::UNSPECIFIED),
+    }
 }
 
 fn errno(error: &io::Error) -> Errno {
@@ -147,11 +160,9 @@ fn errno(error: &io::Error) -> Errno {
 }
 
 impl Port for UdpPort {
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
         match self.socket.recv_from(into) {
-            Ok((length, SocketAddr::V4(from))) => Ok(Some((length, from))),
-            // An IPv4 socket has no other senders.
-            Ok((_, SocketAddr::V6(_))) => Ok(None),
+            Ok(received) => Ok(Some(received)),
             Err(error) => match error.kind() {
                 // Interrupted: the next tick takes it.
                 io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted => Ok(None),
@@ -160,7 +171,7 @@ impl Port for UdpPort {
         }
     }
 
-    fn send(&self, datagram: &[u8], to: SocketAddrV4) -> Result<(), Errno> {
+    fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno> {
         match self.socket.send_to(datagram, to) {
             Ok(_) => Ok(()),
             // Where the network device leaves checksums to the kernel, Linux
@@ -175,7 +186,7 @@ impl Port for UdpPort {
         }
     }
 
-    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddrV4) -> Result<(), Errno> {
+    fn send_each(&self, datagrams: &[u8], size: usize, to: SocketAddr) -> Result<(), Errno> {
         if size == SEGMENT_BYTES && self.cuts.load(Ordering::Relaxed) {
             match self.socket.send_to(datagrams, to) {
                 Ok(_) => return Ok(()),
@@ -224,17 +235,20 @@ mod tests {
 
     use super::*;
 
+    const HERE: [IpAddr; 2] = [
+        IpAddr::V4(Ipv4Addr::LOCALHOST),
+        IpAddr::V6(Ipv6Addr::LOCALHOST),
+    ];
+
     /// Four datagrams, each full of its own number, as another socket gets
     /// them.
-    fn received_of_four(prepare: impl FnOnce(&UdpPort)) -> Vec<Vec<u8>> {
-        let other = UdpSocket::bind("127.0.0.1:0").unwrap();
+    fn received_of_four(here: IpAddr, prepare: impl FnOnce(&UdpPort)) -> Vec<Vec<u8>> {
+        let other = UdpSocket::bind((here, 0)).unwrap();
         other
             .set_read_timeout(Some(Duration::from_secs(10)))
             .unwrap();
-        let SocketAddr::V4(address) = other.local_addr().unwrap() else {
-            panic!("bound to IPv4");
-        };
-        let port = UdpPort::bind(0).unwrap();
+        let address = other.local_addr().unwrap();
+        let port = UdpPort::bind(0, here).unwrap();
         prepare(&port);
         let four = [1_u8, 2, 3, 4].map(|number| [number; SEGMENT_BYTES]);
         port.send_each(four.as_flattened(), SEGMENT_BYTES, address)
@@ -252,20 +266,22 @@ mod tests {
     #[test]
     fn datagrams_sent_at_one_go_arrive_one_by_one() {
         let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
-        assert_eq!(received_of_four(|_| {}), four);
-        assert_eq!(received_of_four(UdpPort::stop_cutting), four);
+        for here in HERE {
+            assert_eq!(received_of_four(here, |_| {}), four);
+            assert_eq!(received_of_four(here, UdpPort::stop_cutting), four);
+        }
     }
 
     /// Too long for UDP, refused with the same number as what cannot be cut.
     #[test]
     fn what_is_refused_is_tried_again_without_cutting() {
         let refused = |port: &UdpPort| {
-            let nobody = SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9);
+            let nobody = (Ipv4Addr::LOCALHOST, 9).into();
             let sent = port.send(&vec![0; 70_000], nobody);
             assert_eq!(sent, Err(nix::errno::Errno::EMSGSIZE as i32));
             assert!(!port.cuts.load(Ordering::Relaxed));
         };
         let four = [1_u8, 2, 3, 4].map(|number| vec![number; 509]);
-        assert_eq!(received_of_four(refused), four);
+        assert_eq!(received_of_four(HERE[0], refused), four);
     }
 }

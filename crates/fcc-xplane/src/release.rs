@@ -2,7 +2,7 @@
 //! back: at the end of a program, and for who survives one that was killed.
 
 use std::io::ErrorKind;
-use std::net::{SocketAddrV4, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Released;
@@ -10,7 +10,7 @@ use fcc_core::framework::Released;
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane};
-use crate::port::Errno;
+use crate::port::{Errno, any_address};
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 
@@ -37,7 +37,7 @@ impl XPlane {
     /// When the configuration is refused or there is no socket to be had.
     pub fn release_and_wait(
         config: &XPlaneConfig,
-        simulator: SocketAddrV4,
+        simulator: SocketAddr,
         patience: Duration,
     ) -> Result<Released, OpenError> {
         Self::release_unless(config, simulator, patience, || false)
@@ -50,7 +50,7 @@ impl XPlane {
     /// As [`release_and_wait`](Self::release_and_wait).
     pub fn release_unless(
         config: &XPlaneConfig,
-        simulator: SocketAddrV4,
+        simulator: SocketAddr,
         patience: Duration,
         is_called_off: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
@@ -72,8 +72,8 @@ impl XPlane {
     }
 }
 
-fn connect(simulator: SocketAddrV4) -> std::io::Result<UdpSocket> {
-    let socket = UdpSocket::bind("0.0.0.0:0")?;
+fn connect(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
+    let socket = UdpSocket::bind((any_address(simulator.ip()), 0))?;
     // Connected, so that the system tells of a port where nobody listens.
     socket.connect(simulator)?;
     socket.set_read_timeout(Some(LISTEN_FOR))?;

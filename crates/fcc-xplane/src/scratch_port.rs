@@ -7,7 +7,7 @@
 //! and sends to itself.
 
 use std::io;
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 
 use crate::port::{Port, UdpPort};
 
@@ -20,16 +20,19 @@ const MOST_RECEIVED: usize = 16;
 #[derive(Debug)]
 pub(crate) struct ScratchPort {
     port: UdpPort,
-    address: SocketAddrV4,
+    address: SocketAddr,
 }
 
 impl ScratchPort {
-    pub(crate) fn open() -> io::Result<Self> {
-        let port = UdpPort::bind_to(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 0))?;
-        match port.socket().local_addr()? {
-            SocketAddr::V4(address) => Ok(Self { port, address }),
-            SocketAddr::V6(_) => Err(io::ErrorKind::AddrNotAvailable.into()),
-        }
+    /// Of the same kind as the simulator's address.
+    pub(crate) fn open(simulator: IpAddr) -> io::Result<Self> {
+        let here: IpAddr = match simulator {
+            IpAddr::V4(_) => Ipv4Addr::LOCALHOST.into(),
+            IpAddr::V6(_) => Ipv6Addr::LOCALHOST.into(),
+        };
+        let port = UdpPort::bind_to((here, 0).into())?;
+        let address = port.socket().local_addr()?;
+        Ok(Self { port, address })
     }
 
     /// Sends datagrams of `size` bytes and takes them back. One that is lost
@@ -51,11 +54,13 @@ mod tests {
 
     #[test]
     fn what_it_sends_it_takes_back() {
-        let scratch = ScratchPort::open().unwrap();
-        for _ in 0..3 {
-            scratch.send_to_itself(&[7; 4 * 509], 509);
-            let left = scratch.port.receive(&mut [0; PEEK_BYTES]);
-            assert_eq!(left, Ok(None));
+        for simulator in [Ipv4Addr::BROADCAST.into(), Ipv6Addr::LOCALHOST.into()] {
+            let scratch = ScratchPort::open(simulator).unwrap();
+            for _ in 0..3 {
+                scratch.send_to_itself(&[7; 4 * 509], 509);
+                let left = scratch.port.receive(&mut [0; PEEK_BYTES]);
+                assert_eq!(left, Ok(None));
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 use core::mem;
 use core::time::Duration;
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use fcc_core::flight::Measurements;
@@ -110,7 +110,7 @@ impl<P: Port> XPlaneSensor<P> {
             };
             let known = self.link.simulator();
             let silent = now.since(self.inbox.last_received()) > self.silent_after;
-            let address = SocketAddrV4::new(*from.ip(), beacon.port);
+            let address = SocketAddr::new(from.ip(), beacon.port);
             let stay = known.is_some_and(|known| {
                 known != address && (!silent || self.link.control() == Control::Held)
             });
@@ -125,7 +125,7 @@ impl<P: Port> XPlaneSensor<P> {
         }
     }
 
-    fn receive(&mut self, now: Time, simulator: Option<SocketAddrV4>) -> Result<(), SensorFault> {
+    fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {
         let mut malformed = false;
         for _ in 0..self.datagrams_per_tick {
             let received = self.port.receive(self.buffer.as_mut_slice());
@@ -156,7 +156,7 @@ impl<P: Port> XPlaneSensor<P> {
         }
     }
 
-    fn ask(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+    fn ask(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
         self.subscriptions.send_due(now, &self.inbox, |request| {
             count(&link.counters.requests);
@@ -164,7 +164,7 @@ impl<P: Port> XPlaneSensor<P> {
         })
     }
 
-    fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddrV4) -> Result<(), Errno> {
+    fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
         self.release_monitor.see_to_it(now, link, |write| {
             count(&link.counters.writes);
@@ -178,7 +178,7 @@ pub(crate) fn send<P: Port>(
     port: &P,
     link: &SharedState,
     datagram: &[u8],
-    to: SocketAddrV4,
+    to: SocketAddr,
 ) -> Result<(), Errno> {
     port.send(datagram, to)
         .inspect_err(|_| count(&link.counters.refused))

@@ -2,7 +2,7 @@
 
 use core::fmt;
 use core::sync::atomic::{AtomicU64, Ordering};
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::sync::Arc;
 
 use crate::config::DataRows;
@@ -58,7 +58,7 @@ impl XPlaneStatus {
     }
 
     /// Where the simulator is; `None` until a beacon has told.
-    pub fn simulator(&self) -> Option<SocketAddrV4> {
+    pub fn simulator(&self) -> Option<SocketAddr> {
         self.link.simulator()
     }
 
@@ -71,7 +71,7 @@ impl XPlaneStatus {
     }
 
     /// Control may be taken at this address, and at no other.
-    pub fn allow(&self, simulator: SocketAddrV4) {
+    pub fn allow(&self, simulator: SocketAddr) {
         self.link.allow(Some(simulator));
     }
 
@@ -86,8 +86,8 @@ impl XPlaneStatus {
     }
 
     /// Where the controls are held, or not yet shown to be given back.
-    pub fn held_at(&self) -> Option<SocketAddrV4> {
-        let allowed = |at: &SocketAddrV4| self.link.is_allowed(*at);
+    pub fn held_at(&self) -> Option<SocketAddr> {
+        let allowed = |at: &SocketAddr| self.link.is_allowed(*at);
         let held = self.control() != Control::Free;
         self.simulator().filter(allowed).filter(|_| held)
     }
@@ -154,9 +154,9 @@ pub enum Trouble {
     /// No beacon has been heard.
     NoBeacon,
     /// The simulator does not answer.
-    Silent(SocketAddrV4),
+    Silent(SocketAddr),
     /// The simulator sends, but what is written to it has no effect.
-    Unconfirmed(SocketAddrV4),
+    Unconfirmed(SocketAddr),
 }
 
 impl fmt::Display for Trouble {

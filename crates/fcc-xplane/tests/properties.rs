@@ -3,7 +3,7 @@
 mod support;
 
 use std::collections::VecDeque;
-use std::net::{Ipv4Addr, SocketAddrV4};
+use std::net::Ipv4Addr;
 use std::sync::Mutex;
 
 use fcc_core::flight::Measurements;
@@ -146,7 +146,7 @@ proptest! {
         };
         let script: VecDeque<_> = ticks.iter().flatten().cloned().collect();
         let port = Scripted {
-            from: SocketAddrV4::new(Ipv4Addr::LOCALHOST, 49_000),
+            from: (Ipv4Addr::LOCALHOST, 49_000).into(),
             datagrams: Mutex::new(script),
         };
         let (mut sensor, _actuator) =

@@ -8,9 +8,9 @@ use std::time::Duration;
 
 use fcc_core::flight::PlantState;
 use fcc_core::framework::{SensorFault, Switch};
-use fcc_xplane::{DataRows, Input, RowsVersion};
+use fcc_xplane::{DataRows, Input, Released, RowsVersion, Simulator, XPlane, XPlaneConfig};
 use support::bench::{Bench, close};
-use support::{FLIGHT_TIME, OVERRIDE_JOYSTICK, P, SWITCH, free_port};
+use support::{FLIGHT_TIME, FakeXPlane, OVERRIDE_JOYSTICK, P, SWITCH, free_port};
 
 #[test]
 fn everything_subscribed_arrives_in_si_units() {
@@ -62,6 +62,43 @@ fn everything_subscribed_arrives_in_si_units() {
     assert_eq!(bench.status.version(), Some(115_501));
     assert_eq!(bench.status.on_ground(), Some(false));
     assert_eq!(bench.status.trouble(), None);
+}
+
+#[test]
+fn a_simulator_is_reached_by_ipv6_and_by_its_name() {
+    let mut ipv6 = Bench::on(FakeXPlane::at("[::1]:0"), |_| {});
+    let mut named = Bench::with(|config| {
+        let Simulator::At(address) = config.simulator else {
+            panic!("it has an address");
+        };
+        config.simulator = format!("localhost:{}", address.port()).parse().unwrap();
+    });
+    for bench in [&mut ipv6, &mut named] {
+        bench.settle();
+        bench.fly().unwrap();
+        assert_eq!(bench.status.simulator(), Some(bench.simulator.address()));
+        assert_eq!(bench.status.held_at(), Some(bench.simulator.address()));
+        close(bench.measurements.altitude_m.value, 914.4);
+        bench.simulator.listen();
+        drop(bench.actuator.take());
+        bench.assert_released();
+    }
+}
+
+#[test]
+fn what_holds_the_controls_by_ipv6_is_released_from_outside() {
+    let mut bench = Bench::on(FakeXPlane::at("[::1]:0"), |_| {});
+    bench.settle();
+    bench.fly().unwrap();
+    let simulator = bench.simulator.address();
+    let releases = std::thread::spawn(move || {
+        XPlane::release_and_wait(&XPlaneConfig::default(), simulator, Duration::from_secs(10))
+    });
+    while !releases.is_finished() {
+        bench.simulator.live(0.025);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(releases.join().unwrap().unwrap(), Released::Confirmed);
 }
 
 #[test]

@@ -4,7 +4,7 @@
 mod support;
 
 use fcc_core::framework::{Actuator, ActuatorFault};
-use std::net::SocketAddrV4;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use fcc_xplane::{Control, Output, Released, Trouble, XPlane};
@@ -51,7 +51,7 @@ fn control_is_taken_only_where_it_is_allowed() {
     bench.status.ask_first();
     bench.settle();
     let here = bench.simulator.address();
-    let elsewhere = SocketAddrV4::new(*here.ip(), here.port() ^ 1);
+    let elsewhere = SocketAddr::new(here.ip(), here.port() ^ 1);
     assert_eq!(bench.fly(), Err(ActuatorFault::NotConnected));
     bench.status.allow(elsewhere);
     assert_eq!(bench.fly(), Err(ActuatorFault::NotConnected));

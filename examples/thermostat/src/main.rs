@@ -5,6 +5,8 @@
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
 //! is 33 minutes to the room.
 
+#![expect(clippy::print_stdout, reason = "all that it does is to print")]
+
 #[cfg(test)]
 mod conformance;
 mod room;

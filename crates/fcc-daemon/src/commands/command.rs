@@ -22,22 +22,27 @@ struct Told {
 /// Gives a command, and says what became of it.
 pub(super) fn command(args: &CommandArgs) -> Exit {
     let command = FlightCommand::from(&args.what);
-    if let Err(words) = command.check() {
-        output::message(format!("fccd: {words}"));
+    if let Err(error) = command.check() {
+        fail(&error.in_knots_degrees_feet());
         return Exit::Usage;
     }
     let told = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
     let exit = match &told {
         Ok(_) => Exit::Success,
-        Err(CommandError::Refused(_)) => Exit::Refused,
+        Err(CommandError::Refused(_) | CommandError::Unflyable(_)) => Exit::Refused,
         Err(_) => Exit::Failure,
     };
+    // In the units that it was given in.
+    let told = told.map_err(|error| match error {
+        CommandError::Unflyable(why) => format!("refused: {}", why.in_knots_degrees_feet()),
+        other => other.to_string(),
+    });
     if args.json {
         let told = Told {
             instance: args.instance.to_string(),
             carried_out: told.is_ok(),
             tick: told.as_ref().ok().copied(),
-            why: told.err().map(|error| error.to_string()),
+            why: told.err(),
         };
         output::json(&told, exit);
     } else {
@@ -45,8 +50,8 @@ pub(super) fn command(args: &CommandArgs) -> Exit {
             Ok(tick) => {
                 output::result(format!("carried out in tick {tick}"), exit);
             }
-            Err(error) => {
-                fail(&error.to_string());
+            Err(words) => {
+                fail(&words);
             }
         }
     }

@@ -1,6 +1,10 @@
 //! `fccd fly`: the built-in aircraft through the pattern.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use fcc_runtime::SpawnError;
+use signal_hook::consts::{SIGINT, SIGTERM};
 
 use super::fail;
 use crate::cli::{FlyArgs, RecordingArgs};
@@ -68,13 +72,17 @@ pub(super) fn conduct(
         observers.push(Box::new(StatusLine::default()));
     }
     observers.push(Box::new(Service::from_environment()));
-    match fly_assembly(
+    // In lockstep there is no time to lose: every line is waited for.
+    let printer = (plan.pace == Pace::RealTime).then(output::in_background);
+    let flown = fly_assembly(
         assembly,
         &config.tick,
         plan,
         observers,
         &mut Process::new(config),
-    ) {
+    );
+    drop(printer);
+    match flown {
         Ok(outcome) => report(&outcome, json),
         Err(error) => {
             let exit = match error {
@@ -89,6 +97,12 @@ pub(super) fn conduct(
 }
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
+    // Whoever does not read what follows may end the program without it: the
+    // controls are released, and the recording is on the disk.
+    for signal in [SIGTERM, SIGINT] {
+        let over = Arc::new(AtomicBool::new(true));
+        let _ = signal_hook::flag::register_conditional_default(signal, over);
+    }
     if json {
         output::json(outcome, outcome.conclusion.into());
     } else {

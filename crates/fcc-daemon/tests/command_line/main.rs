@@ -1,13 +1,18 @@
 //! The program as a shell sees it: what it prints, where that fails, and how it
 //! ends.
-
+#![cfg(test)]
 #![cfg(test)]
 
 mod damaged;
 mod output;
+mod setpoints;
 mod top;
 
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Long after a healthy machine would have answered.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The program with these arguments, in a folder of its own.
 fn fccd(folder: &std::path::Path, arguments: &[&str]) -> Command {
@@ -22,4 +27,34 @@ fn fly(folder: &std::path::Path) {
         .output()
         .unwrap();
     assert!(flown.status.success(), "{flown:?}");
+}
+
+/// A flight that goes on until this is dropped.
+struct Flight(Child);
+
+impl Flight {
+    /// Starts it, and waits until it can be watched.
+    fn start(folder: &std::path::Path, instance: &str) -> Self {
+        let words = ["fly", "--no-recording", "--quiet", "--seconds", "600"];
+        let flight = fccd(folder, &words)
+            .args(["--instance", instance])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let flight = Self(flight);
+        let begun = Instant::now();
+        let snapshot = ["top", "--json", "--instance", instance];
+        while !fccd(folder, &snapshot).output().unwrap().status.success() {
+            assert!(begun.elapsed() < PATIENCE, "nobody flies");
+        }
+        flight
+    }
+}
+
+impl Drop for Flight {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }

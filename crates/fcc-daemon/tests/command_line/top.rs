@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -12,24 +13,12 @@ use nix::sys::signal::{Signal, kill};
 use nix::sys::termios::{FlowArg, tcflow};
 use nix::unistd::Pid;
 
-use super::fccd;
-
-const PATIENCE: Duration = Duration::from_secs(20);
+use super::{Flight, PATIENCE, fccd};
 
 /// A terminal, from both ends.
 struct Terminal {
     ours: PtyMaster,
     theirs: File,
-}
-
-/// A flight to watch, ended when it is dropped.
-struct Flight(Child);
-
-impl Drop for Flight {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
 }
 
 fn id(child: &Child) -> Pid {
@@ -40,7 +29,7 @@ fn ends(child: &mut Child) -> Option<i32> {
     let begun = Instant::now();
     while begun.elapsed() < PATIENCE {
         if let Some(status) = child.try_wait().unwrap() {
-            return status.code();
+            return status.code().or(status.signal().map(|n| -n));
         }
         thread::sleep(Duration::from_millis(20));
     }
@@ -51,29 +40,7 @@ fn ends(child: &mut Child) -> Option<i32> {
 /// A flight, `fccd top` on a terminal of its own that has drawn something, and
 /// our end of that terminal.
 fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal) {
-    let flight = Flight(
-        fccd(
-            folder,
-            &[
-                "fly",
-                "--no-recording",
-                "--quiet",
-                "--seconds",
-                "600",
-                "--instance",
-                instance,
-            ],
-        )
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap(),
-    );
-    let begun = Instant::now();
-    let snapshot = ["top", "--json", "--instance", instance];
-    while !fccd(folder, &snapshot).output().unwrap().status.success() {
-        assert!(begun.elapsed() < PATIENCE, "nobody flies");
-    }
+    let flight = Flight::start(folder, instance);
     // Closed in every program that is started here, or it would hold its own
     // terminal open.
     let ours = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).unwrap();

@@ -1,6 +1,5 @@
 //! `[x-plane]`: the aircraft is X-Plane's.
 
-use std::net::SocketAddrV4;
 use std::time::Duration;
 
 use fcc_xplane::{DataRows, Input, Output, RowsVersion, Simulator, XPlaneConfig};
@@ -10,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct XPlaneSection {
-    /// `beacon`, or IPv4 address and port.
+    /// `beacon`, or an address or host name, with a port if it is not 49000.
     #[serde(with = "simulator_text")]
     pub simulator: Simulator,
     /// UDP port to receive on; 0 for any that is free.
@@ -81,7 +80,7 @@ impl Default for XPlaneSection {
 impl From<&XPlaneSection> for XPlaneConfig {
     fn from(section: &XPlaneSection) -> Self {
         Self {
-            simulator: section.simulator,
+            simulator: section.simulator.clone(),
             local_port: section.local_port,
             input: match section.input {
                 InputChoice::Rref => Input::Rref,
@@ -109,31 +108,17 @@ impl From<&XPlaneSection> for XPlaneConfig {
     }
 }
 
-/// `beacon`, or IPv4 address and port.
+/// `beacon`, or an address or host name, with a port or without.
 mod simulator_text {
-    use super::{Simulator, SocketAddrV4};
+    use super::Simulator;
     use serde::{Deserialize, Deserializer, Serializer, de::Error};
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
     pub(super) fn serialize<S: Serializer>(at: &Simulator, out: S) -> Result<S::Ok, S::Error> {
-        match at {
-            Simulator::Beacon => out.serialize_str("beacon"),
-            Simulator::At(address) => out.collect_str(address),
-        }
+        out.collect_str(at)
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Simulator, D::Error> {
         let text = String::deserialize(from)?;
-        if text == "beacon" {
-            return Ok(Simulator::Beacon);
-        }
-        text.parse::<SocketAddrV4>()
-            .map(Simulator::At)
-            .map_err(|_| {
-                D::Error::custom(format!(
-                    "\"{text}\" is neither \"beacon\" nor an IPv4 address with a port, \
-                     such as \"127.0.0.1:49000\""
-                ))
-            })
+        text.parse().map_err(D::Error::custom)
     }
 }

@@ -2,6 +2,7 @@
 //! loop tells what became of each.
 
 use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 
 use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::{EventKind, LoopCommand, State};
@@ -10,8 +11,10 @@ use fcc_telemetry::live::{Asked, FlightCommand, Verdict};
 use fcc_telemetry::{FlightEvent, FlightRecord, event_words};
 
 /// Commands that were sent and whose outcome is not known yet, oldest first.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Commands {
+    /// What the aircraft's envelope allows.
+    airspeeds_mps: RangeInclusive<f64>,
     waiting: VecDeque<Waiting>,
 }
 
@@ -27,12 +30,23 @@ struct Waiting {
 }
 
 impl Commands {
+    /// Commands to an aircraft that may fly at these airspeeds, m/s.
+    pub(super) const fn new(airspeeds_mps: RangeInclusive<f64>) -> Self {
+        Self {
+            airspeeds_mps,
+            waiting: VecDeque::new(),
+        }
+    }
+
     /// Sends a command to the loop; the verdict if it is known at once.
     pub(super) fn send(
         &mut self,
         asked: Asked,
         to: &mut CommandSender<AutopilotCommand>,
     ) -> Option<(u64, Verdict)> {
+        if let Err(outside) = asked.command.check_airspeed(&self.airspeeds_mps) {
+            return Some((asked.id, Verdict::Outside(outside)));
+        }
         let unread: VecDeque<_> = asked.command.for_the_loop().into();
         for command in &unread {
             if let Err(error) = to.send(*command) {
@@ -146,7 +160,7 @@ mod tests {
 
     #[test]
     fn an_order_is_answered_by_the_record_of_the_tick_that_read_it() {
-        let mut commands = Commands::default();
+        let mut commands = Commands::new(30.0..=60.0);
         waiting(&mut commands, 1, FlightCommand::Engage);
         assert_eq!(commands.verdict(&record(4, State::Standby)), None);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
@@ -159,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_refusal_says_what_blocks() {
-        let mut commands = Commands::default();
+        let mut commands = Commands::new(30.0..=60.0);
         waiting(&mut commands, 1, FlightCommand::Engage);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         let engage_inhibits = flags::TOO_SLOW;
@@ -173,7 +187,7 @@ mod tests {
 
     #[test]
     fn set_points_wait_for_the_last_of_them_and_need_an_engaged_loop() {
-        let mut commands = Commands::default();
+        let mut commands = Commands::new(30.0..=60.0);
         waiting(&mut commands, 1, HEADING);
         waiting(&mut commands, 2, HEADING);
         let [heading, altitude] = HEADING.for_the_loop()[..] else {

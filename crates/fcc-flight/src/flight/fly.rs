@@ -114,7 +114,7 @@ pub fn fly(
     let report = give_back(report, authority.as_ref(), &mut observers, host);
     let refused = observers.monitor.was_refused() && !matches!(plan.length, Length::Open);
     let released = report.released;
-    let mut outcome = Outcome::new(timer_name, report);
+    let mut outcome = Outcome::new(timer_name, plan.pace, report);
     // The controls were given back before; the disk may take its time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);

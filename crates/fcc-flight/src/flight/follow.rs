@@ -50,7 +50,11 @@ impl Follower<'_> {
         watchdog: Option<&HangWatch>,
     ) -> Option<Hung> {
         let mut hung = None;
+        #[cfg(feature = "fault-injection")]
+        let mut pause = super::injection::Pause::from_environment();
         while hung.is_none() && !self.link.messages.is_over() {
+            #[cfg(feature = "fault-injection")]
+            pause.look();
             self.drain();
             self.host.poll();
             if self.host.taken_by_another().is_some() {

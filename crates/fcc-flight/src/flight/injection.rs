@@ -7,11 +7,13 @@
 //! - `FCCD_HANG_AT_S`: so many seconds after engaging, control never returns;
 //! - `FCCD_SLOW_AT_S`: so many seconds after engaging, control begins to take
 //!   `FCCD_SLOW_MS` longer, in `FCCD_SLOW_TICKS` ticks (all, if not given);
-//! - `FCCD_BLOCK_AT_S`: so many seconds after the first tick, a sensor blocks.
+//! - `FCCD_BLOCK_AT_S`: so many seconds after the first tick, a sensor blocks;
+//! - `FCCD_PAUSE_AT_S`: so many seconds after the loop's start, nobody fetches
+//!   what it tells, for `FCCD_PAUSE_S` (for ever, if not given).
 
 use std::fmt;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
@@ -84,6 +86,35 @@ impl Sensor<Measurements> for Blocking {
 
     fn name(&self) -> &'static str {
         "injection"
+    }
+}
+
+/// A main thread that waits for something, and fetches nothing meanwhile.
+#[derive(Debug)]
+pub(super) struct Pause {
+    at_s: Option<f64>,
+    begun: Instant,
+}
+
+impl Pause {
+    pub(super) fn from_environment() -> Self {
+        Self {
+            at_s: number("FCCD_PAUSE_AT_S"),
+            begun: Instant::now(),
+        }
+    }
+
+    /// Waits when it is time to.
+    pub(super) fn look(&mut self) {
+        if self
+            .at_s
+            .take_if(|at_s| self.begun.elapsed().as_secs_f64() >= *at_s)
+            .is_some()
+        {
+            thread::sleep(Duration::from_secs_f64(
+                number("FCCD_PAUSE_S").unwrap_or(3_600.0),
+            ));
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Lets others watch a flight, live.
 
+use std::ops::RangeInclusive;
+
 use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_telemetry::{FlightEvent, FlightRecord, recording};
 
@@ -17,11 +19,12 @@ pub(super) struct Live {
 }
 
 impl Live {
-    pub(super) fn new(section: &TelemetrySection) -> Self {
+    /// Commands are held to these airspeeds, m/s.
+    pub(super) fn new(section: &TelemetrySection, airspeeds_mps: RangeInclusive<f64>) -> Self {
         Self {
             section: section.clone(),
             publisher: None,
-            commands: Commands::default(),
+            commands: Commands::new(airspeeds_mps),
         }
     }
 }

@@ -4,11 +4,13 @@ use std::fmt::Write as _;
 
 use fcc_runtime::{Ending, LoopReport};
 use fcc_telemetry::{
-    DeniedRequest, FlightScore, Realtime, TimingReport, flight_table, timing_table,
+    DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport, flight_table, timing_table,
 };
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
+
+use super::plan::Pace;
 
 /// The scheduling of a loop without a thread of its own.
 const NOT_ASKED: &str = "not asked for";
@@ -20,6 +22,8 @@ pub struct Outcome {
     pub timing: TimingReport,
     /// How well the pattern was flown; none without a pattern.
     pub flight: Option<FlightScore>,
+    /// What that was scored by.
+    pub scored_by: ScoredBy,
     /// What happened, in order.
     pub events: Vec<EventEntry>,
     /// Why the loop ended.
@@ -34,6 +38,9 @@ pub struct Outcome {
     pub records_dropped: u64,
     /// What of the flight got onto the disk; none if it was not recorded.
     pub recording: Option<RecordingOutcome>,
+    /// How fast time passed.
+    #[serde(skip)]
+    pub pace: Pace,
     /// Whether a signal ended it.
     #[serde(skip)]
     pub interrupted: bool,
@@ -47,6 +54,8 @@ pub struct Outcome {
 pub enum Conclusion {
     /// It was flown as it should.
     Completed,
+    /// It was flown as it should, but not recorded, or not as a whole.
+    NotRecorded,
     /// It was not flown as it should: the timer failed, or engaging was refused.
     Failed,
     /// It fell into failsafe.
@@ -87,7 +96,7 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(timer: &'static str, report: LoopReport) -> Self {
+    pub(super) fn new(timer: &'static str, pace: Pace, report: LoopReport) -> Self {
         let conclusion = match report.ending {
             _ if !report.released => Conclusion::NotReleased,
             Ending::Panicked(_) => Conclusion::Panicked,
@@ -108,6 +117,7 @@ impl Outcome {
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
             flight: None,
+            scored_by: ScoredBy::Measurement,
             events: Vec::new(),
             ending: report.ending.to_string(),
             failsafes: report.failsafes,
@@ -115,8 +125,17 @@ impl Outcome {
             released: report.released,
             records_dropped: report.records_dropped,
             recording: None,
+            pace,
             interrupted: false,
             conclusion,
+        }
+    }
+
+    /// What was to be recorded is not, or not as a whole: that does not end a
+    /// flight, but its end says so.
+    pub(super) fn was_not_recorded(&mut self) {
+        if self.conclusion == Conclusion::Completed {
+            self.conclusion = Conclusion::NotRecorded;
         }
     }
 
@@ -127,7 +146,10 @@ impl Outcome {
             "interrupted by a signal".clone_into(&mut self.ending);
         } else if refused {
             "engaging was refused; the last event says why".clone_into(&mut self.ending);
-            if self.conclusion == Conclusion::Completed {
+            if matches!(
+                self.conclusion,
+                Conclusion::Completed | Conclusion::NotRecorded
+            ) {
                 self.conclusion = Conclusion::Failed;
             }
         }
@@ -135,12 +157,17 @@ impl Outcome {
 
     /// Tables for people.
     pub fn to_text(&self) -> String {
-        let mut text = timing_table(std::slice::from_ref(&self.timing));
-        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+        let mut text = String::new();
+        // In lockstep no time passes that could be kept.
+        if self.pace == Pace::RealTime {
+            text = timing_table(std::slice::from_ref(&self.timing));
             text.push_str("\n\n");
-            text.push_str(&flight_table(flight));
         }
-        let _ = write!(text, "\n\nended: {}", self.ending);
+        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+            text.push_str(&flight_table(flight, self.scored_by));
+            text.push_str("\n\n");
+        }
+        let _ = write!(text, "ended: {}", self.ending);
         if self.failsafes > 0 {
             let _ = write!(text, "; failsafe {} times", self.failsafes);
         }
@@ -156,6 +183,9 @@ impl Outcome {
             }
             if recording.not_recorded > 0 {
                 let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+            }
+            if let Some(why) = &recording.stopped {
+                let _ = write!(text, "\nTHE END IS NOT RECORDED: {why}");
             }
         }
         text

@@ -187,11 +187,15 @@ impl Observer for Recording {
     /// Ends the recording and waits for the disk, for a while.
     fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
         let Some(recorder) = self.recorder.take() else {
+            outcome.was_not_recorded();
             return;
         };
         let (status, news) = recorder.finish(ending);
         for news in news {
             pass_on(news, reports);
+        }
+        if status.stopped.is_some() || status.not_recorded > 0 || outcome.records_dropped > 0 {
+            outcome.was_not_recorded();
         }
         outcome.recording = Some(RecordingOutcome {
             files: status

@@ -4,7 +4,7 @@ use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::framework::{EventKind, LoopCommand, State};
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
-use fcc_telemetry::{FlightEvent, FlightLog, FlightRecord, Sample};
+use fcc_telemetry::{FlightEvent, FlightLog, FlightRecord, Sample, ScoredBy};
 
 use super::observer::{FlightTime, Observer, Reports};
 use super::outcome::Outcome;
@@ -70,6 +70,10 @@ impl Observer for Scorer {
     }
 
     fn end(&mut self, _: &str, outcome: &mut Outcome, _: &mut Reports) {
+        outcome.scored_by = match self.truth {
+            Some(_) => ScoredBy::Truth,
+            None => ScoredBy::Measurement,
+        };
         // A flight with a leg that was not flown to its end has no score.
         outcome.flight = self.log.take().and_then(|log| log.score().ok());
     }

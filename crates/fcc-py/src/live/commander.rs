@@ -62,7 +62,7 @@ impl PyCommander {
     }
 
     /// Fly by other set points, those that are not given staying: indicated
-    /// airspeed (m/s, 5 to 340), magnetic heading (rad, -2π to 2π), barometric
+    /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π), barometric
     /// altitude (m, -500 to 20,000). Ends a pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
     fn set(
@@ -77,7 +77,9 @@ impl PyCommander {
             heading_rad,
             altitude_m,
         });
-        command.check().map_err(PyValueError::new_err)?;
+        command
+            .check()
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
         self.command(py, command)
     }
 

@@ -4,6 +4,7 @@
 mod flown;
 mod python_io;
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -37,6 +38,8 @@ pub(crate) struct PyMachine {
     // A loop's ends are for one thread at a time, and so is `&mut self`.
     stepped: Mutex<Stepped>,
     period_s: f64,
+    /// What airspeeds may be commanded.
+    airspeeds_mps: RangeInclusive<f64>,
 }
 
 struct Stepped {
@@ -60,10 +63,12 @@ impl PyMachine {
         let timer = ManualTimer::new(parsed.tick.period()).map_err(refused)?;
         let (hand_over, sensor) = HandedOver::new();
         let (held, actuator) = Held::new();
+        let autopilot = parsed.autopilot_config();
+        let airspeeds_mps = autopilot.envelope.allowed_airspeeds();
         let parts = Parts {
             timer: Box::new(timer),
             sensors: vec![Box::new(sensor)],
-            controller: Autopilot::new(parsed.autopilot_config()),
+            controller: Autopilot::new(autopilot),
             actuators: vec![Box::new(actuator)],
         };
         let (mut machine, link) = Machine::new(parts, &parsed.loop_config()).map_err(refused)?;
@@ -79,6 +84,7 @@ impl PyMachine {
                 next_s: period_s,
             }),
             period_s,
+            airspeeds_mps,
         })
     }
 
@@ -147,7 +153,8 @@ impl PyMachine {
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
-        for command in checked_commands(airspeed_mps, heading_rad, altitude_m)? {
+        let allowed = self.airspeeds_mps.clone();
+        for command in checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)? {
             self.stepped().send(LoopCommand::Controller(command))?;
         }
         Ok(())

@@ -17,7 +17,7 @@
 //! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
 //!
 //! Commands come in the other way: a [`Commander`] asks by the service
-//! `fcc/INSTANCE/command/v1`, and learns what became of it.
+//! `fcc/INSTANCE/command/v2`, and learns what became of it.
 //!
 //! The layout of `info` never changes, so that a reader of another version can
 //! say what it found. Everything else bears a version: [`LAYOUT`].
@@ -38,7 +38,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, Verdict,
+    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, OutsideLimits,
+    Quantity, Unflyable, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};

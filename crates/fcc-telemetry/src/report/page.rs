@@ -153,7 +153,7 @@ fn flight_table(flight: &FlightScore) -> Markup {
                 table {
                     thead {
                         tr {
-                            @for name in crate::table::LEG_COLUMNS { th { (name) } }
+                            @for name in crate::flight_table::LEG_COLUMNS { th { (name) } }
                         }
                     }
                     tbody { @for (name, leg) in rows { (leg_row(name, leg)) } }
@@ -171,7 +171,7 @@ fn flight_table(flight: &FlightScore) -> Markup {
 fn leg_row(name: String, leg: &LegScore) -> Markup {
     html! {
         tr.worst[name == "worst"] {
-            @for cell in crate::table::leg_cells(name, leg) { td { (cell) } }
+            @for cell in crate::flight_table::leg_cells(name, leg) { td { (cell) } }
         }
     }
 }

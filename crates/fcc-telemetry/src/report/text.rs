@@ -6,7 +6,7 @@ use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
 use super::{Report, Timing};
 use crate::table::{figure, table};
-use crate::{FlightScore, flight_table, timing_table};
+use crate::{FlightScore, ScoredBy, flight_table, timing_table};
 
 /// More events than these do not fit on a screen.
 const MOST_EVENTS: usize = 20;
@@ -40,11 +40,7 @@ impl Report {
                 legs: legs.to_vec(),
                 worst: flight.worst,
             };
-            let _ = writeln!(
-                text,
-                "\nLegs, by what was measured:\n{}",
-                flight_table(&shown)
-            );
+            let _ = writeln!(text, "\n{}", flight_table(&shown, ScoredBy::Measurement));
             if many {
                 let _ = writeln!(
                     text,

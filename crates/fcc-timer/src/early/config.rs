@@ -1,4 +1,4 @@
-//! How a timer shall wake early: what configuration says.
+//! The configuration of early wake.
 
 use std::time::Duration;
 
@@ -10,21 +10,21 @@ const LONGEST_MARGIN: Duration = Duration::from_millis(10);
 const LARGEST_CPU_CAP: f64 = 0.5;
 const QUANTILES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 
-/// How much before its deadlines a timer may ask to be woken.
+/// How long before its deadlines a timer may have itself woken.
 ///
-/// The margin follows the lateness with which the kernel really wakes the
-/// thread: it is the quantile of the last 2048 wake-ups plus the guard, and
-/// where the caller warms up ([`crate::Timer::wait_or_warm_up`]) twice the
-/// time that this takes, within `min` and `max`, and never more than `cpu_cap` periods. It starts at the
-/// most it may be, and stays there until the quantile can be known.
+/// The margin is calculated from the measured lateness of the kernel's wake-ups:
+/// the quantile of the last 2048 of them plus the guard, plus 1.25 times the
+/// duration of a warm-up if the caller does one
+/// ([`crate::Timer::wait_or_warm_up`]), within `min` and `max`, and never more than `cpu_cap` periods. It starts at
+/// its maximum, and stays there until the quantile is known.
 ///
-/// A quantile, because a margin that follows the latest of all wake-ups would
-/// be blown up by each outlier: with 0.998, four of 2048 change nothing, and a
-/// fifth does at the next review (every 32 ticks). So the margin rises within a
-/// second when the machine becomes busy, is blind to what happens once in a
-/// while, and falls when 2048 ticks have passed since. Wake-ups later than any
-/// margin allowed are not counted, for no margin would have helped; unless
-/// they are half of all, when the longest margin helps most.
+/// A quantile, because each outlier would increase a margin based on the latest
+/// of all wake-ups: with 0.998, four late ones in 2048 change nothing, and a
+/// fifth does at the next review (every 32 ticks). So the margin increases
+/// within a second when the machine becomes busy, ignores rare delays, and
+/// decreases after 2048 ticks. Wake-ups later than any permitted margin are not
+/// counted, because no margin would cover them; if they are at least half of
+/// all, the longest margin is used.
 ///
 /// ```
 /// use fcc_timer::{EarlyWake, TimerKind};
@@ -45,10 +45,10 @@ pub struct EarlyWake {
     /// The longest margin, 10 ms at most. 250 µs by default: 1 % of a period
     /// at 40 Hz.
     pub max: Duration,
-    /// Which share of the wake-ups shall be before the deadline, 0.5..=0.9999.
+    /// The share of wake-ups to complete before the deadline, 0.5..=0.9999.
     /// 0.998 by default.
     pub quantile: f64,
-    /// Added to what was measured. 20 µs by default.
+    /// Added to the measured quantile. 20 µs by default.
     pub guard: Duration,
     /// The share of a core that may be spent on spinning, 0..=0.5: no margin
     /// is longer than this many periods, whatever `min` says. 0.25 by default,
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_the_range() {
+    fn values_out_of_range_are_rejected_with_the_range() {
         let config = EarlyWake::default();
         for (bad, name) in [
             (

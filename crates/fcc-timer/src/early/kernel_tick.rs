@@ -1,30 +1,28 @@
-//! When the kernel's own periodic tick comes, and deadlines out of its way.
+//! The kernel's periodic tick, and a grid of deadlines that avoids it.
 //!
 //! While a thread runs, the kernel interrupts it `CONFIG_HZ` times a second
-//! for its accounting: 2 to 20 µs each, more on a small board. A thread that
-//! spins to its deadline is hit by such a tick now and then, and where the
-//! period is a multiple of the tick's it is always hit or never, by chance of
-//! the moment at which it started. So that moment is chosen.
+//! for its accounting: 2 to 20 µs each, more on a small board. Such a tick
+//! sometimes interrupts a thread that spins until its deadline; if the period is
+//! a multiple of the tick's, it does so always or never, depending on when the
+//! timer started. So that time is chosen.
 //!
-//! The coarse clock of the kernel goes on with each tick, and its resolution is
-//! the tick's period: `clock_getres(2)`, `time(7)`. Watching it needs neither
-//! a right nor a file. It is one CPU that lets it go on, and the others tick at
-//! the same moments, unless the kernel was told to spread them (`skew_tick=1`):
-//! then a grid that is clear of that CPU's ticks may meet another's, as it may
-//! without all this.
+//! The kernel's coarse clock advances with each tick, and its resolution is the
+//! tick's period: `clock_getres(2)`, `time(7)`. Reading it requires neither a
+//! right nor a file. One CPU advances it, and the others tick at the same times,
+//! unless the kernel was configured to spread them (`skew_tick=1`): then the
+//! grid may coincide with the ticks of the loop's CPU.
 
 use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_getres, clock_gettime};
 
 use crate::deadlines::monotonic_ns;
 
-/// Ticks that are watched; the one seen most sharply counts.
+/// Ticks that are observed; the most precise observation is used.
 const WATCHED: u32 = 3;
-/// A clock whose resolution is not in this range is not the tick's: 1 kHz to
-/// 24 Hz, where the kernel's range is 1000 to 100.
+/// Plausible tick periods: 1 kHz to 24 Hz; the kernel's range is 1000 to 100 Hz.
 const PERIODS_NS: std::ops::RangeInclusive<i64> = 900_000..=42_000_000;
-/// Room between the tick and what it shall not meet. With less nothing is
-/// gained: the tick's own work may last as long.
+/// Least time between a tick and a wake-up or deadline. Less gains nothing: the
+/// tick's own work may take that long.
 const LEAST_ROOM_NS: i64 = 50_000;
 
 /// The kernel's periodic tick: at `phase_ns + n * period_ns`.
@@ -34,7 +32,7 @@ pub(super) struct KernelTick {
     phase_ns: i64,
 }
 
-/// One look at the coarse clock, with the time before and after.
+/// One reading of the coarse clock, with the time before and after.
 #[derive(Clone, Copy, Debug)]
 struct Look {
     before_ns: i64,
@@ -43,8 +41,8 @@ struct Look {
 }
 
 impl KernelTick {
-    /// Watches the coarse clock for some ticks: 12 ms where there are 250 in a
-    /// second, twice as long at most. `None` where it does not behave.
+    /// Observes the coarse clock for three ticks: 12 ms at 250 Hz, at most twice
+    /// as long. `None` if it does not advance as expected.
     pub(super) fn find() -> Option<Self> {
         let resolution = clock_getres(ClockId::CLOCK_MONOTONIC_COARSE).ok()?;
         let period_ns = resolution.num_nanoseconds();
@@ -65,34 +63,34 @@ impl KernelTick {
         let give_up_ns = previous
             .before_ns
             .saturating_add(2 * i64::from(WATCHED) * period_ns);
-        let mut sharpest: Option<(i64, i64)> = None;
+        let mut best: Option<(i64, i64)> = None;
         let mut seen = 0;
         while seen < WATCHED && previous.after_ns < give_up_ns {
             let now = look()?;
             if now.coarse_ns != previous.coarse_ns {
                 seen += 1;
-                // The tick came in between. Whoever was elsewhere meanwhile
-                // knows it less exactly.
-                let blur_ns = now.after_ns.saturating_sub(previous.before_ns);
-                if sharpest.is_none_or(|(least_ns, _)| blur_ns < least_ns) {
-                    sharpest = Some((blur_ns, previous.before_ns));
+                // The tick was between these readings; the closer they are, the
+                // more precisely its time is known.
+                let uncertainty_ns = now.after_ns.saturating_sub(previous.before_ns);
+                if best.is_none_or(|(least_ns, _)| uncertainty_ns < least_ns) {
+                    best = Some((uncertainty_ns, previous.before_ns));
                 }
             }
             previous = now;
         }
-        let (_, at_ns) = sharpest?;
+        let (_, at_ns) = best?;
         Some(Self {
             period_ns,
             phase_ns: at_ns.rem_euclid(period_ns),
         })
     }
 
-    /// The first time from `earliest_ns` on from which a grid of `period_ns`
-    /// may be laid so that no tick comes between the alarm, `margin_ns` before
-    /// each deadline, and the deadline; with equal room on both sides.
-    /// `earliest_ns` itself where no grid is clear of the ticks.
+    /// The first start from `earliest_ns` on for which no tick falls between the
+    /// alarm, `margin_ns` before each deadline of a grid of `period_ns`, and the
+    /// deadline, with the same distance to a tick on both sides. `earliest_ns`
+    /// itself if no grid avoids the ticks.
     pub(super) fn clear_start_ns(self, earliest_ns: i64, period_ns: i64, margin_ns: i64) -> i64 {
-        // Seen from the ticks, deadlines fall on every multiple of this.
+        // Relative to the ticks, deadlines fall on every multiple of this.
         let step_ns = greatest_common_divisor(period_ns, self.period_ns);
         let room_ns = (step_ns - margin_ns) / 2;
         if room_ns < LEAST_ROOM_NS {
@@ -203,7 +201,7 @@ mod tests {
     #[test]
     fn a_look_from_elsewhere_does_not_count_for_a_sharp_one() {
         // A look each 100 ns; ticks at 3.9 ms after multiples of 4. The first
-        // two were missed for 0.7 ms: that long, nobody looked.
+        // two were missed: the clock was not read for 0.7 ms.
         let mut now_ns = 0_i64;
         let mut absences = vec![8_600_000, 4_600_000];
         let look = || {

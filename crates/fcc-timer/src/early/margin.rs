@@ -1,36 +1,36 @@
-//! How long the margin has to be: what the last wake-ups say.
+//! The margin, calculated from the lateness of recent wake-ups.
 //!
-//! A sliding window of measured lateness, each kept as the number of a bucket,
-//! and how many there are of each: whole numbers in fixed memory, two of them
-//! changed per tick.
+//! A sliding window of lateness, each stored as the number of a bucket, and a
+//! count for each bucket: integers in fixed memory, two of them changed per
+//! tick.
 
 use super::EarlyWake;
 
-/// Wake-ups that are remembered: 51 s at 40 Hz, 2 s at 1 kHz.
+/// Wake-ups in the window: 51 s at 40 Hz, 2 s at 1 kHz.
 const WINDOW: usize = 2048;
 /// Buckets from no lateness to the longest margin: 1 µs each for 250 µs.
 const BUCKETS: usize = 256;
 /// Ticks between two reviews: under a second at 40 Hz.
 const REVIEW_TICKS: u32 = 32;
-/// A margin is shortened only if this part of it can be saved, so that it is
-/// not moved to and fro.
+/// A margin is shortened only by at least this part of it, so that it does not
+/// oscillate.
 const WORTH_SAVING: i64 = 8;
 
-/// The present margin, and what it was chosen by.
+/// The present margin and the data it is calculated from.
 #[derive(Debug)]
 pub(super) struct Margin {
     shortest_ns: i64,
     longest_ns: i64,
     guard_ns: i64,
-    /// The share of wake-ups that the margin may be too short for.
+    /// The share of wake-ups that may be later than the margin.
     spared: f64,
     bucket_ns: i64,
     /// Buckets of the last wake-ups; the oldest is overwritten.
     window: Box<[u16]>,
     next: usize,
     seen: usize,
-    /// How many wake-ups of the window are in each bucket; the last one holds
-    /// those that no margin reaches.
+    /// How many wake-ups of the window are in each bucket; the last bucket holds
+    /// those later than any margin.
     counts: Box<[u16]>,
     review_in: u32,
     now_ns: i64,
@@ -52,7 +52,7 @@ impl Margin {
             seen: 0,
             counts: vec![0; BUCKETS + 1].into(),
             review_in: REVIEW_TICKS,
-            // Nothing is known yet: what may be spent is spent.
+            // Nothing is known yet: the longest.
             now_ns: longest_ns,
         }
     }
@@ -61,12 +61,12 @@ impl Margin {
         self.now_ns
     }
 
-    /// The most it may ever be.
+    /// Its maximum.
     pub(super) const fn longest_ns(&self) -> i64 {
         self.longest_ns
     }
 
-    /// Counts a wake-up that came so long after its alarm.
+    /// Records the lateness of a wake-up.
     pub(super) fn observe(&mut self, lateness_ns: i64) {
         let bucket = (lateness_ns / self.bucket_ns).clamp(0, BUCKETS as i64) as u16;
         if let Some(slot) = self.window.get_mut(self.next) {
@@ -83,16 +83,15 @@ impl Margin {
         self.next = (self.next + 1) % WINDOW;
     }
 
-    /// To be called once a tick; whether the margin is another now. It has to
-    /// hold what is done between wake-up and spin, too.
+    /// To be called once a tick; whether the margin changed. It includes the time
+    /// for a warm-up.
     pub(super) fn review(&mut self, warm_up_ns: i64) -> bool {
         self.review_in = self.review_in.saturating_sub(1);
         if self.review_in > 0 {
             return false;
         }
         self.review_in = REVIEW_TICKS;
-        // A quantile of 0.998 is not known of less than 500: what has been seen
-        // by then is too little too often.
+        // A quantile of 0.998 needs 500 values: fewer underestimate it.
         if self.spared * (self.seen as f64) < 1.0 && self.seen < WINDOW {
             return false;
         }
@@ -105,13 +104,13 @@ impl Margin {
         false
     }
 
-    /// Rounded up, so that what changes by a nanosecond does not move an alarm.
+    /// Rounded up, so that a change of a nanosecond does not move an alarm.
     const fn in_buckets(&self, ns: i64) -> i64 {
         let bucket_ns = self.bucket_ns.unsigned_abs();
         (ns.unsigned_abs().div_ceil(bucket_ns) * bucket_ns) as i64
     }
 
-    /// The margin that the wake-ups of the window ask for.
+    /// The margin required by the wake-ups in the window.
     fn wanted_ns(&self, warm_up_ns: i64) -> i64 {
         let beyond = self.counts.last().copied().map_or(0, usize::from);
         if 2 * beyond >= self.seen {

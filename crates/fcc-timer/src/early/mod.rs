@@ -1,17 +1,17 @@
 //! Waking early, and spinning to the deadline.
 //!
-//! A kernel wakes a thread some tens of microseconds after it was asked to:
-//! the interrupt, the scheduler and the way out of an idle state take their
-//! time, and each time another. A timer that asks to be woken a margin before
-//! the deadline, and then reads the clock until the deadline is there, is late
-//! by one reading of the clock, as long as the margin was long enough.
+//! A kernel wakes a thread some tens of microseconds after the requested time,
+//! and the delay varies: the interrupt, the scheduler and the exit from an idle
+//! state take time. A timer that requests its wake-up a margin before the
+//! deadline, and then reads the clock until the deadline is reached, is late by
+//! one reading of the clock, if the margin was long enough.
 //!
-//! How long is enough is measured ([`margin`]); what it may cost is bounded
-//! ([`EarlyWake`]). The grid is laid where no tick of the kernel comes between
-//! alarm and deadline ([`kernel_tick`]), and what is left of the margin warms
-//! the caches for the tick ([`warm_up`]). The three timers of the kernel share
-//! all of this: each is an [`Alarm`], and [`Early::wait_or_warm_up`] is their
-//! common way to a deadline.
+//! The required margin is measured ([`margin`]); its cost is limited
+//! ([`EarlyWake`]). The grid is placed so that no kernel tick falls between
+//! wake-up and deadline ([`kernel_tick`]), and the rest of the margin is used to
+//! load the caches for the tick ([`warm_up`]). The three kernel timers share
+//! this code: each implements [`Alarm`], and [`Early::wait_or_warm_up`] waits
+//! for all of them.
 
 mod config;
 mod kernel_tick;
@@ -25,23 +25,23 @@ use kernel_tick::KernelTick;
 use margin::Margin;
 use warm_up::WarmUp;
 
-/// A timer's own way to be woken by the kernel.
+/// How one kind of timer has the kernel wake the thread.
 pub(crate) trait Alarm {
-    /// Has the next alarm come at `alarm_ns`, and the others a period apart
-    /// from there, from now on.
+    /// Sets the next alarm to `alarm_ns`, and the following ones a period apart
+    /// from there.
     fn move_to(&mut self, alarm_ns: i64) -> Result<(), TimerError>;
 
-    /// Sleeps until the next alarm. May return before `alarm_ns`: for an alarm
-    /// that came when nobody waited.
+    /// Sleeps until the next alarm. May return before `alarm_ns`, for an earlier
+    /// alarm that nothing waited for.
     fn sleep_until(&mut self, alarm_ns: i64) -> Result<(), TimerError>;
 }
 
-/// What a timer that wakes early knows.
+/// The state of a timer that wakes early.
 #[derive(Debug)]
 pub(crate) struct Early {
     margin: Margin,
     warm_up: WarmUp,
-    /// The wake-up, while the deadline is rehearsed.
+    /// The wake-up, during a warm-up.
     awake: Option<Awake>,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct Early {
 #[derive(Clone, Copy, Debug)]
 struct Awake {
     since_ns: i64,
-    /// How late the kernel woke it; `None` if it had not slept.
+    /// How late the kernel woke it; `None` if it did not sleep.
     kernel_lateness_ns: Option<i64>,
 }
 
@@ -65,9 +65,9 @@ impl Early {
         })
     }
 
-    /// The grid of a timer that starts now, waking early or not. Waking early,
-    /// it starts up to a tick of the kernel later, where that keeps the kernel's
-    /// ticks out of the margin; to find them takes three of them, six at most.
+    /// The grid of a timer that starts now. With early wake it starts up to one
+    /// kernel tick later, if that keeps kernel ticks out of the margin; finding
+    /// them takes three ticks, six at most.
     pub(crate) fn grid(early: Option<&mut Self>, period: Period) -> Deadlines {
         let Some(early) = early else {
             return Deadlines::new(monotonic_ns(), period);
@@ -83,7 +83,7 @@ impl Early {
         deadlines
     }
 
-    /// Waits for the next deadline, whatever was rehearsed.
+    /// Waits for the next deadline, without a warm-up.
     pub(crate) fn wait(
         &mut self,
         deadlines: &mut Deadlines,
@@ -103,11 +103,11 @@ impl Early {
         self.wait_or(true, deadlines, kernel)
     }
 
-    /// What has passed is told by the clock: an alarm is no deadline, so the
-    /// kernel's count of alarms says nothing here.
+    /// Passed deadlines are counted from the clock: an alarm is not a deadline,
+    /// so the kernel's count of alarms does not apply.
     ///
-    /// A rehearsal comes back by the very instructions by which the deadline
-    /// will: so these are rehearsed, too.
+    /// A warm-up returns by the same instructions as the deadline, so that these
+    /// are in the caches as well.
     fn wait_or(
         &mut self,
         may_warm_up: bool,
@@ -124,7 +124,7 @@ impl Early {
         } else {
             self.wake(may_warm_up, deadlines, kernel)?
         };
-        // The caches of a thread that did not sleep are warm.
+        // A thread that did not sleep has warm caches.
         let warms_up = may_warm_up
             && warmed.is_none()
             && awake.kernel_lateness_ns.is_some()
@@ -133,7 +133,7 @@ impl Early {
         let expiry = spin(&mut served, if warms_up { i64::MIN } else { due_ns });
         let expiry = Expiry {
             early_wake_ns: self.margin.ns().unsigned_abs(),
-            // Beyond the deadline it is not the spin that takes the time.
+            // Time after the deadline is not spent spinning.
             spun_ns: due_ns.saturating_sub(awake.since_ns).max(0).unsigned_abs(),
             kernel_lateness_ns: awake
                 .kernel_lateness_ns
@@ -162,8 +162,8 @@ impl Early {
         };
         if self.margin.review(warm_up_ns) {
             deadlines.wake_early(self.margin.ns());
-            // A system call, but one in 32 ticks at most, and before the wait:
-            // to ask for each alarm by itself would be one in each tick.
+            // A system call, but at most one in 32 ticks, and before the wait.
+            // Setting every alarm would be one in each tick.
             kernel.move_to(deadlines.alarm_ns())?;
         }
         let alarm_ns = deadlines.alarm_ns();
@@ -174,7 +174,7 @@ impl Early {
                 kernel.sleep_until(alarm_ns)?;
                 now_ns = monotonic_ns();
             }
-            // Only of a thread that slept it can be said how long waking took.
+            // Only a thread that slept has a wake-up lateness.
             let late_ns = now_ns.saturating_sub(alarm_ns);
             self.margin.observe(late_ns);
             kernel_lateness_ns = Some(late_ns);
@@ -186,12 +186,12 @@ impl Early {
     }
 }
 
-/// Reads the clock until it is there. One function, so that a warm-up
-/// runs the very instructions that come at the deadline.
+/// Reads the clock until a time is reached. One function, so that a warm-up
+/// runs the same instructions as the deadline.
 ///
-/// Without [`std::hint::spin_loop`]: a hypervisor takes many of these in a row
-/// for a lock that another of its CPUs holds, and lets others run (pause-loop
-/// exiting).
+/// Without [`std::hint::spin_loop`]: a hypervisor interprets many of these in a
+/// row as a wait for a lock held by another CPU, and schedules something else
+/// (pause-loop exiting).
 #[inline(never)]
 fn spin(deadlines: &mut Deadlines, until_ns: i64) -> Expiry {
     loop {
@@ -208,8 +208,8 @@ mod tests {
 
     use super::*;
 
-    /// A kernel that says that the alarm has come when it has not: as a timer
-    /// does whose alarms nobody waited for during a long tick.
+    /// A kernel that reports alarms too early, like a timer whose alarms expired
+    /// during a long tick.
     struct Impatient {
         stale: u32,
     }
@@ -242,7 +242,7 @@ mod tests {
         assert_eq!(kernel.stale, 0);
         assert!(expiry.woke_ns >= expiry.scheduled_ns);
         assert_eq!(expiry.early_wake_ns, 250_000);
-        // From the alarm on, first the kernel takes its time, then the spin.
+        // From the alarm on: first the kernel's lateness, then the spin.
         let late_ns = expiry.kernel_lateness_ns.unsigned_abs();
         assert_eq!(expiry.spun_ns, 250_000_u64.saturating_sub(late_ns));
     }

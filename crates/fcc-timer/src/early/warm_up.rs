@@ -1,73 +1,79 @@
-//! How long a rehearsal takes, and whether there is time for one.
+//! How long a warm-up takes, and whether there is time for one.
 //!
-//! A thread that slept for 25 ms finds cold caches: what it runs first takes
-//! several times as long as it would if it had just run. The time that is
-//! spun away is there to warm them: the caller runs what the tick will run,
-//! without effect, and then the spin goes on.
+//! After 25 ms of sleep a thread finds cold caches: its first instructions take
+//! several times as long as they would directly after the previous tick. Part
+//! of the margin is used to load them: the caller runs the code of the tick
+//! without effect, then the spin continues.
 
-/// What one is taken to last before any has been measured, ns.
+/// Assumed duration before one has been measured, ns.
 const FIRST_GUESS_NS: i64 = 50_000;
-/// Of what the longest one took, this part is forgotten with each that takes
-/// less: one that was interrupted counts for some ten ticks.
-const FORGOTTEN: i64 = 8;
-/// The same with each tick that had no time for one, so that it is tried again.
-const FORGOTTEN_UNTRIED: i64 = 64;
-/// Ticks without one after one that took longer than there was time, and so
-/// made its tick late; twice as many each time that happens again in a row.
-const FIRST_REST: u32 = 128;
-const LONGEST_REST: u32 = 65_536;
+/// The longest duration decreases by this part with each shorter one: one that
+/// was interrupted counts for about ten ticks.
+const DECAY: i64 = 8;
+/// The same with each tick that had no time for one, so that it is tried again
+/// later.
+const DECAY_UNTRIED: i64 = 64;
+/// Ticks without one after one that took longer than the time left, and so made
+/// its tick late; twice as many each further time in a row.
+const FIRST_SUSPENSION: u32 = 128;
+const LONGEST_SUSPENSION: u32 = 65_536;
 
-/// How long rehearsals took.
+/// This part of the longest recent duration is reserved in addition. More would
+/// leave no time on a busy machine: there the warm-up takes 100 µs of a margin
+/// of 250, and half of its ticks would have none.
+const RESERVE: i64 = 4;
+
+/// How long warm-ups took.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WarmUp {
     longest_ns: i64,
-    /// Ticks for which none is tried.
-    resting: u32,
-    next_rest: u32,
+    /// Ticks for which none is attempted.
+    suspended_ticks: u32,
+    next_suspension: u32,
 }
 
 impl WarmUp {
     pub(super) const fn new() -> Self {
         Self {
             longest_ns: FIRST_GUESS_NS,
-            resting: 0,
-            next_rest: FIRST_REST,
+            suspended_ticks: 0,
+            next_suspension: FIRST_SUSPENSION,
         }
     }
 
-    /// How much time one is given, ns: twice the longest of late, so that an
-    /// interrupt in it does not reach the deadline. None while it rests.
+    /// Time reserved for one, ns: the longest recent one and a quarter. 0
+    /// while suspended.
     pub(super) const fn allowance_ns(self) -> i64 {
-        if self.resting > 0 {
+        if self.suspended_ticks > 0 {
             0
         } else {
-            2 * self.longest_ns
+            self.longest_ns + self.longest_ns / RESERVE
         }
     }
 
-    /// Whether there is time for one. If not, the next time is nearer.
+    /// Whether there is time for one. If not, the time reserved decreases.
     pub(super) const fn fits(&mut self, left_ns: i64) -> bool {
-        if self.resting > 0 {
-            self.resting -= 1;
+        if self.suspended_ticks > 0 {
+            self.suspended_ticks -= 1;
             return false;
         }
         let fits = left_ns >= self.allowance_ns();
         if !fits {
-            self.longest_ns -= self.longest_ns / FORGOTTEN_UNTRIED;
+            self.longest_ns -= self.longest_ns / DECAY_UNTRIED;
         }
         fits
     }
 
-    /// Counts one that took so long, where so much time was left.
+    /// Records that one took `ns` when `left_ns` were left.
     pub(super) fn took(&mut self, ns: i64, left_ns: i64) {
-        let faded_ns = self.longest_ns - self.longest_ns / FORGOTTEN;
-        // A machine that stood still meanwhile says nothing of its length.
-        self.longest_ns = faded_ns.max(ns.min(left_ns));
+        let decayed_ns = self.longest_ns - self.longest_ns / DECAY;
+        // A longer time is an interruption, not the warm-up's duration.
+        self.longest_ns = decayed_ns.max(ns.min(left_ns));
         if ns > left_ns {
-            self.resting = self.next_rest;
-            self.next_rest = (2 * self.next_rest).min(LONGEST_REST);
+            self.suspended_ticks = self.next_suspension;
+            self.next_suspension = (2 * self.next_suspension).min(LONGEST_SUSPENSION);
         } else {
-            self.next_rest = FIRST_REST;
+            self.next_suspension = FIRST_SUSPENSION;
         }
     }
 }
@@ -79,16 +85,16 @@ mod tests {
     const LEFT_NS: i64 = 200_000;
 
     #[test]
-    fn the_longest_counts_at_once_and_fades() {
+    fn the_longest_counts_at_once_and_decreases() {
         let mut warm_up = WarmUp::new();
         for _ in 0..40 {
             warm_up.took(8_000, LEFT_NS);
         }
-        assert_eq!(warm_up.allowance_ns(), 16_000);
+        assert_eq!(warm_up.allowance_ns(), 10_000);
         warm_up.took(80_000, LEFT_NS);
-        assert_eq!(warm_up.allowance_ns(), 160_000);
+        assert_eq!(warm_up.allowance_ns(), 100_000);
         warm_up.took(8_000, LEFT_NS);
-        assert_eq!(warm_up.allowance_ns(), 140_000);
+        assert_eq!(warm_up.allowance_ns(), 87_500);
     }
 
     #[test]
@@ -99,8 +105,8 @@ mod tests {
         while !warm_up.fits(150_000) {
             skipped += 1;
         }
-        // 300 µs fade to 150: ln(300 / 150) / -ln(1 - 1 / 64).
-        assert_eq!(skipped, 45);
+        // 187.5 µs decrease to 150: ln(1.25) / -ln(1 - 1 / 64).
+        assert_eq!(skipped, 15);
     }
 
     #[test]
@@ -113,12 +119,12 @@ mod tests {
                 warm_up.took(300_000, LEFT_NS);
             }
         }
-        // After 128 ticks, 256, 512, ...: nine rests are 65,000.
+        // After 128 ticks, 256, 512, ...: nine suspensions are 65,000.
         assert_eq!(late, 10);
     }
 
     #[test]
-    fn a_machine_that_stood_still_once_costs_a_few_seconds_of_rehearsals() {
+    fn one_long_interruption_suspends_it_for_a_few_seconds() {
         let mut warm_up = WarmUp::new();
         warm_up.took(520_000_000, LEFT_NS);
         assert_eq!(warm_up.allowance_ns(), 0);

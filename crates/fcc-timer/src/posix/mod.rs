@@ -1,9 +1,8 @@
 //! A timer that sends signals: `timer_create(2)`.
 //!
-//! The thesis took such a signal in a handler, where hardly anything may be
-//! done. Here no handler runs: the signal is a real-time one, goes to the
-//! loop's own thread, is blocked there, and `sigwaitinfo` takes it off the
-//! queue like a message.
+//! The thesis handled such a signal in a signal handler, in which few functions
+//! may be called. Here there is no handler: the real-time signal is sent to the
+//! loop's own thread, blocked there, and received with `sigwaitinfo`.
 
 mod interval;
 mod signal;
@@ -38,7 +37,7 @@ struct Running {
 }
 
 impl Running {
-    /// The signals come to the thread that started the timer.
+    /// The signals are sent to the thread that started the timer.
     fn check_thread(&self) -> Result<(), TimerError> {
         if self.thread == thread::current().id() {
             Ok(())
@@ -63,7 +62,7 @@ impl PosixTimer {
         })
     }
 
-    /// Has it wake early and spin to its deadlines.
+    /// Makes it wake early and spin until its deadlines.
     ///
     /// # Errors
     /// When a value is out of its range.
@@ -75,7 +74,7 @@ impl PosixTimer {
 
 impl Timer for PosixTimer {
     fn start(&mut self) -> Result<(), TimerError> {
-        // The timer of a start before goes first, and its signal with it.
+        // The timer of an earlier start is deleted first, with its signal.
         self.running = None;
         let mut signals = Signals::new(self.period)?;
         let deadlines = Early::grid(self.early.as_mut(), self.period);
@@ -127,7 +126,7 @@ impl Timer for PosixTimer {
     }
 }
 
-/// The timer as the kernel has it, and the signal that it sends.
+/// The kernel's timer and the signal that it sends.
 #[derive(Debug)]
 struct Signals {
     period: Period,

@@ -1,19 +1,18 @@
-//! Which CPU a loop is best kept on.
+//! Choosing the CPU for a loop.
 //!
-//! The kernel tells in `/sys` which CPUs it keeps other threads away from, and
-//! in `/proc` which of them take the interrupts of devices. Both are texts that
-//! differ from kernel to kernel: what is not understood is taken as not told.
-//! They are read under a root folder, `/` but for tests.
+//! `/sys` lists the CPUs that the kernel keeps other threads away from, and
+//! `/proc` which of them handle device interrupts. The formats differ between
+//! kernels: what cannot be parsed is treated as unknown. Files are read under a
+//! root folder, `/` except in tests.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// More CPUs than any machine that a loop runs on: a list that names more is
-/// none.
+/// More CPUs than any machine that a loop runs on: a list with more is invalid.
 const MOST_CPUS: usize = 8_192;
-/// A CPU that takes less than this part of what the busiest one takes stays
-/// off the interrupts; closer, and chance may have dealt them.
+/// A CPU that handles less than this part of the busiest one's interrupts is
+/// considered free of them; a smaller difference may be chance.
 const MUCH_LESS: u64 = 4;
 
 /// A CPU, and why it is the best.
@@ -25,7 +24,7 @@ pub struct BestCpu {
     pub because: String,
 }
 
-/// What a machine tells of its CPUs.
+/// The CPUs of a machine.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Cpus {
     /// Those that run threads.
@@ -37,13 +36,12 @@ pub struct Cpus {
     /// Those that interrupts go to unless somebody says otherwise; empty if
     /// not known.
     pub interrupted_by_default: BTreeSet<usize>,
-    /// Interrupts of devices since the machine started, CPU by CPU; none where
-    /// they are not told.
+    /// Device interrupts since the machine started, by CPU; empty if unknown.
     pub device_interrupts: Vec<(usize, u64)>,
 }
 
 impl Cpus {
-    /// Reads what the machine tells under `root`.
+    /// Reads the files under `root`.
     pub fn read(root: &Path) -> Self {
         let text = |path: &str| fs::read_to_string(root.join(path)).unwrap_or_default();
         let list = |name: &str| parse_list(&text(&format!("sys/devices/system/cpu/{name}")));
@@ -56,8 +54,8 @@ impl Cpus {
         }
     }
 
-    /// The best CPU for a thread that may run on `allowed`; an isolated one
-    /// may be asked for even so. What the kernel refuses is asked of `may_use`.
+    /// The best CPU for a thread that may run on `allowed`, or an isolated one.
+    /// `may_use` returns whether the kernel permits it.
     /// This is what [`CpuRequest::Auto`](super::CpuRequest::Auto) chooses.
     ///
     /// # Errors
@@ -77,7 +75,7 @@ impl Cpus {
         {
             return Ok(BestCpu {
                 cpu,
-                because: "it is isolated: no other thread runs there".to_owned(),
+                because: "it is isolated: no other thread runs on it".to_owned(),
             });
         }
         if allowed.len() < 2 {
@@ -108,12 +106,12 @@ impl Cpus {
                 Ok(BestCpu {
                     cpu: *calm,
                     because: format!(
-                        "it took {least} interrupts of devices since the start, CPU {busy} {most}"
+                        "it handled {least} device interrupts since the start, CPU {busy} {most}"
                     ),
                 })
             }
             (Some(_), Some(_)) => Err("interrupts are spread over all of them".to_owned()),
-            _ => Err("/proc/interrupts does not tell which takes the interrupts".to_owned()),
+            _ => Err("/proc/interrupts does not show which CPU handles the interrupts".to_owned()),
         }
     }
 }
@@ -169,15 +167,14 @@ pub fn parse_interrupts(text: &str) -> Vec<(usize, u64)> {
 pub struct DeviceInterrupt {
     /// Its number, as in `/proc/irq`.
     pub number: u32,
-    /// Whose it is: `eth0`.
+    /// Its device: `eth0`.
     pub name: String,
     /// How often it came since the machine started, CPU by CPU.
     pub counts: Vec<(usize, u64)>,
 }
 
 /// The devices of `/proc/interrupts`: the rows whose name is a number. The
-/// others are the CPUs' own affairs: their timers, and what they tell each
-/// other.
+/// others belong to the CPUs: their timers and their interrupts of each other.
 pub fn parse_devices(text: &str) -> Vec<DeviceInterrupt> {
     let cpus = parse_header(text);
     let row = |line: &str| {

@@ -1,4 +1,4 @@
-//! What was granted and what was refused.
+//! What was granted and what was denied.
 
 use nix::errno::Errno;
 use std::fmt;
@@ -14,34 +14,35 @@ pub struct RealtimeGranted {
     pub priority: i32,
     /// The CPU, if the thread may run on one only.
     pub cpu: Option<usize>,
-    /// Why this CPU, or why none; empty if none was asked for.
+    /// Why this CPU, or why none; empty if none was requested.
     pub cpu_reason: String,
-    /// How long CPUs may take to wake, if that was asked for and granted.
+    /// How long CPUs may take to leave an idle state, if that was requested and
+    /// granted.
     pub cpu_latency: Option<LatencyLimit>,
     /// Whether all memory of the process that is in use is locked.
     pub memory_locked: bool,
-    /// Whether the stack asked for is in memory: touching it again faults no
-    /// page.
+    /// Whether the requested stack is in memory: touching it again causes no page
+    /// fault.
     pub stack_prefaulted: bool,
-    /// How late the kernel may make a sleep of the thread, ns.
+    /// How much the kernel may delay a wake-up of the thread, ns.
     pub timer_slack_ns: Option<u64>,
-    /// The wishes that were refused.
+    /// The requests that were denied.
     pub denied: Vec<DeniedRequest>,
 }
 
-/// A wish that was refused.
+/// A request that was denied.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct DeniedRequest {
-    /// What was asked for: `SCHED_FIFO priority 80`.
+    /// The request: `SCHED_FIFO priority 80`.
     pub request: String,
-    /// What the kernel said, or why it was not asked: `EPERM`.
+    /// The kernel's error, or another reason: `EPERM`.
     pub reason: String,
     /// What to do about it.
     pub remedy: String,
 }
 
 impl DeniedRequest {
-    /// A denied by the kernel.
+    /// A denial by the kernel.
     pub(super) fn by_kernel(request: String, errno: Errno, remedy: String) -> Self {
         Self {
             request,
@@ -55,16 +56,16 @@ impl fmt::Display for DeniedRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} refused ({}): {}",
+            "{} denied ({}): {}",
             self.request, self.reason, self.remedy
         )
     }
 }
 
-/// Something was refused that was asked for strictly.
+/// A request that must be granted was denied.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct RealtimeDenied {
-    /// What the thread has now; never without a denied.
+    /// The thread's settings now; at least one request was denied.
     pub granted: RealtimeGranted,
 }
 

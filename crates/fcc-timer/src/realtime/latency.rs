@@ -1,9 +1,8 @@
-//! How deep the CPUs may sleep: `/dev/cpu_dma_latency`.
+//! How deep the CPUs' idle states may be: `/dev/cpu_dma_latency`.
 //!
-//! A CPU without work goes to sleep, and waking from a deep sleep takes longer
-//! than from a light one, up to hundreds of microseconds. Whoever holds this
-//! device open with a number in it, µs, keeps the kernel from states that take
-//! longer to leave (Linux, "PM Quality Of Service Interface").
+//! A CPU without work enters an idle state, and leaving a deep one takes longer,
+//! up to hundreds of microseconds. While a process keeps this device open with a
+//! number written to it, µs, the kernel avoids states that take longer to leave (Linux, "PM Quality Of Service Interface").
 
 use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
@@ -14,8 +13,8 @@ use super::DeniedRequest;
 
 const DEVICE: &str = "/dev/cpu_dma_latency";
 
-/// A limit on how long CPUs may take to wake, in force until the last copy of
-/// this value is dropped.
+/// A limit on how long CPUs may take to leave an idle state, in force until the
+/// last copy of this value is dropped.
 #[derive(Clone, Debug)]
 pub struct LatencyLimit {
     us: u32,
@@ -37,10 +36,10 @@ impl PartialEq for LatencyLimit {
 
 impl Eq for LatencyLimit {}
 
-/// Asks that no CPU takes longer than `wished_us` to wake.
-pub(super) fn limit(wished_us: u32) -> Result<LatencyLimit, DeniedRequest> {
-    ask(wished_us).map_err(|error| DeniedRequest {
-        request: format!("CPUs awake within {wished_us} µs"),
+/// Requests that no CPU takes longer than `requested_us` to leave an idle state.
+pub(super) fn limit(requested_us: u32) -> Result<LatencyLimit, DeniedRequest> {
+    ask(requested_us).map_err(|error| DeniedRequest {
+        request: format!("CPUs awake within {requested_us} µs"),
         reason: match error.raw_os_error() {
             Some(number) => format!("{DEVICE}: {:?}", Errno::from_raw(number)),
             None => format!("{DEVICE}: {error}"),
@@ -48,19 +47,19 @@ pub(super) fn limit(wished_us: u32) -> Result<LatencyLimit, DeniedRequest> {
         remedy: format!(
             "let the program write to {DEVICE}: a udev rule \
              KERNEL==\"cpu_dma_latency\", GROUP=\"fccd\", MODE=\"0660\"; where the machine has \
-             no such device, take the wish out"
+             no such device, remove the request"
         ),
     })
 }
 
-fn ask(wished_us: u32) -> io::Result<LatencyLimit> {
+fn ask(requested_us: u32) -> io::Result<LatencyLimit> {
     let mut device = OpenOptions::new().read(true).write(true).open(DEVICE)?;
-    let wished = i32::try_from(wished_us).map_err(io::Error::other)?;
-    device.write_all(&wished.to_ne_bytes())?;
+    let requested = i32::try_from(requested_us).map_err(io::Error::other)?;
+    device.write_all(&requested.to_ne_bytes())?;
     let mut granted = [0; size_of::<i32>()];
     device.read_exact(&mut granted)?;
     let granted = i32::from_ne_bytes(granted);
-    if granted > wished {
+    if granted > requested {
         return Err(io::Error::other(format!("reads back as {granted} µs")));
     }
     Ok(LatencyLimit {

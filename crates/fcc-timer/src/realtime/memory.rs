@@ -7,15 +7,15 @@ use std::fs;
 
 use super::DeniedRequest;
 
-/// The calling thread's own: capabilities are a thread's.
+/// The calling thread's own, because capabilities belong to threads.
 const STATUS: &str = "/proc/thread-self/status";
-/// Which users of the system the users of this process' namespace are.
+/// How the users of this process' namespace map to those of the system.
 const UID_MAP: &str = "/proc/self/uid_map";
 /// The bit of `CAP_IPC_LOCK` in a set of capabilities.
 const CAP_IPC_LOCK: u32 = 14;
 
-/// Locks what the process has mapped, fetched, and what it maps later, as it
-/// is touched.
+/// Locks and loads what the process has mapped, and locks what it maps later,
+/// once it is touched.
 pub(super) fn lock() -> Result<(), DeniedRequest> {
     let denied = |reason: String| DeniedRequest {
         request: "locked memory".to_owned(),
@@ -30,13 +30,14 @@ pub(super) fn lock() -> Result<(), DeniedRequest> {
             limit_bytes / 1024
         )));
     }
-    // In two calls, because the second shall not unlock what the first fetched
-    // nor fetch all of what is mapped later.
+    // In two calls: pages mapped now are loaded, pages mapped later only when
+    // they are touched.
     let later = MlockAllFlags::MCL_FUTURE | MlockAllFlags::from_bits_retain(libc::MCL_ONFAULT);
     mlockall(MlockAllFlags::MCL_CURRENT)
         .and_then(|()| mlockall(later))
         .map_err(|errno: Errno| {
-            // Half locked helps nobody. Unlocking needs no right and cannot fail.
+            // Partly locked memory is useless. Unlocking needs no right and
+            // cannot fail.
             let _ = munlockall();
             denied(format!("{errno:?}"))
         })?;
@@ -96,7 +97,7 @@ fn value<'a>(status: &'a str, field: &str) -> Option<&'a str> {
 
 /// A capability counts against the limit only in the first user namespace, the
 /// one that maps every user to itself: in a container without root's rights
-/// the set says yes and the kernel says no.
+/// the set contains the capability, but the kernel denies the request.
 fn is_whole_system(uid_map: &str) -> bool {
     uid_map.split_whitespace().eq(["0", "0", "4294967295"])
 }

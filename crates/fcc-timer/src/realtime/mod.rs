@@ -1,13 +1,13 @@
-//! What a real-time thread asks of the kernel, and what it gets.
+//! What a real-time thread requests of the kernel, and what is granted.
 //!
 //! [`RealtimeRequest::apply`] is called once, by the loop's own thread, after
 //! everything the loop needs has been allocated and before its timer starts.
-//! Every wish is granted or refused by itself; the [`RealtimeGranted`] are read
-//! back from the kernel, so that a report shows what is and not what was asked.
+//! Each request is granted or denied independently; [`RealtimeGranted`] is read
+//! back from the kernel, so that a report shows the actual settings.
 //!
 //! Scheduling, CPU and timer slack are set for the calling thread alone, and
-//! threads it makes later go back to `SCHED_OTHER` (they do inherit the CPU).
-//! Locked memory is the process' affair and there is no other way: see
+//! threads it creates later return to `SCHED_OTHER` (they do inherit the CPU).
+//! Locked memory always concerns the whole process: see
 //! [`RealtimeRequest::lock_memory`].
 
 pub mod cpus;
@@ -25,7 +25,7 @@ pub use granted::{DeniedRequest, RealtimeDenied, RealtimeGranted};
 pub use latency::LatencyLimit;
 pub use scheduling::{take_priority_from, this_thread};
 
-/// What a thread would like to have.
+/// What a thread requests.
 ///
 /// ```
 /// use fcc_timer::RealtimeRequest;
@@ -47,47 +47,48 @@ pub struct RealtimeRequest {
     /// `SCHED_FIFO` with this priority, 1..=99. The kernel's own interrupt
     /// threads are at 50.
     pub priority: Option<u8>,
-    /// To run on one CPU only.
+    /// The CPU to run on.
     pub cpu: Option<CpuRequest>,
-    /// To have no page of the process swapped out or dropped. What is mapped
-    /// now is fetched and stays; what is mapped later stays from when it is
-    /// first touched, so that a thread's stack or a large file mapped by
-    /// others costs memory only where it is used. This concerns all threads.
+    /// Whether to keep all pages of the process in memory. Pages mapped now are
+    /// loaded and stay; pages mapped later stay once they are first touched, so
+    /// that a thread's stack or a large mapped file costs memory only where it is
+    /// used. This concerns all threads.
     ///
     /// Under a limit (`RLIMIT_MEMLOCK`) that is not "unlimited", locking may
     /// succeed now and make an allocation fail later, in any thread, when the
-    /// limit is reached. So this wish is refused then, unless the process may
-    /// exceed it (`CAP_IPC_LOCK`): all or nothing.
+    /// limit is reached. So the request is denied then, unless the process may
+    /// exceed the limit (`CAP_IPC_LOCK`).
     pub lock_memory: bool,
     /// Bytes of the thread's stack, below the frame of `apply`, to have in
     /// memory before they are needed. 0: none.
     pub stack_prefault_bytes: usize,
-    /// How late the kernel may make a sleep of this thread so as to wake
-    /// several at once, ns, 1 or more. The kernel's default is 50 µs; threads
+    /// How much the kernel may delay a wake-up of this thread to combine several,
+    /// ns, 1 or more. The kernel's default is 50 µs; threads
     /// under `SCHED_FIFO` have none.
     pub timer_slack_ns: Option<u64>,
-    /// How long a CPU may take to wake from its sleep, µs, 2 147 483 647 at
-    /// most; 0 keeps all CPUs from sleeping. In force as long as the granted.
+    /// How long a CPU may take to leave its idle state, µs, 2 147 483 647 at
+    /// most; 0 prevents idle states. In force until the [`RealtimeGranted`] is
+    /// dropped.
     pub cpu_dma_latency_us: Option<u32>,
-    /// What a denied means.
+    /// What a denied request means.
     pub strictness: Strictness,
 }
 
 /// Which CPU.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum CpuRequest {
-    /// The best there is: an isolated one, or else one that stays off the
-    /// interrupts. Where none is better than the others, the thread is not
-    /// bound; that is no denied.
+    /// The best one: an isolated one, or else one that handles few interrupts. If
+    /// none is better than the others, the thread is not bound; that is not a
+    /// denial.
     Auto,
     /// This one, counted from 0.
     Number(usize),
 }
 
-/// What a refused wish means.
+/// What a denied request means.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Strictness {
-    /// It is reported among the granted.
+    /// It is reported in [`RealtimeGranted::denied`].
     #[default]
     Warn,
     /// It is an error.
@@ -95,33 +96,33 @@ pub enum Strictness {
 }
 
 impl RealtimeRequest {
-    /// Asks for each wish and reads back what the calling thread has now.
-    /// Without any wish it only reads. Allocates and reads files: not for use
+    /// Makes each request and reads back the settings of the calling thread.
+    /// Without any request it only reads. Allocates and reads files: not for use
     /// in a tick.
     ///
     /// # Errors
-    /// When anything was refused under [`Strictness::Strict`]. What was
-    /// granted stays granted.
+    /// When anything was denied under [`Strictness::Strict`]. What was granted
+    /// stays in force.
     pub fn apply(&self) -> Result<RealtimeGranted, RealtimeDenied> {
         let mut denied = Vec::new();
         // The slack before the scheduling: a thread under SCHED_FIFO has none,
-        // but shall have the one asked for should it ever leave it. The
-        // scheduling last: fetching memory takes long, and others may run.
+        // but has the requested one if it leaves SCHED_FIFO. The scheduling
+        // last: locking memory takes long, and other threads may run meanwhile.
         if let Some(slack_ns) = self.timer_slack_ns {
             denied.extend(slack::set(slack_ns).err());
         }
         let mut cpu_reason = String::new();
         match self.cpu {
             Some(CpuRequest::Number(cpu)) => match scheduling::pin_to(cpu) {
-                Ok(()) => "it was asked for".clone_into(&mut cpu_reason),
+                Ok(()) => "it was requested".clone_into(&mut cpu_reason),
                 Err(request) => denied.push(request),
             },
             Some(CpuRequest::Auto) => cpu_reason = bind_to_best(),
             None => {}
         }
         let mut cpu_latency = None;
-        if let Some(wished_us) = self.cpu_dma_latency_us {
-            match latency::limit(wished_us) {
+        if let Some(requested_us) = self.cpu_dma_latency_us {
+            match latency::limit(requested_us) {
                 Ok(limit) => cpu_latency = Some(limit),
                 Err(request) => denied.push(request),
             }
@@ -158,10 +159,11 @@ impl RealtimeRequest {
     }
 }
 
-/// Binds the calling thread to the best CPU, if there is one; says why.
+/// Binds the calling thread to the best CPU, if there is one; returns the
+/// reason.
 fn bind_to_best() -> String {
     let allowed = scheduling::allowed_cpus();
-    // To ask whether a CPU may be used is to be moved there.
+    // Binding to a CPU is how to find out whether it may be used.
     let choice = Cpus::read(Path::new("/")).best(&allowed, |cpu| scheduling::pin_to(cpu).is_ok());
     match choice {
         Ok(choice) => match scheduling::pin_to(choice.cpu) {

@@ -14,7 +14,7 @@ use super::DeniedRequest;
 /// The thread id that means the calling thread.
 const THIS_THREAD: libc::pid_t = 0;
 
-/// Puts the calling thread under `SCHED_FIFO`. Threads and processes it makes
+/// Puts the calling thread under `SCHED_FIFO`. Threads and processes it creates
 /// do not inherit that.
 pub(super) fn become_fifo(priority: u8) -> Result<(), DeniedRequest> {
     let request = format!("SCHED_FIFO priority {priority}");
@@ -59,13 +59,13 @@ pub fn this_thread() -> i32 {
     nix::unistd::gettid().as_raw()
 }
 
-/// Puts a thread of this process back under `SCHED_OTHER`: one that hangs keeps
-/// a processor from everything of a lower priority. Needs no privilege.
+/// Puts a thread of this process back under `SCHED_OTHER`: one that hangs blocks
+/// a CPU for everything of lower priority. Needs no privilege.
 ///
 /// # Errors
-/// When there is no such thread (any more).
+/// When there is no such thread.
 pub fn take_priority_from(thread: i32) -> std::io::Result<()> {
-    // The kernel takes 0 for the caller.
+    // 0 means the calling thread.
     if thread <= 0 {
         return Err(Errno::ESRCH.into());
     }
@@ -111,10 +111,10 @@ pub(super) fn static_priority() -> i32 {
 /// Keeps the calling thread on one CPU.
 pub(super) fn pin_to(cpu: usize) -> Result<(), DeniedRequest> {
     let allowed = allowed_cpus();
-    let mut wished = CpuSet::new();
-    wished
+    let mut requested = CpuSet::new();
+    requested
         .set(cpu)
-        .and_then(|()| sched_setaffinity(Pid::from_raw(THIS_THREAD), &wished))
+        .and_then(|()| sched_setaffinity(Pid::from_raw(THIS_THREAD), &requested))
         .map_err(|errno| {
             let allowed: Vec<String> = allowed.iter().map(ToString::to_string).collect();
             DeniedRequest::by_kernel(

@@ -1,4 +1,4 @@
-//! How late the kernel may make a sleep.
+//! How much the kernel may delay a wake-up.
 
 use nix::sys::prctl;
 
@@ -11,7 +11,7 @@ pub(super) fn set(slack_ns: u64) -> Result<(), DeniedRequest> {
         reason,
         remedy: "choose 1 ns or more, and no more than a second".to_owned(),
     };
-    // The kernel takes 0 for its own default of 50 µs.
+    // 0 selects the kernel's default of 50 µs.
     if slack_ns == 0 {
         return Err(denied("0 means the kernel's default".to_owned()));
     }

@@ -1,8 +1,8 @@
-//! Having the stack in memory before it is needed.
+//! Loading the stack into memory before it is needed.
 //!
 //! A thread's stack is mapped at once but backed by memory page by page, each
-//! at the price of a fault when it is first touched. Touching it beforehand
-//! moves the price out of the loop.
+//! with a page fault when it is first touched. Touching it beforehand avoids
+//! these faults in the loop.
 #![allow(unsafe_code)]
 
 use nix::errno::Errno;
@@ -15,7 +15,7 @@ use crate::usage::page_faults;
 
 /// The smallest page of any machine that Linux runs on.
 const PAGE_BYTES: usize = 4096;
-/// Stack to be left over: what the loop's own calls need beside.
+/// Stack left for the loop's own calls.
 const RESERVE_BYTES: usize = 64 * 1024;
 
 /// Touches this many bytes of the calling thread's stack.
@@ -46,7 +46,7 @@ pub(super) fn prefault(bytes: usize) -> Result<(), DeniedRequest> {
     }
     let pages = bytes.div_ceil(PAGE_BYTES);
     touch(pages);
-    // What is in memory does not fault again.
+    // Pages in memory cause no further faults.
     let before = page_faults();
     touch(pages);
     let faults = page_faults().minor - before.minor;

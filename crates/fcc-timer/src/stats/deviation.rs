@@ -1,4 +1,4 @@
-//! How far values lie from the one they should be, on either side of it.
+//! Deviations from a nominal value, on both sides.
 
 use hdrhistogram::{CreationError, Histogram};
 
@@ -6,9 +6,9 @@ use super::FIGURES;
 
 /// Signed deviations from a nominal value, ns.
 ///
-/// A histogram of the values themselves would spend its figures on the nominal
-/// part, which is known: five figures, and megabytes, to see 1 µs in 25 ms.
-/// Three figures of the deviation show 10 ns in a jitter of 10 µs.
+/// A histogram of the values themselves would use its significant figures for
+/// the known nominal part: five figures, and megabytes, to resolve 1 µs in 25 ms.
+/// Three figures of the deviation resolve 10 ns in a jitter of 10 µs.
 #[derive(Clone, Debug)]
 pub(super) struct Deviations {
     below: Histogram<u32>,
@@ -16,8 +16,7 @@ pub(super) struct Deviations {
 }
 
 impl Deviations {
-    /// For deviations from `-lowest` to `highest`; what is farther out counts
-    /// as that far.
+    /// For deviations from `-lowest` to `highest`; larger ones are clamped.
     pub(super) fn new(lowest: u64, highest: u64) -> Result<Self, CreationError> {
         Ok(Self {
             below: Histogram::new_with_bounds(1, lowest, FIGURES)?,
@@ -45,8 +44,8 @@ impl Deviations {
         self.below.distinct_values() + self.above.distinct_values()
     }
 
-    /// Every deviation with how often it was recorded, lowest first. What the
-    /// histograms cannot tell apart is one value, the middle of its range.
+    /// Every deviation with its count, lowest first. Values that the histograms do
+    /// not distinguish are one value, the middle of their range.
     pub(super) fn counts(&self) -> impl Iterator<Item = (f64, u64)> {
         let below: Vec<_> = counts(&self.below).collect();
         below

@@ -1,4 +1,4 @@
-//! How well a timer keeps time: statistics in fixed memory.
+//! Timing statistics in fixed memory.
 
 mod deviation;
 mod summary;
@@ -11,7 +11,7 @@ use crate::{Expiry, TimerError};
 use deviation::Deviations;
 pub use summary::TimingSummary;
 
-/// Figures that a histogram tells apart: a value of 100 µs is kept to 0.1 µs.
+/// Significant figures of a histogram: 100 µs is stored to 0.1 µs.
 pub(crate) const FIGURES: u8 = 3;
 const NS_PER_US: f64 = 1e3;
 const NS_PER_MS: f64 = 1e6;
@@ -21,7 +21,7 @@ const LONGEST_PERIODS: u64 = 64;
 
 /// Periods and lateness of a timer, counted tick by tick.
 ///
-/// Two different things, and both are kept:
+/// Two different quantities, both recorded:
 /// - *lateness*, when the thread woke minus when it was due;
 /// - *period*, when the thread woke minus when it woke before. A thread that is
 ///   always 1 ms late has perfect periods.
@@ -31,8 +31,8 @@ const LONGEST_PERIODS: u64 = 64;
 /// median period to 0.1 % *of its distance from the nominal period*, which is
 /// better than 1 µs as long as the median is less than 1 ms away.
 ///
-/// All memory is taken, and touched, when the value is made: about 240 KiB at
-/// 40 Hz, 450 KiB at most. [`record`](Self::record) takes none.
+/// All memory is allocated, and touched, when the value is made: about 240 KiB
+/// at 40 Hz, 450 KiB at most. [`record`](Self::record) allocates none.
 #[derive(Clone, Debug)]
 pub struct TimingStats {
     period: Period,
@@ -85,12 +85,12 @@ impl TimingStats {
             early_wake_max_ns: 0,
             spun_ns: 0,
         };
-        // Memory that is asked for zeroed is not there until it is written to.
+        // Zeroed memory is not backed by pages until it is written to.
         stats.reset();
         Ok(stats)
     }
 
-    /// Forgets everything recorded. Allocates nothing.
+    /// Resets all statistics. Allocates nothing.
     pub fn reset(&mut self) {
         self.ticks = 0;
         self.missed = 0;
@@ -133,8 +133,8 @@ impl TimingStats {
         self.spun_ns = self.spun_ns.saturating_add(expiry.spun_ns);
     }
 
-    /// Says that ticks are missing before the next one to be recorded: the
-    /// time until then is no period. Allocates nothing.
+    /// Marks that ticks are missing before the next one: the time until then is
+    /// not counted as a period. Allocates nothing.
     pub fn interrupt(&mut self) {
         self.interrupted = true;
     }
@@ -157,7 +157,7 @@ impl TimingStats {
         self.period.duration()
     }
 
-    /// What the figures say so far.
+    /// The statistics so far.
     #[must_use]
     pub fn summary(&self) -> TimingSummary {
         TimingSummary::of(self)

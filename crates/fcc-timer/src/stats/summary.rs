@@ -1,12 +1,12 @@
-//! The figures that people and programs read.
+//! The figures for reports.
 
 use super::{NS_PER_MS, NS_PER_US, TimingStats};
 
 const NS_PER_S: f64 = 1e9;
 
-/// What [`TimingStats`] say, as plain numbers. The thesis' table of a control
-/// loop's timing (runtime, average, median, minimum, maximum, range, missed)
-/// and the lateness, which it did not measure.
+/// The figures of [`TimingStats`]: those of the thesis' table of a control loop's
+/// timing (runtime, average, median, minimum, maximum, range, missed), and the
+/// lateness, which it did not measure.
 ///
 /// Figures of periods are NaN before the second tick, those of lateness before
 /// the first.
@@ -41,8 +41,8 @@ pub struct TimingSummary {
     pub lateness_p99_9_us: f64,
     /// Lateness of the latest wake-up, µs.
     pub lateness_max_us: f64,
-    /// How long before its deadline the last wake-up was asked for, µs; 0 for a
-    /// timer that does not wake early.
+    /// How long before its deadline the last wake-up was requested, µs; 0 without
+    /// early wake.
     pub early_wake_us: f64,
     /// The longest such margin, µs.
     pub early_wake_max_us: f64,
@@ -58,8 +58,8 @@ impl TimingSummary {
             if stats.periods() == 0 { f64::NAN } else { ns }
         };
         let of_ticks = |ns: f64| if stats.ticks == 0 { f64::NAN } else { ns };
-        // What a histogram cannot tell apart it gives as the middle, which may
-        // lie outside of the exact limits.
+        // A histogram returns the middle of a range, which may lie outside of
+        // the exact limits.
         let lateness_us = |quantile: f64| {
             let histogram = &stats.lateness;
             let value = histogram.median_equivalent(histogram.value_at_quantile(quantile));

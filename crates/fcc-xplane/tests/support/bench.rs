@@ -36,7 +36,10 @@ impl Bench {
     }
 
     pub fn with(change: impl FnOnce(&mut XPlaneConfig)) -> Self {
-        let simulator = FakeXPlane::new();
+        Self::on(FakeXPlane::new(), change)
+    }
+
+    pub fn on(simulator: FakeXPlane, change: impl FnOnce(&mut XPlaneConfig)) -> Self {
         let mut config = simulator.config();
         change(&mut config);
         let (sensor, actuator) = XPlane::open(&config).unwrap();

@@ -56,7 +56,11 @@ pub struct FakeXPlane {
 
 impl FakeXPlane {
     pub fn new() -> Self {
-        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        Self::at("127.0.0.1:0")
+    }
+
+    pub fn at(address: &str) -> Self {
+        let socket = UdpSocket::bind(address).unwrap();
         socket.set_nonblocking(true).unwrap();
         let mut values: HashMap<String, f32> = [
             (PAUSED, 0.0),
@@ -107,11 +111,8 @@ impl FakeXPlane {
         }
     }
 
-    pub fn address(&self) -> SocketAddrV4 {
-        match self.socket.local_addr().unwrap() {
-            SocketAddr::V4(address) => address,
-            SocketAddr::V6(_) => unreachable!("bound to IPv4"),
-        }
+    pub fn address(&self) -> SocketAddr {
+        self.socket.local_addr().unwrap()
     }
 
     pub fn config(&self) -> XPlaneConfig {
@@ -356,12 +357,12 @@ impl Ticks {
 /// Datagrams handed in without a socket, all from one address; what is sent is
 /// forgotten.
 pub struct Scripted {
-    pub from: SocketAddrV4,
+    pub from: SocketAddr,
     pub datagrams: Mutex<VecDeque<Vec<u8>>>,
 }
 
 impl Port for Scripted {
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddrV4)>, Errno> {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
         let next = self.datagrams.lock().unwrap().pop_front();
         Ok(next.map(|datagram| {
             let length = datagram.len().min(into.len());
@@ -370,7 +371,7 @@ impl Port for Scripted {
         }))
     }
 
-    fn send(&self, _: &[u8], _: SocketAddrV4) -> Result<(), Errno> {
+    fn send(&self, _: &[u8], _: SocketAddr) -> Result<(), Errno> {
         Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! What the outer loops may ask of the aircraft.
 
+use core::ops::RangeInclusive;
+
 use libm::acos;
 
 use super::ClimbLimits;
@@ -81,14 +83,17 @@ impl Envelope {
         }
     }
 
-    /// The nearest airspeed that may be asked for: a margin inside the limits,
-    /// so that level flight there leaves room to climb and to descend.
+    /// The airspeeds that may be asked for, m/s: a margin inside the limits, so
+    /// that level flight there leaves room to climb and to descend.
+    pub fn allowed_airspeeds(&self) -> RangeInclusive<f64> {
+        self.min_airspeed_mps + self.airspeed_margin_mps
+            ..=self.max_airspeed_mps - self.airspeed_margin_mps
+    }
+
+    /// The nearest airspeed that may be asked for, m/s.
     pub fn allowed_airspeed(&self, airspeed_mps: f64) -> f64 {
-        limit(
-            airspeed_mps,
-            self.min_airspeed_mps + self.airspeed_margin_mps,
-            self.max_airspeed_mps - self.airspeed_margin_mps,
-        )
+        let allowed = self.allowed_airspeeds();
+        limit(airspeed_mps, *allowed.start(), *allowed.end())
     }
 
     /// The least throttle at an airspeed, 0..=1: full at the slowest and

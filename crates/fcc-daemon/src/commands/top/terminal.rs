@@ -1,6 +1,7 @@
 //! The terminal: keys, redrawing, and leaving it as it was.
 
 use std::io;
+use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,10 +33,15 @@ const HELD: Duration = Duration::from_secs(1);
 pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
     let told_to_end = end_by_signals()?;
     // From here on a panic restores the terminal before it is printed.
-    let mut terminal = ratatui::try_init().inspect_err(|_| ratatui::restore())?;
-    let shown = show(&mut terminal, instance, watcher, &told_to_end);
-    ratatui::try_restore()?;
-    shown
+    let terminal = ratatui::try_init().inspect_err(|_| {
+        let _ = ratatui::try_restore();
+    })?;
+    // Dropped, it would complain of a terminal that is gone by a macro that
+    // panics there.
+    let mut terminal = ManuallyDrop::new(terminal);
+    show(&mut terminal, instance, watcher, &told_to_end)
+        .and(terminal.show_cursor())
+        .and(ratatui::try_restore())
 }
 
 /// A flag that a signal sets. A terminal that is held makes the drawing wait

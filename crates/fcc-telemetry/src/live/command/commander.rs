@@ -10,7 +10,7 @@ use super::super::services::{self, Access, Ipc};
 use super::super::watcher::{check_layout, read_info};
 use super::super::{Info, WatchError};
 use super::wire::{Answer, Request};
-use super::{COMMANDS_VERSION, CommandError, FlightCommand, Verdict, command_server};
+use super::{COMMANDS_VERSION, CommandError, FlightCommand, Unflyable, Verdict, command_server};
 use crate::Instance;
 
 /// How long a daemon may take to answer: some ten times what it needs at the
@@ -86,7 +86,7 @@ impl Commander {
     /// When it cannot be flown, when the daemon refuses it (with the daemon's
     /// reason), is gone, or does not answer.
     pub fn command(&mut self, command: FlightCommand) -> Result<u64, CommandError> {
-        command.check().map_err(CommandError::Refused)?;
+        command.check()?;
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self
             .client
@@ -98,9 +98,10 @@ impl Commander {
             let connected = pending.is_connected();
             match pending.receive() {
                 Ok(Some(answer)) => {
-                    return match answer.verdict() {
+                    return match answer.verdict(&command) {
                         Verdict::CarriedOut { tick } => Ok(tick),
                         Verdict::Refused(words) => Err(CommandError::Refused(words)),
+                        Verdict::Outside(outside) => Err(Unflyable::from(outside).into()),
                     };
                 }
                 Ok(None) if !connected => return Err(gone()),

@@ -14,22 +14,25 @@
 mod command_server;
 mod commander;
 mod error;
+mod limits;
 mod wire;
 
-use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
+#[cfg(feature = "flight")]
 use fcc_core::flight::AutopilotCommand;
+#[cfg(feature = "flight")]
 use fcc_core::framework::LoopCommand;
 
 pub(super) use command_server::{CommandServer, Ends, Rings};
 pub use commander::Commander;
-pub use error::CommandError;
+pub use error::{CommandError, Unflyable};
+pub use limits::{OutsideLimits, Quantity};
 
 /// The version of commands and answers, apart from the layouts': whoever changes
 /// one of them, or what it means, counts this up, the names of the types with
 /// it.
-pub const COMMANDS_VERSION: u32 = 1;
+pub const COMMANDS_VERSION: u32 = 2;
 
 /// What may be asked of a flight from outside.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -47,7 +50,7 @@ pub enum FlightCommand {
 /// The set points that are to change; the others stay.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct NewSetpoints {
-    /// Indicated airspeed, m/s, 5 to 340; held to what the envelope allows.
+    /// Indicated airspeed, m/s, 5 to 340, and within the aircraft's envelope.
     pub airspeed_mps: Option<f64>,
     /// Magnetic heading, rad, -2π to 2π; turned to the shorter way.
     pub heading_rad: Option<f64>,
@@ -55,30 +58,47 @@ pub struct NewSetpoints {
     pub altitude_m: Option<f64>,
 }
 
-const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
-const HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
-const ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
-
 impl FlightCommand {
-    /// Checks its numbers.
+    /// Checks its numbers by what no aircraft flies.
     ///
     /// # Errors
-    /// What is wrong, in words.
-    pub fn check(&self) -> Result<(), String> {
+    /// What cannot be flown.
+    pub fn check(&self) -> Result<(), Unflyable> {
         let Self::Set(set) = self else {
             return Ok(());
         };
-        if *set == NewSetpoints::default() {
-            return Err(
-                "no set point is given: give an airspeed, a heading or an altitude".to_owned(),
-            );
-        }
-        within("airspeed", "m/s", set.airspeed_mps, &AIRSPEED_MPS)?;
-        within("heading", "rad", set.heading_rad, &HEADING_RAD)?;
-        within("altitude", "m", set.altitude_m, &ALTITUDE_M)
+        let given = [
+            (Quantity::Airspeed, set.airspeed_mps),
+            (Quantity::Heading, set.heading_rad),
+            (Quantity::Altitude, set.altitude_m),
+        ];
+        let mut given = given
+            .into_iter()
+            .filter_map(|(quantity, value)| Some((quantity, value?)))
+            .peekable();
+        given.peek().ok_or(Unflyable::NoSetpoint)?;
+        given
+            .find_map(|(quantity, value)| OutsideLimits::of(quantity, value, &quantity.range()))
+            .map_or(Ok(()), |outside| Err(outside.into()))
+    }
+
+    /// Checks its airspeed by what an aircraft's envelope allows, m/s.
+    ///
+    /// # Errors
+    /// What is allowed.
+    pub fn check_airspeed(&self, allowed_mps: &RangeInclusive<f64>) -> Result<(), OutsideLimits> {
+        let Self::Set(NewSetpoints {
+            airspeed_mps: Some(mps),
+            ..
+        }) = self
+        else {
+            return Ok(());
+        };
+        OutsideLimits::of(Quantity::Airspeed, *mps, allowed_mps).map_or(Ok(()), Err)
     }
 
     /// What goes to the loop for it, in this sequence.
+    #[cfg(feature = "flight")]
     pub fn for_the_loop(&self) -> Vec<LoopCommand<AutopilotCommand>> {
         match self {
             Self::Engage => vec![LoopCommand::Engage],
@@ -97,23 +117,6 @@ impl FlightCommand {
     }
 }
 
-fn within(
-    what: &str,
-    unit: &str,
-    value: Option<f64>,
-    range: &RangeInclusive<f64>,
-) -> Result<(), String> {
-    match value {
-        Some(value) if !range.contains(&value) => Err(format!(
-            "{what} is {value} {unit}: choose {:.6} to {:.6}",
-            range.start(),
-            range.end()
-        )
-        .replace(".000000", "")),
-        _ => Ok(()),
-    }
-}
-
 /// A command that came from another program, and waits for its answer.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Asked {
@@ -124,7 +127,7 @@ pub struct Asked {
 }
 
 /// What became of a command.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Verdict {
     /// It was carried out in this tick.
     CarriedOut {
@@ -133,6 +136,8 @@ pub enum Verdict {
     },
     /// It was not, for this reason.
     Refused(String),
+    /// It was not, for it asks for more than this aircraft may fly.
+    Outside(OutsideLimits),
 }
 
 #[cfg(test)]
@@ -153,15 +158,19 @@ mod tests {
             (set(None, None), "no set point"),
             (
                 set(Some(f64::NAN), None),
-                "airspeed is NaN m/s: choose 5 to 340",
+                "airspeed is NaN m/s: choose 5 to 340 m/s",
             ),
             (set(Some(-1.0), None), "airspeed is -1"),
             (set(None, Some(7.0)), "heading is 7 rad"),
         ] {
-            let words = command.check().unwrap_err();
+            let words = command.check().unwrap_err().to_string();
             assert!(words.contains(word), "{words}");
         }
-        assert_eq!(set(Some(50.0), Some(1.0)).check(), Ok(()));
+        let command = set(Some(50.0), Some(1.0));
+        assert_eq!(command.check(), Ok(()));
+        assert_eq!(command.check_airspeed(&(40.0..=60.0)), Ok(()));
+        assert!(command.check_airspeed(&(60.0..=70.0)).is_err());
+        assert_eq!(FlightCommand::Stop.check_airspeed(&(60.0..=70.0)), Ok(()));
     }
 
     #[test]

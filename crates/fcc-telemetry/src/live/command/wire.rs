@@ -5,7 +5,7 @@
 use iceoryx2::prelude::ZeroCopySend;
 
 use super::super::Text;
-use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, Verdict};
+use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, OutsideLimits, Quantity, Verdict};
 
 /// A command as it lies in shared memory.
 #[derive(Clone, Copy, Debug)]
@@ -27,27 +27,31 @@ pub(super) struct Request {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Answer {
-    /// 0 carried out, 1 refused.
+    /// 0 carried out, 1 refused, 2 refused for the airspeed's limits.
     pub(super) code: u32,
     /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
     /// The tick that read the command; 0 if none did.
     pub(super) tick: u64,
+    /// The least airspeed that this aircraft may fly, m/s; with code 2 alone.
+    pub(super) least_mps: f64,
+    /// The most.
+    pub(super) most_mps: f64,
     /// Why it was refused.
-    pub(super) text: Text<240>,
+    pub(super) text: Text<224>,
 }
 
 // SAFETY: repr(C), numbers only.
 unsafe impl ZeroCopySend for Request {
     unsafe fn type_name() -> &'static str {
-        "fcc.v1.Command"
+        "fcc.v2.Command"
     }
 }
 
 // SAFETY: repr(C), numbers and bytes only.
 unsafe impl ZeroCopySend for Answer {
     unsafe fn type_name() -> &'static str {
-        "fcc.v1.CommandAnswer"
+        "fcc.v2.CommandAnswer"
     }
 }
 
@@ -58,6 +62,7 @@ const SET: u32 = 3;
 
 const CARRIED_OUT: u32 = 0;
 const REFUSED: u32 = 1;
+const OUTSIDE: u32 = 2;
 
 impl From<FlightCommand> for Request {
     fn from(command: FlightCommand) -> Self {
@@ -103,31 +108,62 @@ impl Request {
             }),
             other => return Err(format!("there is no command with the number {other}")),
         };
-        command.check().map(|()| command)
+        command
+            .check()
+            .map(|()| command)
+            .map_err(|error| error.to_string())
     }
 }
 
 impl From<&Verdict> for Answer {
     fn from(verdict: &Verdict) -> Self {
-        let (code, tick, text) = match verdict {
-            Verdict::CarriedOut { tick } => (CARRIED_OUT, *tick, ""),
-            Verdict::Refused(words) => (REFUSED, 0, words.as_str()),
-        };
-        Self {
-            code,
+        let answer = Self {
+            code: CARRIED_OUT,
             version: COMMANDS_VERSION,
-            tick,
-            text: Text::new(text),
+            tick: 0,
+            least_mps: 0.0,
+            most_mps: 0.0,
+            text: Text::default(),
+        };
+        match verdict {
+            Verdict::CarriedOut { tick } => Self {
+                tick: *tick,
+                ..answer
+            },
+            Verdict::Refused(words) => Self {
+                code: REFUSED,
+                text: Text::new(words),
+                ..answer
+            },
+            Verdict::Outside(outside) => Self {
+                code: OUTSIDE,
+                least_mps: outside.least,
+                most_mps: outside.most,
+                text: Text::new(&outside.to_string()),
+                ..answer
+            },
         }
     }
 }
 
 impl Answer {
-    pub(super) fn verdict(&self) -> Verdict {
-        if self.code == CARRIED_OUT {
-            Verdict::CarriedOut { tick: self.tick }
-        } else {
-            Verdict::Refused(self.text.as_str().to_owned())
+    /// What became of this command.
+    pub(super) fn verdict(&self, command: &FlightCommand) -> Verdict {
+        match (self.code, command) {
+            (CARRIED_OUT, _) => Verdict::CarriedOut { tick: self.tick },
+            (
+                OUTSIDE,
+                FlightCommand::Set(NewSetpoints {
+                    airspeed_mps: Some(value),
+                    ..
+                }),
+            ) => Verdict::Outside(OutsideLimits {
+                quantity: Quantity::Airspeed,
+                value: *value,
+                least: self.least_mps,
+                most: self.most_mps,
+            }),
+            _ => Verdict::Refused(self.text.as_str().to_owned()),
         }
     }
 }
@@ -158,9 +194,11 @@ mod tests {
                 offset_of!(Answer, code),
                 offset_of!(Answer, version),
                 offset_of!(Answer, tick),
+                offset_of!(Answer, least_mps),
+                offset_of!(Answer, most_mps),
                 offset_of!(Answer, text),
             ],
-            [0, 4, 8, 16]
+            [0, 4, 8, 16, 24, 32]
         );
     }
 
@@ -180,15 +218,25 @@ mod tests {
         for verdict in [
             Verdict::CarriedOut { tick: 9 },
             Verdict::Refused("why".to_owned()),
+            Verdict::Outside(OutsideLimits {
+                quantity: Quantity::Airspeed,
+                value: 90.0,
+                least: 40.0,
+                most: 60.0,
+            }),
         ] {
-            assert_eq!(Answer::from(&verdict).verdict(), verdict);
+            let command = FlightCommand::Set(NewSetpoints {
+                airspeed_mps: Some(90.0),
+                ..NewSetpoints::default()
+            });
+            assert_eq!(Answer::from(&verdict).verdict(&command), verdict);
         }
     }
 
     #[test]
     fn another_version_is_refused() {
         let mut request = Request::from(FlightCommand::Engage);
-        request.version = 2;
+        request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
             words.contains("version 2") && words.contains("version 1"),

@@ -89,10 +89,10 @@ fn strictly_a_refusal_is_an_error_that_tells_everything() {
         assert_eq!(error.granted.timer_slack_ns, Some(1000));
         let message = error.to_string();
         assert!(
-            message.contains("SCHED_FIFO priority 80 refused (EPERM): "),
+            message.contains("SCHED_FIFO priority 80 denied (EPERM): "),
             "{message}"
         );
-        assert!(message.contains("locked memory refused ("), "{message}");
+        assert!(message.contains("locked memory denied ("), "{message}");
     });
 }
 

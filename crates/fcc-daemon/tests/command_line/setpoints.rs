@@ -1,0 +1,42 @@
+//! `fccd command`: what cannot be flown is refused in the units it was given in.
+
+use super::{Flight, fccd};
+
+#[test]
+fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let instance = format!("command-{}", std::process::id());
+    let _flight = Flight::start(folder.path(), &instance);
+    let command = |words: &[&str]| {
+        let ended = fccd(folder.path(), &["command", "set", "--instance", &instance])
+            .args(words)
+            .output()
+            .unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        (ended.status.code(), said.trim_end().to_owned())
+    };
+    // The envelope's 65 and 135 kt, less its margin of 8 kt.
+    assert_eq!(
+        command(&["--airspeed-kt", "300", "--altitude-ft", "3200"]),
+        (
+            Some(11),
+            "fccd: refused: airspeed is 300 kt: choose 73 to 127 kt".to_owned()
+        )
+    );
+    for (words, said) in [
+        (
+            ["--heading-deg", "400"],
+            "fccd: heading is 400°: choose -360 to 360°",
+        ),
+        (
+            ["--altitude-ft", "1e6"],
+            "fccd: altitude is 1000000 ft: choose -1640.42 to 65616.8 ft",
+        ),
+        (
+            ["--airspeed-kt", "nan"],
+            "fccd: airspeed is NaN kt: choose 9.72 to 660.91 kt",
+        ),
+    ] {
+        assert_eq!(command(&words), (Some(2), said.to_owned()));
+    }
+}

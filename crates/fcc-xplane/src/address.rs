@@ -1,0 +1,265 @@
+//! Where X-Plane is: at an address, at a host of a name, or where its beacon
+//! comes from.
+
+use core::fmt;
+use core::str::FromStr;
+use std::io;
+use std::net::{IpAddr, SocketAddr, ToSocketAddrs};
+
+use crate::config::{XPLANE_PORT, XPlaneConfigError};
+use crate::open::OpenError;
+
+/// Where X-Plane is. As text: `beacon`, an IP address or a host name, the last
+/// two with a port if it is not 49000.
+///
+/// ```
+/// use fcc_xplane::Simulator;
+///
+/// let simulator: Simulator = "192.168.1.20".parse()?;
+/// assert_eq!(simulator.to_string(), "192.168.1.20:49000");
+/// assert!(matches!("sim.lan".parse()?, Simulator::Named(_)));
+/// assert!("192.168.1.300".parse::<Simulator>().is_err());
+/// # Ok::<(), fcc_xplane::AddressError>(())
+/// ```
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Simulator {
+    /// At this address. For X-Plane on this machine say 127.0.0.1: datagrams
+    /// count only if they come from this very IP address.
+    At(SocketAddr),
+    /// At the host of this name, which is looked up once, when the connection
+    /// is opened: its first IPv4 address, or else its first IPv6 address.
+    Named(HostName),
+    /// Wherever the first beacon of an X-Plane that flies comes from. While it
+    /// sends, beacons of others change nothing.
+    Beacon,
+}
+
+/// The name of a host, and a port there.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct HostName {
+    name: String,
+    port: u16,
+}
+
+/// A text that says nowhere where X-Plane could be.
+#[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
+#[error(
+    "\"{0}\" is neither \"beacon\" nor an address: give an IP address or a host name, with the \
+     port if it is not {XPLANE_PORT}, such as \"127.0.0.1:49000\", \"[::1]:49000\" or \"sim.lan\""
+)]
+pub struct AddressError(String);
+
+const BEACON: &str = "beacon";
+/// Of a host name and of a part of it (RFC 1035, 2.3.4).
+const LONGEST_NAME: usize = 253;
+const LONGEST_PART: usize = 63;
+
+impl fmt::Display for Simulator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::At(address) => address.fmt(f),
+            Self::Named(host) => host.fmt(f),
+            Self::Beacon => f.write_str(BEACON),
+        }
+    }
+}
+
+impl fmt::Display for HostName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.name, self.port)
+    }
+}
+
+impl FromStr for Simulator {
+    type Err = AddressError;
+
+    fn from_str(text: &str) -> Result<Self, AddressError> {
+        let error = || AddressError(text.to_owned());
+        if text == BEACON {
+            return Ok(Self::Beacon);
+        }
+        if let Ok(address) = text.parse() {
+            return Ok(Self::At(canonical(address)));
+        }
+        let bare = text.strip_prefix('[').and_then(|ip| ip.strip_suffix(']'));
+        if let Ok(ip) = bare.unwrap_or(text).parse::<IpAddr>() {
+            return Ok(Self::At(canonical((ip, XPLANE_PORT).into())));
+        }
+        let (name, port) = match text.rsplit_once(':') {
+            Some((name, port)) => (name, port.parse().map_err(|_| error())?),
+            None => (text, XPLANE_PORT),
+        };
+        if port == 0 || !is_host_name(name) {
+            return Err(error());
+        }
+        Ok(Self::Named(HostName {
+            name: name.to_owned(),
+            port,
+        }))
+    }
+}
+
+/// An IPv4 address that was written as IPv6 (`::ffff:127.0.0.1`) as what it is.
+fn canonical(address: SocketAddr) -> SocketAddr {
+    match address.ip().to_canonical() {
+        ip @ IpAddr::V4(_) => (ip, address.port()).into(),
+        IpAddr::V6(_) => address,
+    }
+}
+
+/// Letters, digits and hyphens between dots (RFC 1123, 2.1), and underscores,
+/// which some networks use. The last part is no number: that is an address
+/// with a mistake in it.
+fn is_host_name(name: &str) -> bool {
+    let name = name.strip_suffix('.').unwrap_or(name);
+    let is_part = |part: &str| {
+        (1..=LONGEST_PART).contains(&part.len())
+            && !part.starts_with('-')
+            && !part.ends_with('-')
+            && part
+                .bytes()
+                .all(|byte| byte.is_ascii_alphanumeric() || b"-_".contains(&byte))
+    };
+    let last = name.rsplit('.').next().unwrap_or_default();
+    name.len() <= LONGEST_NAME
+        && name.split('.').all(is_part)
+        && !last.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+impl Simulator {
+    /// Where datagrams are sent; `None` while only a beacon can tell. A name is
+    /// looked up, which may wait for the network: not for a loop.
+    pub(crate) fn locate(&self) -> Result<Option<SocketAddr>, OpenError> {
+        let address = match self {
+            Self::Beacon => return Ok(None),
+            Self::At(address) => *address,
+            Self::Named(host) => host.look_up().map_err(|source| OpenError::NoSuchHost {
+                host: host.clone(),
+                source,
+            })?,
+        };
+        check(address)?;
+        Ok(Some(address))
+    }
+}
+
+impl HostName {
+    fn look_up(&self) -> io::Result<SocketAddr> {
+        let found: Vec<SocketAddr> = (self.name.as_str(), self.port).to_socket_addrs()?.collect();
+        let first = found.iter().find(|address| address.is_ipv4());
+        let first = first.or(found.first()).copied();
+        first.ok_or_else(|| io::Error::other("it has no address"))
+    }
+}
+
+/// Whether datagrams can be sent to one machine there.
+pub(crate) fn check(address: SocketAddr) -> Result<(), XPlaneConfigError> {
+    let ip = address.ip();
+    let is_broadcast = matches!(ip, IpAddr::V4(ip) if ip.is_broadcast());
+    if address.port() == 0 || ip.is_unspecified() || ip.is_multicast() || is_broadcast {
+        return Err(XPlaneConfigError::Simulator(address));
+    }
+    match address {
+        SocketAddr::V6(v6) if v6.ip().is_unicast_link_local() && v6.scope_id() == 0 => {
+            Err(XPlaneConfigError::NoInterface(address))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> String {
+        let simulator: Simulator = text.parse().unwrap();
+        let again: Simulator = simulator.to_string().parse().unwrap();
+        assert_eq!(simulator, again);
+        simulator.to_string()
+    }
+
+    #[test]
+    fn addresses_and_names_are_read_with_and_without_a_port() {
+        for (text, expected) in [
+            ("beacon", "beacon"),
+            ("127.0.0.1:49000", "127.0.0.1:49000"),
+            ("192.168.1.20", "192.168.1.20:49000"),
+            ("[::1]:49010", "[::1]:49010"),
+            ("[::1]", "[::1]:49000"),
+            ("::1", "[::1]:49000"),
+            ("[fe80::1%2]:49000", "[fe80::1%2]:49000"),
+            ("::ffff:10.0.0.1", "10.0.0.1:49000"),
+            ("pi.local:49000", "pi.local:49000"),
+            ("sim.lan", "sim.lan:49000"),
+            ("SIM-2_b", "SIM-2_b:49000"),
+        ] {
+            assert_eq!(read(text), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_no_address_is_refused_with_what_would_be_one() {
+        let long = format!("{}.lan", "a".repeat(64));
+        for text in [
+            "",
+            " ",
+            "127.0.0.1:",
+            "127.0.0.1:65536",
+            "192.168.1.300",
+            "192.168.1.3.4",
+            "49000",
+            "sim.lan:0",
+            "sim.lan:port",
+            "sim lan",
+            "-sim.lan",
+            "sim..lan",
+            "[::1",
+            "::1]:49000",
+            "http://sim.lan",
+            "größe.lan",
+            &long,
+        ] {
+            let error = text.parse::<Simulator>().unwrap_err().to_string();
+            assert!(error.contains(&format!("\"{text}\"")), "{error}");
+            assert!(error.contains("[::1]:49000"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_name_is_looked_up_and_ipv4_comes_first() {
+        // Every machine has this one (RFC 6761), most of them as IPv6 too.
+        let here: Simulator = "localhost:49000".parse().unwrap();
+        let found = here.locate().unwrap().unwrap();
+        assert!(found.is_ipv4() && found.ip().is_loopback(), "{found}");
+        // Nobody has this one (RFC 6761).
+        let nowhere: Simulator = "sim.invalid".parse().unwrap();
+        let words = nowhere.locate().unwrap_err().to_string();
+        assert!(words.contains("sim.invalid:49000"), "{words}");
+        assert!(words.contains("IP address"), "{words}");
+    }
+
+    #[test]
+    fn nothing_can_be_sent_to_many_or_to_nobody() {
+        for text in [
+            "0.0.0.0",
+            "255.255.255.255",
+            "239.1.1.1",
+            "[::]",
+            "[ff02::1]",
+        ] {
+            let simulator: Simulator = text.parse().unwrap();
+            let words = simulator.locate().unwrap_err().to_string();
+            assert!(words.contains("one machine"), "{words}");
+        }
+        let somewhere: Simulator = "fe80::1".parse().unwrap();
+        let words = somewhere.locate().unwrap_err().to_string();
+        assert!(words.contains("%2]:49000"), "{words}");
+        assert!(
+            "[fe80::1%2]:49000"
+                .parse::<Simulator>()
+                .unwrap()
+                .locate()
+                .is_ok()
+        );
+    }
+}
