@@ -162,7 +162,7 @@ bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircr
 	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
-	cargo build --locked --release -p fcc-telemetry --example watch
+	cargo build --locked --release -p fcc-live --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
 doc: $(STAMPS)/rust ## Build the API documentation

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 use std::{env, fs, process};
 
-use fcc_telemetry::recording::{Recording, Wholeness, entry, recover};
+use fcc_record::{Recording, Wholeness, entry, recover};
 use mcap::records::{MessageHeader, Metadata};
 
 static FILE: LazyLock<PathBuf> =

@@ -10,7 +10,6 @@ mod of_flights {
     use fcc_core::flight::Autopilot;
     use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 
-    use crate::recording::FoxgloveViews;
     use crate::schema::{Words, words};
     use crate::telemetry::Telemetry;
 
@@ -28,7 +27,6 @@ mod of_flights {
 
     impl Telemetry for Autopilot {
         type Words = FlightWords;
-        type Views = FoxgloveViews;
     }
 }
 

@@ -124,9 +124,19 @@ pub fn score(samples: &[Sample], legs: &[Leg]) -> Result<FlightScore, ScoreError
     Ok(FlightScore::of(legs))
 }
 
+/// What a flight is scored by.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScoredBy {
+    /// How the simulated aircraft truly flew.
+    Truth,
+    /// What its sensors measured.
+    Measurement,
+}
+
 impl FlightScore {
     /// Of legs that are scored already.
-    pub(crate) fn of(legs: Vec<LegScore>) -> Self {
+    pub fn of(legs: Vec<LegScore>) -> Self {
         let worst = legs.iter().copied().reduce(LegScore::worst);
         Self { legs, worst }
     }

@@ -1,6 +1,5 @@
 //! What a controller needs so that its loop can be recorded and watched.
 
-use std::borrow::Cow;
 use std::fmt::Debug;
 
 use fcc_core::framework::schema::{Schema, Unknown};
@@ -9,7 +8,7 @@ use fcc_core::framework::{Controller, RecordOf};
 use crate::schema::Words;
 
 /// A controller whose loop can be recorded and watched: what is declared of its
-/// types is enough, but for two types that name themselves.
+/// types is enough, but for the size of its record.
 ///
 /// ```
 /// use fcc_core::framework::{Controller, RecordOf};
@@ -36,14 +35,11 @@ use crate::schema::Words;
 ///
 /// impl Telemetry for Valve {
 ///     type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
-///     type Views = ();
 /// }
 /// ```
 pub trait Telemetry: Controller + 'static {
     /// The words of its record, as they lie in shared memory.
     type Words: RecordWords<RecordOf<Self>>;
-    /// What a recording has beside records and events.
-    type Views: Views<Self>;
 }
 
 mod sealed {
@@ -75,31 +71,3 @@ where
         self.get()
     }
 }
-
-/// What a recording has beside records and events: messages of well-known types
-/// that other programs can show.
-pub trait Views<C: Controller + ?Sized>: Default + Send {
-    /// Each topic, its message's type, and that type's `FileDescriptorSet`.
-    const TOPICS: &'static [(&'static str, &'static str, &'static [u8])];
-
-    /// Takes the next record; `unix_ns` is its time of day.
-    fn take(&mut self, record: &RecordOf<C>, unix_ns: u64);
-
-    /// Appends the message that one of the topics has for that record; whether
-    /// it has one.
-    fn append(&mut self, topic: usize, into: &mut Vec<u8>) -> bool;
-}
-
-/// Nothing beside records and events.
-impl<C: Controller> Views<C> for () {
-    const TOPICS: &'static [(&'static str, &'static str, &'static [u8])] = &[];
-
-    fn take(&mut self, _: &RecordOf<C>, _: u64) {}
-
-    fn append(&mut self, _: usize, _: &mut Vec<u8>) -> bool {
-        false
-    }
-}
-
-/// A topic, its message's type, and that type's description.
-pub(crate) type TopicOf = (&'static str, String, Cow<'static, [u8]>);

@@ -1,6 +1,6 @@
 //! `fccd command`: commands to a daemon on this machine.
 
-use fcc_telemetry::live::{CommandError, Commander, FlightCommand, NewSetpoints};
+use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use serde::Serialize;
 
 use super::fail;

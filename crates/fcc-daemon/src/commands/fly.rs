@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use fcc_runtime::SpawnError;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::fail;
+use super::{fail, outcome};
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine};
@@ -106,7 +106,7 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
     if json {
         output::json(outcome, outcome.conclusion.into());
     } else {
-        output::result(outcome.to_text(), outcome.conclusion.into());
+        output::result(outcome::text(outcome), outcome.conclusion.into());
     }
     // A flight ends as it was flown, even if that cannot be printed.
     outcome.conclusion.into()

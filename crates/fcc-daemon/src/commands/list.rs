@@ -1,7 +1,7 @@
 //! `fccd list [DIR]`.
 
-use fcc_telemetry::recording::{self, Entry};
-use fcc_telemetry::recordings_table;
+use fcc_record::Entry;
+use fcc_report::recordings_table;
 
 use super::{fail, progress};
 use crate::cli::ListArgs;
@@ -10,7 +10,7 @@ use crate::output;
 
 /// Lists the recordings in a folder. What is no recording is said and left.
 pub(super) fn list(args: &ListArgs) -> Exit {
-    let files = match recording::files(&args.folder) {
+    let files = match fcc_record::files(&args.folder) {
         Ok(files) => files,
         Err(error) => {
             return fail(&format!(
@@ -25,9 +25,9 @@ pub(super) fn list(args: &ListArgs) -> Exit {
     let mut refused = Vec::new();
     for path in &files {
         let entry = if args.quick {
-            recording::glance(path)
+            fcc_record::glance(path)
         } else {
-            recording::entry(path)
+            fcc_record::entry(path)
         };
         match entry {
             Ok(entry) => entries.push(entry),

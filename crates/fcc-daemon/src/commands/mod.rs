@@ -8,6 +8,7 @@ mod doctor;
 mod fly;
 mod guard;
 mod list;
+mod outcome;
 mod progress;
 mod recover;
 mod replay;

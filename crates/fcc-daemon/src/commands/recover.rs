@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use fcc_telemetry::recording::{self, Recovered};
+use fcc_record::Recovered;
 
 use super::{fail, progress};
 use crate::cli::RecoverArgs;
@@ -13,7 +13,7 @@ use crate::output;
 pub(super) fn recover(args: &RecoverArgs) -> Exit {
     let bytes = fs::metadata(&args.file).map_or(0, |metadata| metadata.len());
     let bar = progress::bar(bytes, "recovering");
-    let recovered = recording::recover(&args.file, |read| bar.set_position(read));
+    let recovered = fcc_record::recover(&args.file, |read| bar.set_position(read));
     bar.finish_and_clear();
     let recovered = match recovered {
         Err(error) => return fail(&error.to_string()),

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_telemetry::recording::{self, Item, Recording};
-use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
+use fcc_record::{Item, Recording};
+use fcc_report::{CsvFolder, FileEnd, Origin, Report, Survey};
 
 use super::{fail, progress};
 use crate::cli::ReportArgs;
@@ -24,7 +24,7 @@ pub(super) fn report(args: &ReportArgs) -> Exit {
         Ok(report) => report,
         Err(message) => return fail(&message),
     };
-    let exit = if report.is_complete() || recording::is_being_written(&args.file) {
+    let exit = if report.is_complete() || fcc_record::is_being_written(&args.file) {
         Exit::Success
     } else {
         Exit::Incomplete

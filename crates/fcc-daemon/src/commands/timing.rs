@@ -6,7 +6,8 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_telemetry::{TimingReport, timing_table};
+use fcc_report::timing_table;
+use fcc_telemetry::TimingReport;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::fail;

@@ -23,7 +23,7 @@ use std::io::{self, IsTerminal};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_telemetry::live::{WatchError, Watcher};
+use fcc_live::{WatchError, Watcher};
 
 use self::picture::Picture;
 use self::snapshot::Snapshot;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::LoopCommand;
 use fcc_flight::config::Config;
+use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
 use serde_json::Value;
 use tempfile::TempDir;
 

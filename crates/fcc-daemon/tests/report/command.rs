@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use fcc_telemetry::recording::Recording;
+use fcc_record::Recording;
 use fcc_telemetry::{FlightMessage, FlightRecord};
 
 use super::flown::{Plan, REMARK};

@@ -7,9 +7,9 @@ use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::assemble;
+use fcc_record::{About, Realtime, Recorder, RecorderSettings, RecordingPace};
 use fcc_runtime::{Machine, Parts};
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, Realtime, Recorder, RecorderSettings, RecordingPace};
 use fcc_timer::ManualTimer;
 
 /// What is said at the end of a recorded flight.

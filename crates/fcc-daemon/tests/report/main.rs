@@ -6,8 +6,8 @@ mod command;
 mod flown;
 
 use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_report::{FileEnd, Origin, Report, Survey};
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::report::{FileEnd, Origin, Report, Survey};
 use flown::Plan;
 use html5ever::tendril::TendrilSink as _;
 use markup5ever_rcdom::{Handle, NodeData, RcDom};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use fcc_telemetry::recording::{Compression, RecorderSettings};
+use fcc_record::{Compression, RecorderSettings};
 use serde::{Deserialize, Serialize};
 
 /// `[recording]`.

@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 
 use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{EventKind, LoopCommand, State};
+use fcc_live::{Asked, FlightCommand, Verdict};
 use fcc_runtime::CommandSender;
-use fcc_telemetry::live::{Asked, FlightCommand, Verdict};
 use fcc_telemetry::{FlightEvent, FlightRecord, event_words};
 
 /// Commands that were sent and whose outcome is not known yet, oldest first.
@@ -123,7 +123,7 @@ impl Commands {
 mod tests {
     use fcc_core::flight::{Autopilot, flags};
     use fcc_core::framework::{Controller, Event, Record, Tick, Time};
-    use fcc_telemetry::live::NewSetpoints;
+    use fcc_live::NewSetpoints;
 
     use super::*;
 

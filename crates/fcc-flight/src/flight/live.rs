@@ -2,8 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use fcc_telemetry::live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
-use fcc_telemetry::{FlightEvent, FlightRecord, recording};
+use fcc_live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
+use fcc_record as recording;
+use fcc_telemetry::{FlightEvent, FlightRecord};
 
 use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};

@@ -1,8 +1,8 @@
 //! Who observes a flight, and what it may do beside.
 
 use fcc_core::flight::AutopilotCommand;
+use fcc_record::RecorderStatus;
 use fcc_runtime::CommandSender;
-use fcc_telemetry::recording::RecorderStatus;
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 

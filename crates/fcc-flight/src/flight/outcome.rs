@@ -1,11 +1,7 @@
 //! How a flight ended, for people and for tools.
 
-use std::fmt::Write as _;
-
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{
-    DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport, flight_table, timing_table,
-};
+use fcc_telemetry::{DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
@@ -153,42 +149,6 @@ impl Outcome {
                 self.conclusion = Conclusion::Failed;
             }
         }
-    }
-
-    /// Tables for people.
-    pub fn to_text(&self) -> String {
-        let mut text = String::new();
-        // In lockstep no time passes that could be kept.
-        if self.pace == Pace::RealTime {
-            text = timing_table(std::slice::from_ref(&self.timing));
-            text.push_str("\n\n");
-        }
-        if let Some(flight) = self.flight.as_ref().filter(|f| !f.legs.is_empty()) {
-            text.push_str(&flight_table(flight, self.scored_by));
-            text.push_str("\n\n");
-        }
-        let _ = write!(text, "ended: {}", self.ending);
-        if self.failsafes > 0 {
-            let _ = write!(text, "; failsafe {} times", self.failsafes);
-        }
-        if self.overruns > 0 {
-            let _ = write!(text, "; {} ticks overran their budget", self.overruns);
-        }
-        if !self.released {
-            text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
-        }
-        if let Some(recording) = &self.recording {
-            for file in &recording.files {
-                let _ = write!(text, "\nrecorded: {file}");
-            }
-            if recording.not_recorded > 0 {
-                let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
-            }
-            if let Some(why) = &recording.stopped {
-                let _ = write!(text, "\nTHE END IS NOT RECORDED: {why}");
-            }
-        }
-        text
     }
 }
 

@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::{
-    About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last,
-};
+use fcc_record::{About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;

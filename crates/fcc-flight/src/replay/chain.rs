@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use fcc_core::framework::Message;
+use fcc_record::{About, Item, Items, OpenError, Recording};
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, Item, Items, OpenError, Recording};
 
 use crate::config::{Config, ConfigError};
 

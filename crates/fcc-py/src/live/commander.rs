@@ -2,8 +2,8 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use fcc_telemetry::Instance;
-use fcc_telemetry::live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

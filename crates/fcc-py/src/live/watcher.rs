@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Time;
-use fcc_telemetry::live::{Event, Info, RecorderState, Status, WatchError, Watcher};
+use fcc_live::{Event, Info, RecorderState, Status, WatchError, Watcher};
 use fcc_telemetry::{FlightRecord, Instance};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -212,7 +212,7 @@ fn event_of(event: &Event) -> PyEvent {
     }
 }
 
-/// The numbers of `fcc_telemetry::live::EventCode`.
+/// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
     const KINDS: [&str; 17] = [
         "remark",

@@ -6,8 +6,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use fcc_core::framework::Message;
 use fcc_flight::config::Config;
 use fcc_flight::flight::about;
+use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_telemetry::FlightMessage;
-use fcc_telemetry::recording::{About, Recorder, RecorderSettings, RecordingPace};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 

@@ -12,8 +12,8 @@ use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{Chain, Deviation, Identity, Replay, Run, run};
-use fcc_telemetry::recording::{self, Item, Recording};
-use fcc_telemetry::report::{CsvFolder, FileEnd, Origin, Report, Survey};
+use fcc_record::{Item, Recording};
+use fcc_report::{CsvFolder, FileEnd, Origin, Report, Survey};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -28,17 +28,17 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
     #[derive(Serialize)]
     #[serde(untagged)]
     enum Listed {
-        Entry(recording::Entry),
+        Entry(fcc_record::Entry),
         Not { path: PathBuf, error: String },
     }
     let listed = py.detach(|| -> Result<Vec<Listed>, String> {
-        let files = recording::files(&folder).map_err(|error| {
+        let files = fcc_record::files(&folder).map_err(|error| {
             format!(
                 "{}: cannot be listed: {error}. Give the folder that flights were recorded to",
                 folder.display()
             )
         })?;
-        let entry = |path: PathBuf| match recording::entry(&path) {
+        let entry = |path: PathBuf| match fcc_record::entry(&path) {
             Ok(entry) => Listed::Entry(entry),
             Err(error) => Listed::Not {
                 path,
@@ -55,7 +55,7 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
 #[pyfunction]
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py
-        .detach(|| recording::recover(&path, |_| {}))
+        .detach(|| fcc_record::recover(&path, |_| {}))
         .map_err(|error| errors::RECORDING.say(error))?;
     json::to_python(py, &recovered)
 }

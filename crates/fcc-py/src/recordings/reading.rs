@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::{About, Damage, End, Recording};
+use fcc_record::{About, Damage, End, Recording};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;

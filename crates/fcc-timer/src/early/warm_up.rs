@@ -18,9 +18,9 @@ const DECAY_UNTRIED: i64 = 64;
 const FIRST_SUSPENSION: u32 = 128;
 const LONGEST_SUSPENSION: u32 = 65_536;
 
-/// This part of the longest recent duration is reserved in addition. More would
-/// leave no time on a busy machine: there the warm-up takes 100 µs of a margin
-/// of 250, and half of its ticks would have none.
+/// This part of the longest recent duration is reserved in addition. With the
+/// whole duration most ticks of one run of two on a busy machine appeared to have
+/// no time for a warm-up (`docs/benchmarks.md`).
 const RESERVE: i64 = 4;
 
 /// How long warm-ups took.

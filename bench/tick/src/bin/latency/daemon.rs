@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
-use fcc_telemetry::recording::Recording;
+use fcc_record::Recording;
 use fcc_telemetry::{FlightMessage, FlightRecord};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;

@@ -2,7 +2,7 @@
 //! recorder and the live telemetry itself.
 
 use fcc_core::framework::{Reading, Time};
-use fcc_telemetry::live::{RecorderState, Status};
+use fcc_live::{RecorderState, Status};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Stylize;

@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 
 use fcc_core::framework::StageTimes;
+use fcc_live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, Watcher};
 use fcc_telemetry::FlightRecord;
-use fcc_telemetry::live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, Watcher};
 
 /// What is known of a flight, from its live telemetry.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, Flags, State};
+use fcc_live::{RecorderState, Status};
 use fcc_telemetry::FlightRecord;
-use fcc_telemetry::live::{RecorderState, Status};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use serde::Serialize;
 

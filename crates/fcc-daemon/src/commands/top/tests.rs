@@ -2,7 +2,7 @@
 
 use fcc_core::flight::{Attitude, Surfaces};
 use fcc_core::framework::{Flags, Reading, State, Tick, Time};
-use fcc_telemetry::live::{Event, EventCode, Info, RecorderState, Status, Text};
+use fcc_live::{Event, EventCode, Info, RecorderState, Status, Text};
 use fcc_telemetry::{FlightRecord, Instance};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fcc_telemetry::live::{LATENESS_BOUNDS_NS, LatenessCounts, Status};
+use fcc_live::{LATENESS_BOUNDS_NS, LatenessCounts, Status};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Style, Stylize};

@@ -1,0 +1,42 @@
+//! How a flight ended, for people.
+
+use std::fmt::Write as _;
+
+use fcc_flight::flight::{Outcome, Pace};
+use fcc_report::{flight_table, timing_table};
+
+/// Tables for people, and what became of the recording.
+pub(super) fn text(outcome: &Outcome) -> String {
+    let mut text = String::new();
+    // In lockstep no time passes that could be kept.
+    if outcome.pace == Pace::RealTime {
+        text = timing_table(std::slice::from_ref(&outcome.timing));
+        text.push_str("\n\n");
+    }
+    if let Some(flight) = outcome.flight.as_ref().filter(|f| !f.legs.is_empty()) {
+        text.push_str(&flight_table(flight, outcome.scored_by));
+        text.push_str("\n\n");
+    }
+    let _ = write!(text, "ended: {}", outcome.ending);
+    if outcome.failsafes > 0 {
+        let _ = write!(text, "; failsafe {} times", outcome.failsafes);
+    }
+    if outcome.overruns > 0 {
+        let _ = write!(text, "; {} ticks overran their budget", outcome.overruns);
+    }
+    if !outcome.released {
+        text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
+    }
+    if let Some(recording) = &outcome.recording {
+        for file in &recording.files {
+            let _ = write!(text, "\nrecorded: {file}");
+        }
+        if recording.not_recorded > 0 {
+            let _ = write!(text, "\nNOT RECORDED: {} messages", recording.not_recorded);
+        }
+        if let Some(why) = &recording.stopped {
+            let _ = write!(text, "\nTHE END IS NOT RECORDED: {why}");
+        }
+    }
+    text
+}

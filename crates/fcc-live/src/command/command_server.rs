@@ -1,0 +1,137 @@
+//! The end that takes commands, in the publishing thread: hands them to who
+//! flies by a ring, and gives the answers back.
+
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use iceoryx2::active_request::ActiveRequest;
+use iceoryx2::port::server::Server;
+use iceoryx2::prelude::BackpressureStrategy;
+use iceoryx2::service::service_name::ServiceName;
+
+use super::super::PublishError;
+use super::super::services::{Access, Ipc, explained};
+use super::wire::{Answer, Request};
+use super::{Asked, COMMANDS_VERSION, Verdict};
+use fcc_telemetry::Instance;
+
+/// Programs that may give commands to one daemon at the same time.
+const MAX_COMMANDERS: usize = 16;
+/// Processes that may hold the service open: some were killed and are not
+/// cleaned up yet.
+const MAX_NODES: usize = MAX_COMMANDERS + 16;
+/// Commands of one program that may wait.
+const MAX_WAITING: usize = 4;
+
+/// The ends of the rings that who flies holds.
+#[derive(Debug)]
+pub(in super::super) struct Ends {
+    pub(in super::super) commands: Receiver<Asked>,
+    pub(in super::super) verdicts: SyncSender<(u64, Verdict)>,
+}
+
+/// The ends of the same rings that the desk holds.
+pub(in super::super) type Rings = (SyncSender<Asked>, Receiver<(u64, Verdict)>);
+
+type Waiting = ActiveRequest<Ipc, Request, (), Answer, ()>;
+
+/// Takes commands from other programs.
+pub(in super::super) struct CommandServer {
+    server: Server<Ipc, Request, (), Answer, ()>,
+    waiting: Vec<(u64, Waiting)>,
+    commands: SyncSender<Asked>,
+    verdicts: Receiver<(u64, Verdict)>,
+    next_id: u64,
+}
+
+/// What the daemon's commands are asked for by.
+pub(super) fn service_name(instance: &Instance) -> Option<ServiceName> {
+    ServiceName::new(&format!("fcc/{instance}/command/v{COMMANDS_VERSION}")).ok()
+}
+
+impl CommandServer {
+    /// The rings between the desk and who flies.
+    pub(in super::super) fn rings() -> (Ends, Rings) {
+        let room = MAX_COMMANDERS * MAX_WAITING;
+        let (commands_in, commands) = sync_channel(room);
+        let (verdicts, verdicts_out) = sync_channel(room);
+        (Ends { commands, verdicts }, (commands_in, verdicts_out))
+    }
+
+    /// Opens the service, and makes it if there is none.
+    pub(in super::super) fn open(
+        access: &Access,
+        instance: &Instance,
+        (commands, verdicts): Rings,
+    ) -> Result<Self, PublishError> {
+        let unavailable = |words: String| PublishError::NoSharedMemory(words);
+        let name = service_name(instance)
+            .ok_or_else(|| unavailable(format!("'{instance}' cannot name a service")))?;
+        let service = access
+            .service_builder(&name)
+            .request_response::<Request, Answer>()
+            .max_servers(1)
+            .max_clients(MAX_COMMANDERS)
+            .max_nodes(MAX_NODES)
+            .max_active_requests_per_client(MAX_WAITING)
+            .max_response_buffer_size(1)
+            .enable_fire_and_forget_requests(false)
+            .open_or_create()
+            .map_err(|error| unavailable(format!("commands: {}", explained(&error))))?;
+        let server = service
+            .server_builder()
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|error| unavailable(format!("commands: {}", explained(&error))))?;
+        Ok(Self {
+            server,
+            waiting: Vec::new(),
+            commands,
+            verdicts,
+            next_id: 0,
+        })
+    }
+
+    /// Takes what is asked, and gives the answers that there are.
+    pub(in super::super) fn serve(&mut self) {
+        while let Ok(Some(request)) = self.server.receive() {
+            self.take(request);
+        }
+        while let Ok((id, verdict)) = self.verdicts.try_recv() {
+            if let Some(at) = self.waiting.iter().position(|(waiting, _)| *waiting == id) {
+                let (_, request) = self.waiting.swap_remove(at);
+                answer(&request, &verdict);
+            }
+        }
+        // Who is gone waits for nothing; the command stands.
+        self.waiting.retain(|(_, request)| request.is_connected());
+    }
+
+    /// The flight is over: says so to all who wait.
+    pub(in super::super) fn close(mut self) {
+        self.serve();
+        let over = Verdict::Refused("the flight is over".to_owned());
+        for (_, request) in &self.waiting {
+            answer(request, &over);
+        }
+    }
+
+    fn take(&mut self, request: Waiting) {
+        let command = match request.command() {
+            Ok(command) => command,
+            Err(words) => return answer(&request, &Verdict::Refused(words)),
+        };
+        let id = self.next_id;
+        self.next_id += 1;
+        if self.commands.try_send(Asked { id, command }).is_ok() {
+            self.waiting.push((id, request));
+        } else {
+            let words = "too many commands wait: send it again".to_owned();
+            answer(&request, &Verdict::Refused(words));
+        }
+    }
+}
+
+fn answer(request: &Waiting, verdict: &Verdict) {
+    // Who has left hears nothing.
+    let _ = request.send_copy(Answer::from(verdict));
+}

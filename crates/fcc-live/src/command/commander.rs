@@ -1,0 +1,139 @@
+//! The end that gives commands.
+
+use std::time::{Duration, Instant};
+
+use iceoryx2::port::client::Client;
+use iceoryx2::prelude::BackpressureStrategy;
+use iceoryx2::service::builder::request_response::RequestResponseOpenError;
+
+use super::super::services::{self, Access, Ipc};
+use super::super::watcher::{check_layout, read_info};
+use super::super::{Info, WatchError};
+use super::wire::{Answer, Request};
+use super::{COMMANDS_VERSION, CommandError, FlightCommand, Unflyable, Verdict, command_server};
+use fcc_telemetry::Instance;
+
+/// How long a daemon may take to answer: some ten times what it needs at the
+/// slowest rate, 1 Hz.
+const PATIENCE: Duration = Duration::from_secs(10);
+const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// Gives commands to a daemon on this machine.
+///
+/// ```no_run
+/// use fcc_telemetry::Instance;
+/// use fcc_live::{Commander, FlightCommand, NewSetpoints};
+///
+/// let mut commander = Commander::open(&Instance::default())?;
+/// commander.command(FlightCommand::Engage)?;
+/// let set = NewSetpoints { heading_rad: Some(1.57), ..NewSetpoints::default() };
+/// let tick = commander.command(FlightCommand::Set(set))?;
+/// println!("carried out in tick {tick}");
+/// # Ok::<(), fcc_live::CommandError>(())
+/// ```
+#[derive(Debug)]
+pub struct Commander {
+    instance: Instance,
+    info: Info,
+    client: Client<Ipc, Request, (), Answer, ()>,
+    // Last: it cleans up after the others.
+    _access: Access,
+}
+
+impl Commander {
+    /// Reaches a daemon.
+    ///
+    /// # Errors
+    /// When no daemon of this name runs here, when it is of another version,
+    /// or when it takes no commands.
+    pub fn open(instance: &Instance) -> Result<Self, CommandError> {
+        let access = services::access().map_err(WatchError::NoSharedMemory)?;
+        let info = read_info(&access, instance)?;
+        check_layout(&info, instance)?;
+        let name = command_server::service_name(instance)
+            .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
+        let takes_none = || CommandError::TakesNone {
+            instance: instance.clone(),
+            software: info.software.as_str().to_owned(),
+            own: COMMANDS_VERSION,
+        };
+        let service = access
+            .service_builder(&name)
+            .request_response::<Request, Answer>()
+            .open()
+            .map_err(|error| refused(error, instance, takes_none))?;
+        let client = service
+            .client_builder()
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|_| CommandError::TooMany(instance.clone()))?;
+        Ok(Self {
+            instance: instance.clone(),
+            info,
+            client,
+            _access: access,
+        })
+    }
+
+    /// Who takes the commands.
+    pub const fn info(&self) -> &Info {
+        &self.info
+    }
+
+    /// Gives a command and waits until it is carried out; the tick that did.
+    ///
+    /// # Errors
+    /// When it cannot be flown, when the daemon refuses it (with the daemon's
+    /// reason), is gone, or does not answer.
+    pub fn command(&mut self, command: FlightCommand) -> Result<u64, CommandError> {
+        command.check()?;
+        let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
+        let pending = self
+            .client
+            .send_copy(Request::from(command))
+            .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
+        let deadline = Instant::now() + PATIENCE;
+        loop {
+            // Asked before looking: an answer given before the end counts.
+            let connected = pending.is_connected();
+            match pending.receive() {
+                Ok(Some(answer)) => {
+                    return match answer.verdict(&command) {
+                        Verdict::CarriedOut { tick } => Ok(tick),
+                        Verdict::Refused(words) => Err(CommandError::Refused(words)),
+                        Verdict::Outside(outside) => Err(Unflyable::from(outside).into()),
+                    };
+                }
+                Ok(None) if !connected => return Err(gone()),
+                Ok(None) => {}
+                Err(error) => {
+                    return Err(WatchError::NoSharedMemory(services::explained(&error)).into());
+                }
+            }
+            if Instant::now() > deadline {
+                return Err(CommandError::NoAnswer(
+                    self.instance.clone(),
+                    PATIENCE.as_secs(),
+                ));
+            }
+            std::thread::sleep(LOOK_EVERY);
+        }
+    }
+}
+
+fn refused(
+    error: RequestResponseOpenError,
+    instance: &Instance,
+    takes_none: impl Fn() -> CommandError,
+) -> CommandError {
+    use RequestResponseOpenError as Open;
+    match error {
+        Open::DoesNotExist
+        | Open::IsMarkedForDestruction
+        | Open::HangsInCreation
+        | Open::IncompatibleRequestOrResponseType => takes_none(),
+        Open::ExceedsMaxNumberOfNodes => CommandError::TooMany(instance.clone()),
+        Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()).into(),
+        error => WatchError::NoSharedMemory(services::explained(&error)).into(),
+    }
+}

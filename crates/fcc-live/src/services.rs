@@ -1,0 +1,210 @@
+//! The services, as both ends open them.
+
+use std::fmt::Debug;
+
+use iceoryx2::node::{Node, NodeBuilder};
+use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
+use iceoryx2::prelude::{BackpressureStrategy, SignalHandlingMode, ZeroCopySend, ipc_threadsafe};
+use iceoryx2::service::builder::publish_subscribe::{
+    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+};
+use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
+use iceoryx2::service::service_name::ServiceName;
+
+use super::place::Place;
+use super::{LAYOUT, PublishError, WatchError};
+use fcc_telemetry::Instance;
+
+/// Programs that may watch one daemon at the same time. One more is told that
+/// there is no room; the others and the daemon do not notice it. The room of
+/// one that was killed is free again within a second.
+pub const MAX_WATCHERS: usize = 64;
+
+/// Records that wait for a watcher: one second at 1 kHz. Who looks less often
+/// finds the newest; the gap shows in the ticks' numbers.
+pub const RECORD_BUFFER: usize = 1_024;
+
+/// Events of the past that a watcher finds when it comes, and how many wait.
+pub const EVENT_HISTORY: usize = 64;
+
+/// Processes that may hold a service open: the watchers, the daemon, and some
+/// that were killed and not cleaned up yet, or only look whether there is room.
+const MAX_NODES: usize = MAX_WATCHERS + 32;
+
+/// Samples that a watcher may hold at once.
+const BORROWED: usize = 2;
+
+/// Shared memory between processes. Both ends may move between threads, as a
+/// Python program's objects do; the same services as those of iceoryx2's
+/// single-threaded kind.
+pub(super) type Ipc = ipc_threadsafe::Service;
+/// A service of plain data.
+pub(super) type Service<T> = PortFactory<Ipc, T, ()>;
+/// An end of a service that writes.
+pub(super) type Out<T> = Publisher<Ipc, T, ()>;
+/// A process' access to all services.
+pub(super) type Access = Node<Ipc>;
+
+/// One of the services of a daemon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Topic {
+    name: &'static str,
+    versioned: bool,
+    buffer: usize,
+    history: usize,
+}
+
+/// Who publishes.
+pub(super) const INFO: Topic = Topic {
+    name: "info",
+    versioned: false,
+    buffer: 2,
+    history: 1,
+};
+/// Each tick.
+pub(super) const RECORD: Topic = Topic {
+    name: "record",
+    versioned: true,
+    buffer: RECORD_BUFFER,
+    history: 1,
+};
+/// What happened once.
+pub(super) const EVENT: Topic = Topic {
+    name: "event",
+    versioned: true,
+    buffer: EVENT_HISTORY,
+    history: EVENT_HISTORY,
+};
+/// How the run stands.
+pub(super) const STATUS: Topic = Topic {
+    name: "status",
+    versioned: true,
+    buffer: 2,
+    history: 1,
+};
+
+impl Topic {
+    fn service_name(self, instance: &Instance) -> Option<ServiceName> {
+        let name = if self.versioned {
+            format!("fcc/{instance}/{}/v{LAYOUT}", self.name)
+        } else {
+            format!("fcc/{instance}/{}", self.name)
+        };
+        // An instance's name has no letter that a service's may not have.
+        ServiceName::new(&name).ok()
+    }
+
+    /// All samples that can be in use at once. Whoever is slow holds the newest
+    /// ones, as everyone does, and those it has borrowed: far less than the
+    /// product of watchers and buffer that is reserved by default.
+    const fn samples(self) -> usize {
+        self.buffer + self.history + MAX_WATCHERS * BORROWED + 16
+    }
+
+    /// Opens the writing end, and makes the service if there is none.
+    pub(super) fn publish<T: Debug + ZeroCopySend + 'static>(
+        self,
+        access: &Access,
+        instance: &Instance,
+    ) -> Result<(Service<T>, Out<T>), PublishError> {
+        let name = self.service_name(instance).ok_or_else(|| {
+            PublishError::NoSharedMemory(format!("'{instance}' cannot name a service"))
+        })?;
+        let service = access
+            .service_builder(&name)
+            .publish_subscribe::<T>()
+            .max_publishers(1)
+            .max_subscribers(MAX_WATCHERS)
+            .max_nodes(MAX_NODES)
+            .subscriber_max_buffer_size(self.buffer)
+            .subscriber_max_borrowed_samples(BORROWED)
+            .history_size(self.history)
+            // The oldest makes room: nobody waits for a watcher that hangs.
+            .enable_safe_overflow(true)
+            .open_or_create()
+            .map_err(|error| refused(error, instance))?;
+        let publisher = service
+            .publisher_builder()
+            .max_loaned_samples(2)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .override_sample_preallocation(move |most| most.min(self.samples()))
+            .create()
+            .map_err(|error| match error {
+                PublisherCreateError::ExceedsMaxSupportedPublishers => {
+                    PublishError::NameTaken(instance.clone())
+                }
+                error => PublishError::NoSharedMemory(explained(&error)),
+            })?;
+        Ok((service, publisher))
+    }
+
+    /// Opens the reading end; never makes a service.
+    pub(super) fn watch<T: Debug + ZeroCopySend + 'static>(
+        self,
+        access: &Access,
+        instance: &Instance,
+    ) -> Result<Service<T>, WatchError> {
+        use PublishSubscribeOpenError as Open;
+        let name = self
+            .service_name(instance)
+            .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
+        access
+            .service_builder(&name)
+            .publish_subscribe::<T>()
+            .open()
+            .map_err(|error| match error {
+                Open::DoesNotExist | Open::IsMarkedForDestruction | Open::HangsInCreation => {
+                    WatchError::NotRunning(instance.clone())
+                }
+                Open::ExceedsMaxNumberOfNodes => WatchError::TooMany(instance.clone()),
+                Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()),
+                Open::IncompatibleTypes => WatchError::Damaged(instance.clone()),
+                error => WatchError::NoSharedMemory(explained(&error)),
+            })
+    }
+}
+
+fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> PublishError {
+    use PublishSubscribeOpenError as Open;
+    use PublishSubscribeOpenOrCreateError as Refused;
+    match error {
+        Refused::PublishSubscribeOpenError(
+            Open::IncompatibleTypes
+            | Open::IncompatibleOverflowBehavior
+            | Open::IncompatibleMessagingPattern
+            | Open::DoesNotSupportRequestedMinBufferSize
+            | Open::DoesNotSupportRequestedMinHistorySize
+            | Open::DoesNotSupportRequestedMinSubscriberBorrowedSamples
+            | Open::DoesNotSupportRequestedAmountOfPublishers
+            | Open::DoesNotSupportRequestedAmountOfSubscribers
+            | Open::DoesNotSupportRequestedAmountOfNodes
+            | Open::VersionMismatch,
+        ) => PublishError::HeldByOthers(instance.clone()),
+        error => PublishError::NoSharedMemory(explained(&error)),
+    }
+}
+
+/// A failure of iceoryx2 in words: files of another user among this one's, which
+/// it calls an internal error, or else what it says itself.
+pub(super) fn explained(error: &impl Debug) -> String {
+    let foreign = Place::of_this_user().foreign_file();
+    foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}"))
+}
+
+/// This process' access to the services of all daemons of its user. Cleans up
+/// after processes that were killed.
+///
+/// # Errors
+/// Why there is no shared memory, in words.
+pub(super) fn access() -> Result<Access, String> {
+    let config = Place::of_this_user().prepare()?;
+    let access = NodeBuilder::new()
+        .config(&config)
+        // The daemon and its commands have ways of their own with signals.
+        .signal_handling_mode(SignalHandlingMode::Disabled)
+        .create::<Ipc>()
+        .map_err(|error| explained(&error))?;
+    // Whatever the global configuration says of cleaning up.
+    access.try_cleanup_dead_nodes();
+    Ok(access)
+}

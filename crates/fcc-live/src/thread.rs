@@ -1,0 +1,230 @@
+//! The thread that publishes.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::SyncSender;
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use iceoryx2::port::update_connections::UpdateConnections;
+use iceoryx2::prelude::PortFactory;
+use nix::time::{ClockId, clock_gettime};
+use rtrb::Consumer;
+
+use super::command::{CommandServer, Rings};
+use super::lateness::Lateness;
+use super::publisher::Item;
+use super::record::Published;
+use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
+use super::space;
+use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
+use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
+
+/// The thread's name, as `top -H` shows it.
+pub(super) const NAME: &str = "fcc-live";
+
+/// How long it sleeps if nobody wakes it.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+/// How often a status is published and killed watchers are cleaned up after.
+const STATUS_EVERY: Duration = Duration::from_secs(1);
+
+/// Whether publishing began.
+pub(super) type Started = Result<(), PublishError>;
+
+/// Publishes what comes by the ring, until nobody can put anything there, and
+/// takes commands if there are rings for them.
+pub(super) fn publish<C: Telemetry>(
+    instance: &Instance,
+    commands: Option<Rings>,
+    mut items: Consumer<Item<C>>,
+    left_out: &AtomicU64,
+    started: &SyncSender<Started>,
+    say: &SyncSender<String>,
+) {
+    let mut thread = match Publishing::<C>::open(instance, commands) {
+        Ok(thread) => thread,
+        Err(error) => {
+            // The daemon waits for this; if it has given up, nobody does.
+            let _ = started.send(Err(error));
+            return;
+        }
+    };
+    if started.send(Ok(())).is_err() {
+        return;
+    }
+    let mut next_status = Instant::now();
+    loop {
+        // In this order: what was put there last is published, too.
+        let over = items.is_abandoned();
+        if let Some(words) = thread.look_for_room() {
+            // Nobody listens to a daemon that says so much.
+            let _ = say.try_send(words);
+        }
+        while let Ok(item) = items.pop() {
+            thread.take(item);
+        }
+        if next_status <= Instant::now() || over {
+            // From now on: after a stall there is nothing to make up for.
+            next_status = Instant::now() + STATUS_EVERY;
+            thread.tell_status(left_out.load(Ordering::Relaxed));
+        }
+        if over {
+            thread.close();
+            return;
+        }
+        thread.greet();
+        thread.take_commands();
+        std::thread::park_timeout(LOOK_EVERY);
+    }
+}
+
+/// Waits for a thread's end, but not for ever.
+pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
+    let deadline = Instant::now() + at_most;
+    while !thread.is_finished() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+struct Publishing<C: Telemetry> {
+    desk: Option<CommandServer>,
+    records: Out<Published<C>>,
+    service: Service<Published<C>>,
+    events: Out<Event>,
+    statuses: Out<Status>,
+    infos: Out<Info>,
+    lateness: Lateness,
+    recorder: RecorderStatus,
+    time_ns: i64,
+    not_published: u64,
+    paused: bool,
+    // Last: it cleans up after the others.
+    access: Access,
+}
+
+impl<C: Telemetry> Publishing<C> {
+    fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
+        if let Some(words) = space::too_little(space::NEEDED_BYTES) {
+            return Err(PublishError::NoSharedMemory(words));
+        }
+        let access = services::access().map_err(PublishError::NoSharedMemory)?;
+        // First of all, as its layout never changes: a name that is taken shows.
+        let (_, infos) = INFO.publish(&access, instance)?;
+        let (service, records) = RECORD.publish(&access, instance)?;
+        let (_, events) = EVENT.publish(&access, instance)?;
+        let (_, statuses) = STATUS.publish(&access, instance)?;
+        let desk = commands
+            .map(|rings| CommandServer::open(&access, instance, rings))
+            .transpose()?;
+        Ok(Self {
+            desk,
+            records,
+            service,
+            events,
+            statuses,
+            infos,
+            lateness: Lateness::new(),
+            recorder: RecorderStatus::default(),
+            time_ns: i64::MIN,
+            not_published: 0,
+            paused: false,
+            access,
+        })
+    }
+
+    /// Takes and answers commands; they wait while shared memory is nearly full.
+    fn take_commands(&mut self) {
+        if let Some(desk) = self.desk.as_mut().filter(|_| !self.paused) {
+            desk.serve();
+        }
+    }
+
+    /// Nothing comes any more: nor will answers.
+    fn close(&mut self) {
+        if let Some(desk) = self.desk.take() {
+            desk.close();
+        }
+    }
+
+    /// Pauses while shared memory is nearly full; gives words when that changes.
+    fn look_for_room(&mut self) -> Option<String> {
+        let too_little = space::too_little(space::LEAST_BYTES);
+        let was_paused = std::mem::replace(&mut self.paused, too_little.is_some());
+        match too_little {
+            Some(words) if !was_paused => Some(format!("live telemetry pauses: {words}")),
+            None if was_paused => Some("live telemetry goes on: there is room again".to_owned()),
+            _ => None,
+        }
+    }
+
+    fn take(&mut self, item: Item<C>) {
+        match item {
+            Item::Record(record) => {
+                self.lateness.take(&record.tick);
+                self.time_ns = record.tick.woke.as_nanos();
+                if self.paused
+                    || self
+                        .records
+                        .send_copy(Published(C::Words::of_record(&record)))
+                        .is_err()
+                {
+                    self.not_published += 1;
+                }
+            }
+            Item::Event(event) => {
+                if !self.paused {
+                    // Nobody to tell that something could not be told.
+                    let _ = self.events.send_copy(event);
+                }
+            }
+            Item::Info(info) => {
+                if !self.paused {
+                    let _ = self.infos.send_copy(*info);
+                }
+            }
+            Item::Recorder(status) => self.recorder = *status,
+        }
+    }
+
+    /// Connects who has come since, and lets it have what it missed.
+    fn greet(&self) {
+        if !self.paused {
+            let _ = self.infos.update_connections();
+            let _ = self.records.update_connections();
+            let _ = self.events.update_connections();
+            let _ = self.statuses.update_connections();
+        }
+    }
+
+    fn tell_status(&mut self, left_out: u64) {
+        if self.paused {
+            return;
+        }
+        // Who was killed still takes up room.
+        self.access.try_cleanup_dead_nodes();
+        let status = Status {
+            time_ns: self.time_ns,
+            ticks: self.lateness.ticks,
+            missed: self.lateness.missed,
+            lateness_p50_ns: self.lateness.quantile_ns(0.5),
+            lateness_p99_ns: self.lateness.quantile_ns(0.99),
+            lateness_p99_9_ns: self.lateness.quantile_ns(0.999),
+            lateness_max_ns: self.lateness.max_ns,
+            lateness_counts: self.lateness.counts,
+            not_published: self.not_published + left_out,
+            cpu_ns: thread_cpu_ns(),
+            watchers: self.service.dynamic_config().number_of_subscribers() as u32,
+            recorder_state: self.recorder.state as u32,
+            recorded: self.recorder.recorded,
+            not_recorded: self.recorder.not_recorded,
+            recording_bytes: self.recorder.bytes,
+            recording: Text::new(&self.recorder.name),
+        };
+        let _ = self.statuses.send_copy(status);
+    }
+}
+
+fn thread_cpu_ns() -> u64 {
+    clock_gettime(ClockId::CLOCK_THREAD_CPUTIME_ID).map_or(0, |used| {
+        used.tv_sec() as u64 * 1_000_000_000 + used.tv_nsec() as u64
+    })
+}

@@ -1,0 +1,144 @@
+//! Commands between two programs on one machine: who gives them, and who flies.
+#![cfg(test)]
+
+use std::thread::{self, sleep};
+use std::time::{Duration, Instant};
+
+use fcc_live::{
+    Asked, CommandError, Commander, FlightCommand, Info, NewSetpoints, Publisher, Text, Verdict,
+    WatchError,
+};
+use fcc_telemetry::Instance;
+
+/// Long after a healthy machine would have answered.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// A name that no other test and no daemon has.
+fn instance(test: &str) -> Instance {
+    format!("order-{}-{test}", std::process::id())
+        .parse()
+        .unwrap()
+}
+
+fn describe(mut publisher: Publisher) -> Publisher {
+    publisher.describe(Info {
+        software: Text::new("1.2.3"),
+        ..Info::default()
+    });
+    publisher
+}
+
+fn started(instance: &Instance) -> Publisher {
+    describe(Publisher::start_with_commands(instance).unwrap())
+}
+
+fn next(publisher: &mut Publisher) -> Asked {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        publisher.flush();
+        if let Some(asked) = publisher.next_command() {
+            return asked;
+        }
+        assert!(Instant::now() < deadline, "no command came");
+        sleep(Duration::from_millis(2));
+    }
+}
+
+const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
+    airspeed_mps: None,
+    heading_rad: Some(1.25),
+    altitude_m: None,
+});
+
+#[test]
+fn an_order_arrives_and_its_answer_goes_back() {
+    let instance = instance("answer");
+    let mut publisher = started(&instance);
+    let told = thread::scope(|scope| {
+        let giver = scope.spawn(|| {
+            let mut commander = Commander::open(&instance).unwrap();
+            let first = commander.command(HEADING);
+            (first, commander.command(FlightCommand::Engage))
+        });
+        let asked = next(&mut publisher);
+        assert_eq!(asked.command, HEADING);
+        publisher.answer(asked.id, Verdict::CarriedOut { tick: 77 });
+        let asked = next(&mut publisher);
+        assert_eq!(asked.command, FlightCommand::Engage);
+        publisher.answer(asked.id, Verdict::Refused("too slow".to_owned()));
+        publisher.flush();
+        giver.join().unwrap()
+    });
+    assert_eq!(told.0, Ok(77));
+    assert_eq!(told.1, Err(CommandError::Refused("too slow".to_owned())));
+}
+
+#[test]
+fn who_waits_when_the_flight_ends_is_told() {
+    let instance = instance("end");
+    let mut publisher = started(&instance);
+    let told = thread::scope(|scope| {
+        let giver = scope.spawn(|| {
+            Commander::open(&instance)
+                .unwrap()
+                .command(FlightCommand::Disengage)
+        });
+        next(&mut publisher);
+        drop(publisher);
+        giver.join().unwrap()
+    });
+    // Said by the daemon, or seen by its absence.
+    assert!(
+        matches!(
+            &told,
+            Err(CommandError::Refused(words)) if words == "the flight is over"
+        ) || told == Err(CommandError::Unreachable(WatchError::NotRunning(instance))),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn what_cannot_be_flown_does_not_leave_the_program() {
+    let instance = instance("nonsense");
+    let mut publisher = started(&instance);
+    let mut commander = Commander::open(&instance).unwrap();
+    let nonsense = FlightCommand::Set(NewSetpoints {
+        altitude_m: Some(f64::INFINITY),
+        ..NewSetpoints::default()
+    });
+    let words = commander.command(nonsense).unwrap_err().to_string();
+    assert!(
+        words.contains("altitude is inf m: choose -500 to 20000 m"),
+        "{words}"
+    );
+    assert_eq!(publisher.next_command(), None);
+}
+
+#[test]
+fn a_daemon_that_takes_none_is_told_from_none_at_all() {
+    let instance = instance("none");
+    assert_eq!(
+        Commander::open(&instance).unwrap_err(),
+        CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
+    );
+    let _publisher = describe(Publisher::start(&instance).unwrap());
+    let words = Commander::open(&instance).unwrap_err().to_string();
+    assert!(
+        words.contains("version 1.2.3, takes no commands"),
+        "{words}"
+    );
+    assert!(words.contains("commands = false"), "{words}");
+}
+
+#[test]
+fn a_daemon_with_another_layout_is_refused_in_words() {
+    let instance = instance("layout");
+    let mut publisher = Publisher::start_with_commands(&instance).unwrap();
+    publisher.describe(Info {
+        layout: u32::MAX,
+        software: Text::new("9.0.0"),
+        ..Info::default()
+    });
+    let words = Commander::open(&instance).unwrap_err().to_string();
+    assert!(words.contains("version 9.0.0"), "{words}");
+}

@@ -1,0 +1,259 @@
+//! A publisher and its watchers, as two programs on one machine see them.
+#![cfg(test)]
+
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use fcc_core::framework::{EventKind, State, Tick, Time};
+use fcc_live::{
+    Event, EventCode, Info, LAYOUT, MAX_WATCHERS, PublishError, Publisher, RecorderState,
+    RecorderStatus, Text, WatchError, Watcher,
+};
+use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
+
+/// Long after a healthy machine would have answered.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// A name that no other test and no daemon has.
+fn instance(test: &str) -> Instance {
+    format!("test-{}-{test}", std::process::id())
+        .parse()
+        .unwrap()
+}
+
+fn started(instance: &Instance) -> Publisher {
+    let mut publisher = Publisher::start(instance).unwrap();
+    publisher.describe(Info {
+        software: Text::new("1.2.3"),
+        rate_hz: 40.0,
+        ..Info::default()
+    });
+    publisher
+}
+
+fn record(number: u64) -> FlightRecord {
+    FlightRecord {
+        tick: Tick {
+            number,
+            scheduled: Time::from_nanos(number as i64 * 1_000_000),
+            woke: Time::from_nanos(number as i64 * 1_000_000 + 5_000),
+            ..Tick::default()
+        },
+        ..FlightRecord::default()
+    }
+}
+
+fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
+    let deadline = Instant::now() + PATIENCE;
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        assert!(Instant::now() < deadline, "never came: {what}");
+        sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
+fn each_record_arrives_once_and_in_order() {
+    let instance = instance("command");
+    let mut publisher = started(&instance);
+    let mut watcher = Watcher::open(&instance).unwrap();
+    assert_eq!(watcher.info().software.as_str(), "1.2.3");
+    assert_eq!(watcher.info().rate_hz, 40.0);
+    for number in 0..500 {
+        publisher.record(&record(number));
+    }
+    publisher.flush();
+    for number in 0..500 {
+        let found = wait_for("a record", || watcher.next_record().unwrap());
+        assert_eq!(found, record(number));
+    }
+    assert_eq!(watcher.next_record().unwrap(), None);
+}
+
+#[test]
+fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
+    let instance = instance("late");
+    let mut publisher = started(&instance);
+    let event = FlightEvent {
+        tick: 3,
+        time: Time::from_nanos(3_005_000),
+        kind: EventKind::StateChanged {
+            from: State::Standby,
+            to: State::Engaged,
+        },
+    };
+    publisher.event(Event::new(&event, "standby -> engaged"));
+    publisher.recorder(RecorderStatus {
+        state: RecorderState::Recording,
+        recorded: 8,
+        name: "flight.mcap".to_owned(),
+        ..RecorderStatus::default()
+    });
+    for number in 0..10 {
+        publisher.record(&record(number));
+    }
+    publisher.flush();
+    // The status that knows all of it has been published.
+    let mut first = Watcher::open(&instance).unwrap();
+    wait_for("a status of ten ticks", || {
+        first
+            .latest_status()
+            .unwrap()
+            .filter(|status| status.ticks == 10)
+    });
+
+    let mut watcher = Watcher::open(&instance).unwrap();
+    let newest = wait_for("the newest record", || watcher.latest().unwrap());
+    assert_eq!(newest.tick.number, 9);
+    let event = wait_for("the event", || watcher.next_event().unwrap());
+    assert_eq!(event.code, EventCode::StateChanged as u32);
+    assert_eq!((event.tick, event.values), (3, [0, 1, 0]));
+    assert_eq!(event.text.as_str(), "standby -> engaged");
+    let status = wait_for("a status", || watcher.latest_status().unwrap());
+    assert_eq!((status.ticks, status.lateness_max_ns), (10, 5_000));
+    assert_eq!(status.recorder(), RecorderState::Recording);
+    assert_eq!(status.recording.as_str(), "flight.mcap");
+}
+
+/// Each record is published or counted, also where they come faster than
+/// anybody can publish them.
+#[test]
+fn what_is_not_published_is_counted() {
+    let instance = instance("flood");
+    let mut publisher = started(&instance);
+    let mut watcher = Watcher::open(&instance).unwrap();
+    let given = 50_000;
+    for number in 0..given {
+        publisher.record(&record(number));
+    }
+    // Its ring holds 2,048, and its thread looks every 20 ms.
+    let status = wait_for("a status of all records", || {
+        watcher
+            .latest_status()
+            .unwrap()
+            .filter(|status| status.ticks + status.not_published == given)
+    });
+    assert!(status.ticks >= 2_048, "{status:?}");
+}
+
+#[test]
+fn a_watcher_notices_the_end_and_the_next_flight() {
+    let instance = instance("end");
+    let publisher = started(&instance);
+    let watcher = Watcher::open(&instance).unwrap();
+    assert!(watcher.is_alive());
+    drop(publisher);
+    wait_for("the end", || (!watcher.is_alive()).then_some(()));
+    // The first watcher still holds the services open.
+    assert_eq!(
+        Watcher::open(&instance).unwrap_err(),
+        WatchError::NotRunning(instance.clone())
+    );
+    let _publisher = started(&instance);
+    assert!(Watcher::open(&instance).unwrap().is_alive());
+}
+
+#[test]
+fn without_a_daemon_it_says_what_to_do() {
+    let words = Watcher::open(&instance("nobody")).unwrap_err().to_string();
+    assert!(words.contains("no fccd named 'test-"), "{words}");
+    assert!(words.contains("fccd fly --instance test-"), "{words}");
+}
+
+#[test]
+fn a_daemon_with_another_layout_is_refused_in_words() {
+    let instance = instance("layout");
+    let mut publisher = Publisher::start(&instance).unwrap();
+    publisher.describe(Info {
+        layout: LAYOUT + 1,
+        software: Text::new("9.0.0"),
+        ..Info::default()
+    });
+    let error = Watcher::open(&instance).unwrap_err();
+    let words = error.to_string();
+    assert!(words.contains("version 9.0.0"), "{words}");
+    assert!(
+        words.contains(&format!("layout {}", LAYOUT + 1))
+            && words.contains(&format!("layout {LAYOUT}:")),
+        "{words}"
+    );
+}
+
+#[test]
+fn a_name_is_taken_once() {
+    let instance = instance("taken");
+    let _first = started(&instance);
+    assert_eq!(
+        Publisher::start(&instance).unwrap_err(),
+        PublishError::NameTaken(instance)
+    );
+}
+
+#[test]
+fn one_watcher_too_many_is_told_so_and_harms_nobody() {
+    let instance = instance("many");
+    let mut publisher = started(&instance);
+    let mut watchers: Vec<Watcher> = (0..MAX_WATCHERS)
+        .map(|_| Watcher::open(&instance).unwrap())
+        .collect();
+    assert_eq!(
+        Watcher::open(&instance).unwrap_err(),
+        WatchError::TooMany(instance.clone())
+    );
+    for number in 0..100 {
+        publisher.record(&record(number));
+    }
+    publisher.flush();
+    for watcher in &mut watchers {
+        for number in 0..100 {
+            let found = wait_for("a record", || watcher.next_record().unwrap());
+            assert_eq!(found.tick.number, number);
+        }
+    }
+    // Room for one is room for another.
+    watchers.pop();
+    wait_for("room", || Watcher::open(&instance).ok());
+}
+
+#[test]
+fn a_watcher_that_never_looks_holds_nobody_up() {
+    let instance = instance("hang");
+    let mut publisher = started(&instance);
+    let mut hung = Watcher::open(&instance).unwrap();
+    let mut watcher = Watcher::open(&instance).unwrap();
+    // Three times what waits for a watcher.
+    for number in 0..3_072 {
+        publisher.record(&record(number));
+        if number % 256 == 255 {
+            publisher.flush();
+            wait_for("a record", || {
+                watcher
+                    .latest()
+                    .unwrap()
+                    .filter(|record| record.tick.number == number)
+            });
+        }
+    }
+    // The oldest made room for the newest.
+    let found = wait_for("a record", || hung.next_record().unwrap());
+    assert_eq!(found.tick.number, 3_072 - 1_024);
+}
+
+#[test]
+fn the_process_keeps_its_own_way_with_signals() {
+    let caught = || {
+        let status = std::fs::read_to_string("/proc/self/status").unwrap();
+        let line = status
+            .lines()
+            .find(|line| line.starts_with("SigCgt"))
+            .unwrap();
+        line.to_owned()
+    };
+    let before = caught();
+    let instance = instance("signals");
+    let _publisher = started(&instance);
+    let _watcher = Watcher::open(&instance).unwrap();
+    assert_eq!(caught(), before);
+}

@@ -1,0 +1,293 @@
+//! One file of a recording while it is written.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use fcc_core::framework::{EventOf, Message, MessageOf, RecordOf};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{Attachment, McapError, WriteOptions};
+
+use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
+use super::disk::Disk;
+use super::end::{END, RunStatistics};
+use super::foxglove;
+use super::outlet::Outlet;
+use super::schema::{self, OWN_TOPICS, Topic, topics};
+use super::settings::Compression;
+use super::wire::log::Level;
+use crate::recorded::{Recorded, Views};
+use fcc_telemetry::event_words;
+use fcc_telemetry::schema::protobuf::encode;
+
+/// What a chunk holds at most before it is compressed: what a reader needs in
+/// memory at once.
+const CHUNK_BYTES: u64 = 1 << 20;
+
+/// One file of a recording while it is written.
+///
+/// What is given to it gathers in memory until [`commit`](Self::commit) writes
+/// it as one whole chunk and syncs it: at any moment the file on the disk ends
+/// where a record ends.
+pub(super) struct RecordingFile<C: Recorded> {
+    path: PathBuf,
+    writer: mcap::Writer<NoSeek<Outlet>>,
+    outlet: Outlet,
+    channels: Vec<u16>,
+    offset_ns: i64,
+    first_log_ns: Option<u64>,
+    last_log_ns: u64,
+    sequence: u32,
+    gathered_bytes: u64,
+    views: C::Views,
+    run_statistics: RunStatistics,
+    names: Names,
+    /// A message's bytes, kept for the next.
+    bytes: Vec<u8>,
+}
+
+/// What sensors and actuators are called, for the words of events.
+struct Names {
+    sensors: Vec<String>,
+    actuators: Vec<String>,
+}
+
+impl<C: Recorded> RecordingFile<C> {
+    /// Begins a file with all that is known of the flight, and syncs that.
+    pub(super) fn begin(
+        disk: &mut dyn Disk,
+        path: &Path,
+        about: &About,
+        compression: Compression,
+    ) -> io::Result<Self> {
+        let outlet = Outlet::new(disk.create(path)?);
+        let begun = Self::write_beginning(&outlet, about, compression).map_err(to_io);
+        let (writer, channels) = begun.inspect_err(|_| {
+            outlet.abandon();
+            // Nobody needs a file that says nothing.
+            let _ = fs::remove_file(path);
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            writer,
+            outlet,
+            channels,
+            offset_ns: about.clock_offset_ns,
+            first_log_ns: None,
+            last_log_ns: about.started_unix_ns,
+            sequence: 0,
+            gathered_bytes: 0,
+            views: C::Views::default(),
+            run_statistics: RunStatistics::default(),
+            names: Names {
+                sensors: about.sensors.clone(),
+                actuators: about.actuators.clone(),
+            },
+            bytes: Vec::new(),
+        })
+    }
+
+    fn write_beginning(
+        outlet: &Outlet,
+        about: &About,
+        compression: Compression,
+    ) -> Result<(mcap::Writer<NoSeek<Outlet>>, Vec<u16>), McapError> {
+        let mut writer = options(compression)
+            .library(about.software.clone())
+            .create(NoSeek::new(outlet.clone()))?;
+        for (name, metadata) in about.to_metadata() {
+            writer.write_metadata(&Metadata {
+                name: name.to_owned(),
+                metadata,
+            })?;
+        }
+        let as_given = about.config_as_given.as_ref();
+        let texts = [(CONFIG, Some(&about.config)), (CONFIG_AS_GIVEN, as_given)];
+        for (name, text) in texts {
+            if let Some(text) = text {
+                writer.attach(&Attachment {
+                    log_time: about.started_unix_ns,
+                    create_time: about.started_unix_ns,
+                    name: name.to_owned(),
+                    media_type: "application/toml".to_owned(),
+                    data: text.as_bytes().into(),
+                })?;
+            }
+        }
+        let mut channels = Vec::new();
+        for (name, schema_name, descriptors) in topics::<C>() {
+            let schema = writer.add_schema(&schema_name, schema::ENCODING, &descriptors)?;
+            channels.push(writer.add_channel(schema, name, schema::ENCODING, &BTreeMap::new())?);
+        }
+        writer.flush()?;
+        outlet.sync()?;
+        Ok((writer, channels))
+    }
+
+    /// Takes a record or an event.
+    pub(super) fn take(&mut self, message: &MessageOf<C>) -> io::Result<()> {
+        self.run_statistics.take(message);
+        match message {
+            Message::Tick(record) => self.record(record),
+            Message::Event(event) => self.event(event),
+        }
+        .map_err(to_io)
+    }
+
+    fn record(&mut self, record: &RecordOf<C>) -> Result<(), McapError> {
+        let log_ns = self.log_time(record.tick.woke.as_nanos());
+        self.bytes.clear();
+        encode(record, &mut self.bytes);
+        self.write_bytes(Topic::Record as usize, log_ns)?;
+        self.views.take(record, log_ns);
+        for view in 0..C::Views::TOPICS.len() {
+            self.bytes.clear();
+            if self.views.append(view, &mut self.bytes) {
+                self.write_bytes(OWN_TOPICS + view, log_ns)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn event(&mut self, event: &EventOf<C>) -> Result<(), McapError> {
+        let log_ns = self.log_time(event.time.as_nanos());
+        let text = self.words(event);
+        self.bytes.clear();
+        schema::encode_event(event, &text, &mut self.bytes);
+        self.write_bytes(Topic::Event as usize, log_ns)?;
+        let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
+        self.write(Topic::Log as usize, log_ns, &line)
+    }
+
+    /// Takes words that are not an event of the loop.
+    pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
+        let log_ns = self.last_log_ns;
+        let line = foxglove::line(foxglove::REMARK, text, Level::Info, log_ns);
+        self.write(Topic::Log as usize, log_ns, &line)
+            .map_err(to_io)
+    }
+
+    fn write(
+        &mut self,
+        topic: usize,
+        log_time: u64,
+        message: &impl prost::Message,
+    ) -> Result<(), McapError> {
+        self.bytes.clear();
+        message
+            .encode(&mut self.bytes)
+            .map_err(|error| McapError::Io(io::Error::other(error)))?;
+        self.write_bytes(topic, log_time)
+    }
+
+    fn write_bytes(&mut self, topic: usize, log_time: u64) -> Result<(), McapError> {
+        let header = MessageHeader {
+            channel_id: self.channels.get(topic).copied().unwrap_or(0),
+            sequence: self.sequence,
+            log_time,
+            publish_time: log_time,
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.gathered_bytes += self.bytes.len() as u64;
+        self.writer.write_to_known_channel(&header, &self.bytes)
+    }
+
+    /// Wall clock at the start plus the loop's time since; never backwards, as
+    /// readers search by it.
+    fn log_time(&mut self, loop_ns: i64) -> u64 {
+        let unix_ns = if loop_ns == i64::MIN {
+            0
+        } else {
+            u64::try_from(loop_ns.saturating_add(self.offset_ns)).unwrap_or(0)
+        };
+        self.last_log_ns = self.last_log_ns.max(unix_ns);
+        self.first_log_ns.get_or_insert(self.last_log_ns);
+        self.last_log_ns
+    }
+
+    fn words(&self, event: &EventOf<C>) -> String {
+        event_words::<C>(event, &self.names.sensors, &self.names.actuators)
+    }
+
+    /// Writes what has gathered and waits until it is safe from a loss of
+    /// power.
+    pub(super) fn commit(&mut self) -> io::Result<()> {
+        self.writer.flush().map_err(to_io)?;
+        self.outlet.sync()?;
+        self.gathered_bytes = 0;
+        Ok(())
+    }
+
+    /// Ends the file as it should end: with the account and an index.
+    pub(super) fn finish(mut self, ending: &str) -> io::Result<()> {
+        let finished = self
+            .write_end(ending)
+            .map_err(to_io)
+            .and_then(|()| self.outlet.sync());
+        if finished.is_err() {
+            self.outlet.abandon();
+        }
+        finished
+    }
+
+    fn write_end(&mut self, ending: &str) -> Result<(), McapError> {
+        self.writer.write_metadata(&Metadata {
+            name: END.to_owned(),
+            metadata: self.run_statistics.end(ending).to_fields(),
+        })?;
+        self.writer.finish()?;
+        Ok(())
+    }
+
+    /// Leaves the file as it was when last synced: cut, with nothing torn.
+    pub(super) fn abandon(self) {
+        self.outlet.abandon();
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Bytes that are safe on the disk.
+    pub(super) fn bytes(&self) -> u64 {
+        self.outlet.synced_bytes()
+    }
+
+    /// Bytes that have gathered since, before they are compressed.
+    pub(super) const fn gathered_bytes(&self) -> u64 {
+        self.gathered_bytes
+    }
+
+    /// How much of a flight the file covers, ns.
+    pub(super) fn span_ns(&self) -> u64 {
+        self.first_log_ns
+            .map_or(0, |first| self.last_log_ns.saturating_sub(first))
+    }
+
+    /// Records given to the file.
+    pub(super) fn ticks(&self) -> u64 {
+        self.run_statistics.ticks()
+    }
+}
+
+/// How every file is written.
+pub(super) fn options(compression: Compression) -> WriteOptions {
+    WriteOptions::new()
+        .profile(schema::PROFILE)
+        .compression(compression.to_mcap())
+        // The default is a thread per core, beside a flight.
+        .compression_threads(0)
+        .chunk_size(Some(CHUNK_BYTES))
+        // A chunk is put together in memory and appended whole: a file that
+        // is cut off ends with a whole chunk, at an ordinary end of file.
+        .disable_seeking(true)
+}
+
+fn to_io(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,334 @@
+//! What is in a recording, read one by one: memory does not grow with the file.
+
+use std::collections::VecDeque;
+
+use fcc_core::framework::schema::Schema;
+use fcc_core::framework::{Message, Tick, Time};
+use mcap::records::{MessageHeader, Record};
+use prost::Message as _;
+
+use super::damage::Damage;
+use super::end::End;
+use super::foxglove::REMARK;
+use super::raw::{DamagedBytes, Found, RawReader};
+use super::schema::{self, Topic};
+use super::wire;
+use fcc_telemetry::schema::protobuf::{DecodeError, decode};
+
+/// A record or an event of a loop, of which plant ever: what is declared of its
+/// values says how it is read.
+pub trait RecordedMessage: Sized {
+    /// The record in a message.
+    ///
+    /// # Errors
+    /// When the bytes are none.
+    fn record(bytes: &[u8]) -> Result<Self, DecodeError>;
+
+    /// The event in a message.
+    ///
+    /// # Errors
+    /// When the bytes are none.
+    fn event(bytes: &[u8]) -> Result<Self, DecodeError>;
+
+    /// The tick that it is all of; none for an event.
+    fn tick(&self) -> Option<&Tick>;
+}
+
+impl<M: Schema, E: Schema, S: Schema, O: Schema, R: Schema> RecordedMessage
+    for Message<M, E, S, O, R>
+{
+    fn record(bytes: &[u8]) -> Result<Self, DecodeError> {
+        decode(bytes).map(Self::Tick)
+    }
+
+    fn event(bytes: &[u8]) -> Result<Self, DecodeError> {
+        decode(bytes).map(Self::Event)
+    }
+
+    fn tick(&self) -> Option<&Tick> {
+        match self {
+            Self::Tick(record) => Some(&record.tick),
+            Self::Event(_) => None,
+        }
+    }
+}
+
+/// What every loop tells of itself, whatever its plant: ticks, states, events.
+pub(super) type AnyMessage = Message<(), (), (), (), ()>;
+
+/// One thing in a recording.
+#[derive(Clone, PartialEq, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all are messages, and a box for each would be work for nothing"
+)]
+pub enum Item<M> {
+    /// A record or an event of the loop.
+    Message(M),
+    /// Words that are no event of the loop.
+    Remark(Remark),
+    /// What is here is damaged, and what was here is missing.
+    Damage(Damage),
+}
+
+/// Words that are no event of the loop: of the recorder, or of who watches over
+/// the connection to a simulator.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Remark {
+    /// On the loop's clock: when the last message before it was logged.
+    pub time: Time,
+    /// For people.
+    pub text: String,
+}
+
+/// So many items are held back at most until it is known which ticks are
+/// missing before them.
+const MOST_HELD_BACK: usize = 1_024;
+
+/// The records, events and remarks of a recording. What is damaged is passed
+/// over, and said in its place.
+pub struct Items<M> {
+    raw: RawReader,
+    channels: Channels,
+    clock_offset_ns: i64,
+    /// What the file says of itself.
+    end: Option<End>,
+    last_tick: Option<Tick>,
+    /// Damage behind which no tick was found yet.
+    damage: Option<Damage>,
+    /// What was read behind it.
+    held_back: VecDeque<Item<M>>,
+    over: bool,
+    cut: Option<String>,
+}
+
+impl<M: RecordedMessage> Items<M> {
+    pub(super) fn new(raw: RawReader, clock_offset_ns: i64, end: Option<End>) -> Self {
+        Self {
+            raw,
+            channels: Channels::default(),
+            clock_offset_ns,
+            end,
+            last_tick: None,
+            damage: None,
+            held_back: VecDeque::new(),
+            over: false,
+            cut: None,
+        }
+    }
+
+    /// Where and why reading ended before the recording did; none while there
+    /// is more to read, and after a file that ends as it should.
+    pub fn cut(&self) -> Option<&str> {
+        self.cut.as_deref()
+    }
+
+    /// Bytes read so far, of [`Recording::bytes`](super::Recording::bytes).
+    pub const fn bytes_read(&self) -> u64 {
+        self.raw.bytes_read()
+    }
+
+    fn read(&mut self) -> Option<Result<Item<M>, DamagedBytes>> {
+        loop {
+            let (channels, offset_ns) = (&mut self.channels, self.clock_offset_ns);
+            match self.raw.next(|record| channels.item(&record, offset_ns)) {
+                Err(cut) => {
+                    self.cut = Some(cut.to_string());
+                    return None;
+                }
+                Ok(Found::End) => return None,
+                Ok(Found::Damage(damaged)) => return Some(Err(damaged)),
+                Ok(Found::Record(Some(Ok(item)))) => return Some(Ok(item)),
+                Ok(Found::Record(Some(Err(why)))) => {
+                    return Some(Err(DamagedBytes {
+                        bytes: self.raw.last_bytes(),
+                        why,
+                        messages: true,
+                    }));
+                }
+                Ok(Found::Record(None)) => {}
+            }
+        }
+    }
+
+    /// Takes what was read next; gives it back if nothing is to come before it.
+    fn take(&mut self, read: Option<Result<Item<M>, DamagedBytes>>) -> Option<Item<M>> {
+        match read {
+            Some(Ok(item)) => {
+                let tick = match &item {
+                    Item::Message(message) => message.tick().copied(),
+                    _ => None,
+                };
+                if tick.is_some() || self.held_back.len() >= MOST_HELD_BACK {
+                    self.locate_damage(tick.as_ref());
+                }
+                self.last_tick = tick.or(self.last_tick);
+                if self.damage.is_none() && self.held_back.is_empty() {
+                    return Some(item);
+                }
+                self.held_back.push_back(item);
+            }
+            Some(Err(damaged)) => match &mut self.damage {
+                Some(damage) => damage.join(&damaged),
+                None => self.damage = Some(Damage::of(damaged)),
+            },
+            None => {
+                self.over = true;
+                self.locate_damage(None);
+            }
+        }
+        None
+    }
+
+    fn locate_damage(&mut self, next: Option<&Tick>) {
+        if let Some(mut damage) = self.damage.take() {
+            // What the file says of its end says nothing of the middle.
+            let end = self.end.as_ref().filter(|_| next.is_some() || self.over);
+            damage.locate(self.last_tick.as_ref(), next, end);
+            self.held_back.push_front(Item::Damage(damage));
+        }
+    }
+}
+
+impl<M: RecordedMessage> Iterator for Items<M> {
+    type Item = Item<M>;
+
+    fn next(&mut self) -> Option<Item<M>> {
+        loop {
+            if self.damage.is_none()
+                && let Some(item) = self.held_back.pop_front()
+            {
+                return Some(item);
+            }
+            if self.over {
+                return None;
+            }
+            let read = self.read();
+            if let Some(item) = self.take(read) {
+                return Some(item);
+            }
+        }
+    }
+}
+
+/// The records and events of a recording.
+pub struct Messages<M> {
+    items: Items<M>,
+    damages: Vec<Damage>,
+}
+
+impl<M: RecordedMessage> Messages<M> {
+    pub(super) const fn new(items: Items<M>) -> Self {
+        Self {
+            items,
+            damages: Vec::new(),
+        }
+    }
+
+    /// As [`Items::cut`].
+    pub fn cut(&self) -> Option<&str> {
+        self.items.cut()
+    }
+
+    /// What was passed over so far.
+    pub fn damages(&self) -> &[Damage] {
+        &self.damages
+    }
+
+    pub(super) fn into_damages(self) -> Vec<Damage> {
+        self.damages
+    }
+
+    /// As [`Items::bytes_read`].
+    pub const fn bytes_read(&self) -> u64 {
+        self.items.bytes_read()
+    }
+}
+
+impl<M: RecordedMessage> Iterator for Messages<M> {
+    type Item = M;
+
+    fn next(&mut self) -> Option<M> {
+        for item in self.items.by_ref() {
+            match item {
+                Item::Message(message) => return Some(message),
+                Item::Damage(damage) => self.damages.push(damage),
+                Item::Remark(_) => {}
+            }
+        }
+        None
+    }
+}
+
+/// Which channels of a file carry what.
+#[derive(Default)]
+pub(super) struct Channels {
+    record: Option<u16>,
+    pub(super) event: Option<u16>,
+    pub(super) log: Option<u16>,
+}
+
+impl Channels {
+    /// What a record of MCAP holds, if it is something of ours.
+    pub(super) fn item<M: RecordedMessage>(
+        &mut self,
+        record: &Record<'_>,
+        clock_offset_ns: i64,
+    ) -> Option<Result<Item<M>, String>> {
+        match record {
+            Record::Channel(channel) if channel.message_encoding == schema::ENCODING => {
+                for (topic, id) in [
+                    (Topic::Record, &mut self.record),
+                    (Topic::Event, &mut self.event),
+                    (Topic::Log, &mut self.log),
+                ] {
+                    if channel.topic == topic.name() {
+                        *id = Some(channel.id);
+                    }
+                }
+                None
+            }
+            Record::Message { header, data } => {
+                let id = Some(header.channel_id);
+                if id == self.record {
+                    Some(
+                        M::record(data)
+                            .map_err(|error| refused("a record", error))
+                            .map(Item::Message),
+                    )
+                } else if id == self.event {
+                    Some(
+                        M::event(data)
+                            .map_err(|error| refused("an event", error))
+                            .map(Item::Message),
+                    )
+                } else if id == self.log {
+                    remark(header, data, clock_offset_ns).map(|remark| Ok(Item::Remark(remark)))
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+fn refused(what: &str, error: DecodeError) -> String {
+    match error {
+        DecodeError::Unknown(unknown) => format!("{what} cannot be understood: {unknown}"),
+        damaged => format!("{what} is damaged: {damaged}"),
+    }
+}
+
+/// The remark in a line of the log; none where it tells of an event, which is
+/// there beside it. Words are no part of a flight: damage to them ends nothing.
+fn remark(header: &MessageHeader, data: &[u8], clock_offset_ns: i64) -> Option<Remark> {
+    let line = wire::Log::decode(data).ok()?;
+    (line.name == REMARK).then(|| {
+        let logged_ns = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+        Remark {
+            time: Time::from_nanos(logged_ns.saturating_sub(clock_offset_ns)),
+            text: line.message,
+        }
+    })
+}

@@ -1,0 +1,147 @@
+//! One file after the other: begun, ended, and old ones deleted to make room.
+
+use std::io;
+use std::mem;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use super::super::file::RecordingFile;
+use super::super::folder;
+use super::super::name::file_name;
+use super::super::part::Part;
+use super::Writing;
+use crate::recorded::Recorded;
+
+/// Names tried, and recordings deleted, for one file to begin.
+const MAX_ATTEMPTS: usize = 100;
+
+impl<C: Recorded> Writing<C> {
+    pub(super) fn is_full(&self, part: &Part<C>) -> bool {
+        let too_large = |most| part.bytes() >= most;
+        let too_old = |most: Duration| u128::from(part.span_ns()) >= most.as_nanos();
+        self.settings.max_file_bytes.is_some_and(too_large)
+            || self.settings.max_file_age.is_some_and(too_old)
+    }
+
+    pub(super) fn rotate(&mut self) {
+        if self.close("the recording goes on in its next file") {
+            self.begin();
+        }
+    }
+
+    /// Ends the present file as it should end; whether that worked.
+    pub(super) fn close(&mut self, ending: &str) -> bool {
+        if !self.commit() {
+            return false;
+        }
+        let Some(part) = self.part.take() else {
+            return false;
+        };
+        self.ticks_before += part.ticks();
+        self.bytes_before += part.bytes();
+        let path = part.path().to_owned();
+        let finished = part.finish(ending);
+        self.board.update(|status| status.file = None);
+        if let Err(error) = &finished {
+            // All records are in it; what is missing is its index.
+            self.stop(format!(
+                "{}: not finished: {error}. Its records are safe: make room and run \
+                 `fccd recover`",
+                path.display()
+            ));
+        }
+        finished.is_ok()
+    }
+
+    /// Begins the next file.
+    pub(super) fn begin(&mut self) {
+        self.keep_below_total();
+        self.about.part += 1;
+        match self.begin_file() {
+            Ok(file) => {
+                let path = file.path().to_owned();
+                if self.trouble.is_none() {
+                    self.announce(format!("recording to {}", path.display()), false);
+                }
+                self.board.update(|status| {
+                    status.file = Some(path.clone());
+                    status.files.push(path);
+                });
+                self.part = Some(Part::new(file));
+                for text in mem::take(&mut self.words) {
+                    self.note(text);
+                }
+            }
+            Err((path, error)) => {
+                self.about.part -= 1;
+                self.stop(format!(
+                    "{}: cannot be written: {error}. Choose a folder that can, with --recordings \
+                     or recording.folder",
+                    path.display()
+                ));
+            }
+        }
+        self.acted = Instant::now();
+    }
+
+    /// Begins a file under a name that is free, where there is room or room
+    /// may be made.
+    fn begin_file(&mut self) -> Result<RecordingFile<C>, (PathBuf, io::Error)> {
+        for _ in 0..MAX_ATTEMPTS {
+            let about = &self.about;
+            let name = file_name(about.started_unix_ns, &about.aircraft, about.part);
+            let path = self.settings.folder.join(name);
+            let compression = self.settings.compression;
+            match RecordingFile::begin(&mut *self.disk, &path, about, compression) {
+                Ok(file) => return Ok(file),
+                // Two flights in one millisecond: the second is a bit later.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                    self.about.started_unix_ns += 1_000_000;
+                }
+                Err(error) if is_full(&error) && self.make_room() => {}
+                Err(error) => return Err((path, error)),
+            }
+        }
+        let path = self.settings.folder.clone();
+        Err((path, io::ErrorKind::AlreadyExists.into()))
+    }
+
+    /// Deletes the oldest recording of another flight, if deleting is
+    /// configured; whether it did.
+    pub(super) fn make_room(&mut self) -> bool {
+        if self.settings.keep_total_bytes.is_none() {
+            return false;
+        }
+        let own = self.board.read().files;
+        let deleted = folder::delete_oldest(&self.settings.folder, &own);
+        if let Some(path) = &deleted {
+            self.tell(
+                format!("{}: deleted, the disk is full", path.display()),
+                false,
+            );
+        }
+        deleted.is_some()
+    }
+
+    pub(super) fn keep_below_total(&mut self) {
+        let Some(most) = self.settings.keep_total_bytes else {
+            return;
+        };
+        for path in folder::keep_below(&self.settings.folder, most) {
+            let text = format!(
+                "{}: deleted, to keep recordings below {} MB",
+                path.display(),
+                most / 1_000_000
+            );
+            self.tell(text, false);
+        }
+    }
+}
+
+/// Whether an error is of a kind that deleting files helps against.
+pub(super) fn is_full(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge
+    )
+}

@@ -1,0 +1,194 @@
+//! Recordings that were cut off, damaged or made up.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fcc_core::framework::Message;
+use fcc_record::{
+    Compression, OpenError, Recorder, RecorderSettings, Recording, RecoverError, Wholeness, entry,
+    recover, repair_last,
+};
+use fcc_telemetry::FlightMessage;
+use proptest::prelude::*;
+
+use crate::flight::{about, flight, only_file, record_all, settings};
+
+/// A flight of several chunks.
+pub(crate) const TICKS: u64 = 6_000;
+
+pub(crate) fn whole(folder: &Path, compression: Compression) -> PathBuf {
+    let settings = RecorderSettings {
+        compression,
+        ..settings(folder)
+    };
+    record_all(Recorder::start(about(), settings).unwrap(), &flight(TICKS));
+    only_file(folder)
+}
+
+/// All messages, and where the file was found to be cut.
+pub(crate) fn read(path: &Path) -> (Vec<FlightMessage>, Option<String>) {
+    let mut messages = Recording::open(path).unwrap().messages().unwrap();
+    let all = messages.by_ref().collect();
+    (all, messages.cut().map(str::to_owned))
+}
+
+#[test]
+fn a_file_cut_anywhere_is_read_to_its_cut_and_made_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    for compression in [Compression::None, Compression::Zstd, Compression::Lz4] {
+        let folder = tempfile::tempdir_in(folder.path()).unwrap();
+        let path = whole(folder.path(), compression);
+        let bytes = fs::read(&path).unwrap();
+        let (all, cut) = read(&path);
+        assert_eq!((all.len() as u64, cut), (TICKS + 1, None));
+        let mut before = 0;
+        for twentieth in 4..20 {
+            let length = bytes.len() * twentieth / 20;
+            fs::write(&path, &bytes[..length]).unwrap();
+            let (some, cut) = read(&path);
+            assert_eq!(cut.unwrap(), format!("cut off after {length} bytes"));
+            assert!(some.len() >= before, "more of a file is more messages");
+            assert_eq!(some, all[..some.len()]);
+            before = some.len();
+
+            let recovered = recover(&path, |_| {}).unwrap();
+            assert!(!recovered.was_whole);
+            let recording = Recording::open(&path).unwrap();
+            assert!(recording.is_whole());
+            assert_eq!(*recording.about(), about());
+            assert_eq!(read(&path), (some, None));
+            assert_eq!(recording.end().unwrap().ticks, recovered.ticks);
+        }
+        assert!(
+            before as u64 > TICKS / 2,
+            "{compression:?}: {before} messages"
+        );
+        // Nothing is left beside it.
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}
+
+#[test]
+fn a_whole_file_is_left_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let before = fs::read(&path).unwrap();
+    let recovered = recover(&path, |_| {}).unwrap();
+    assert!(recovered.was_whole);
+    assert_eq!(recovered.ticks, TICKS);
+    assert_eq!(fs::read(&path).unwrap(), before);
+    assert_eq!(repair_last(folder.path()).unwrap(), None);
+}
+
+#[test]
+fn a_start_repairs_the_last_recording_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let bytes = fs::read(&path).unwrap();
+    let cut = &bytes[..bytes.len() / 2];
+    let older = folder
+        .path()
+        .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
+    fs::write(&older, cut).unwrap();
+    fs::write(&path, cut).unwrap();
+    assert_eq!(entry(&path).unwrap().file, Wholeness::Cut);
+    let repaired = repair_last(folder.path()).unwrap().unwrap();
+    assert_eq!(repaired.path, path);
+    assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
+    assert_eq!(fs::read(&older).unwrap(), cut);
+    assert_eq!(repair_last(Path::new("/nowhere")).unwrap(), None);
+}
+
+#[test]
+fn what_is_being_written_is_not_recovered() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
+    for message in &flight(10) {
+        recorder.take(message);
+    }
+    while recorder.status().ticks < 10 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let path = only_file(folder.path());
+    assert!(matches!(
+        recover(&path, |_| {}),
+        Err(RecoverError::BeingWritten(_))
+    ));
+    assert_eq!(repair_last(folder.path()).unwrap(), None);
+    let seen = entry(&path).unwrap();
+    assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
+    recorder.finish("stopped by command");
+    assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
+}
+
+/// Two programs that start at once in one folder repair one file.
+#[test]
+fn nobody_recovers_what_somebody_recovers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = whole(folder.path(), Compression::default());
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let mut tried = false;
+    recover(&path, |_| {
+        if !tried {
+            tried = true;
+            assert!(matches!(
+                recover(&path, |_| {}),
+                Err(RecoverError::BeingWritten(_))
+            ));
+            assert_eq!(repair_last(folder.path()).unwrap(), None);
+        }
+    })
+    .unwrap();
+    assert!(tried);
+    assert!(recover(&path, |_| {}).unwrap().was_whole);
+}
+
+#[test]
+fn other_files_are_refused_with_a_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("other.mcap");
+    for bytes in [&b""[..], b"hello", mcap::MAGIC, &[0; 100]] {
+        fs::write(&path, bytes).unwrap();
+        assert!(matches!(
+            Recording::open(&path),
+            Err(OpenError::NotARecording { .. })
+        ));
+    }
+    // Another program's recording.
+    let file = fs::File::create(&path).unwrap();
+    mcap::Writer::new(file).unwrap().finish().unwrap();
+    let error = Recording::open(&path).unwrap_err().to_string();
+    assert!(error.ends_with("another program wrote it"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever a file says, reading it ends, and says nothing it does not know.
+    #[test]
+    fn a_damaged_file_never_panics(
+        damage in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),
+        length in any::<prop::sample::Index>(),
+    ) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("damaged.mcap");
+        let recorder = Recorder::start(about(), settings(folder.path())).unwrap();
+        record_all(recorder, &flight(50));
+        let mut bytes = fs::read(fcc_record::files(folder.path()).unwrap().remove(0)).unwrap();
+        for (place, value) in damage {
+            let place = place.index(bytes.len());
+            bytes[place] = value;
+        }
+        bytes.truncate(length.index(bytes.len()) + 1);
+        fs::write(&path, &bytes).unwrap();
+        if let Ok(recording) = Recording::open(&path) {
+            let ticks = recording
+                .messages::<FlightMessage>()
+                .unwrap()
+                .filter(|message| matches!(message, Message::Tick(_)))
+                .count();
+            prop_assert!(ticks <= 50);
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! Damage inside a recording: in each of its structures, at random places.
+
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use fcc_core::framework::{EventKind, Message};
+use fcc_record::{Compression, Damage, Recording, Wholeness, entry, glance, recover};
+use fcc_telemetry::FlightMessage;
+use mcap::records::op;
+use proptest::prelude::*;
+
+use crate::cut::{TICKS, read, whole};
+
+/// The bytes of a whole recording, its messages, and what is where.
+struct Original {
+    bytes: Vec<u8>,
+    messages: Vec<FlightMessage>,
+    records: Vec<(u8, Range<usize>)>,
+}
+
+static ORIGINALS: LazyLock<[Original; 3]> = LazyLock::new(|| {
+    [Compression::None, Compression::Zstd, Compression::Lz4].map(|compression| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = whole(folder.path(), compression);
+        let bytes = fs::read(&path).unwrap();
+        Original {
+            messages: read(&path).0,
+            records: records(&bytes),
+            bytes,
+        }
+    })
+});
+
+/// Opcode and place of each record of a file (MCAP's specification: an opcode,
+/// eight bytes of length, the content).
+fn records(bytes: &[u8]) -> Vec<(u8, Range<usize>)> {
+    let magic = mcap::MAGIC.len();
+    let mut at = magic;
+    let mut records = Vec::new();
+    while at < bytes.len() - magic {
+        let length = u64::from_le_bytes(bytes[at + 1..at + 9].try_into().unwrap()) as usize;
+        let end = at + 9 + length;
+        records.push((bytes[at], at..end));
+        at = end;
+    }
+    records
+}
+
+impl Original {
+    /// Where the records of a kind are.
+    fn all(&self, opcode: u8) -> Vec<Range<usize>> {
+        let of_kind = |(kind, place): &(u8, Range<usize>)| (*kind == opcode).then(|| place.clone());
+        self.records.iter().filter_map(of_kind).collect()
+    }
+}
+
+/// What a damaged file gives: its messages, what is damaged, and whether the
+/// file was found cut.
+fn read_damaged(path: &Path) -> (Vec<FlightMessage>, Vec<Damage>, Option<String>) {
+    let mut messages = Recording::open(path).unwrap().messages().unwrap();
+    let all = messages.by_ref().collect();
+    let cut = messages.cut().map(str::to_owned);
+    (all, messages.damages().to_vec(), cut)
+}
+
+fn ticks(messages: &[FlightMessage]) -> Vec<u64> {
+    let tick = |message: &FlightMessage| match message {
+        Message::Tick(record) => Some(record.tick.number),
+        Message::Event(_) => None,
+    };
+    messages.iter().filter_map(tick).collect()
+}
+
+/// The ticks that damages say are missing.
+fn said_missing(damages: &[Damage]) -> Vec<u64> {
+    damages
+        .iter()
+        .filter_map(|damage| Some(damage.first_tick?..=damage.last_tick?))
+        .flatten()
+        .collect()
+}
+
+/// How many, the first, the last and the sum of them: less to read than all.
+fn span(ticks: &[u64]) -> Option<(usize, u64, u64, u64)> {
+    let (first, last) = (ticks.first()?, ticks.last()?);
+    Some((ticks.len(), *first, *last, ticks.iter().sum()))
+}
+
+/// Changes bytes in a place; gives the changed file.
+fn changed(bytes: &[u8], place: &Range<usize>, change: Change) -> Vec<u8> {
+    let mut bytes = bytes.to_vec();
+    match change {
+        Change::Bit(at, bit) => bytes[place.start + at.index(place.len())] ^= 1 << (bit % 8),
+        Change::Zeros(at, length) => {
+            let start = place.start + at.index(place.len());
+            let end = (start + length).min(place.end);
+            // What is zero already is no damage.
+            bytes[start] = !bytes[start];
+            bytes[start + 1..end.max(start + 1)].fill(0);
+        }
+    }
+    bytes
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Change {
+    Bit(prop::sample::Index, u8),
+    Zeros(prop::sample::Index, usize),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    let place = any::<prop::sample::Index>;
+    prop_oneof![
+        (place(), any::<u8>()).prop_map(|(at, bit)| Change::Bit(at, bit)),
+        (place(), 1_usize..5_000).prop_map(|(at, length)| Change::Zeros(at, length)),
+    ]
+}
+
+/// Which part of a file is damaged.
+#[derive(Clone, Copy, Debug)]
+enum Part {
+    ChunkHeader,
+    ChunkData,
+    MessageIndex,
+    Metadata,
+    DataEnd,
+    Index,
+    Footer,
+}
+
+const PARTS: [Part; 7] = [
+    Part::ChunkHeader,
+    Part::ChunkData,
+    Part::MessageIndex,
+    Part::Metadata,
+    Part::DataEnd,
+    Part::Index,
+    Part::Footer,
+];
+
+/// Opcode and length of a record; times, lengths, checksum and compression of
+/// a chunk (its specification's fields, with a string of at most 4 bytes).
+const CHUNK_HEADER_BYTES: usize = 9 + 8 + 8 + 8 + 4 + 4 + 4 + 8;
+
+fn place(original: &Original, part: Part, which: prop::sample::Index) -> Range<usize> {
+    let one_of = |opcode| {
+        let all = original.all(opcode);
+        all[which.index(all.len())].clone()
+    };
+    match part {
+        Part::ChunkHeader => {
+            let chunk = one_of(op::CHUNK);
+            chunk.start..chunk.start + CHUNK_HEADER_BYTES
+        }
+        Part::ChunkData => {
+            let chunk = one_of(op::CHUNK);
+            chunk.start + CHUNK_HEADER_BYTES..chunk.end
+        }
+        Part::MessageIndex => one_of(op::MESSAGE_INDEX),
+        Part::Metadata => one_of(op::METADATA),
+        Part::DataEnd => one_of(op::DATA_END),
+        Part::Index => {
+            let from = original.all(op::DATA_END)[0].end;
+            from..original.all(op::FOOTER)[0].start
+        }
+        Part::Footer => original.all(op::FOOTER)[0].start..original.bytes.len(),
+    }
+}
+
+/// The ticks in the chunks that a place touches; the chunks are read by
+/// another program, `mcap`'s own reader.
+fn ticks_in(original: &Original, place: &Range<usize>) -> Vec<u64> {
+    let summary = mcap::Summary::read(&original.bytes).unwrap().unwrap();
+    summary
+        .chunk_indexes
+        .iter()
+        .filter(|chunk| {
+            let start = chunk.chunk_start_offset as usize;
+            start < place.end && place.start < start + chunk.chunk_length as usize
+        })
+        .flat_map(|chunk| summary.stream_chunk(&original.bytes, chunk).unwrap())
+        .filter_map(|message| {
+            let message = message.unwrap();
+            // A record's first field is its tick's number, a varint.
+            (message.channel.topic == "/fcc/record").then(|| varint(&message.data))
+        })
+        .collect()
+}
+
+/// The value of a message's first field, its number being 1.
+fn varint(bytes: &[u8]) -> u64 {
+    assert_eq!(bytes[0], 8);
+    bytes[1..]
+        .iter()
+        .scan(true, |more, byte| {
+            std::mem::replace(more, byte & 0x80 != 0).then_some(u64::from(byte & 0x7f))
+        })
+        .enumerate()
+        .fold(0, |value, (n, seven)| value | seven << (7 * n))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Whatever is damaged: what is not is read, what is missing is said, and
+    /// made whole is all that can be read.
+    #[test]
+    fn damage_costs_the_chunk_it_is_in_and_is_said(
+        compression in 0_usize..3,
+        part in prop::sample::select(&PARTS[..]),
+        which in any::<prop::sample::Index>(),
+        change in change(),
+    ) {
+        let original = &ORIGINALS[compression];
+        let place = place(original, part, which);
+        let bytes = changed(&original.bytes, &place, change);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("damaged.mcap");
+        fs::write(&path, &bytes).unwrap();
+
+        let (messages, damages, cut) = read_damaged(&path);
+        prop_assert!(!damages.is_empty() || cut.is_some());
+        let there = ticks(&messages);
+        let missing: Vec<u64> = (1..=TICKS)
+            .filter(|tick| there.binary_search(tick).is_err())
+            .collect();
+        // A time in a chunk's header matters to nobody.
+        if !missing.is_empty() {
+            prop_assert_eq!(span(&missing), span(&ticks_in(original, &place)));
+        }
+        prop_assert_eq!(span(&said_missing(&damages)), span(&missing));
+        let is_there = |message: &&FlightMessage| match message {
+            Message::Tick(record) => missing.binary_search(&record.tick.number).is_err(),
+            Message::Event(_) => missing.first() != Some(&1),
+        };
+        let expected: Vec<_> = original.messages.iter().filter(is_there).copied().collect();
+        let same = messages == expected;
+        prop_assert!(same, "{} messages of {}", messages.len(), expected.len());
+        if !matches!(part, Part::ChunkHeader | Part::ChunkData) {
+            prop_assert_eq!(span(&missing), None);
+        }
+        let seen = entry(&path).unwrap();
+        prop_assert_ne!(seen.file, Wholeness::Whole);
+        prop_assert_eq!(seen.ticks, TICKS - missing.len() as u64);
+
+        let recovered = recover(&path, |_| {}).unwrap();
+        prop_assert!(!recovered.was_whole);
+        prop_assert_eq!(&recovered.damages, &damages);
+        if let Some(kept) = &recovered.kept {
+            let kept_as_it_was = fs::read(kept).unwrap() == bytes;
+            prop_assert!(kept_as_it_was);
+        }
+        prop_assert_eq!(recovered.kept.is_some(), !damages.is_empty());
+        let made = entry(&path).unwrap();
+        prop_assert_eq!(made.file, Wholeness::Whole);
+        prop_assert_eq!(made.ticks, seen.ticks);
+        let (again, none, cut) = read_damaged(&path);
+        prop_assert_eq!((none, cut), (Vec::new(), None));
+        prop_assert_eq!(span(&ticks(&again)), span(&there));
+        let whole = recover(&path, |_| {}).unwrap().was_whole;
+        prop_assert!(whole);
+    }
+}
+
+/// Half of the chunks, each in another way, and the index that leads to them.
+#[test]
+fn many_damages_are_each_said_and_all_else_is_read() {
+    let original = &ORIGINALS[0];
+    let chunks = original.all(op::CHUNK);
+    assert!(chunks.len() > 5, "{}", chunks.len());
+    let mut bytes = original.bytes.clone();
+    let mut missing = Vec::new();
+    for chunk in [&chunks[2], &chunks[4]] {
+        // Its length, then its data.
+        bytes[chunk.start + 3] ^= 4;
+        bytes[chunk.end - 9] ^= 1;
+        missing.extend(ticks_in(original, chunk));
+    }
+    let index = original.all(op::CHUNK_INDEX)[0].clone();
+    bytes[index.start + 12] ^= 1;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.mcap");
+    fs::write(&path, &bytes).unwrap();
+
+    let (messages, damages, cut) = read_damaged(&path);
+    assert_eq!(cut, None);
+    assert_eq!(damages.len(), 3, "{damages:?}");
+    assert_eq!(span(&said_missing(&damages)), span(&missing));
+    assert_eq!(messages.len() as u64 + missing.len() as u64, TICKS + 1);
+    let words = damages[0].to_string();
+    let (first, last) = (
+        damages[0].first_tick.unwrap(),
+        damages[0].last_tick.unwrap(),
+    );
+    assert!(
+        words.contains(&format!("ticks {first} to {last} are missing")),
+        "{words}"
+    );
+    // 25 ms and 1 µs a tick: each of these wakes later than the one before.
+    let periods = (last - first + 2) as f64;
+    assert!((damages[0].span_s.unwrap() - periods * 0.025_001).abs() < 1e-9);
+
+    // At its two ends alone, it looks whole.
+    let glanced = glance(&path).unwrap();
+    assert_eq!(glanced.file, Wholeness::Damaged);
+}
+
+/// What is missing is told in the recovered file, as what the recorder lost is.
+#[test]
+fn a_recovered_file_tells_what_is_missing_from_it() {
+    let original = &ORIGINALS[1];
+    let chunk = original.all(op::CHUNK)[2].clone();
+    let mut bytes = original.bytes.clone();
+    bytes[chunk.end - 20] ^= 0x10;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.mcap");
+    fs::write(&path, &bytes).unwrap();
+    assert_eq!(glance(&path).unwrap().file, Wholeness::Whole);
+    assert_eq!(entry(&path).unwrap().file, Wholeness::Damaged);
+
+    let missing = ticks_in(original, &chunk);
+    let recovered = recover(&path, |_| {}).unwrap();
+    assert_eq!(recovered.ticks, TICKS - missing.len() as u64);
+    let recording = Recording::open(&path).unwrap();
+    let end = recording.end().unwrap();
+    assert_eq!(end.ending, "stopped by command");
+    assert_eq!(end.not_recorded, missing.len() as u64);
+    let lost = read(&path).0.into_iter().find_map(|message| match message {
+        Message::Event(event) => match event.kind {
+            EventKind::NotRecorded { count, first, last } => Some((count, first, last)),
+            _ => None,
+        },
+        Message::Tick(_) => None,
+    });
+    let (first, last) = (missing[0], missing[missing.len() - 1]);
+    assert_eq!(lost, Some((missing.len() as u64, first, last)));
+
+    // The damaged file that is kept is not lost to another.
+    fs::write(&path, &bytes).unwrap();
+    let again = recover(&path, |_| {}).unwrap();
+    assert_ne!(again.kept, recovered.kept);
+    assert_eq!(fs::read(recovered.kept.unwrap()).unwrap(), bytes);
+}
+
+/// A loss of power can leave zeros where data was to be.
+#[test]
+fn zeros_behind_what_was_written_are_said_and_left() {
+    let original = &ORIGINALS[1];
+    let chunks = original.all(op::CHUNK);
+    let mut bytes = original.bytes[..chunks[2].start + 1_000].to_vec();
+    bytes[chunks[2].start..].fill(0);
+    bytes.resize(bytes.len() + 100_000, 0);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.mcap");
+    fs::write(&path, &bytes).unwrap();
+    let (messages, damages, cut) = read_damaged(&path);
+    assert!(messages == original.messages[..messages.len()]);
+    assert_eq!(
+        messages.len(),
+        1 + ticks_in(original, &(0..chunks[2].start)).len()
+    );
+    assert_eq!(damages.len(), 1);
+    assert_eq!(damages[0].from_byte, chunks[2].start as u64);
+    assert_eq!(cut.unwrap(), format!("cut off after {} bytes", bytes.len()));
+}

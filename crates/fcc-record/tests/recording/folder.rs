@@ -1,0 +1,89 @@
+//! Many files: rotation, and a folder that is kept small.
+
+use std::fs;
+use std::time::Duration;
+
+use fcc_record::{Compression, Recorder, RecorderSettings, Recording};
+
+use crate::disks::ticks;
+use crate::flight::{about, flight, record_all, settings};
+
+fn parts(settings: RecorderSettings, ticks: u64) -> Vec<Recording> {
+    let folder = settings.folder.clone();
+    record_all(Recorder::start(about(), settings).unwrap(), &flight(ticks));
+    fcc_record::files(&folder)
+        .unwrap()
+        .iter()
+        .map(|path| Recording::open(path).unwrap())
+        .collect()
+}
+
+#[test]
+fn a_recording_is_split_by_age_without_a_gap() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = parts(
+        RecorderSettings {
+            max_file_age: Some(Duration::from_secs(10)),
+            ..settings(folder.path())
+        },
+        1_000,
+    );
+    // 25 s of flight.
+    assert_eq!(parts.len(), 3);
+    let all: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
+    assert_eq!(all, (1..=1_000).collect::<Vec<_>>());
+    for (n, part) in (1..).zip(&parts) {
+        assert!(part.is_whole());
+        assert_eq!(part.about().part, n);
+        assert_eq!(part.about().config, about().config);
+    }
+    assert_eq!(parts[2].end().unwrap().ending, "stopped by command");
+    assert_eq!(
+        parts[0].end().unwrap().ending,
+        "the recording goes on in its next file"
+    );
+}
+
+#[test]
+fn a_recording_is_split_by_size_and_the_folder_kept_small() {
+    let folder = tempfile::tempdir().unwrap();
+    let limits = RecorderSettings {
+        max_file_bytes: Some(2_000_000),
+        keep_total_bytes: Some(5_000_000),
+        compression: Compression::None,
+        ..settings(folder.path())
+    };
+    let old = folder
+        .path()
+        .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
+    let unrelated = folder.path().join("notes.txt");
+    fs::write(&old, vec![0; 1_000_000]).unwrap();
+    fs::write(&unrelated, vec![0; 10_000_000]).unwrap();
+    let parts = parts(limits, 20_000);
+    assert!(!old.exists() && unrelated.exists());
+    assert!(parts.len() >= 2);
+    let sizes: Vec<u64> = parts.iter().map(Recording::bytes).collect();
+    // A chunk of 1 MiB comes in one piece, and an index at the end.
+    assert!(
+        sizes.iter().all(|bytes| *bytes < 2_000_000 + 1_300_000),
+        "{sizes:?}"
+    );
+    assert!(
+        sizes.iter().sum::<u64>() < 5_000_000 + 3_300_000,
+        "{sizes:?}"
+    );
+    // The newest are kept, without a gap among them.
+    let kept: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
+    assert_eq!(*kept.last().unwrap(), 20_000);
+    assert!(kept.windows(2).all(|pair| pair[1] == pair[0] + 1));
+}
+
+#[test]
+fn two_flights_of_one_millisecond_have_two_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for _ in 0..2 {
+        let recorder = Recorder::start(about(), settings(folder.path())).unwrap();
+        record_all(recorder, &flight(3));
+    }
+    assert_eq!(fcc_record::files(folder.path()).unwrap().len(), 2);
+}

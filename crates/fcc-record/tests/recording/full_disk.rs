@@ -1,0 +1,267 @@
+//! Full and read-only disks: the flight goes on, nothing that was recorded
+//! before is lost, and what is lost is told once there is room again.
+
+use std::fs::File;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use fcc_core::framework::Message;
+use fcc_record::{Disk, DiskFile, Item, Recorder, RecorderSettings, Recording, recover};
+
+use crate::disks::{Small, gaps, ticks, wait_for, wait_for_ticks};
+use crate::flight::{about, flight, only_file, record, settings};
+
+/// A recorder on a disk with room for all, and what of that is free.
+fn recorder(settings: RecorderSettings, in_the_way: Option<&Path>) -> (Recorder, Arc<AtomicU64>) {
+    let free = Arc::new(AtomicU64::new(u64::MAX));
+    let disk = Small {
+        free: Arc::clone(&free),
+        in_the_way: in_the_way.map(Path::to_owned),
+    };
+    let recorder = Recorder::start_on(Box::new(disk), about(), settings).unwrap();
+    (recorder, free)
+}
+
+/// Records 40 ticks that are safe.
+fn begin_well(recorder: &mut Recorder) {
+    for message in &flight(40) {
+        recorder.take(message);
+    }
+    wait_for_ticks(recorder, 40);
+}
+
+fn take(recorder: &mut Recorder, numbers: RangeInclusive<u64>) {
+    for number in numbers {
+        recorder.take(&Message::Tick(record(number)));
+    }
+}
+
+#[test]
+fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut recorder, free) = recorder(settings(folder.path()), None);
+    begin_well(&mut recorder);
+    // Room for a part of the next chunk.
+    free.store(100, Ordering::SeqCst);
+    take(&mut recorder, 41..=80);
+    let (status, news) = recorder.finish("stopped by command");
+
+    let stopped = status.stopped.unwrap();
+    assert!(
+        stopped.ends_with("; 40 messages of ticks 41 to 80 are lost, all before is safe"),
+        "{stopped}"
+    );
+    assert!(
+        news.last().unwrap().text.starts_with("recording stopped: "),
+        "{news:?}"
+    );
+    assert_eq!((status.ticks, status.not_recorded), (40, 40));
+    let path = only_file(folder.path());
+    assert_eq!(ticks(&path), (1..=40).collect::<Vec<_>>());
+    // Nothing torn is left: with room again, it becomes a whole file.
+    let recovered = recover(&path, |_| {}).unwrap();
+    assert_eq!(recovered.ticks, 40);
+    assert!(Recording::open(&path).unwrap().is_whole());
+    assert_eq!(ticks(&path), (1..=40).collect::<Vec<_>>());
+}
+
+#[test]
+fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let old = folder
+        .path()
+        .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
+    let kept = folder
+        .path()
+        .join("2021-01-01T00-00-00.000Z-built-in-01.mcap");
+    let unrelated = folder.path().join("2019.mcap");
+    for path in [&old, &kept, &unrelated] {
+        std::fs::write(path, [0; 1_000]).unwrap();
+    }
+    let limits = RecorderSettings {
+        keep_total_bytes: Some(1_000_000_000),
+        ..settings(folder.path())
+    };
+    let (mut recorder, free) = recorder(limits, Some(&old));
+    begin_well(&mut recorder);
+    free.store(10, Ordering::SeqCst);
+    take(&mut recorder, 41..=50);
+    // The file that follows is begun as soon as there is room.
+    wait_for(&recorder, |status| status.files.len() == 2);
+    take(&mut recorder, 51..=60);
+    let (status, news) = recorder.finish("stopped by command");
+    assert_eq!(status.stopped, None, "{news:?}");
+    assert!(!old.exists() && kept.exists() && unrelated.exists());
+    assert_eq!(status.files.len(), 2, "{news:?}");
+    assert_eq!(ticks(&status.files[0]), (1..=40).collect::<Vec<_>>());
+    assert_all_is_there_or_told(&status.files[1], 41, 60);
+    // Those that came before the disk was seen to be full, and no others.
+    assert!(gaps(&status.files[1])[0].2 <= 50, "{status:?}");
+}
+
+/// Asserts that a file holds ticks up to `last`, and tells of all before them,
+/// from `first` on, as one gap.
+fn assert_all_is_there_or_told(path: &Path, first: u64, last: u64) {
+    assert!(Recording::open(path).unwrap().is_whole());
+    let [(count, from, to)] = gaps(path)[..] else {
+        panic!("{:?}", gaps(path));
+    };
+    assert_eq!((count, from), (to - first + 1, first));
+    assert_eq!(ticks(path), (to + 1..=last).collect::<Vec<_>>());
+}
+
+/// What comes last meets a full disk: room is made, and the gap is told in a
+/// file of its own.
+#[test]
+fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
+    let folder = tempfile::tempdir().unwrap();
+    let old = folder
+        .path()
+        .join("2020-01-01T00-00-00.000Z-built-in-01.mcap");
+    std::fs::write(&old, [0; 1_000]).unwrap();
+    let limits = RecorderSettings {
+        keep_total_bytes: Some(1_000_000_000),
+        ..settings(folder.path())
+    };
+    let (mut recorder, free) = recorder(limits, Some(&old));
+    begin_well(&mut recorder);
+    free.store(10, Ordering::SeqCst);
+    take(&mut recorder, 41..=50);
+    let (status, news) = recorder.finish("stopped by command");
+    assert_eq!(status.stopped, None, "{news:?}");
+    assert!(!old.exists());
+    let [first, second] = &status.files[..] else {
+        panic!("{status:?}");
+    };
+    assert_eq!(ticks(first), (1..=40).collect::<Vec<_>>());
+    assert_all_is_there_or_told(second, 41, 50);
+}
+
+/// Where there is no room for what comes last, nothing is promised any more.
+#[test]
+fn a_recording_that_cannot_be_ended_says_so_and_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut recorder, free) = recorder(settings(folder.path()), None);
+    begin_well(&mut recorder);
+    free.store(0, Ordering::SeqCst);
+    let (status, news) = recorder.finish("stopped by command");
+    assert!(status.stopped.unwrap().contains("fccd recover"), "{news:?}");
+    let last = &news.last().unwrap().text;
+    assert!(last.starts_with("recording stopped: "), "{last}");
+    assert!(!last.contains("tried again"), "{last}");
+    assert_eq!((status.ticks, status.not_recorded), (40, 0));
+    assert_eq!(recover(&status.files[0], |_| {}).unwrap().ticks, 40);
+}
+
+/// As a full disk on which somebody makes room, or one that is plugged in
+/// again.
+#[test]
+fn a_disk_that_has_room_again_is_recorded_to_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let eager = RecorderSettings {
+        retry_every: Duration::from_millis(20),
+        ..settings(folder.path())
+    };
+    let (mut recorder, free) = recorder(eager, None);
+    wait_for(&recorder, |status| status.file.is_some());
+    let beginning = std::fs::metadata(only_file(folder.path())).unwrap().len();
+    begin_well(&mut recorder);
+    free.store(0, Ordering::SeqCst);
+    take(&mut recorder, 41..=80);
+    wait_for(&recorder, |status| status.stopped.is_some());
+    // Room for a file to begin, and for nothing in it. It fails at its first
+    // commit, and nothing of it stays.
+    free.store(beginning + 10, Ordering::SeqCst);
+    take(&mut recorder, 81..=90);
+    wait_for(&recorder, |status| {
+        free.load(Ordering::SeqCst) == 0 && status.file.is_none()
+    });
+    assert_eq!(recorder.status().files.len(), 1);
+
+    free.store(u64::MAX, Ordering::SeqCst);
+    wait_for(&recorder, |status| status.file.is_some());
+    take(&mut recorder, 91..=100);
+    let (status, news) = recorder.finish("stopped by command");
+    assert_eq!((status.stopped, status.not_recorded), (None, 50));
+    assert_eq!((status.ticks, status.files.len()), (50, 2));
+    assert_eq!(fcc_record::files(folder.path()).unwrap(), status.files);
+    let (before, after) = (&status.files[0], &status.files[1]);
+    assert_eq!(ticks(before), (1..=40).collect::<Vec<_>>());
+    assert_eq!(gaps(after), [(50, 41, 90)]);
+    assert_eq!(ticks(after), (91..=100).collect::<Vec<_>>());
+    let recording = Recording::open(after).unwrap();
+    assert!(recording.is_whole());
+    assert_eq!(recording.about().part, 2);
+    assert_eq!(recording.end().unwrap().not_recorded, 50);
+    let told: Vec<_> = recording
+        .items::<fcc_telemetry::FlightMessage>()
+        .unwrap()
+        .filter_map(|item| match item {
+            Item::Remark(remark) => Some(remark.text),
+            Item::Message(_) | Item::Damage(_) => None,
+        })
+        .collect();
+    assert!(told[0].starts_with("recording stopped: "), "{told:?}");
+    // Said when it stops and when it goes on, and not at every attempt.
+    let said: Vec<_> = news.iter().map(|news| news.text.as_str()).collect();
+    let [begins, stops, goes_on] = said[..] else {
+        panic!("{said:?}");
+    };
+    assert!(begins.starts_with("recording to "), "{begins}");
+    assert!(stops.starts_with("recording stopped: "), "{stops}");
+    assert!(stops.contains("tried again every 0.02 s"), "{stops}");
+    assert!(goes_on.starts_with("recording goes on in "), "{goes_on}");
+    assert!(
+        goes_on.ends_with(": 50 messages of ticks 41 to 90 are lost, all before is safe"),
+        "{goes_on}"
+    );
+}
+
+/// A folder that cannot be made, because a file is in its place: what a
+/// read-only file system looks like to root, too.
+#[test]
+fn a_folder_that_cannot_be_written_is_news_and_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let in_the_way = folder.path().join("recordings");
+    File::create(&in_the_way).unwrap();
+    let mut recorder = Recorder::start(about(), settings(&in_the_way)).unwrap();
+    for message in &flight(10) {
+        recorder.take(message);
+    }
+    let (status, news) = recorder.finish("stopped by command");
+    assert_eq!(news.len(), 1);
+    assert!(news[0].text.starts_with("recording stopped: "), "{news:?}");
+    assert!(
+        news[0].is_trouble && news[0].text.contains("--recordings"),
+        "{news:?}"
+    );
+    assert_eq!((status.ticks, status.not_recorded), (0, 11));
+}
+
+/// A disk that makes the recorder panic.
+struct Broken;
+
+impl Disk for Broken {
+    fn create(&mut self, _: &Path) -> std::io::Result<Box<dyn DiskFile>> {
+        panic!("as asked for by the test");
+    }
+}
+
+#[test]
+fn a_recorder_that_panics_says_so_in_flight() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder =
+        Recorder::start_on(Box::new(Broken), about(), settings(folder.path())).unwrap();
+    wait_for(&recorder, |status| status.stopped.is_some());
+    for message in &flight(10) {
+        recorder.take(message);
+    }
+    let (status, news) = recorder.finish("stopped by command");
+    assert!(status.stopped.unwrap().contains("panicked"), "{news:?}");
+    assert_eq!((status.ticks, status.not_recorded), (0, 11));
+    assert_eq!(news.len(), 1);
+    assert!(news[0].is_trouble);
+}

@@ -1,0 +1,121 @@
+//! What happened in a flight, numbered to be found in the plots.
+
+use fcc_core::flight::Autopilot;
+use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::{EventKind, State};
+use serde::Serialize;
+
+use super::origin::Origin;
+use fcc_telemetry::{FlightEvent, event_words};
+
+/// As many events are kept; the rest are counted.
+const MOST_EVENTS: usize = 2_000;
+
+/// Something that happened once.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct EventLine {
+    /// As in the plots, from 1.
+    pub number: usize,
+    /// Since the first tick, s.
+    pub time_s: f64,
+    /// In which tick.
+    pub tick: u64,
+    /// What it was, in words.
+    pub text: String,
+    #[serde(skip)]
+    pub(super) weight: Weight,
+}
+
+/// How much an event matters where there is no room for all.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Weight {
+    /// For the table.
+    Minor,
+    /// What somebody asked for.
+    Asked,
+    /// What went wrong.
+    Wrong,
+    /// What the loop did.
+    State,
+}
+
+/// Gathers the events.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Events {
+    lines: Vec<EventLine>,
+    count: usize,
+}
+
+impl Events {
+    pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
+        self.push(time_s, event.tick, weight(event.kind), || {
+            event_words::<Autopilot>(event, &origin.sensors, &origin.actuators)
+                .replace("->", "\u{2192}")
+        });
+    }
+
+    /// Takes words that are no event of the loop, said after a tick.
+    pub(super) fn remark(&mut self, time_s: f64, tick: u64, text: &str) {
+        self.push(time_s, tick, Weight::Minor, || text.to_owned());
+    }
+
+    /// Takes what is damaged in the recording, behind a tick.
+    pub(super) fn damage(&mut self, time_s: f64, tick: u64, text: &str) {
+        self.push(time_s, tick, Weight::Wrong, || text.to_owned());
+    }
+
+    fn push(&mut self, time_s: f64, tick: u64, weight: Weight, text: impl FnOnce() -> String) {
+        self.count += 1;
+        if self.lines.len() < MOST_EVENTS {
+            self.lines.push(EventLine {
+                number: self.count,
+                time_s,
+                tick,
+                text: text(),
+                weight,
+            });
+        }
+    }
+
+    /// The events kept, and how many there were.
+    pub(super) fn into_lines(self) -> (Vec<EventLine>, usize) {
+        (self.lines, self.count)
+    }
+}
+
+fn weight(kind: EventKind<AutopilotCommand>) -> Weight {
+    match kind {
+        EventKind::StateChanged { .. }
+        | EventKind::Panicked
+        | EventKind::TimerFailed
+        | EventKind::Hung { .. } => Weight::State,
+        EventKind::SensorFault { .. }
+        | EventKind::ActuatorFault { .. }
+        | EventKind::RecordsDropped { .. }
+        | EventKind::EventsDropped { .. }
+        | EventKind::NotRecorded { .. }
+        | EventKind::Overrun { .. }
+        | EventKind::Released { ok: false } => Weight::Wrong,
+        EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Asked,
+        _ => Weight::Minor,
+    }
+}
+
+/// Whether a command to the autopilot itself, which ends a pattern.
+pub(super) fn is_autopilot_command(kind: EventKind<AutopilotCommand>) -> bool {
+    matches!(
+        kind,
+        EventKind::CommandReceived(fcc_core::framework::LoopCommand::Controller(_))
+    )
+}
+
+/// Whether the loop fell into failsafe.
+pub(super) fn is_failsafe(kind: EventKind<AutopilotCommand>) -> bool {
+    matches!(
+        kind,
+        EventKind::StateChanged {
+            to: State::Failsafe(_),
+            ..
+        }
+    )
+}

@@ -1,0 +1,297 @@
+//! Tables for people.
+
+use std::fmt::Write as _;
+
+use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+
+use fcc_record::{Entry, Wholeness};
+use fcc_telemetry::TimingReport;
+use fcc_telemetry::{FlightScore, LegScore, ScoredBy};
+
+/// One line under the header, and no other.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+
+pub(crate) fn table(header: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(STYLE);
+    table.set_header(header);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+/// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
+/// it what the thesis did not measure.
+pub fn timing_table(reports: &[TimingReport]) -> String {
+    let mut header = vec![String::new()];
+    header.extend(
+        reports
+            .iter()
+            .map(|report| format!("{} Hz {}", report.rate_hz, report.timer)),
+    );
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut table = table(&header);
+    for (name, cells) in timing_rows(reports) {
+        let mut row = vec![name.to_owned()];
+        row.extend(cells);
+        table.add_row(row);
+    }
+    let mut text = table.to_string();
+    if let Some(realtime) = reports.first().map(|r| &r.realtime)
+        && !realtime.cpu_because.is_empty()
+    {
+        let _ = match realtime.cpu {
+            Some(cpu) => write!(text, "\non CPU {cpu}: {}", realtime.cpu_because),
+            None => write!(text, "\nCPU {}", realtime.cpu_because),
+        };
+    }
+    for refused in reports.first().iter().flat_map(|r| &r.realtime.refused) {
+        let _ = write!(text, "\nnot granted: {refused}");
+    }
+    text
+}
+
+/// The rows of the timing table, each with a cell per report.
+pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<String>)> {
+    let mut rows = Vec::new();
+    let mut row = |name: &'static str, value: &dyn Fn(&TimingReport) -> String| {
+        rows.push((name, reports.iter().map(value).collect()));
+    };
+    row("Runtime", &|r| figure(r.runtime_s, 2, "s"));
+    row("Average", &|r| figure(r.period_ms.mean, 4, "ms"));
+    row("Median", &|r| figure(r.period_ms.median, 3, "ms"));
+    row("Min time", &|r| figure(r.period_ms.min, 3, "ms"));
+    row("Max time", &|r| figure(r.period_ms.max, 3, "ms"));
+    row("Range", &|r| figure(r.period_ms.range, 3, "ms"));
+    row("Missed", &|r| r.missed.to_string());
+    row("Within ±2 %", &|r| {
+        figure(100.0 * r.period_ms.within_2_percent, 3, "%")
+    });
+    row("Lateness p50", &|r| micros(r.lateness_us.p50));
+    row("Lateness p99", &|r| micros(r.lateness_us.p99));
+    row("Lateness p99.9", &|r| micros(r.lateness_us.p99_9));
+    row("Lateness max", &|r| micros(r.lateness_us.max));
+    row("CPU", &|r| {
+        figure(r.cpu_percent.unwrap_or(f64::NAN), 2, "%")
+    });
+    if reports.iter().any(|r| r.early_wake.is_some()) {
+        row("Woken early by", &|r| {
+            or_unknown(r.early_wake.map_or_else(String::new, |early| {
+                format!("{:.0} µs, ≤ {:.0} µs", early.last_us, early.max_us)
+            }))
+        });
+        row("Spinning", &|r| {
+            let percent = r.early_wake.and_then(|early| early.spin_percent);
+            figure(percent.unwrap_or(f64::NAN), 2, "%")
+        });
+    }
+    row("Page faults", &|r| {
+        or_unknown(
+            r.page_faults
+                .map_or_else(String::new, |faults| faults.to_string()),
+        )
+    });
+    row("Scheduling", &|r| match r.realtime.priority {
+        0 => or_unknown(r.realtime.policy.clone()),
+        priority => format!("{} {priority}", r.realtime.policy),
+    });
+    row("Memory locked", &|r| {
+        match (r.realtime.policy.is_empty(), r.realtime.memory_locked) {
+            (true, _) => UNKNOWN,
+            (false, true) => "yes",
+            (false, false) => "no",
+        }
+        .to_owned()
+    });
+    if reports.iter().any(|r| r.realtime.cpu.is_some()) {
+        row("On CPU", &|r| {
+            or_unknown(
+                r.realtime
+                    .cpu
+                    .map_or_else(String::new, |cpu| cpu.to_string()),
+            )
+        });
+    }
+    rows
+}
+
+/// What a table says where nobody measured.
+const UNKNOWN: &str = "–";
+
+/// A number with its unit.
+pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
+    if value.is_finite() {
+        format!("{value:.decimals$} {unit}")
+    } else {
+        UNKNOWN.to_owned()
+    }
+}
+
+/// A lateness: a spinning loop's is some nanoseconds.
+fn micros(us: f64) -> String {
+    figure(us, if us < 10.0 { 3 } else { 1 }, "µs")
+}
+
+fn or_unknown(text: String) -> String {
+    if text.is_empty() {
+        UNKNOWN.to_owned()
+    } else {
+        text
+    }
+}
+
+/// The columns of a leg's figures.
+pub(crate) const LEG_COLUMNS: [&str; 10] = [
+    "Leg",
+    "≤2° s",
+    "overshoot °",
+    "hdg RMS °",
+    "≤10 ft s",
+    "overshoot ft",
+    "alt RMS ft",
+    "turn loss ft",
+    "airspeed kt",
+    "lateral g",
+];
+
+/// What the columns of a leg mean.
+const LEG_LEGEND: &str = "\
+≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
+overshoot        how far past the set point, in the direction of the turn or climb
+hdg RMS, alt RMS root mean square of the error in the leg's last 3 s, last 8 s
+turn loss        how far below the lower of the two altitudes that the leg joins
+airspeed         largest error either way
+lateral          largest sideways acceleration";
+
+/// What it is scored by, a row per leg and the worst of each column, and what
+/// the columns mean.
+pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
+    let by = match by {
+        ScoredBy::Truth => "how the simulated aircraft truly flew",
+        ScoredBy::Measurement => "what the sensors measured",
+    };
+    let mut table = table(&LEG_COLUMNS);
+    for (index, leg) in score.legs.iter().enumerate() {
+        table.add_row(leg_cells((index + 1).to_string(), leg));
+    }
+    if let Some(worst) = &score.worst {
+        table.add_row(leg_cells("worst".to_owned(), worst));
+    }
+    format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")
+}
+
+/// A row per recording.
+pub fn recordings_table(entries: &[Entry]) -> String {
+    let mut table = table(&[
+        "Recording",
+        "started (UTC)",
+        "aircraft",
+        "duration",
+        "ticks",
+        "worst late",
+        "end state",
+        "file",
+    ]);
+    for entry in entries {
+        let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
+        let tenths = (entry.duration_s * 10.0).round() as u64;
+        table.add_row(vec![
+            name.to_string_lossy().into_owned(),
+            entry.started.replace('T', " ").replace('Z', ""),
+            entry.aircraft.clone(),
+            format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
+            entry.ticks.to_string(),
+            format!("{:.1} µs", entry.worst_lateness_us),
+            entry.state.clone(),
+            match entry.file {
+                Wholeness::Whole => "whole",
+                Wholeness::Damaged => "damaged: fccd recover",
+                Wholeness::Cut => "cut: fccd recover",
+                Wholeness::BeingWritten => "being written",
+            }
+            .to_owned(),
+        ]);
+    }
+    table.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fcc_telemetry::{Lateness, Period, Realtime};
+
+    #[test]
+    fn a_minute_less_a_moment_is_listed_as_a_minute() {
+        let entry = |duration_s| Entry {
+            path: "flight.mcap".into(),
+            started: "2026-11-20T04:21:33Z".to_owned(),
+            part: 1,
+            aircraft: "built-in".to_owned(),
+            duration_s,
+            ticks: 2_400,
+            worst_lateness_us: 12.34,
+            state: "stopped".to_owned(),
+            ending: "stopped by command".to_owned(),
+            not_recorded: 0,
+            file: Wholeness::Whole,
+            damages: Vec::new(),
+        };
+        let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
+        for words in [
+            " 1:00.0 ",
+            " 10:00.0 ",
+            " 0:05.3 ",
+            " 62:05.0 ",
+            " 12.3 µs ",
+        ] {
+            assert!(text.contains(words), "{words} is not in\n{text}");
+        }
+    }
+
+    /// The thesis' table 6.1, its own figures through our table.
+    #[test]
+    fn prints_the_thesis_table_as_the_thesis_does() {
+        let report = TimingReport {
+            rate_hz: 40.0,
+            timer: "posix".to_owned(),
+            ticks: 2_716,
+            missed: 0,
+            runtime_s: 67.90,
+            period_ms: Period {
+                mean: 25.0001,
+                median: 24.994,
+                min: 16.785,
+                max: 32.593,
+                range: 32.593 - 16.785,
+                within_2_percent: 0.7,
+            },
+            lateness_us: Lateness {
+                p50: 1.0,
+                p99: 2.0,
+                p99_9: 3.0,
+                max: 4.0,
+            },
+            realtime: Realtime {
+                policy: "SCHED_OTHER".to_owned(),
+                priority: 0,
+                ..Realtime::default()
+            },
+            cpu_percent: Some(1.0),
+            page_faults: Some(0),
+            early_wake: None,
+        };
+        let text = timing_table(&[report]);
+        for figure in [
+            "67.90 s",
+            "25.0001 ms",
+            "24.994 ms",
+            "16.785 ms",
+            "32.593 ms",
+            "15.808 ms",
+        ] {
+            assert!(text.contains(figure), "{figure} is not in\n{text}");
+        }
+    }
+}

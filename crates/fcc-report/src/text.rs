@@ -1,0 +1,201 @@
+//! A report on the terminal.
+
+use std::fmt::Write as _;
+
+use super::durations::NamedPercentiles;
+use super::origin::FileEnd;
+use super::{Report, Timing};
+use crate::table::{figure, table};
+use crate::{flight_table, timing_table};
+use fcc_telemetry::{FlightScore, ScoredBy};
+
+/// More events than these do not fit on a screen.
+const MOST_EVENTS: usize = 20;
+/// Nor more legs.
+const MOST_LEGS: usize = 16;
+
+impl Report {
+    /// Tables for people.
+    pub fn to_text(&self) -> String {
+        let mut text = String::new();
+        for (name, value) in self.header() {
+            let _ = writeln!(text, "{name:<14} {value}");
+        }
+        text.push('\n');
+        for finding in &self.findings {
+            let _ = writeln!(text, "{finding}");
+        }
+        if let Some(timing) = &self.timing {
+            let _ = writeln!(text, "\n{}", timing.table_text());
+        }
+        if !self.stages.is_empty() {
+            let _ = writeln!(text, "\n{}", percentiles_table("Stage", &self.stages));
+        }
+        if self.has_ages() {
+            let _ = writeln!(text, "\n{}", percentiles_table("Age of", &self.sensor_ages));
+        }
+        if let Some(flight) = &self.flight {
+            let many = flight.legs.len() > MOST_LEGS;
+            let legs = if many { &[] } else { flight.legs.as_slice() };
+            let shown = FlightScore {
+                legs: legs.to_vec(),
+                worst: flight.worst,
+            };
+            let _ = writeln!(text, "\n{}", flight_table(&shown, ScoredBy::Measurement));
+            if many {
+                let _ = writeln!(
+                    text,
+                    "of {} legs: see the page (--html) for each",
+                    flight.legs.len()
+                );
+            }
+        }
+        self.write_events(&mut text);
+        text.truncate(text.trim_end().len());
+        text
+    }
+
+    fn write_events(&self, text: &mut String) {
+        if self.events.is_empty() {
+            return;
+        }
+        text.push('\n');
+        for event in self.events.iter().take(MOST_EVENTS) {
+            let _ = writeln!(text, "{:10.3} s  {}", event.time_s, event.text);
+        }
+        if self.event_count > MOST_EVENTS {
+            let more = self.event_count - MOST_EVENTS;
+            let _ = writeln!(
+                text,
+                "and {more} more: see the page (--html) or events.csv (--csv)"
+            );
+        }
+    }
+
+    /// When the flight began, for people: `2026-11-20 04:21:33 UTC`.
+    pub(super) fn started(&self) -> String {
+        self.origin.started.replace('T', " ").replace('Z', " UTC")
+    }
+
+    /// What is known of where the flight comes from, name by name.
+    pub(super) fn header(&self) -> Vec<(&'static str, String)> {
+        let origin = &self.origin;
+        let realtime = &origin.realtime;
+        let scheduling = match (realtime.policy.as_str(), realtime.priority) {
+            ("", _) => String::new(),
+            (policy, 0) => policy.to_owned(),
+            (policy, priority) => format!("{policy} {priority}"),
+        };
+        let memory = match (realtime.policy.as_str(), realtime.memory_locked) {
+            ("", _) => "",
+            (_, true) => ", memory locked",
+            (_, false) => ", memory not locked",
+        };
+        let loop_of = self.timing.as_ref().map_or_else(String::new, |timing| {
+            format!("{} Hz {}", timing.table.rate_hz, origin.timer)
+        });
+        let end = match &self.end {
+            FileEnd::Finished(words) => words.clone(),
+            FileEnd::Cut(words) => format!("cut: {words}"),
+            FileEnd::Unknown => String::new(),
+        };
+        let last_state = self.states.last().map(|span| span.state.clone());
+        let mut rows = vec![
+            ("Recording", origin.file.clone()),
+            ("Started", self.started()),
+            ("Aircraft", origin.aircraft.clone()),
+            ("Duration", duration(self.duration_s)),
+            ("Ended", end),
+            ("Last state", last_state.unwrap_or_default()),
+            ("Loop", loop_of),
+            ("Scheduling", format!("{scheduling}{memory}")),
+        ];
+        rows.extend(
+            realtime
+                .refused
+                .iter()
+                .map(|refused| ("Not granted", refused.to_string())),
+        );
+        rows.extend([
+            ("Software", origin.software.clone()),
+            ("Commit", origin.git_hash.clone()),
+            ("Config SHA-256", origin.config_sha256.clone()),
+            ("Host", origin.host.clone()),
+            ("Kernel", origin.kernel.clone()),
+        ]);
+        rows.retain(|(_, value)| !value.is_empty());
+        rows
+    }
+}
+
+impl Timing {
+    /// The timing table, beside the thesis' where it measured at this rate.
+    fn table_text(&self) -> String {
+        let mut columns = vec![self.table.clone()];
+        columns.extend(self.thesis.map(|thesis| thesis.timing()));
+        timing_table(&columns)
+    }
+}
+
+fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> String {
+    let mut table = table(&[title, "p50", "p90", "p99", "p99.9", "max"]);
+    for row in rows {
+        let mut cells = vec![row.name.to_owned()];
+        cells.extend(row.figures());
+        table.add_row(cells);
+    }
+    table.to_string()
+}
+
+impl NamedPercentiles {
+    /// Median to largest, with units.
+    pub(super) fn figures(&self) -> [String; 5] {
+        let of = &self.of;
+        [of.p50_us, of.p90_us, of.p99_us, of.p99_9_us, of.max_us].map(time)
+    }
+}
+
+/// A time in the unit that suits it, in three figures or a little more.
+pub(super) fn time(us: f64) -> String {
+    match us {
+        0.0 => "0 µs".to_owned(),
+        us if us < 10.0 => figure(us, 2, "µs"),
+        us if us < 1_000.0 => figure(us, 1, "µs"),
+        us if us < 100_000.0 => figure(us / 1e3, 2, "ms"),
+        us if us < 10_000_000.0 => figure(us / 1e3, 0, "ms"),
+        us => figure(us / 1e6, 1, "s"),
+    }
+}
+
+/// `2 min 15.3 s`.
+pub(super) fn duration(seconds: f64) -> String {
+    let tenths = (seconds * 10.0).round() as u64;
+    let (minutes, rest_s) = (tenths / 600, (tenths % 600) as f64 / 10.0);
+    match minutes {
+        0 => format!("{rest_s:.1} s"),
+        1..60 => format!("{minutes} min {rest_s:.1} s"),
+        _ => format!("{} h {} min {rest_s:.0} s", minutes / 60, minutes % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_and_times_are_said_as_people_do() {
+        assert_eq!(duration(42.04), "42.0 s");
+        assert_eq!(duration(182.0), "3 min 2.0 s");
+        assert_eq!(duration(3_599.99), "1 h 0 min 0 s");
+        for (us, said) in [
+            (0.0, "0 µs"),
+            (2.345, "2.35 µs"),
+            (54.321, "54.3 µs"),
+            (25_000.0, "25.00 ms"),
+            (250_000.0, "250 ms"),
+            (12_000_000.0, "12.0 s"),
+        ] {
+            assert_eq!(time(us), said);
+        }
+    }
+}
