@@ -104,6 +104,17 @@ class Setpoints:
     def climb_rate_mps(self) -> float: ...
     @property
     def pitch_rad(self) -> float: ...
+    @property
+    def guidance_mode(self) -> str:
+        """What guidance flies: "none", "hold" or "timed-pattern"."""
+
+    @property
+    def guidance_item(self) -> int:
+        """Which part of the mode is flown: of a pattern, the leg."""
+
+    @property
+    def guidance_elapsed_s(self) -> float:
+        """For how long the mode has been flown, s of the plant's time."""
 
 @final
 class Estimate:
@@ -542,7 +553,11 @@ class Recording:
 def list_recordings(folder: _Path) -> list[dict[str, Any]]: ...
 def recover(path: _Path) -> dict[str, Any]: ...
 def report(
-    path: _Path, *, html: _Path | None = None, csv: _Path | None = None
+    path: _Path,
+    *,
+    html: _Path | None = None,
+    svg: _Path | None = None,
+    csv: _Path | None = None,
 ) -> dict[str, Any]: ...
 def replay(
     paths: _Path | Iterable[_Path], config: Config | str | None = None

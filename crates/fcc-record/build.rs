@@ -12,7 +12,7 @@ const PROTO: &str = "../../proto";
 /// The file of each topic's schema, and what its descriptors are called here.
 const SCHEMAS: [(&str, &str); 3] = [
     ("foxglove/LocationFix.proto", "location_fix"),
-    ("foxglove/PoseInFrame.proto", "pose_in_frame"),
+    ("foxglove/FrameTransform.proto", "frame_transform"),
     ("foxglove/Log.proto", "log"),
 ];
 

@@ -61,6 +61,37 @@ def test_the_program_is_for_the_machine_that_the_package_names(
     assert package.stem.endswith(f"_{architecture}")
 
 
+MOST_INSTALLED_KIB = 16 * 1024
+"""Eight times as much with symbols."""
+
+
+def sections(program: Path) -> str:
+    command = ["objdump", "--section-headers", program]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def test_the_symbols_are_a_package_of_their_own(
+    architecture: str, package: Path, files: Path, tmp_path: Path
+) -> None:
+    if architecture != "amd64":
+        pytest.skip("objdump reads the programs of this machine alone")
+    assert ".debug_line" not in sections(files / "usr/bin/fccd")
+    command = ["dpkg-deb", "--field", package, "Installed-Size"]
+    installed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    assert int(installed) < MOST_INSTALLED_KIB
+
+    (symbols,) = package.parent.glob(f"fccd-dbgsym_*_{architecture}.ddeb")
+    subprocess.run(["dpkg-deb", "--extract", symbols, tmp_path], check=True)
+    (debug,) = (path for path in tmp_path.rglob("*") if path.is_file() and "doc" not in path.parts)
+    assert debug.parent.parent == tmp_path / "usr/lib/debug/.build-id"
+    assert ".debug_line" in sections(debug)
+    # gdb and backtraces find it by this number.
+    notes = subprocess.run(
+        ["readelf", "--notes", files / "usr/bin/fccd"], check=True, capture_output=True, text=True
+    ).stdout
+    assert f"Build ID: {debug.parent.name}{debug.stem}" in notes
+
+
 def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
     control: Path, tmp_path: Path
 ) -> None:

@@ -32,7 +32,11 @@ def reading(value: Any) -> Any:
     """Return the layout of a value and when it was taken."""
 
     class Reading(ctypes.Structure):
-        _fields_ = (("value", value), ("taken_ns", ctypes.c_int64))
+        _fields_ = (
+            ("value", value),
+            ("taken_ns", ctypes.c_int64),
+            ("source", ctypes.c_uint8),
+        )
 
     return Reading
 
@@ -54,8 +58,8 @@ class Stages(ctypes.Structure):
 
     _fields_ = (
         ("sensors_ns", ctypes.c_uint64),
-        ("navigation_ns", ctypes.c_uint64),
-        ("guidance_ns", ctypes.c_uint64),
+        ("estimate_ns", ctypes.c_uint64),
+        ("guide_ns", ctypes.c_uint64),
         ("control_ns", ctypes.c_uint64),
         ("actuators_ns", ctypes.c_uint64),
         ("total_ns", ctypes.c_uint64),
@@ -160,6 +164,27 @@ class Estimate(ctypes.Structure):
     )
 
 
+class Targets(ctypes.Structure):
+    """What guidance asks of control."""
+
+    _fields_ = (
+        ("airspeed_mps", ctypes.c_double),
+        ("heading_rad", ctypes.c_double),
+        ("altitude_m", ctypes.c_double),
+    )
+
+
+class Progress(ctypes.Structure):
+    """The mode that guidance flies, and how far it has come."""
+
+    _fields_ = (
+        ("mode", ctypes.c_uint8),
+        ("item", ctypes.c_uint32),
+        ("elapsed_s", ctypes.c_double),
+        ("captured", Targets),
+    )
+
+
 class Setpoints(ctypes.Structure):
     """What the autopilot aims for."""
 
@@ -170,6 +195,7 @@ class Setpoints(ctypes.Structure):
         ("roll_rad", ctypes.c_double),
         ("climb_rate_mps", ctypes.c_double),
         ("pitch_rad", ctypes.c_double),
+        ("guidance", Progress),
     )
 
 

@@ -124,7 +124,7 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     begun_ns = time.monotonic_ns()
     with cockpit.daemon(WARM) as again:
         again.wait_for("taking it up")
-        assert "into a pattern" in again.wait_for("the flight was taken up")
+        assert "timed-pattern, " in again.wait_for("the flight was taken up")
         resumed = Aims.of(again.wait_for("engaged "))
         assert resumed.heading_deg == aims.heading_deg
         assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)

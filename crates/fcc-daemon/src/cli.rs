@@ -322,6 +322,9 @@ pub struct ReportArgs {
     /// Write a page with all tables and plots, complete in one file
     #[arg(long, value_name = "OUT.html")]
     pub html: Option<PathBuf>,
+    /// Also write each plot as an SVG file, for papers
+    #[arg(long, value_name = "DIR")]
+    pub svg: Option<PathBuf>,
     /// Write every tick and event into records.csv and events.csv
     #[arg(long, value_name = "DIR")]
     pub csv: Option<PathBuf>,

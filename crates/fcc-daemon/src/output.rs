@@ -83,6 +83,8 @@ pub(crate) fn in_background() -> Option<Background> {
     // Without a thread, whoever prints waits for the terminal.
     let printer = thread::Builder::new()
         .name("fccd-printer".to_owned())
+        // Where memory is locked, all of a stack is in memory.
+        .stack_size(256 << 10)
         .spawn(move || from.iter().for_each(|line| write(&line)))
         .ok()?;
     *background() = Some(Lines { to, left_out: 0 });

@@ -60,13 +60,16 @@ pub enum EventCode {
     TimerFailed = 13,
     /// Ticks begin to overrun (how long it took, its budget, the stage that
     /// took longest); the index is the stage whose budget it was. Stages: 0 the
-    /// timer, 1 sensors, 2 navigation, 3 guidance, 4 control, 5 actuators, 6
+    /// timer, 1 sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6
     /// the whole tick.
     Overrun = 14,
     /// No tick has overrun for a second (count, first and last tick).
     OverrunsOver = 15,
     /// The loop hung (how long without progress).
     Hung = 16,
+    /// Readings are taken from another sensor than before (which, one bit each;
+    /// the sensor before); the index is the sensor now.
+    SourceChanged = 17,
 }
 
 impl Event {
@@ -151,6 +154,10 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             (EventCode::OverrunsOver, 0, [count, first, last])
         }
         EventKind::Hung { silent_ns } => (EventCode::Hung, 0, [silent_ns, 0, 0]),
+        EventKind::SourceChanged(change) => {
+            let values = [change.readings.bits().into(), change.from.into(), 0];
+            (EventCode::SourceChanged, change.to.into(), values)
+        }
         // One that this version has no number for still has its words.
         _ => (EventCode::Remark, 0, NONE),
     }

@@ -88,6 +88,7 @@ impl<C: Telemetry> PublisherOf<C> {
         let seen = Arc::clone(&left_out);
         let thread = std::thread::Builder::new()
             .name(thread::NAME.to_owned())
+            .stack_size(thread::STACK_BYTES)
             .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &say))
             .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
         match start.recv_timeout(PATIENCE) {

@@ -22,6 +22,9 @@ use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
 
+/// Where the memory of the process is locked, all of a stack is in memory.
+pub(super) const STACK_BYTES: usize = 512 << 10;
+
 /// How long it sleeps if nobody wakes it.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// How often a status is published and killed watchers are cleaned up after.

@@ -29,15 +29,17 @@ impl Raised {
     }
 }
 
-/// A sensor in Python: called with the plant's time and what the sensors
-/// before it have measured, gives other measurements or None.
+/// A sensor whose measurements go through Python: a callback is called with the
+/// plant's time and what was measured, and gives other measurements or None.
 pub(crate) struct CallbackSensor {
+    pub(crate) sensor: Box<dyn Sensor<Measurements>>,
     pub(crate) call: Py<PyAny>,
     pub(crate) raised: Raised,
 }
 
 impl Sensor<Measurements> for CallbackSensor {
-    fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+    fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        self.sensor.sample(tick, into)?;
         let measured = PyMeasurements::from_core(into);
         let said = Python::attach(|py| -> PyResult<Option<PyMeasurements>> {
             let said = self
@@ -63,7 +65,7 @@ impl Sensor<Measurements> for CallbackSensor {
     }
 
     fn name(&self) -> &'static str {
-        "Python"
+        self.sensor.name()
     }
 }
 

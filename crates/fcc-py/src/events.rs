@@ -69,6 +69,7 @@ fn kind_of(event: &FlightEvent) -> &'static str {
         EventKind::Overrun { .. } => "overrun",
         EventKind::OverrunsOver { .. } => "overruns-over",
         EventKind::Hung { .. } => "hung",
+        EventKind::SourceChanged(_) => "source-changed",
         _ => "other",
     }
 }

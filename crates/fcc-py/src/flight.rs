@@ -151,11 +151,16 @@ pub(crate) fn fly(
         Box::new(ManualTimer::new(period).map_err(refused)?)
     };
     let raised = Raised::default();
-    let mut sensors: Vec<Box<dyn Sensor<Measurements>>> = vec![Box::new(simulation.sensor)];
+    let mut aircraft: Box<dyn Sensor<Measurements>> = Box::new(simulation.sensor);
     if let Some(call) = sensor {
         let raised = raised.clone();
-        sensors.push(Box::new(CallbackSensor { call, raised }));
+        aircraft = Box::new(CallbackSensor {
+            sensor: aircraft,
+            call,
+            raised,
+        });
     }
+    let sensors = vec![aircraft];
     let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
     let log = Log::new(&config, &sensors, simulation.truth, ticks, keep)?;
     let autopilot = Autopilot::new(config.autopilot_config());

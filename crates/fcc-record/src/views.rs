@@ -1,7 +1,7 @@
 //! What of a flight goes into Foxglove's well-known messages.
 //!
 //! Its 3D view has x east, y north, z up, and bodies with x forward, y left,
-//! z up. The heading there is the measured one, magnetic.
+//! z up. The attitude there is the estimated one, its heading magnetic.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,7 +11,7 @@ use fcc_core::framework::Reading;
 use prost::Message as _;
 
 use super::foxglove::timestamp;
-use super::wire::{LocationFix, Pose, PoseInFrame, Quaternion, Vector3};
+use super::wire::{FrameTransform, LocationFix, Quaternion, Vector3};
 use crate::recorded::{Recorded, Views};
 use fcc_telemetry::FlightRecord;
 
@@ -27,7 +27,7 @@ const MIN_SPACING_NS: i64 = 20_000_000;
 pub struct FoxgloveViews {
     attitude: Thinned,
     position: Thinned,
-    pose: Option<PoseInFrame>,
+    transform: Option<FrameTransform>,
     location: Option<LocationFix>,
 }
 
@@ -39,8 +39,8 @@ impl Views<Autopilot> for FoxgloveViews {
     const TOPICS: &'static [(&'static str, &'static str, &'static [u8])] = &[
         (
             "/fcc/attitude",
-            "foxglove.PoseInFrame",
-            include_bytes!(concat!(env!("OUT_DIR"), "/pose_in_frame.fds")),
+            "foxglove.FrameTransform",
+            include_bytes!(concat!(env!("OUT_DIR"), "/frame_transform.fds")),
         ),
         (
             "/fcc/position",
@@ -50,7 +50,7 @@ impl Views<Autopilot> for FoxgloveViews {
     ];
 
     fn take(&mut self, record: &FlightRecord, unix_ns: u64) {
-        self.pose = pose(record, &mut self.attitude, unix_ns);
+        self.transform = transform(record, &mut self.attitude, unix_ns);
         self.location = location(record, &mut self.position, unix_ns);
     }
 
@@ -58,13 +58,13 @@ impl Views<Autopilot> for FoxgloveViews {
         // A vector has room for any message.
         match topic {
             0 => self
-                .pose
+                .transform
                 .take()
-                .is_some_and(|pose| pose.encode(into).is_ok()),
+                .is_some_and(|view| view.encode(into).is_ok()),
             _ => self
                 .location
                 .take()
-                .is_some_and(|place| place.encode(into).is_ok()),
+                .is_some_and(|view| view.encode(into).is_ok()),
         }
     }
 }
@@ -111,22 +111,24 @@ fn location(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Optio
     })
 }
 
-/// The attitude of a record, if it has a new one; stamped with `unix_ns`.
-fn pose(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Option<PoseInFrame> {
+/// How the aircraft lies in the local frame, if a record has a new attitude;
+/// stamped with `unix_ns`. It stays where it is: places are on the map.
+fn transform(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Option<FrameTransform> {
     let measured = &record.measurements;
     if measured.heading_rad.is_never() || !thinned.lets_through(&measured.attitude) {
         return None;
     }
-    Some(PoseInFrame {
+    let estimate = &record.estimate;
+    let attitude = Attitude {
+        pitch_rad: estimate.pitch_rad,
+        roll_rad: estimate.roll_rad,
+    };
+    Some(FrameTransform {
         timestamp: Some(timestamp(unix_ns)),
-        frame_id: LOCAL_FRAME.to_owned(),
-        pose: Some(Pose {
-            position: Some(Vector3::default()),
-            orientation: Some(orientation(
-                measured.attitude.value,
-                measured.heading_rad.value,
-            )),
-        }),
+        parent_frame_id: LOCAL_FRAME.to_owned(),
+        child_frame_id: BODY_FRAME.to_owned(),
+        translation: Some(Vector3::default()),
+        rotation: Some(orientation(attitude, estimate.heading_rad)),
     })
 }
 

@@ -24,8 +24,8 @@ type StageTime = fn(&StageTimes) -> u64;
 /// In the order of a tick.
 const STAGES: [(&str, StageTime); 6] = [
     ("sensors", |stages| stages.sensors_ns),
-    ("navigation", |stages| stages.navigation_ns),
-    ("guidance", |stages| stages.guidance_ns),
+    ("estimate", |stages| stages.estimate_ns),
+    ("guide", |stages| stages.guide_ns),
     ("control", |stages| stages.control_ns),
     ("actuators", |stages| stages.actuators_ns),
     ("whole tick", |stages| stages.total_ns),

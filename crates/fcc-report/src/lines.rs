@@ -13,11 +13,13 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 /// silent.
 const OLDEST: Duration = Duration::from_secs(1);
 
-/// What is desired and what is.
+/// What is desired, what is as the navigation estimates it, and what was
+/// measured.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pair {
     pub(super) desired: Trace,
     pub(super) actual: Trace,
+    pub(super) measured: Trace,
 }
 
 /// All lines of the plots over time.
@@ -44,6 +46,7 @@ impl Lines {
     pub(super) fn take(&mut self, record: &FlightRecord, time_s: f64) {
         let tick = &record.tick;
         let measured = &record.measurements;
+        let estimate = &record.estimate;
         let attitude = fresh(&measured.attitude, tick);
         let desired = record
             .state
@@ -57,21 +60,25 @@ impl Lines {
         self.altitude_ft.push(
             time_s,
             aimed.map(|set| set.altitude_m * M_FT),
+            estimate.altitude_m * M_FT,
             fresh(&measured.altitude_m, tick).map(|m| m * M_FT),
         );
         self.airspeed_kt.push(
             time_s,
             aimed.map(|set| set.airspeed_mps * MPS_KT),
+            estimate.airspeed_mps * MPS_KT,
             fresh(&measured.airspeed_mps, tick).map(|mps| mps * MPS_KT),
         );
         self.pitch_deg.push(
             time_s,
             desired.map(|set| set.pitch_rad.to_degrees()),
+            estimate.pitch_rad.to_degrees(),
             attitude.map(|attitude| attitude.pitch_rad.to_degrees()),
         );
         self.bank_deg.push(
             time_s,
             desired.map(|set| set.roll_rad.to_degrees()),
+            estimate.roll_rad.to_degrees(),
             attitude.map(|attitude| attitude.roll_rad.to_degrees()),
         );
         let sent = record.sent.then_some(record.outputs);
@@ -87,12 +94,12 @@ impl Lines {
     }
 
     fn take_heading(&mut self, record: &FlightRecord, time_s: f64, desired_rad: Option<f64>) {
-        let heading = fresh(&record.measurements.heading_rad, &record.tick)
-            .filter(|heading_rad| heading_rad.is_finite())
-            .map(|heading_rad| {
-                let heading_deg = heading_rad.to_degrees();
-                self.headings.count(heading_deg, heading_deg)
-            });
+        let measured = fresh(&record.measurements.heading_rad, &record.tick)
+            .filter(|heading_rad| heading_rad.is_finite());
+        let heading = measured
+            .map(|_| record.estimate.heading_rad.to_degrees())
+            .filter(|heading_deg| heading_deg.is_finite())
+            .map(|heading_deg| self.headings.count(heading_deg, heading_deg));
         let desired = desired_rad
             .filter(|desired_rad| desired_rad.is_finite())
             .map(|desired_rad| {
@@ -103,7 +110,12 @@ impl Lines {
         if desired.is_none() {
             self.desired_headings.forget();
         }
-        self.heading_deg.push(time_s, desired, heading);
+        // In the same turn as what is estimated from it.
+        let measured = measured.zip(heading).map(|(heading_rad, heading_deg)| {
+            Turns::default().count(heading_rad.to_degrees(), heading_deg)
+        });
+        let of = &mut self.heading_deg;
+        of.push(time_s, desired, heading.unwrap_or(f64::NAN), measured);
     }
 
     /// Records are missing here: no line leads across.
@@ -117,6 +129,7 @@ impl Lines {
         ] {
             pair.desired.cut();
             pair.actual.cut();
+            pair.measured.cut();
         }
         for trace in [
             &mut self.throttle_percent,
@@ -132,9 +145,11 @@ impl Lines {
 }
 
 impl Pair {
-    fn push(&mut self, time_s: f64, desired: Option<f64>, actual: Option<f64>) {
+    /// What is estimated is drawn as long as something is measured.
+    fn push(&mut self, time_s: f64, desired: Option<f64>, estimated: f64, measured: Option<f64>) {
         self.desired.push(time_s, desired);
-        self.actual.push(time_s, actual);
+        self.actual.push(time_s, measured.map(|_| estimated));
+        self.measured.push(time_s, measured);
     }
 }
 

@@ -1,5 +1,8 @@
 //! A report as one page that needs nothing but itself.
 
+use std::path::Path;
+use std::{fs, io};
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::durations::NamedPercentiles;
@@ -8,6 +11,8 @@ use super::{Report, Timing};
 use fcc_telemetry::{FlightScore, LegScore};
 
 const STYLE: &str = include_str!("page.css");
+/// Lets plots be zoomed; without it, the page is the same, and still.
+const SCRIPT: &str = include_str!("page.js");
 
 impl Report {
     /// The page: HTML with everything in it, plots as SVG; nothing is fetched
@@ -54,10 +59,40 @@ impl Report {
                         h2 { "Events" }
                         (self.events_table())
                     }
+                    script { (PreEscaped(SCRIPT)) }
                 }
             }
         };
         Ok(page.into_string())
+    }
+
+    /// Each plot as a file of its own, for papers: its name, which ends in
+    /// `.svg`, and what is in it.
+    ///
+    /// # Errors
+    /// When a plot cannot be drawn.
+    pub fn to_svgs(&self) -> Result<Vec<(String, String)>, PlotError> {
+        let named = |figure: Figure| {
+            let name = figure.title.to_lowercase().replace(' ', "-");
+            (format!("{name}.svg"), figure.svg)
+        };
+        Ok(figures(self)?.into_all().map(named).collect())
+    }
+
+    /// Writes each plot into a file of its own, in a folder that is made if it
+    /// is missing.
+    ///
+    /// # Errors
+    /// What could not be drawn or written.
+    pub fn write_svgs(&self, folder: &Path) -> Result<(), String> {
+        let refused =
+            |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
+        let svgs = self.to_svgs().map_err(|error| error.to_string())?;
+        fs::create_dir_all(folder).map_err(refused)?;
+        for (name, svg) in svgs {
+            fs::write(folder.join(name), svg).map_err(refused)?;
+        }
+        Ok(())
     }
 
     fn title(&self) -> String {
@@ -86,7 +121,7 @@ impl Report {
 
     fn events_table(&self) -> Markup {
         html! {
-            table.events {
+            div.wide { table.events {
                 thead { tr { th { "No." } th { "Time, s" } th { "Tick" } th.words { "Event" } } }
                 tbody {
                     @for event in &self.events {
@@ -98,7 +133,7 @@ impl Report {
                         }
                     }
                 }
-            }
+            } }
         }
     }
 }
@@ -107,7 +142,7 @@ fn figure_markup(figure: &Figure) -> Markup {
     html! {
         figure {
             h3 { (figure.title) }
-            (PreEscaped(&figure.svg))
+            div.plot { (PreEscaped(&figure.svg)) }
             figcaption { (figure.caption) }
         }
     }
@@ -119,7 +154,7 @@ fn timing_table(timing: &Timing) -> Markup {
     html! {
         figure {
             h3 { "Period and lateness" }
-            table {
+            div.wide { table {
                 thead {
                     tr {
                         th.words {}
@@ -133,7 +168,7 @@ fn timing_table(timing: &Timing) -> Markup {
                         tr { td.words { (name) } @for cell in cells { td { (cell) } } }
                     }
                 }
-            }
+            } }
             figcaption { "The thesis' table (6.1 to 6.3), and below it what it did not measure." }
         }
     }
@@ -179,7 +214,7 @@ fn leg_row(name: String, leg: &LegScore) -> Markup {
 fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Markup {
     html! {
         @if !rows.is_empty() {
-            table {
+            div.wide { table {
                 thead {
                     tr {
                         th.words { (title) }
@@ -191,7 +226,7 @@ fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Markup {
                         tr { td.words { (row.name) } @for cell in row.figures() { td { (cell) } } }
                     }
                 }
-            }
+            } }
         }
     }
 }

@@ -236,7 +236,7 @@ impl<C: Controller> Machine<C> {
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);
-        self.record.stages.navigation_ns = stopwatch.lap(&*self.timer);
+        self.record.stages.estimate_ns = stopwatch.lap(&*self.timer);
 
         self.decide(tick, command);
 
@@ -260,7 +260,7 @@ impl<C: Controller> Machine<C> {
     fn compute_outputs(&mut self, tick: &Tick, stopwatch: &mut Stopwatch) -> Option<C::Outputs> {
         if self.state == State::Engaged {
             self.controller.guide(tick, &self.measurements);
-            self.record.stages.guidance_ns = stopwatch.lap(&*self.timer);
+            self.record.stages.guide_ns = stopwatch.lap(&*self.timer);
             let outputs = self.controller.control(tick, &self.measurements);
             if self.controller.outputs_are_valid(&outputs) {
                 return Some(outputs);

@@ -44,8 +44,8 @@ impl Budget {
         match stage {
             Stage::Timer => None,
             Stage::Sensors => self.sensors,
-            Stage::Navigation => self.estimate,
-            Stage::Guidance => self.guide,
+            Stage::Estimate => self.estimate,
+            Stage::Guide => self.guide,
             Stage::Control => self.control,
             Stage::Actuators => self.actuators,
             Stage::Tick => self.tick,

@@ -17,6 +17,8 @@ use crate::heartbeat::{Heartbeat, HeartbeatReading};
 
 /// The name of the watchdog's thread.
 const THREAD_NAME: &str = "fcc-watchdog";
+/// Where the memory of the process is locked, all of a stack is in memory.
+const STACK_BYTES: usize = 512 << 10;
 
 /// How often the heartbeat is read within the time limit: the watchdog is late by
 /// at most this share of it.
@@ -62,6 +64,7 @@ pub fn watch(
     let (sender, receiver) = mpsc::sync_channel(1);
     thread::Builder::new()
         .name(THREAD_NAME.to_owned())
+        .stack_size(STACK_BYTES)
         .spawn(move || {
             // Nothing is strict here, so this is never an error.
             let granted = request.apply().unwrap_or_else(|refused| refused.granted);

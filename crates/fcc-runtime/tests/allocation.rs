@@ -29,6 +29,8 @@ fcc_core::schema! {
     }
 }
 
+fcc_core::readings!(Measured { switch: "switch" });
+
 /// Whether tick `number` lies in the first part of a cycle.
 fn within(number: u64, part: u64, of: u64) -> bool {
     number % of < part

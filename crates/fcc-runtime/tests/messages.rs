@@ -39,8 +39,8 @@ fn every_stage_is_timed_by_itself() {
     bench.tick(|_| {});
     let engaged = StageTimes {
         sensors_ns: 1_000,
-        navigation_ns: 2_000,
-        guidance_ns: 4_000,
+        estimate_ns: 2_000,
+        guide_ns: 4_000,
         control_ns: 8_000,
         actuators_ns: 16_000,
         total_ns: 31_000,
@@ -61,7 +61,7 @@ fn every_stage_is_timed_by_itself() {
 
     bench.tick(|s| s.faults = Flags::bit(0));
     let failsafe = StageTimes {
-        guidance_ns: 0,
+        guide_ns: 0,
         total_ns: 27_000,
         ..engaged
     };
@@ -72,7 +72,7 @@ fn every_stage_is_timed_by_itself() {
     bench.tick(|_| {});
     let standby = StageTimes {
         sensors_ns: 1_000,
-        navigation_ns: 2_000,
+        estimate_ns: 2_000,
         total_ns: 3_000 + 64_000,
         ..StageTimes::default()
     };

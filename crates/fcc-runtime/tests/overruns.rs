@@ -28,11 +28,11 @@ fn after(failsafe_after: u32) -> LoopConfig {
     })
 }
 
-/// A tick of so many milliseconds, a quarter of them in navigation and the
+/// A tick of so many milliseconds, a quarter of them in the estimate and the
 /// rest in control.
 fn took(total_ms: u64) -> StageTimes {
     StageTimes {
-        navigation_ns: total_ms * MS / 4,
+        estimate_ns: total_ms * MS / 4,
         control_ns: total_ms * MS * 3 / 4,
         total_ns: total_ms * MS,
         ..StageTimes::default()
@@ -162,7 +162,7 @@ fn a_stage_has_a_budget_of_its_own() {
     assert_eq!(
         overruns(&mut bench),
         [EventKind::Overrun {
-            of: Stage::Navigation,
+            of: Stage::Estimate,
             took_ns: 3 * MS,
             budget_ns: 2 * MS,
             longest: Stage::Control,

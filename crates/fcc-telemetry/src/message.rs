@@ -1,6 +1,6 @@
 //! What a loop tells of itself, in words; and what a flight's loop tells.
 
-use fcc_core::framework::{Controller, EventKind, EventOf};
+use fcc_core::framework::{Controller, EventKind, EventOf, Readings, SourceChange};
 
 #[cfg(feature = "flight")]
 pub use of_flights::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
@@ -54,6 +54,14 @@ pub fn event_words<C: Controller>(
         }
         EventKind::ActuatorRecovered { index } => {
             format!("actuator {}: works again", name(actuators, index))
+        }
+        EventKind::SourceChanged(SourceChange { readings, from, to }) => {
+            let names = readings
+                .iter()
+                .map(|bit| C::Measurements::NAMES.get(bit as usize));
+            let names: Vec<_> = names.flatten().copied().collect();
+            let (from, to) = (name(sensors, from.into()), name(sensors, to.into()));
+            format!("{}: from {to} instead of {from}", names.join(", "))
         }
         kind => kind.words::<C>().to_string(),
     }

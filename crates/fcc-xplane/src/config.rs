@@ -52,6 +52,10 @@ pub struct XPlaneConfig {
     /// The most datagrams read in one tick, 1..=1000. Default: 64, over ten
     /// times what comes; a flood delays nothing.
     pub datagrams_per_tick: u16,
+    /// After so long without a reading, that of another sensor is preferred
+    /// where a loop has several. Default: 100 ms, two frames at the lowest rate
+    /// that is not slow.
+    pub fallback_after: Duration,
     /// Where beacons are sent. Default: 239.255.1.1:49707.
     pub beacon: SocketAddrV4,
 }
@@ -69,6 +73,7 @@ impl Default for XPlaneConfig {
             resubscribe: Duration::from_secs(5),
             silent_after: Duration::from_millis(500),
             datagrams_per_tick: 64,
+            fallback_after: fcc_core::framework::FALLBACK_AFTER,
             beacon: beacon::GROUP,
         }
     }

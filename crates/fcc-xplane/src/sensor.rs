@@ -47,6 +47,7 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     release_monitor: ReleaseMonitor,
     datagrams_per_tick: usize,
     silent_after: Duration,
+    fallback_after: Duration,
     /// The first tick: silence counts from here until something comes.
     began: Time,
     restarted: Time,
@@ -78,6 +79,7 @@ impl<P: Port> XPlaneSensor<P> {
             release_monitor: ReleaseMonitor::new(Controls::new(config)?),
             datagrams_per_tick: usize::from(config.datagrams_per_tick),
             silent_after: config.silent_after,
+            fallback_after: config.fallback_after,
             began: Time::NEVER,
             restarted: Time::NEVER,
             buffer: Box::new([0; BUFFER_BYTES]),
@@ -215,6 +217,10 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
             _ if silent => Err(SensorFault::Silent),
             (received, Ok(())) => received,
         }
+    }
+
+    fn fallback_after(&self) -> Duration {
+        self.fallback_after
     }
 
     /// Decodes the last values once more, into copies of what a tick changes.

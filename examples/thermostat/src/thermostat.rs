@@ -39,6 +39,10 @@ schema! {
     }
 }
 
+fcc_core::readings!(Measured {
+    room_c: "the room's temperature"
+});
+
 /// How fast the room shall follow, s of its own time.
 const RESPONSE_S: f64 = 600.0;
 const MAX_AGE: Duration = Duration::from_secs(1);

@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::Surfaces;
 use crate::framework::{Reading, Switch};
-use crate::schema;
+use crate::{readings, schema};
 
 schema! {
     /// What an aircraft's sensors measure, each with the time it was taken.
@@ -12,6 +12,20 @@ schema! {
     /// Control needs attitude, heading, body rates, specific force, airspeed and
     /// altitude, as in the thesis; position and ground velocity are for navigation
     /// where there is a source, and never needed to fly.
+    ///
+    /// ```
+    /// use core::time::Duration;
+    /// use fcc_core::flight::Measurements;
+    /// use fcc_core::framework::{Reading, Time};
+    ///
+    /// let now = Time::from_nanos(1_000_000_000);
+    /// let measured = Measurements {
+    ///     airspeed_mps: Reading::new(51.4, now),
+    ///     ..Measurements::default()
+    /// };
+    /// assert!(measured.airspeed_mps.is_fresh(now, Duration::from_millis(250)));
+    /// assert!(measured.position.is_never());
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Measurements {
         /// Pitch and roll.
@@ -54,8 +68,30 @@ schema! {
     }
 }
 
+readings!(Measurements {
+    attitude: "attitude",
+    heading_rad: "heading",
+    body_rates: "body rates",
+    specific_force: "acceleration",
+    airspeed_mps: "airspeed",
+    altitude_m: "altitude",
+    angle_of_attack_rad: "angle of attack",
+    position: "position",
+    velocity: "velocity",
+    surfaces: "surfaces",
+    engage_switch: "engage switch",
+    plant: "the plant's state",
+});
+
 schema! {
     /// Pitch and roll, rad.
+    ///
+    /// ```
+    /// use fcc_core::flight::Attitude;
+    ///
+    /// let climbing = Attitude { pitch_rad: 10.0_f64.to_radians(), ..Attitude::default() };
+    /// assert_eq!(climbing.roll_rad, 0.0);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Attitude {
         /// Nose above the horizon.
@@ -69,6 +105,14 @@ schema! {
 
 schema! {
     /// Turn rates about the body axes, rad/s.
+    ///
+    /// ```
+    /// use fcc_core::flight::BodyRates;
+    ///
+    /// // A standard rate turn is 3 °/s: two minutes for a full one.
+    /// let turn = BodyRates { yaw_radps: 3.0_f64.to_radians(), ..BodyRates::default() };
+    /// assert!((core::f64::consts::TAU / turn.yaw_radps - 120.0).abs() < 1e-9);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct BodyRates {
         /// P, about x: right wing down.
@@ -86,6 +130,14 @@ schema! {
 schema! {
     /// Acceleration less gravity, along the body axes, m/s²: what an accelerometer
     /// reads. Level and unaccelerated, z is -9.81.
+    ///
+    /// ```
+    /// use fcc_core::flight::SpecificForce;
+    ///
+    /// // A level turn at 60° of bank weighs twice as much.
+    /// let turn = SpecificForce { z_mps2: -2.0 * 9.806_65, ..SpecificForce::default() };
+    /// assert!(turn.z_mps2 < -19.6);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct SpecificForce {
         /// Forward.
@@ -102,6 +154,18 @@ schema! {
 
 schema! {
     /// A place on the WGS 84 ellipsoid.
+    ///
+    /// ```
+    /// use fcc_core::flight::Position;
+    ///
+    /// // The threshold of runway 25L at Milwaukee (KMKE), 723 ft.
+    /// let position = Position {
+    ///     latitude_rad: 42.95_f64.to_radians(),
+    ///     longitude_rad: -87.88_f64.to_radians(),
+    ///     altitude_m: 220.4,
+    /// };
+    /// assert!(position.longitude_rad < 0.0, "west of Greenwich");
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Position {
         /// North of the equator.
@@ -118,6 +182,14 @@ schema! {
 
 schema! {
     /// Velocity over the ground, m/s.
+    ///
+    /// ```
+    /// use fcc_core::flight::Velocity;
+    ///
+    /// // Climbing 500 ft/min: down is negative.
+    /// let climb = Velocity { down_mps: -2.54, ..Velocity::default() };
+    /// assert!((climb.down_mps * -196.85 - 500.0).abs() < 0.1);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Velocity {
         /// Towards true north.
@@ -134,6 +206,13 @@ schema! {
 
 schema! {
     /// A simulated plant's own clock and condition.
+    ///
+    /// ```
+    /// use fcc_core::flight::{Plant, PlantState};
+    ///
+    /// let plant = Plant { time_s: 12.5, state: PlantState::Paused };
+    /// assert_ne!(plant.state, PlantState::Running);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Plant {
         /// The plant's own time in s. The loop integrates with it where there is
@@ -148,6 +227,12 @@ schema! {
 
 schema! {
     /// What a simulated plant is doing.
+    ///
+    /// ```
+    /// use fcc_core::flight::PlantState;
+    ///
+    /// assert_eq!(PlantState::from_number(1), Some(PlantState::Paused));
+    /// ```
     pub enum PlantState {
         /// Time runs.
         Running = 0,

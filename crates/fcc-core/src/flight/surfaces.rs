@@ -5,6 +5,14 @@ use crate::schema;
 
 schema! {
     /// What the autopilot commands: throttle and control surfaces.
+    ///
+    /// ```
+    /// use fcc_core::flight::Surfaces;
+    ///
+    /// let climb = Surfaces { throttle: 1.0, elevator: 0.2, ..Surfaces::default() };
+    /// assert!(climb.is_valid());
+    /// assert!(!Surfaces { throttle: f64::NAN, ..climb }.is_valid());
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Surfaces {
         /// 0 idle, 1 full.

@@ -6,6 +6,32 @@ use super::Tick;
 use crate::schema;
 
 /// Carries the outputs `A` of a tick to the plant.
+///
+/// ```
+/// use fcc_core::framework::{Actuator, ActuatorFault, Tick};
+///
+/// /// A heater that nobody has plugged in.
+/// struct Unplugged;
+///
+/// impl Actuator<f64> for Unplugged {
+///     fn apply(&mut self, _: &Tick, _: &f64) -> Result<(), ActuatorFault> {
+///         Err(ActuatorFault::NotConnected)
+///     }
+///
+///     fn release(&mut self) -> Result<(), ActuatorFault> {
+///         Ok(())
+///     }
+///
+///     fn name(&self) -> &'static str {
+///         "heater"
+///     }
+/// }
+///
+/// let mut heater = Unplugged;
+/// assert!(heater.apply(&Tick::default(), &0.5).is_err());
+/// // Released twice is released.
+/// assert!(heater.release().is_ok() && heater.release().is_ok());
+/// ```
 pub trait Actuator<A>: Send {
     /// Sends the outputs off and returns. Never waits, allocates, locks, logs
     /// or panics. The first call after a release takes control.
@@ -36,6 +62,12 @@ pub trait Actuator<A>: Send {
 
 schema! {
     /// What can go wrong when an actuator is driven.
+    ///
+    /// ```
+    /// use fcc_core::framework::ActuatorFault;
+    ///
+    /// assert_ne!(ActuatorFault::NotConnected.to_string(), "");
+    /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug)]
     #[name("ActuatorFaultKind")]
     #[non_exhaustive]

@@ -3,11 +3,17 @@
 use core::fmt;
 
 use super::schema::Schema;
-use super::{Flags, Reading, Tick, Time};
+use super::{Flags, Reading, Readings, Tick, Time};
 use crate::schema;
 
 schema! {
     /// The position of the switch that engages the loop.
+    ///
+    /// ```
+    /// use fcc_core::framework::Switch;
+    ///
+    /// assert_eq!(Switch::from_number(1), Some(Switch::On));
+    /// ```
     pub enum Switch {
         /// Hands off.
         Off = 0,
@@ -25,9 +31,68 @@ schema! {
 /// [`failsafe`](Self::failsafe) while in failsafe. All of them are pure
 /// functions of the controller's state and what they are handed: they read no
 /// clock, allocate nothing and do not panic.
+///
+/// ```
+/// use fcc_core::framework::{Controller, Flags, Tick};
+///
+/// /// Heats below 21 °C. The temperature is all that is measured.
+/// struct Heating {
+///     wanted_c: f64,
+/// }
+///
+/// impl Controller for Heating {
+///     type Measurements = f64;
+///     type Estimate = ();
+///     type Setpoints = f64;
+///     type Outputs = bool;
+///     type Command = f64;
+///
+///     fn estimate(&mut self, _: &Tick, _: &f64) {}
+///
+///     fn engage_inhibits(&self, _: &Tick, measured_c: &f64) -> Flags {
+///         Flags::NONE.with(Flags::bit(0), !measured_c.is_finite())
+///     }
+///
+///     fn faults(&self, tick: &Tick, measured_c: &f64) -> Flags {
+///         self.engage_inhibits(tick, measured_c)
+///     }
+///
+///     fn flag_name(_: u32) -> &'static str {
+///         "the thermometer is broken"
+///     }
+///
+///     fn engage(&mut self, _: &Tick, _: &f64) {}
+///
+///     fn control(&mut self, _: &Tick, measured_c: &f64) -> bool {
+///         *measured_c < self.wanted_c
+///     }
+///
+///     fn failsafe(&mut self, _: &Tick, _: &f64) -> bool {
+///         false
+///     }
+///
+///     fn command(&mut self, wanted_c: &f64) {
+///         self.wanted_c = *wanted_c;
+///     }
+///
+///     fn setpoints(&self) -> f64 {
+///         self.wanted_c
+///     }
+///
+///     fn outputs_are_valid(&self, _: &bool) -> bool {
+///         true
+///     }
+/// }
+///
+/// let (mut heating, tick) = (Heating { wanted_c: 21.0 }, Tick::default());
+/// assert!(heating.control(&tick, &19.0));
+/// heating.command(&18.0);
+/// assert!(!heating.control(&tick, &19.0));
+/// assert!(!heating.faults(&tick, &f64::NAN).is_empty());
+/// ```
 pub trait Controller: Send {
     /// What the sensors measure.
-    type Measurements: Schema;
+    type Measurements: Schema + Readings;
     /// What the controller makes of the measurements, for those who watch.
     type Estimate: Schema;
     /// What the controller aims for, for those who watch.

@@ -3,7 +3,8 @@
 use core::fmt;
 
 use super::{
-    ActuatorFault, Cause, Controller, Flags, LoopCommand, SensorFault, Stage, State, Time,
+    ActuatorFault, Cause, Controller, Flags, LoopCommand, Readings, SensorFault, SourceChange,
+    Stage, State, Time,
 };
 use crate::schema;
 
@@ -12,6 +13,17 @@ schema! {
     /// tick; it comes before the record of its tick.
     ///
     /// `O` is what may be ordered of the controller.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Event, EventKind, Time};
+    ///
+    /// let event: Event<f64> = Event {
+    ///     tick: 40,
+    ///     time: Time::from_nanos(1_000_000_000),
+    ///     kind: EventKind::StopRequested,
+    /// };
+    /// assert_eq!(event.kind, EventKind::StopRequested);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
     pub struct Event<O> {
         /// The tick it happened in; before the first tick, 0.
@@ -27,11 +39,51 @@ schema! {
 }
 
 /// The event of a controller's loop.
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::{EventKind, EventOf, LoopCommand, Time};
+///
+/// let event: EventOf<Heating> = EventOf::<Heating> {
+///     tick: 1,
+///     time: Time::from_nanos(0),
+///     // A thermostat's own commands are temperatures.
+///     kind: EventKind::CommandReceived(LoopCommand::Controller(21.0)),
+/// };
+/// assert_eq!(event.tick, 1);
+/// ```
 pub type EventOf<C> = Event<<C as Controller>::Command>;
 
 schema! {
     /// What can happen in a loop. Sensors and actuators go by their place in the
     /// loop, the first being 0.
+    ///
+    /// ```
+    /// use fcc_core::framework::{EventKind, State};
+    ///
+    /// let taken_over: EventKind<f64> = EventKind::StateChanged {
+    ///     from: State::Standby,
+    ///     to: State::Engaged,
+    /// };
+    /// assert_ne!(taken_over, EventKind::StopRequested);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug)]
     #[non_exhaustive]
     pub enum EventKind<O> {
@@ -186,6 +238,10 @@ schema! {
             #[field(1)]
             silent_ns: u64,
         },
+        /// Readings are taken from another sensor than before: the one before
+        /// grew too old, or one that is preferred came back.
+        #[field(27)]
+        SourceChanged(change: SourceChange),
     }
 }
 
@@ -198,6 +254,31 @@ impl<O: Copy> EventKind<O> {
 }
 
 /// An event in words for people; see [`EventKind::words`].
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::EventKind;
+///
+/// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
+/// assert!(refused.words::<Heating>().to_string().ends_with("the door is open"));
+/// ```
 pub struct EventWords<C: Controller> {
     kind: EventKind<C::Command>,
 }
@@ -300,6 +381,14 @@ impl<C: Controller> fmt::Display for EventWords<C> {
                 "the loop hung: no progress for {:.1} s",
                 ms(silent_ns) * 1e-3
             ),
+            EventKind::SourceChanged(SourceChange { readings, from, to }) => {
+                for (n, bit) in readings.iter().enumerate() {
+                    let separator = if n > 0 { ", " } else { "" };
+                    let name = C::Measurements::NAMES.get(bit as usize);
+                    write!(f, "{separator}{}", name.unwrap_or(&"a reading"))?;
+                }
+                write!(f, ": from sensor {to} instead of {from}")
+            }
         }
     }
 }

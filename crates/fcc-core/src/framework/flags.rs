@@ -4,6 +4,15 @@ use core::ops::{BitOr, BitOrAssign};
 
 /// A set of up to 32 conditions: why a loop may not engage, or what fails it.
 /// A controller names its bits ([`Controller::flag_name`](super::Controller::flag_name)).
+///
+/// ```
+/// use fcc_core::framework::Flags;
+///
+/// let (open, cold) = (Flags::bit(0), Flags::bit(1));
+/// let found = Flags::NONE.with(open, true).with(cold, false);
+/// assert!(found.contains(open) && !found.intersects(cold));
+/// assert_eq!((found | cold).iter().collect::<Vec<_>>(), [0, 1]);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[repr(transparent)]
 pub struct Flags(u32);

@@ -26,12 +26,19 @@ pub struct Reading<T> {
     pub value: T,
     /// When the value was taken, on the loop's clock.
     pub taken: Time,
+    /// Which sensor it came from, by its place in the loop, the first being 0.
+    /// The loop sets it where there are several; sensors leave it.
+    pub source: u8,
 }
 
 impl<T> Reading<T> {
     /// A value taken at a time.
     pub const fn new(value: T, taken: Time) -> Self {
-        Self { value, taken }
+        Self {
+            value,
+            taken,
+            source: 0,
+        }
     }
 
     /// Whether nothing has been read yet.

@@ -9,6 +9,14 @@ schema! {
     ///
     /// Plain `repr(C)` data of a fixed size: the same struct goes through the
     /// loop's ring, shared memory and a recording.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Record, State, Tick};
+    ///
+    /// let tick = Tick { number: 7, ..Tick::default() };
+    /// let record = Record::<f64, (), f64, f64>::new(tick, State::Engaged);
+    /// assert_eq!((record.tick.number, record.sent), (7, false));
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Record<M, E, S, O> {
         /// The tick and its times.
@@ -65,6 +73,31 @@ schema! {
 }
 
 /// The record of a controller's loop.
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::{RecordOf, State};
+///
+/// let record = RecordOf::<Heating>::new(Tick::default(), State::Standby);
+/// assert_eq!(record.measurements, 0.0);
+/// ```
 pub type RecordOf<C> = Record<
     <C as Controller>::Measurements,
     <C as Controller>::Estimate,
@@ -85,17 +118,25 @@ impl<M: Default, E: Default, S: Default, O: Default> Record<M, E, S, O> {
 
 schema! {
     /// How long each stage of a tick took, ns; 0 for one that was left out.
+    ///
+    /// ```
+    /// use fcc_core::framework::{Stage, StageTimes};
+    ///
+    /// let stages = StageTimes { control_ns: 900, total_ns: 1_500, ..StageTimes::default() };
+    /// assert_eq!(stages.of(Stage::Control), 900);
+    /// assert_eq!(stages.longest(), Stage::Control);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
     pub struct StageTimes {
         /// Sampling the sensors.
         #[field(1, column = "sensors_time_ns")]
         pub sensors_ns: u64,
         /// [`Controller::estimate`].
-        #[field(2, column = "navigation_time_ns")]
-        pub navigation_ns: u64,
+        #[field(2, column = "estimate_time_ns")]
+        pub estimate_ns: u64,
         /// [`Controller::guide`].
-        #[field(3, column = "guidance_time_ns")]
-        pub guidance_ns: u64,
+        #[field(3, column = "guide_time_ns")]
+        pub guide_ns: u64,
         /// [`Controller::control`], or `failsafe`, and the check of what they give.
         #[field(4, column = "control_time_ns")]
         pub control_ns: u64,

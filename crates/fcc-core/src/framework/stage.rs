@@ -7,15 +7,22 @@ use crate::schema;
 
 schema! {
     /// A stage of a tick, the whole of it, or the wait before it.
+    ///
+    /// ```
+    /// use fcc_core::framework::Stage;
+    ///
+    /// assert_eq!(Stage::Control.to_string(), "control");
+    /// assert_eq!(Stage::from_number(4), Some(Stage::Control));
+    /// ```
     pub enum Stage {
         /// The wait for the deadline: it ended whole periods late.
         Timer = 0,
         /// Sampling the sensors.
         Sensors = 1,
         /// [`Controller::estimate`](super::Controller::estimate).
-        Navigation = 2,
+        Estimate = 2,
         /// [`Controller::guide`](super::Controller::guide).
-        Guidance = 3,
+        Guide = 3,
         /// [`Controller::control`](super::Controller::control), or `failsafe`.
         Control = 4,
         /// Driving the actuators.
@@ -29,8 +36,8 @@ impl Stage {
     /// The stages that are timed, in their order; not the whole of them.
     pub const TIMED: [Self; 5] = [
         Self::Sensors,
-        Self::Navigation,
-        Self::Guidance,
+        Self::Estimate,
+        Self::Guide,
         Self::Control,
         Self::Actuators,
     ];
@@ -42,8 +49,8 @@ impl StageTimes {
         match stage {
             Stage::Timer => 0,
             Stage::Sensors => self.sensors_ns,
-            Stage::Navigation => self.navigation_ns,
-            Stage::Guidance => self.guidance_ns,
+            Stage::Estimate => self.estimate_ns,
+            Stage::Guide => self.guide_ns,
             Stage::Control => self.control_ns,
             Stage::Actuators => self.actuators_ns,
             Stage::Tick => self.total_ns,
@@ -69,8 +76,8 @@ impl fmt::Display for Stage {
         f.write_str(match self {
             Self::Timer => "timer",
             Self::Sensors => "sensors",
-            Self::Navigation => "navigation",
-            Self::Guidance => "guidance",
+            Self::Estimate => "estimate",
+            Self::Guide => "guide",
             Self::Control => "control",
             Self::Actuators => "actuators",
             Self::Tick => "tick",
@@ -85,7 +92,7 @@ mod tests {
     #[test]
     fn the_longest_stage_is_not_the_whole() {
         let stages = StageTimes {
-            navigation_ns: 5,
+            estimate_ns: 5,
             control_ns: 7,
             actuators_ns: 7,
             total_ns: 100,

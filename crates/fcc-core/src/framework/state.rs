@@ -18,6 +18,14 @@ use super::Flags;
 ///
 /// Leaving Engaged or Failsafe for Standby or Stopped releases the actuators.
 /// `Engage` is only put in when nothing blocks it.
+///
+/// ```
+/// use fcc_core::framework::{Cause, Input, State, SwitchOff};
+///
+/// let failsafe = State::Engaged.after(Input::Fault(Cause::Overrun), SwitchOff::Standby);
+/// assert_eq!(failsafe, State::Failsafe(Cause::Overrun));
+/// assert!(failsafe.holds_control());
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum State {
     /// Watching; the controls are somebody else's.
@@ -32,6 +40,13 @@ pub enum State {
 }
 
 /// Why the loop fell into failsafe.
+///
+/// ```
+/// use fcc_core::framework::{Cause, Flags};
+///
+/// // The controller's first condition, as its `flag_name` names it.
+/// assert_ne!(Cause::Faults(Flags::bit(0)), Cause::InvalidOutput);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Cause {
     /// The controller saw these faults: sensors too old, a plant gone.
@@ -44,6 +59,13 @@ pub enum Cause {
 }
 
 /// What can change the loop's state.
+///
+/// ```
+/// use fcc_core::framework::{Input, State, SwitchOff};
+///
+/// let engaged = State::Standby.after(Input::Engage, SwitchOff::Standby);
+/// assert_eq!(engaged, State::Engaged);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Input {
     /// Take over: asked for, and nothing blocks it.
@@ -61,6 +83,14 @@ pub enum Input {
 }
 
 /// What switching off the engage switch means.
+///
+/// ```
+/// use fcc_core::framework::{Input, State, SwitchOff};
+///
+/// // As in the thesis: switched off, the loop ends.
+/// let off = State::Engaged.after(Input::SwitchedOff, SwitchOff::Stop);
+/// assert_eq!(off, State::Stopped);
+/// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum SwitchOff {
     /// Back to standby, ready to engage again.

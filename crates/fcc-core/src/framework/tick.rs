@@ -8,6 +8,19 @@ use crate::schema;
 schema! {
     /// One turn of the loop: its number and its times. All that code inside a tick
     /// knows of time, it knows from here.
+    ///
+    /// ```
+    /// use core::time::Duration;
+    /// use fcc_core::framework::{Tick, Time};
+    ///
+    /// let tick = Tick {
+    ///     scheduled: Time::from_nanos(25_000_000),
+    ///     woke: Time::from_nanos(25_060_000),
+    ///     dt_s: 0.025,
+    ///     ..Tick::default()
+    /// };
+    /// assert_eq!(tick.lateness(), Duration::from_micros(60));
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Tick {
         /// Counts periods, the first after the loop's start being 1; a missed

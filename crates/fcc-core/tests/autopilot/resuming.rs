@@ -1,6 +1,6 @@
 //! A flight that was cut off, taken up again.
 
-use fcc_core::flight::guidance::{GuidanceConfig, Targets};
+use fcc_core::flight::guidance::{GuidanceConfig, Mode, Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, AutopilotConfig, Resume, Surfaces};
 use fcc_core::framework::Controller;
 
@@ -13,12 +13,16 @@ fn a_pattern_is_gone_on_with_where_it_was() {
     let mut cockpit = Cockpit::engaged(AutopilotConfig::default().guidance);
     cockpit.step();
     let resume = Resume {
-        targets: Targets {
-            airspeed_mps: 95.0 * KNOT_MPS,
-            heading_rad: 350.0_f64.to_radians(),
-            altitude_m: 914.4,
+        progress: Progress {
+            mode: Mode::TimedPattern,
+            elapsed_s: 65.0,
+            captured: Targets {
+                airspeed_mps: 95.0 * KNOT_MPS,
+                heading_rad: 350.0_f64.to_radians(),
+                altitude_m: 914.4,
+            },
+            ..Progress::default()
         },
-        pattern_s: Some(65.0),
         surfaces: STANDING,
     };
     cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
@@ -48,12 +52,15 @@ fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
         rudder: -0.04,
     };
     let resume = Resume {
-        targets: Targets {
-            airspeed_mps: 100.0 * KNOT_MPS,
-            heading_rad: 30.0_f64.to_radians(),
-            altitude_m: 914.4,
+        progress: Progress {
+            mode: Mode::Hold,
+            captured: Targets {
+                airspeed_mps: 100.0 * KNOT_MPS,
+                heading_rad: 30.0_f64.to_radians(),
+                altitude_m: 914.4,
+            },
+            ..Progress::default()
         },
-        pattern_s: None,
         surfaces: flew,
     };
     cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
@@ -74,23 +81,35 @@ fn what_was_held_is_held_again_with_the_surfaces_that_flew_it() {
 #[test]
 fn a_flight_that_cannot_have_been_is_not_taken_up() {
     let sane = Resume {
-        targets: Targets {
-            airspeed_mps: 50.0,
-            heading_rad: 3.0,
-            altitude_m: 2_000.0,
+        progress: Progress {
+            mode: Mode::Hold,
+            captured: Targets {
+                airspeed_mps: 50.0,
+                heading_rad: 3.0,
+                altitude_m: 2_000.0,
+            },
+            ..Progress::default()
         },
-        pattern_s: None,
         surfaces: STANDING,
     };
     let mut no_altitude = sane;
-    no_altitude.targets.altitude_m = f64::NAN;
+    no_altitude.progress.captured.altitude_m = f64::NAN;
     let mut too_much_throttle = sane;
     too_much_throttle.surfaces.throttle = 1.5;
-    let a_pattern = Resume {
-        pattern_s: Some(10.0),
-        ..sane
-    };
-    for resume in [no_altitude, too_much_throttle, a_pattern] {
+    let mut a_pattern = sane;
+    a_pattern.progress.mode = Mode::TimedPattern;
+    let mut no_mode = sane;
+    no_mode.progress.mode = Mode::None;
+    let mut before_it_began = sane;
+    before_it_began.progress.elapsed_s = -1.0;
+    let nonsense = [
+        no_altitude,
+        too_much_throttle,
+        a_pattern,
+        no_mode,
+        before_it_began,
+    ];
+    for resume in nonsense {
         let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
         cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
         cockpit.step();

@@ -88,6 +88,9 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
 }
 
 fn write_page(args: &ReportArgs, report: &Report) -> Result<(), String> {
+    if let Some(folder) = &args.svg {
+        report.write_svgs(folder)?;
+    }
     let Some(path) = &args.html else {
         return Ok(());
     };

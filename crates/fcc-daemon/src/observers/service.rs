@@ -112,6 +112,8 @@ impl Teller {
         let (news, heard) = mpsc::sync_channel(WAITING);
         let thread = thread::Builder::new()
             .name("fcc-notify".to_owned())
+            // Where memory is locked, all of a stack is in memory.
+            .stack_size(256 << 10)
             .spawn(move || heard.iter().for_each(|news| send(&news)))
             .ok()?;
         Some(Self { news, thread })

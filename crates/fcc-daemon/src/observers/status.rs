@@ -54,10 +54,11 @@ impl StatusLine {
             State::Engaged => {
                 let since = engaged_at_s.map_or(0.0, |at_s| now_s - at_s);
                 format!(
-                    "{now_s:8.2} s  engaged {since:5.0} s  \
+                    "{now_s:8.2} s  engaged {since:5.0} s  {}  \
                      heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
                      altitude {altitude:5.0} → {:5.0} ft  airspeed {airspeed:5.1} → {:5.1} kt  \
                      throttle {:3.0} %  {timing}",
+                    aims.guidance,
                     compass(aims.heading_rad),
                     aims.altitude_m * M_FT,
                     aims.airspeed_mps * MPS_KT,

@@ -1,6 +1,7 @@
 //! Flights in lockstep, and all that the loop told of them.
 
 use std::ops::RangeInclusive;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_core::flight::{AutopilotCommand, Measurements};
@@ -23,6 +24,8 @@ pub(crate) struct Happenings {
     pub(crate) late: Vec<(u64, Duration)>,
     /// Set the stop flag before this step.
     pub(crate) stop_before: Option<u64>,
+    /// One sensor more, which measures what the last does and is never silent.
+    pub(crate) seconded: bool,
     /// How long to fly, steps.
     pub(crate) steps: u64,
 }
@@ -49,15 +52,22 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
     for (number, by) in &happenings.late {
         timer = timer.late_at(*number, *by);
     }
+    let mut last = Arc::default();
     let silenced = |inner| {
+        last = Arc::default();
         Box::new(Silenced {
             inner,
             silent: happenings.silent.clone(),
+            measured: Arc::clone(&last),
         }) as Box<dyn Sensor<Measurements>>
     };
+    let mut sensors: Vec<_> = assembly.sensors.into_iter().map(silenced).collect();
+    if happenings.seconded {
+        sensors.push(Box::new(Second(last)));
+    }
     let parts = Parts {
         timer: Box::new(timer),
-        sensors: assembly.sensors.into_iter().map(silenced).collect(),
+        sensors,
         controller: assembly.autopilot,
         actuators: assembly.actuators,
     };
@@ -84,21 +94,38 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
 struct Silenced {
     inner: Box<dyn Sensor<Measurements>>,
     silent: Vec<RangeInclusive<u64>>,
+    /// What it would say.
+    measured: Arc<Mutex<Measurements>>,
 }
 
 impl Sensor<Measurements> for Silenced {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
-        let mut away = Measurements::default();
+        let mut measured = self.measured.lock().unwrap();
+        let sampled = self.inner.sample(tick, &mut measured);
         if self.silent.iter().any(|span| span.contains(&tick.number)) {
             // The aircraft flies on unseen.
-            self.inner.sample(tick, &mut away)?;
             return Err(SensorFault::Silent);
         }
-        self.inner.sample(tick, into)
+        *into = *measured;
+        sampled
     }
 
     fn name(&self) -> &'static str {
         self.inner.name()
+    }
+}
+
+/// Says what the first sensor would say.
+struct Second(Arc<Mutex<Measurements>>);
+
+impl Sensor<Measurements> for Second {
+    fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+        *into = *self.0.lock().unwrap();
+        Ok(())
+    }
+
+    fn name(&self) -> &'static str {
+        "second"
     }
 }
 

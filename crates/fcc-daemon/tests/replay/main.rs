@@ -7,6 +7,7 @@ mod files;
 mod flights;
 mod identical;
 mod incomplete;
+mod sources;
 
 use fcc_core::framework::State;
 use fcc_flight::config::Config;
@@ -15,9 +16,10 @@ use fcc_telemetry::FlightMessage;
 
 use flights::{again, records};
 
-/// The outputs of a tick: 4 surfaces, 6 set points, the step's length, state,
+/// The outputs of a tick: 4 surfaces, 12 set points with guidance's progress, the estimate,
+/// the step's length, state,
 /// engage_inhibits, faults, and whether they were sent.
-const OUTPUTS: u64 = 28;
+const OUTPUTS: u64 = 34;
 
 /// Asserts that a recording flown again is the same in every bit, and gives
 /// the states it went through.

@@ -39,7 +39,15 @@ fn sound(page: &str) -> RcDom {
     assert!(dom.errors.borrow().is_empty(), "{:?}", dom.errors.borrow());
     let elsewhere = page.replace("http://www.w3.org/2000/svg", "");
     for fetched in [
-        "http:", "https:", "<script", "<link", "<iframe", "src=", "url(", "@import",
+        "http:",
+        "https:",
+        "<script src",
+        "fetch(",
+        "<link",
+        "<iframe",
+        "src=",
+        "url(",
+        "@import",
     ] {
         assert!(!elsewhere.contains(fetched), "the page has {fetched}");
     }
@@ -201,4 +209,59 @@ fn one_tick_is_a_report_too() {
     assert_eq!(report.continuity.ticks, 1);
     assert!(says(&report, "begins late, at tick 7: 6 ticks"));
     sound(&report.to_html().unwrap());
+}
+
+/// Each colour of a plot has one for a dark screen.
+#[test]
+fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
+    let report = report(
+        Plan {
+            silent_from: Some(1_000),
+            ..Plan::seconds(40)
+        },
+        |message| match message {
+            FlightMessage::Tick(record) => !(401..=439).contains(&record.tick.number),
+            FlightMessage::Event(_) => true,
+        },
+    );
+    let page = report.to_html().unwrap();
+    let (style, plots) = page.split_once("</style>").unwrap();
+    let (_, dark) = style.split_once("prefers-color-scheme: dark").unwrap();
+    let mut colours = 0;
+    for attribute in ["fill", "stroke"] {
+        let before = format!(" {attribute}=\"#");
+        for (at, _) in plots.match_indices(&before) {
+            let value = &plots[at + before.len()..at + before.len() + 6];
+            let rule = format!("[{attribute}=\"#{value}\"]");
+            assert!(dark.contains(&rule), "{rule}");
+            colours += 1;
+        }
+    }
+    assert!(colours > 100, "{colours}");
+}
+
+/// Each plot is a file of its own, too.
+#[test]
+fn plots_are_svg_files() {
+    let report = report(Plan::seconds(30), all);
+    let svgs = report.to_svgs().unwrap();
+    let names: Vec<&str> = svgs.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "course.svg",
+            "heading.svg",
+            "altitude-and-pitch.svg",
+            "airspeed-and-throttle.svg",
+            "bank-and-surfaces.svg",
+            "ground-track.svg",
+        ]
+    );
+    for (name, svg) in &svgs {
+        assert!(
+            svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""),
+            "{name}"
+        );
+        assert!(svg.trim_end().ends_with("</svg>"), "{name}");
+    }
 }

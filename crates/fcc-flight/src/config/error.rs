@@ -6,6 +6,7 @@ use std::str::Utf8Error;
 
 use serde::Serialize;
 
+use super::devices::in_entry;
 use super::places::{Places, line_of};
 use super::wording::plainly;
 
@@ -44,7 +45,16 @@ impl ConfigError {
     pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
         let span = error.span();
         let line = span.as_ref().map(|span| line_of(text, span));
-        let key = span.and_then(|span| Places::of(text).key_at(span.start));
+        let key = span
+            .clone()
+            .and_then(|span| Places::of(text).key_at(span.start));
+        let (line, key) = match key.and_then(|key| in_entry(text, &key, error.message())) {
+            Some(key) => (Places::of(text).nearest_line(&key), Some(key)),
+            None => (
+                line,
+                span.and_then(|span| Places::of(text).key_at(span.start)),
+            ),
+        };
         let message = plainly(error.message(), key.as_deref());
         Self::Invalid {
             file: file.to_owned(),

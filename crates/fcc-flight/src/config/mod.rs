@@ -9,6 +9,7 @@ mod autopilot;
 mod budget;
 mod built_in;
 mod cpu;
+mod devices;
 mod early_wake;
 mod error;
 mod guidance;
@@ -35,6 +36,7 @@ pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
 pub use cpu::CpuChoice;
+pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
@@ -80,6 +82,12 @@ pub struct Config {
     /// The aircraft is the built-in one.
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
+    /// Sensors beside the simulator's, the most preferred first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sensor: Vec<SensorEntry>,
+    /// What is moved; the simulator where there is no list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
 /// Which aircraft a configuration flies.
@@ -90,6 +98,10 @@ pub enum Aircraft<'a> {
     /// The built-in one.
     BuiltIn(&'a BuiltInSection),
 }
+
+/// So long the thread that fetches what the loop reports may be held up before
+/// records are lost: at 200 Hz or less.
+const FETCHED_WITHIN_S: f64 = 20.0;
 
 impl Config {
     /// Reads and checks a file.
@@ -174,7 +186,9 @@ impl Config {
 
     /// What the loop is told.
     pub fn loop_config(&self) -> LoopConfig {
+        let most = LoopConfig::default().messages_capacity;
         LoopConfig {
+            messages_capacity: self.tick.ticks_in(FETCHED_WITHIN_S, most),
             switch_off: self.engage.switch_off.into(),
             failsafe_hold: Duration::from_secs_f64(self.failsafe.hold_s),
             after_failsafe: self.failsafe.then.into(),

@@ -25,11 +25,16 @@ impl<'a> Places<'a> {
         let mut table = self.table.as_ref()?.get_ref();
         let mut found = None;
         for part in key.split('.') {
+            let (part, index) = indexed(part);
             let Some((name, value)) = table.iter().find(|(name, _)| name.get_ref() == part) else {
                 break;
             };
             found = Some(line_of(self.text, &name.span()));
-            match value.get_ref().as_table() {
+            let entry = index.and_then(|index| value.get_ref().as_array()?.get(index));
+            if let Some(entry) = entry {
+                found = Some(line_of(self.text, &entry.span()));
+            }
+            match entry.unwrap_or(value).get_ref().as_table() {
                 Some(inner) => table = inner,
                 None => break,
             }
@@ -64,17 +69,40 @@ impl<'a> Places<'a> {
     }
 }
 
+/// The parts of `sensor[1]`; no index for a plain name.
+fn indexed(part: &str) -> (&str, Option<usize>) {
+    let parts = part
+        .strip_suffix(']')
+        .and_then(|part| part.split_once('['))
+        .and_then(|(name, index)| Some((name, index.parse().ok()?)));
+    parts.map_or((part, None), |(name, index)| (name, Some(index)))
+}
+
 /// The names that lead to the innermost key or value around a place.
-fn path_to<'t>(table: &'t DeTable<'_>, offset: usize) -> Option<Vec<&'t str>> {
+fn path_to(table: &DeTable<'_>, offset: usize) -> Option<Vec<String>> {
     table.iter().find_map(|(name, value)| {
-        let inside = match value.get_ref() {
-            DeValue::Table(inner) => path_to(inner, offset),
-            _ => None,
+        let is_in = |span: Range<usize>| span.contains(&offset);
+        let (index, inside) = match value.get_ref() {
+            DeValue::Table(inner) => (None, path_to(inner, offset)),
+            DeValue::Array(entries) => entries
+                .iter()
+                .enumerate()
+                .find_map(|(index, entry)| {
+                    let inside = entry.get_ref().as_table();
+                    let inside = inside.and_then(|inside| path_to(inside, offset));
+                    let here = || is_in(entry.span()).then(Vec::new);
+                    Some((Some(index), Some(inside.or_else(here)?)))
+                })
+                .unwrap_or_default(),
+            _ => (None, None),
         };
-        let here =
-            || (name.span().contains(&offset) || value.span().contains(&offset)).then(Vec::new);
+        let here = || (is_in(name.span()) || is_in(value.span())).then(Vec::new);
         let mut path = inside.or_else(here)?;
-        path.insert(0, name.get_ref());
+        let name = name.get_ref();
+        path.insert(
+            0,
+            index.map_or_else(|| name.to_string(), |index| format!("{name}[{index}]")),
+        );
         Some(path)
     })
 }

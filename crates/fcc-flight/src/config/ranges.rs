@@ -5,8 +5,9 @@
 
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
+use super::devices::MOST_ENTRIES;
 use super::places::Places;
-use super::{Config, Problem};
+use super::{Config, Problem, SensorEntry, XPlaneSection};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -111,6 +112,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("x-plane.resubscribe_s", 0.1, 3_600.0),
     ("x-plane.silent_after_ms", 50.0, 60_000.0),
     ("x-plane.datagrams_per_tick", 1.0, 1_000.0),
+    ("x-plane.fallback_after_ms", 10.0, 60_000.0),
     ("built-in.altitude_ft", 500.0, 20_000.0),
     ("built-in.airspeed_kt", 50.0, 160.0),
     ("built-in.heading_deg", 0.0, 360.0),
@@ -147,10 +149,10 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
     match toml::Value::try_from(config) {
         Ok(values) => {
             for (key, least, most) in RANGES {
-                if let Some(value) = number_at(&values, key)
-                    && !(*least..=*most).contains(&value)
-                {
-                    complain(key, format!("is {value}: choose {least} to {most}"));
+                for (key, value) in numbers_at(&values, key) {
+                    if !(*least..=*most).contains(&value) {
+                        complain(&key, format!("is {value}: choose {least} to {most}"));
+                    }
                 }
             }
         }
@@ -161,7 +163,15 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
         ),
     }
     relations(config, &mut complain);
-    x_plane(config, &mut problems, &places);
+    lists(config, &mut complain);
+    if let Some(section) = &config.x_plane {
+        x_plane("x-plane", section, &mut problems, &places);
+    }
+    for (at, entry) in config.sensor.iter().enumerate() {
+        if let SensorEntry::XPlane(section) = entry {
+            x_plane(&format!("sensor[{at}]"), section, &mut problems, &places);
+        }
+    }
     if config.x_plane.is_none() && config.built_in.is_none() {
         problems.push(Problem {
             line: None,
@@ -234,26 +244,71 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
     }
 }
 
-/// What the adapter itself refuses, other than what a range has refused.
-fn x_plane(config: &Config, problems: &mut Vec<Problem>, places: &Places<'_>) {
-    let Some(section) = &config.x_plane else {
-        return;
+/// What the lists of sensors and actuators may be.
+fn lists(config: &Config, complain: &mut impl FnMut(&str, String)) {
+    let actuators = config.actuator.as_deref().unwrap_or_default();
+    let simulators = |list: &str, are: Vec<bool>| {
+        let at = are
+            .iter()
+            .enumerate()
+            .filter(|(_, is)| **is)
+            .map(|(at, _)| at);
+        at.skip(1)
+            .map(|at| format!("{list}[{at}].kind"))
+            .collect::<Vec<_>>()
     };
+    let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
+    let twice = simulators("sensor", sensors.collect());
+    let moved = simulators("actuator", vec![true; actuators.len()]);
+    for key in twice.iter().chain(&moved) {
+        complain(key, "is the simulator a second time: keep one".to_owned());
+    }
+    for (list, length) in [
+        ("sensor", config.sensor.len()),
+        ("actuator", actuators.len()),
+    ] {
+        if length > MOST_ENTRIES {
+            complain(
+                list,
+                format!("has {length} entries: keep at most {MOST_ENTRIES}"),
+            );
+        }
+    }
+}
+
+/// What the adapter itself refuses, other than what a range has refused.
+fn x_plane(at: &str, section: &XPlaneSection, problems: &mut Vec<Problem>, places: &Places<'_>) {
     let Err(error) = XPlaneConfig::from(section).validate() else {
         return;
     };
     let key = match error {
-        XPlaneConfigError::EngageSwitch { .. } => "x-plane.engage_switch",
-        XPlaneConfigError::Simulator(_) => "x-plane.simulator",
-        XPlaneConfigError::LocalPort => "x-plane.local_port",
-        _ if problems.iter().any(|problem| problem.is_in("x-plane")) => return,
-        _ => "x-plane",
+        XPlaneConfigError::EngageSwitch { .. } => format!("{at}.engage_switch"),
+        XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
+        XPlaneConfigError::LocalPort => format!("{at}.local_port"),
+        _ if problems.iter().any(|problem| problem.is_in(at)) => return,
+        _ => at.to_owned(),
     };
     problems.push(Problem {
-        line: places.nearest_line(key),
-        key: Some(key.to_owned()),
+        line: places.nearest_line(&key),
+        key: Some(key),
         message: error.to_string(),
     });
+}
+
+/// The numbers of a key: of `x-plane` also those in the entries of that kind.
+fn numbers_at(values: &toml::Value, key: &str) -> Vec<(String, f64)> {
+    let mut found = Vec::new();
+    found.extend(number_at(values, key).map(|value| (key.to_owned(), value)));
+    let (kind, name) = key.split_once('.').unwrap_or((key, ""));
+    let entries = values.get("sensor").and_then(toml::Value::as_array);
+    for (at, entry) in entries.into_iter().flatten().enumerate() {
+        if entry.get("kind").and_then(toml::Value::as_str) == Some(kind)
+            && let Some(value) = number_at(entry, name)
+        {
+            found.push((format!("sensor[{at}].{name}"), value));
+        }
+    }
+    found
 }
 
 fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
@@ -268,7 +323,7 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{BudgetSection, BuiltInSection, CpuChoice, XPlaneSection};
+    use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
 
     /// A new key without a range would be a key whose nonsense is believed.
     #[test]

@@ -33,7 +33,17 @@ impl Default for LoopSection {
     }
 }
 
+/// The fewest ticks that a ring has room for.
+const FEWEST_TICKS: usize = 256;
+
 impl LoopSection {
+    /// The ticks of so many seconds, at most `most`: room in a ring. All of it is
+    /// in memory from the start.
+    pub(crate) fn ticks_in(&self, seconds: f64, most: usize) -> usize {
+        let ticks = (seconds * self.rate_hz).ceil() as usize;
+        ticks.min(most).max(FEWEST_TICKS)
+    }
+
     /// The timer that wakes the loop, not yet started.
     ///
     /// # Errors

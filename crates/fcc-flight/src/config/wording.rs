@@ -75,6 +75,7 @@ fn wrong_type(complaint: &str, range: Option<&str>) -> Option<String> {
         "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number",
         "a boolean" => "true or false",
         "a string" => "a text in quotes",
+        "a sequence" => "a list, each entry below double square brackets such as [[sensor]]",
         section if section.starts_with("struct ") => "a section in square brackets",
         other => other,
     };

@@ -35,6 +35,9 @@ pub struct XPlaneSection {
     pub silent_after_ms: u64,
     /// The most datagrams read in one tick.
     pub datagrams_per_tick: u16,
+    /// After so long without a reading, that of the next sensor in the order
+    /// is taken.
+    pub fallback_after_ms: u64,
 }
 
 /// How measurements come.
@@ -73,6 +76,7 @@ impl Default for XPlaneSection {
             resubscribe_s: core.resubscribe.as_secs_f64(),
             silent_after_ms: core.silent_after.as_millis() as u64,
             datagrams_per_tick: core.datagrams_per_tick,
+            fallback_after_ms: core.fallback_after.as_millis() as u64,
         }
     }
 }
@@ -103,6 +107,7 @@ impl From<&XPlaneSection> for XPlaneConfig {
             resubscribe: Duration::from_secs_f64(section.resubscribe_s),
             silent_after: Duration::from_millis(section.silent_after_ms),
             datagrams_per_tick: section.datagrams_per_tick,
+            fallback_after: Duration::from_millis(section.fallback_after_ms),
             ..Self::default()
         }
     }

@@ -18,11 +18,13 @@ use super::recording::{Recording, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
 use super::scorer::Scorer;
 use super::truth_recorder::{TruthReceiver, tap};
-use crate::config::{Aircraft, BuiltInSection, Config, WatchdogSection, XPlaneSection};
+use crate::config::{
+    Aircraft, BuiltInSection, Config, SensorEntry, WatchdogSection, XPlaneSection,
+};
 
 /// A flight that is put together and lacks only its clock.
 pub struct Assembly {
-    /// Sampled in this order.
+    /// Sampled in this order, which is that of preference.
     pub sensors: Vec<Box<dyn Sensor<Measurements>>>,
     /// Navigation, guidance and control.
     pub autopilot: Autopilot,
@@ -72,15 +74,28 @@ struct Plant {
 /// Puts a flight together.
 ///
 /// # Errors
-/// When the aircraft cannot be had.
+/// When the aircraft or a sensor cannot be had.
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
-    let plant = match config.aircraft() {
+    let mut plant = match config.aircraft() {
         Aircraft::BuiltIn(section) => built_in(section, loop_config.messages_capacity)?,
         Aircraft::XPlane(section) => x_plane(section)?,
     };
+    let mut sensors = Vec::new();
+    for entry in config.sensors() {
+        match entry {
+            SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
+            SensorEntry::XPlane(section) => {
+                let (sensor, _) = XPlane::open(&XPlaneConfig::from(section.as_ref()))?;
+                sensors.push(Box::new(sensor));
+            }
+        }
+    }
+    if !config.moves_simulator() {
+        plant.actuators.clear();
+    }
     Ok(Assembly {
-        sensors: plant.sensors,
+        sensors,
         autopilot: Autopilot::new(config.autopilot_config()),
         actuators: plant.actuators,
         loop_config,

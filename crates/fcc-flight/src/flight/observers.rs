@@ -118,11 +118,24 @@ pub(super) struct Names {
 
 impl Names {
     pub(super) fn of(assembly: &Assembly) -> Self {
-        let sensors = assembly.sensors.iter().map(|s| s.name().to_owned());
-        let actuators = assembly.actuators.iter().map(|a| a.name().to_owned());
         Self {
-            sensors: sensors.collect(),
-            actuators: actuators.collect(),
+            sensors: distinct(assembly.sensors.iter().map(|s| s.name())),
+            actuators: distinct(assembly.actuators.iter().map(|a| a.name())),
         }
     }
+}
+
+/// Names that tell apart: of several devices of one name, all but the first
+/// have a number.
+fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<String> {
+    let mut seen: Vec<&str> = Vec::new();
+    names
+        .map(|name| {
+            seen.push(name);
+            match seen.iter().filter(|other| **other == name).count() {
+                1 => name.to_owned(),
+                number => format!("{name} {number}"),
+            }
+        })
+        .collect()
 }

@@ -15,6 +15,9 @@ use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
 use crate::config::{Aircraft, Config};
 
+/// So long a disk may be held up before records are lost: at 136 Hz or less.
+const WRITTEN_WITHIN_S: f64 = 60.0;
+
 /// How a flight is to be recorded.
 #[derive(Clone, Debug)]
 pub struct RecordingRequest {
@@ -27,8 +30,13 @@ impl RecordingRequest {
     /// of its file.
     pub fn of(config: &Config, as_given: Option<String>) -> Option<Self> {
         let section = &config.recording;
+        let settings = RecorderSettings::from(section);
+        let capacity = config.tick.ticks_in(WRITTEN_WITHIN_S, settings.capacity);
         section.enabled.then(|| Self {
-            settings: RecorderSettings::from(section),
+            settings: RecorderSettings {
+                capacity,
+                ..settings
+            },
             about: about(config, as_given),
         })
     }

@@ -61,18 +61,22 @@ pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny
 }
 
 /// Reports on a recording as `fccd report` does: all statistics as a dict.
-/// `html` is a page to write with all plots, `csv` a folder for every tick and
-/// event as tables.
+/// `html` is a page to write with all plots, `svg` a folder for each of them
+/// as a file, `csv` a folder for every tick and event as tables.
 #[pyfunction]
-#[pyo3(signature = (path, *, html = None, csv = None))]
+#[pyo3(signature = (path, *, html = None, svg = None, csv = None))]
 pub(crate) fn report(
     py: Python<'_>,
     path: PathBuf,
     html: Option<PathBuf>,
+    svg: Option<PathBuf>,
     csv: Option<PathBuf>,
 ) -> PyResult<Bound<'_, PyAny>> {
     let made = py.detach(|| -> Result<Report, String> {
         let report = survey(&path, csv.as_deref())?;
+        if let Some(folder) = &svg {
+            report.write_svgs(folder)?;
+        }
         if let Some(html) = &html {
             if same_file(html, &path) {
                 return Err(format!(

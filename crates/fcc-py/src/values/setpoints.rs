@@ -4,7 +4,8 @@ use fcc_core::flight::Setpoints;
 use pyo3::prelude::*;
 
 /// What the autopilot aims for: indicated airspeed in m/s, heading, roll and
-/// pitch in rad, altitude in m, climb rate in m/s.
+/// pitch in rad, altitude in m, climb rate in m/s; the mode that guidance
+/// flies, which part of it, and for how long by now, s.
 #[pyclass(name = "Setpoints", module = "fcc", frozen, get_all)]
 #[derive(Clone, Copy)]
 pub(crate) struct PySetpoints {
@@ -14,6 +15,9 @@ pub(crate) struct PySetpoints {
     roll_rad: f64,
     climb_rate_mps: f64,
     pitch_rad: f64,
+    guidance_mode: &'static str,
+    guidance_item: u32,
+    guidance_elapsed_s: f64,
 }
 
 impl From<Setpoints> for PySetpoints {
@@ -25,6 +29,9 @@ impl From<Setpoints> for PySetpoints {
             roll_rad: setpoints.roll_rad,
             climb_rate_mps: setpoints.climb_rate_mps,
             pitch_rad: setpoints.pitch_rad,
+            guidance_mode: setpoints.guidance.mode.name(),
+            guidance_item: setpoints.guidance.item,
+            guidance_elapsed_s: setpoints.guidance.elapsed_s,
         }
     }
 }

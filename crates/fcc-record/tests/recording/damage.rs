@@ -183,8 +183,9 @@ fn ticks_in(original: &Original, place: &Range<usize>) -> Vec<u64> {
         .flat_map(|chunk| summary.stream_chunk(&original.bytes, chunk).unwrap())
         .filter_map(|message| {
             let message = message.unwrap();
-            // A record's first field is its tick's number, a varint.
-            (message.channel.topic == "/fcc/record").then(|| varint(&message.data))
+            // A record's first field is its tick, a message shorter than 128
+            // bytes, whose first is its number, a varint.
+            (message.channel.topic == "/fcc/record").then(|| varint(&message.data[2..]))
         })
         .collect()
 }

@@ -7,6 +7,7 @@ mod damage;
 mod disks;
 mod flight;
 mod folder;
+mod foxglove_layout;
 mod full_disk;
 mod round_trip;
 mod slow_disk;

@@ -1,6 +1,6 @@
 //! What is recorded comes back with the very same bits.
 
-use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, SensorFault, Stage, State, Time,
@@ -15,12 +15,16 @@ use crate::flight::{
 };
 
 const RESUME: Resume = Resume {
-    targets: Targets {
-        airspeed_mps: 51.4,
-        heading_rad: -0.0,
-        altitude_m: 914.4,
+    progress: Progress {
+        mode: Mode::TimedPattern,
+        item: 3,
+        elapsed_s: 65.0,
+        captured: Targets {
+            airspeed_mps: 51.4,
+            heading_rad: -0.0,
+            altitude_m: 914.4,
+        },
     },
-    pattern_s: Some(0.0),
     surfaces: Surfaces {
         throttle: 0.7,
         elevator: -0.1,
@@ -100,8 +104,8 @@ fn every_event_comes_back() {
     for stage in [
         Stage::Timer,
         Stage::Sensors,
-        Stage::Navigation,
-        Stage::Guidance,
+        Stage::Estimate,
+        Stage::Guide,
         Stage::Control,
         Stage::Actuators,
         Stage::Tick,
@@ -122,7 +126,11 @@ fn every_event_comes_back() {
         LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
         LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
         LoopCommand::Controller(AutopilotCommand::Resume(Resume {
-            pattern_s: None,
+            progress: Progress {
+                mode: Mode::Hold,
+                elapsed_s: 0.0,
+                ..RESUME.progress
+            },
             ..RESUME
         })),
     ] {

@@ -22,6 +22,8 @@ const UNITS_PER_PX: f64 = 10.0;
 
 /// What is actual.
 pub(super) const ACTUAL: RGBColor = RGBColor(24, 66, 110);
+/// What was measured, behind what is estimated from it.
+pub(super) const MEASURED: RGBColor = RGBColor(150, 178, 206);
 /// What is desired. Nothing else has this ink: it is what is dashed.
 pub(super) const DESIRED: RGBColor = RGBColor(200, 80, 30);
 /// What is compared with.

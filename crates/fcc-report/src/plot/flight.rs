@@ -4,8 +4,7 @@
 use super::super::Report;
 use super::super::lines::Pair;
 use super::super::trace::{Point, Trace};
-use super::super::turns::{fold, seam_deg};
-use super::axis::{Axis, extent};
+use super::axis::{Axis, extent, number};
 use super::canvas::PlotError;
 use super::time_figure::{Ink, TimePanel, time_figure};
 use super::{Figure, ground_track};
@@ -16,7 +15,7 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
     let mut figures = vec![
         Figure {
             title: "Heading",
-            caption: "Magnetic heading, desired and actual (thesis, figure 6.4).".to_owned(),
+            caption: "Magnetic heading, desired and actual, which is what the navigation made of what was measured (thesis, figure 6.4).".to_owned(),
             svg: time_figure(
                 report,
                 "Heading over time, desired and actual",
@@ -67,50 +66,56 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
     Ok(figures)
 }
 
+impl Pair {
+    fn traces(&self) -> [&Trace; 3] {
+        [&self.measured, &self.actual, &self.desired]
+    }
+
+    /// Each with its ink, the one that is drawn last on top.
+    fn lines(&self) -> Vec<(Ink, Vec<Vec<Point>>)> {
+        let inks = [Ink::Measured, Ink::Actual, Ink::Desired];
+        inks.into_iter()
+            .zip(self.traces().map(Trace::lines))
+            .collect()
+    }
+}
+
 fn pair(of: &Pair, height_px: f64, least_span: f64, title: &str) -> TimePanel {
     let count = (height_px / 32.0) as usize;
     TimePanel {
         height_px,
-        y: Axis::around(extent([&of.actual, &of.desired]), least_span, count, title),
-        lines: vec![
-            (Ink::Actual, of.actual.lines()),
-            (Ink::Desired, of.desired.lines()),
-        ],
+        y: Axis::around(extent(of.traces()), least_span, count, title),
+        lines: of.lines(),
     }
 }
 
-/// A full turn at most is drawn as it is; more is folded into one, cut where
-/// least is flown.
+/// Counted on through full turns, so that no line jumps at north; the words
+/// of the axis are those of the compass.
 fn heading(of: &Pair) -> TimePanel {
     const TITLE: &str = "heading, °";
     let compass = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
-    let (low, high) = extent([&of.actual, &of.desired]);
-    let (mut actual, mut desired) = (of.actual.lines(), of.desired.lines());
-    let range = if high - low <= 360.0 {
-        let axis = Axis::around((low, high), 20.0, 5, TITLE);
-        (axis.from, axis.to)
-    } else {
-        let held = if desired.is_empty() {
-            &actual
-        } else {
-            &desired
-        };
-        let seam = seam_deg(held);
-        let folded =
-            |lines: Vec<Vec<Point>>| lines.iter().flat_map(|line| fold(line, seam)).collect();
-        (actual, desired) = (folded(actual), folded(desired));
-        (seam, seam + 360.0)
-    };
+    let axis = Axis::around(extent(of.traces()), 20.0, 5, TITLE);
+    let range = (axis.from, axis.to);
     let step = match range.1 - range.0 {
+        span if span > 3_600.0 => 360.0 * (span / 3_600.0).ceil(),
+        span if span > 2_160.0 => 360.0,
+        span if span > 1_080.0 => 180.0,
+        span if span > 360.0 => 90.0,
         span if span > 200.0 => 45.0,
         span if span > 90.0 => 30.0,
         span if span > 40.0 => 10.0,
         _ => 5.0,
     };
+    // Where every tick is at north, its words count the turns.
+    let y = if step < 360.0 {
+        Axis::stepped(range, step, TITLE, compass)
+    } else {
+        Axis::stepped(range, step, "heading, turns", |at| number(at / 360.0, 0))
+    };
     TimePanel {
         height_px: 200.0,
-        y: Axis::stepped(range, step, TITLE, compass),
-        lines: vec![(Ink::Actual, actual), (Ink::Desired, desired)],
+        y,
+        lines: of.lines(),
     }
 }
 

@@ -41,6 +41,14 @@ pub(super) struct Figures {
     pub(super) timing: Vec<Figure>,
 }
 
+impl Figures {
+    /// In the order of the page.
+    pub(super) fn into_all(self) -> impl Iterator<Item = Figure> {
+        let sections = [self.course, self.flight, self.timing];
+        sections.into_iter().flatten()
+    }
+}
+
 /// Draws all that there is to draw.
 pub(super) fn figures(report: &Report) -> Result<Figures, PlotError> {
     if report.continuity.ticks == 0 {

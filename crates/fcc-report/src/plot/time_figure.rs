@@ -8,8 +8,8 @@ use super::super::states::Phase;
 use super::super::trace::Point;
 use super::axis::Axis;
 use super::canvas::{
-    ACTUAL, Area, DESIRED, Drawn, FAINT, LABEL_PX, PlotError, SMALL_PX, TEXT, WIDTH_PX, draw, pen,
-    px, text, text_width_px,
+    ACTUAL, Area, DESIRED, Drawn, FAINT, LABEL_PX, MEASURED, PlotError, SMALL_PX, TEXT, WIDTH_PX,
+    draw, pen, px, text, text_width_px,
 };
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
@@ -33,6 +33,8 @@ const GAP: RGBColor = RGBColor(255, 238, 170);
 /// How a line is drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Ink {
+    /// Thin and pale, behind the others.
+    Measured,
     /// Solid.
     Actual,
     /// Thin and dashed.
@@ -107,6 +109,7 @@ fn draw_panel(
     }
     for (ink, lines) in &panel.lines {
         let style = match (ink, report.duration_s > DENSE_S) {
+            (Ink::Measured, _) => pen(MEASURED, 0.6),
             (Ink::Actual, false) => pen(ACTUAL, 1.3),
             (Ink::Actual, true) => pen(ACTUAL, 0.8),
             (Ink::Desired, false) => pen(DESIRED, 1.0),
@@ -144,6 +147,7 @@ fn legend(area: &Area<'_>, report: &Report, panels: &[TimePanel]) -> Drawn {
         Ok(())
     };
     for (ink, pen, words) in [
+        (Ink::Measured, pen(MEASURED, 0.9), "measured"),
         (Ink::Actual, pen(ACTUAL, 1.3), "actual"),
         (Ink::Desired, pen(DESIRED, 1.0), "desired"),
     ] {

@@ -146,6 +146,8 @@ fcc_core::schema! {
     }
 }
 
+fcc_core::readings!(Measured { switch: "switch" });
+
 /// Deadline `number`, woken 40 µs late.
 pub(crate) fn expiry(number: u64) -> Expiry {
     let scheduled_ns = 25_000_000 * number as i64;

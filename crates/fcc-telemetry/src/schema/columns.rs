@@ -131,6 +131,12 @@ impl Around<'_> {
             }
             Type::Leaf(Kind::Instant) => format!("{own}_ns"),
             _ if self.is_value() => self.quantity.to_owned(),
+            _ if !self.quantity.is_empty() => {
+                let reading = around;
+                around = reading.and_then(|reading| reading.outer);
+                let quantity = reading.map_or("", |reading| reading.field.quantity());
+                format!("{quantity}_{own}")
+            }
             _ => own.replace('*', self.field.name),
         };
         while let Some(outer) = around {

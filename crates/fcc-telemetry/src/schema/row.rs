@@ -51,6 +51,7 @@ impl Row {
 impl Sink for Row {
     fn begin(&mut self, _: &'static Field) {
         self.open.push(self.used);
+        self.never = false;
     }
 
     fn end(&mut self, field: &'static Field) {
@@ -66,7 +67,7 @@ impl Sink for Row {
     }
 
     fn value(&mut self, field: &'static Field, value: Value) {
-        self.never = value.is_never();
+        self.never |= value.is_never();
         let Some(cell) = self.cell() else {
             return;
         };

@@ -50,8 +50,8 @@ pub(crate) fn report(
     };
     let mut figures = vec![
         stage("sensors", |record| record.stages.sensors_ns),
-        stage("navigation", |record| record.stages.navigation_ns),
-        stage("guidance", |record| record.stages.guidance_ns),
+        stage("estimate", |record| record.stages.estimate_ns),
+        stage("guide", |record| record.stages.guide_ns),
         stage("control", |record| record.stages.control_ns),
         stage("actuators", |record| record.stages.actuators_ns),
         stage("whole tick, from the wake-up", |record| {

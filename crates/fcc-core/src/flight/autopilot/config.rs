@@ -9,6 +9,19 @@ use crate::flight::navigation::NavigationConfig;
 use crate::schema;
 
 /// Everything about the autopilot that is the user's choice.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::flight::AutopilotConfig;
+///
+/// // A slower sensor, that is still good after half a second.
+/// let config = AutopilotConfig {
+///     max_age: Duration::from_millis(500),
+///     ..AutopilotConfig::default()
+/// };
+/// // 100 kt.
+/// assert!((config.reference_airspeed_mps * 3.6 / 1.852 - 100.0).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct AutopilotConfig {
     /// The airspeed at which the gains hold as they are, m/s.
@@ -57,6 +70,16 @@ schema! {
     /// What may be asked of the autopilot while it is engaged. Each but the last
     /// changes one set point, ends a pattern and keeps the other set points as they
     /// are.
+    ///
+    /// ```
+    /// use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
+    /// use fcc_core::framework::Controller;
+    ///
+    /// let mut autopilot = Autopilot::new(AutopilotConfig::default());
+    /// autopilot.command(&AutopilotCommand::Altitude(960.12));
+    /// // Not engaged, it flies nothing.
+    /// assert_eq!(autopilot.setpoints().altitude_m, 0.0);
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug)]
     #[name("Command")]
     #[non_exhaustive]

@@ -30,6 +30,42 @@ use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
+///
+/// ```
+/// use fcc_core::flight::guidance::GuidanceConfig;
+/// use fcc_core::flight::{
+///     Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, SpecificForce,
+/// };
+/// use fcc_core::framework::{Controller, Reading, Tick, Time};
+///
+/// let mut autopilot = Autopilot::new(AutopilotConfig {
+///     guidance: GuidanceConfig::Hold,
+///     ..AutopilotConfig::default()
+/// });
+/// // Two seconds of level flight at 100 kt and 3,000 ft, heading 30°.
+/// let mut tick = Tick { dt_s: 0.025, ..Tick::default() };
+/// let mut measured = Measurements::default();
+/// for n in 1..=80 {
+///     let now = Time::from_nanos(n * 25_000_000);
+///     (tick.scheduled, tick.woke) = (now, now);
+///     let felt = SpecificForce { z_mps2: -9.806_65, ..SpecificForce::default() };
+///     measured = Measurements {
+///         attitude: Reading::new(Attitude::default(), now),
+///         heading_rad: Reading::new(30.0_f64.to_radians(), now),
+///         body_rates: Reading::new(BodyRates::default(), now),
+///         specific_force: Reading::new(felt, now),
+///         airspeed_mps: Reading::new(51.444, now),
+///         altitude_m: Reading::new(914.4, now),
+///         ..Measurements::default()
+///     };
+///     autopilot.estimate(&tick, &measured);
+/// }
+/// assert!(autopilot.engage_inhibits(&tick, &measured).is_empty());
+/// autopilot.engage(&tick, &measured);
+/// autopilot.guide(&tick, &measured);
+/// assert!(autopilot.control(&tick, &measured).is_valid());
+/// assert!((autopilot.setpoints().heading_rad.to_degrees() - 30.0).abs() < 1e-6);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Autopilot {
     config: AutopilotConfig,
@@ -177,10 +213,9 @@ impl Controller for Autopilot {
             AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
             AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
             AutopilotCommand::Altitude(m) => write!(f, "altitude {m:.1} m"),
-            AutopilotCommand::Resume(Resume { pattern_s, .. }) => match pattern_s {
-                Some(elapsed_s) => write!(f, "go on {elapsed_s:.1} s into the pattern"),
-                None => f.write_str("go on with what was flown"),
-            },
+            AutopilotCommand::Resume(Resume { progress, .. }) => {
+                write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
+            }
         }
     }
 
@@ -254,6 +289,7 @@ impl Controller for Autopilot {
             roll_rad: lateral.roll_rad,
             climb_rate_mps: vertical.climb_rate_mps,
             pitch_rad: vertical.pitch_rad,
+            ..self.setpoints
         };
         Surfaces {
             throttle,
@@ -336,7 +372,12 @@ impl Controller for Autopilot {
     }
 
     fn setpoints(&self) -> Setpoints {
-        self.setpoints
+        let mut guidance = self.guidance.progress();
+        guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
+        Setpoints {
+            guidance,
+            ..self.setpoints
+        }
     }
 
     fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {

@@ -5,56 +5,36 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
-use crate::flight::AutopilotCommand;
 use crate::flight::Surfaces;
-use crate::flight::guidance::{ActiveMode, Mode, ModeInput, Progress, Targets};
+use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
 use crate::schema;
 
 schema! {
-    /// What was flown when a flight was cut off. Ordered right after engaging, it
-    /// puts the autopilot where it was.
+    /// What was flown when a flight was cut off. Commanded right after engaging,
+    /// it puts the autopilot where it was.
+    ///
+    /// ```
+    /// use fcc_core::flight::guidance::{Mode, Progress};
+    /// use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
+    ///
+    /// // 65 s into the pattern when the power went.
+    /// let resume = Resume {
+    ///     progress: Progress { mode: Mode::TimedPattern, elapsed_s: 65.0, ..Progress::default() },
+    ///     surfaces: Surfaces { throttle: 0.7, ..Surfaces::default() },
+    /// };
+    /// let command = AutopilotCommand::Resume(resume);
+    /// assert_eq!(command, AutopilotCommand::Resume(resume));
+    /// ```
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub struct Resume {
-        /// What was aimed for; of a pattern, what it had captured. The heading is
-        /// on the compass, 0..2π.
-        #[field(1)]
-        pub targets: Targets,
-        /// For how long the configured pattern had been flown by now, s; none (not
-        /// a number) if the targets are to be held.
-        #[field(2)]
-        pub pattern_s: Option<f64>,
+        /// How far guidance had come, as the record has it: the captured heading
+        /// is on the compass, 0..2π.
+        #[field(4)]
+        pub progress: Progress,
         /// The surfaces that flew the aircraft: whoever gave the controls back may
         /// have centred them since.
         #[field(3)]
         pub surfaces: Surfaces,
-    }
-}
-
-impl Resume {
-    /// How far guidance had come.
-    fn progress(&self) -> Progress {
-        let mode = match self.pattern_s {
-            Some(_) => Mode::TimedPattern,
-            None => Mode::Hold,
-        };
-        Progress {
-            mode,
-            elapsed_s: self.pattern_s.unwrap_or(0.0),
-            captured: self.targets,
-            ..Progress::default()
-        }
-    }
-}
-
-impl AutopilotCommand {
-    /// Whether it ends a pattern that is flown.
-    pub fn ends_pattern(&self) -> bool {
-        match *self {
-            Self::Airspeed(value) | Self::Heading(value) | Self::Altitude(value) => {
-                value.is_finite()
-            }
-            Self::Resume(_) => false,
-        }
     }
 }
 
@@ -63,7 +43,7 @@ impl Autopilot {
     /// aircraft has turned about: the heading that is aimed for now is taken
     /// within half a turn of where the nose points.
     pub(super) fn resume(&mut self, resume: &Resume) {
-        let (config, mut progress) = (&self.config.guidance, resume.progress());
+        let (config, mut progress) = (&self.config.guidance, resume.progress);
         if !progress.is_valid() || !resume.surfaces.is_valid() {
             return;
         }

@@ -2,35 +2,36 @@
 
 use core::fmt;
 
-/// What guidance flies, by its number in the record.
-///
-/// The table of changes, whole: rows are modes, columns inputs, `·` means that
-/// nothing changes. The configured mode is the one that
-/// [`GuidanceConfig`](super::GuidanceConfig) names.
-///
-/// | | `Engage` | `SetPoint` | `Resume(mode)` | `Disengage` |
-/// |---|---|---|---|---|
-/// | **None** | the configured mode | · | · | None |
-/// | **Hold** | the configured mode | Hold | the mode, if it is Hold or configured | None |
-/// | **`TimedPattern`** | the configured mode | Hold | the mode, if it is Hold or configured | None |
-///
-/// ```
-/// use fcc_core::flight::guidance::{Mode, ModeInput};
-///
-/// // A heading that is commanded ends a pattern, and the rest is held.
-/// let after = Mode::TimedPattern.after(ModeInput::SetPoint, Mode::TimedPattern);
-/// assert_eq!(after, Some(Mode::Hold));
-/// ```
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
-#[repr(u8)]
-pub enum Mode {
-    /// Nothing is flown: the loop is not engaged.
-    #[default]
-    None = 0,
-    /// [`Hold`](super::Hold).
-    Hold = 1,
-    /// [`TimedPattern`](super::TimedPattern).
-    TimedPattern = 2,
+use crate::schema;
+
+schema! {
+    /// What guidance flies, by its number in the record.
+    ///
+    /// The table of changes, whole: rows are modes, columns inputs, `·` means that
+    /// nothing changes. The configured mode is the one that
+    /// [`GuidanceConfig`](super::GuidanceConfig) names.
+    ///
+    /// | | `Engage` | `SetPoint` | `Resume(mode)` | `Disengage` |
+    /// |---|---|---|---|---|
+    /// | **None** | the configured mode | · | · | None |
+    /// | **Hold** | the configured mode | Hold | the mode, if it is Hold or configured | None |
+    /// | **`TimedPattern`** | the configured mode | Hold | the mode, if it is Hold or configured | None |
+    ///
+    /// ```
+    /// use fcc_core::flight::guidance::{Mode, ModeInput};
+    ///
+    /// // A heading that is commanded ends a pattern, and the rest is held.
+    /// let after = Mode::TimedPattern.after(ModeInput::SetPoint, Mode::TimedPattern);
+    /// assert_eq!(after, Some(Mode::Hold));
+    /// ```
+    pub enum Mode {
+        /// Nothing is flown: the loop is not engaged.
+        None = 0,
+        /// [`Hold`](super::Hold).
+        Hold = 1,
+        /// [`TimedPattern`](super::TimedPattern).
+        TimedPattern = 2,
+    }
 }
 
 /// What can change the mode.
@@ -71,11 +72,6 @@ impl Mode {
                 (mode == Self::Hold || mode == configured).then_some(mode)
             }
         }
-    }
-
-    /// From the number as stored; none if no mode has it.
-    pub fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.get(usize::from(number)).copied()
     }
 
     /// As a configuration spells it.

@@ -67,7 +67,7 @@
 /// }
 ///
 /// let valve = Valve { open: Reading::new(0.5, Time::from_nanos(0)), motion: Motion::Turning };
-/// assert_eq!(Valve::TYPE.leaves(), 3);
+/// assert_eq!(Valve::TYPE.leaves(), 4);
 /// assert_eq!(Motion::from_number(1), Some(Motion::Turning));
 /// assert_eq!(Wanted::default(), Wanted::Stop);
 /// # let _ = valve;

@@ -44,6 +44,7 @@ macro_rules! leaf {
 
 leaf!(bool, Kind::Bool, v => Value::Bool(v), Value::Bool(v) => Some(v));
 leaf!(Flags, Kind::Flags, v => Value::Flags(v.bits()), Value::Flags(v) => Some(Self::from_bits(v)));
+leaf!(u8, Kind::Count(1), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());
 leaf!(u16, Kind::Count(2), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());
 leaf!(u32, Kind::Count(4), v => Value::Count(v.into()), Value::Count(v) => Self::try_from(v).ok());
 leaf!(u64, Kind::Count(8), v => Value::Count(v), Value::Count(v) => Some(v));
@@ -81,7 +82,7 @@ impl Schema for () {
 impl<T: Schema> Schema for Reading<T> {
     const TYPE: Type = Type::Struct(&Structure {
         name: "Reading",
-        meaning: " A value and the time it was taken.\n",
+        meaning: " A value, the time it was taken and the sensor it came from.\n",
         fields: Self::FIELDS,
         derived: &[],
         is_reading: true,
@@ -105,22 +106,32 @@ impl<T: Schema> Schema for Reading<T> {
             of: Time::TYPE,
             ..Field::ROOT
         },
+        Field {
+            name: "source",
+            number: 3,
+            meaning: " The place in the loop of the sensor that it came from, the first being 0.\n",
+            offset: offset_of!(Self, source),
+            of: u8::TYPE,
+            ..Field::ROOT
+        },
     ];
 
     fn write<W: Sink>(&self, field: &'static Field, sink: &mut W) {
-        if let [value, taken] = Self::FIELDS {
+        if let [value, taken, source] = Self::FIELDS {
             sink.begin(field);
             self.value.write(value, sink);
             self.taken.write(taken, sink);
+            self.source.write(source, sink);
             sink.end(field);
         }
     }
 
     fn read<R: Source>(&mut self, field: &'static Field, source: &mut R) -> Result<(), Unknown> {
-        if let [value, taken] = Self::FIELDS {
+        if let [value, taken, place] = Self::FIELDS {
             source.begin(field);
             self.value.read(value, source)?;
             self.taken.read(taken, source)?;
+            self.source.read(place, source)?;
             source.end(field);
         }
         Ok(())

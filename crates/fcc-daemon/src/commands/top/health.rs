@@ -24,8 +24,8 @@ pub(super) fn stages(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     let (now, most) = (&record.stages, &picture.longest);
     let lines: Vec<_> = [
         ("sensors", now.sensors_ns, most.sensors_ns),
-        ("navigat.", now.navigation_ns, most.navigation_ns),
-        ("guidance", now.guidance_ns, most.guidance_ns),
+        ("estimate", now.estimate_ns, most.estimate_ns),
+        ("guide", now.guide_ns, most.guide_ns),
         ("control", now.control_ns, most.control_ns),
         ("actuat.", now.actuators_ns, most.actuators_ns),
         ("total", now.total_ns, most.total_ns),

@@ -73,8 +73,8 @@ impl Picture {
         let (longest, now) = (&mut self.longest, &record.stages);
         for (longest, now) in [
             (&mut longest.sensors_ns, now.sensors_ns),
-            (&mut longest.navigation_ns, now.navigation_ns),
-            (&mut longest.guidance_ns, now.guidance_ns),
+            (&mut longest.estimate_ns, now.estimate_ns),
+            (&mut longest.guide_ns, now.guide_ns),
             (&mut longest.control_ns, now.control_ns),
             (&mut longest.actuators_ns, now.actuators_ns),
             (&mut longest.total_ns, now.total_ns),

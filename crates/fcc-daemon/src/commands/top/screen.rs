@@ -53,9 +53,14 @@ pub(super) fn draw(frame: &mut Frame<'_>, instance: &Instance, picture: &Picture
     let [lower_left, lower_middle, lower_right] =
         Layout::horizontal(columns).spacing(1).areas(lower);
 
-    let parts: [(&'static str, Rect, Part); 7] = [
+    // Engaged, the mode of guidance and where it is.
+    let flown = match &picture.record {
+        Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
+        _ => "Flight".to_owned(),
+    };
+    let parts: [(&str, Rect, Part); 7] = [
         ("Attitude", left, horizon::draw),
-        ("Flight", middle, flight::draw),
+        (&flown, middle, flight::draw),
         ("Lateness", right, timing::draw),
         ("Stages", lower_left, health::stages),
         ("Sensor ages", lower_middle, health::ages),

@@ -38,7 +38,16 @@ struct Tick {
     early_wake_us: f64,
     actual: Values,
     setpoints: Option<Values>,
+    guidance: Option<Guidance>,
     outputs: Option<Outputs>,
+}
+
+/// The mode that is flown, and how far it has come.
+#[derive(Serialize)]
+struct Guidance {
+    mode: &'static str,
+    item: u32,
+    elapsed_s: f64,
 }
 
 #[derive(Serialize)]
@@ -126,6 +135,7 @@ fn tick(record: &FlightRecord, time_s: f64) -> Tick {
         early_wake_us: record.early_wake_ns as f64 * 1e-3,
         actual: actual(record),
         setpoints: (record.state == State::Engaged).then(|| setpoints(record)),
+        guidance: (record.state == State::Engaged).then(|| guidance(record)),
         outputs: record.sent.then_some(Outputs {
             throttle: record.outputs.throttle,
             elevator: record.outputs.elevator,
@@ -156,6 +166,15 @@ fn setpoints(record: &FlightRecord) -> Values {
         airspeed_kt: Some(aims.airspeed_mps * MPS_KT),
         bank_deg: Some(aims.roll_rad.to_degrees()),
         pitch_deg: Some(aims.pitch_rad.to_degrees()),
+    }
+}
+
+fn guidance(record: &FlightRecord) -> Guidance {
+    let progress = record.setpoints.guidance;
+    Guidance {
+        mode: progress.mode.name(),
+        item: progress.item,
+        elapsed_s: progress.elapsed_s,
     }
 }
 

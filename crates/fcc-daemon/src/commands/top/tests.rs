@@ -1,5 +1,6 @@
 //! The whole screen, drawn from a fixed picture.
 
+use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::{Attitude, Surfaces};
 use fcc_core::framework::{Flags, Reading, State, Tick, Time};
 use fcc_live::{Event, EventCode, Info, RecorderState, Status, Text};
@@ -65,6 +66,8 @@ fn picture() -> Picture {
     record.setpoints.heading_rad = 90_f64.to_radians();
     record.setpoints.altitude_m = 960.12;
     record.setpoints.airspeed_mps = 185.2 / 3.6;
+    record.setpoints.guidance.mode = Mode::TimedPattern;
+    record.setpoints.guidance.item = 1;
     record.early_wake_ns = 142_000;
     record.stages.control_ns = 1_500;
     record.stages.total_ns = 12_345;

@@ -8,7 +8,6 @@
 //! kernel's own clock of this boot; what the time of day is does not matter.
 
 mod boot_clock;
-mod flown;
 mod keeper;
 mod observer;
 mod state_file;
@@ -18,15 +17,14 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::guidance::{GuidanceConfig, Targets, TimedPatternConfig};
+use fcc_core::flight::guidance::{Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{Message, Switch};
+use fcc_core::framework::{EventKind, Message, State, Switch};
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
 
 use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
-use flown::{Flown, Matter};
 use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
 use state_file::{Saved, StateFileError};
@@ -53,7 +51,6 @@ pub(super) struct RestartRequest {
     max_age: Duration,
     path: PathBuf,
     fingerprint: u32,
-    pattern: Option<TimedPatternConfig>,
 }
 
 impl RestartRequest {
@@ -69,10 +66,6 @@ impl RestartRequest {
             max_age: Duration::from_secs_f64(section.max_age_s),
             path,
             fingerprint: fingerprint(config),
-            pattern: match config.autopilot_config().guidance {
-                GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-                GuidanceConfig::Hold => None,
-            },
         }
     }
 }
@@ -89,6 +82,8 @@ fn fingerprint(config: &Config) -> u32 {
         guidance: config.guidance,
         autopilot: config.autopilot.clone(),
         x_plane: config.x_plane.clone(),
+        sensor: config.sensor.clone(),
+        actuator: config.actuator.clone(),
         ..Config::default()
     };
     // A configuration that was read can be written.
@@ -102,11 +97,12 @@ pub(super) struct Restart {
     /// Held until the process ends, however it does.
     _lock: File,
     keeper: Keeper,
-    flown: Flown,
-    kept: Option<(Instant, Targets)>,
+    kept: Option<(Instant, Progress)>,
     engaged_since: Option<Instant>,
     take_ups: u32,
     switch_on: bool,
+    /// The loop broke: what ends now was cut off.
+    is_broken: bool,
     taking_up: Option<TakingUp>,
 }
 
@@ -132,7 +128,6 @@ impl Restart {
             keeper.clear();
         }
         let this = Self {
-            flown: Flown::new(wish.pattern),
             boot: now,
             _lock: lock,
             keeper,
@@ -140,6 +135,7 @@ impl Restart {
             engaged_since: None,
             take_ups: 0,
             switch_on: false,
+            is_broken: false,
             taking_up,
             wish,
         };
@@ -148,21 +144,37 @@ impl Restart {
 
     /// Takes what the loop tells.
     pub(super) fn take(&mut self, message: &FlightMessage) {
-        match self.flown.take(message) {
-            Matter::Nothing => {}
-            Matter::Flying(resume) => self.keep(resume),
-            Matter::Over => {
+        if let Some(taking_up) = &mut self.taking_up {
+            taking_up.take(message);
+        }
+        match message {
+            Message::Event(event) => self.event(event),
+            Message::Tick(record) => {
+                self.switch_on = is_on(record);
+                if record.state == State::Engaged {
+                    self.keep(Resume {
+                        progress: record.setpoints.guidance,
+                        surfaces: record.outputs,
+                    });
+                }
+            }
+        }
+    }
+
+    fn event(&mut self, event: &FlightEvent) {
+        match event.kind {
+            // A loop that broke did not end its flight.
+            EventKind::StateChanged {
+                from: State::Engaged,
+                ..
+            } if !self.is_broken => {
                 self.kept = None;
                 self.engaged_since = None;
                 self.take_ups = 0;
                 self.keeper.clear();
             }
-        }
-        if let Some(taking_up) = &mut self.taking_up {
-            taking_up.take(message);
-        }
-        if let Message::Tick(record) = message {
-            self.switch_on = is_on(record);
+            EventKind::Panicked | EventKind::TimerFailed => self.is_broken = true,
+            _ => {}
         }
     }
 
@@ -213,14 +225,14 @@ impl Restart {
         if self.take_ups > 0 && since.elapsed() >= SOUND_AFTER {
             self.take_ups = 0;
         }
-        let is_due = self.kept.is_none_or(|(at, targets)| {
-            at.elapsed() >= KEEP_EVERY || differ(&targets, &resume.targets)
+        let is_due = self.kept.is_none_or(|(at, progress)| {
+            at.elapsed() >= KEEP_EVERY || differ(&progress, &resume.progress)
         });
         // What is to be taken up stays until that is decided.
         if !is_due || self.taking_up.is_some() {
             return;
         }
-        self.kept = Some((Instant::now(), resume.targets));
+        self.kept = Some((Instant::now(), resume.progress));
         // The boot does not change while the process lives.
         let Some(at) = self.boot.as_ref().and_then(BootInstant::again) else {
             return;
@@ -307,11 +319,14 @@ fn is_on(record: &FlightRecord) -> bool {
     !switch.is_never() && switch.value == Switch::On
 }
 
-/// Whether the set points differ by more than small change.
-fn differ(kept: &Targets, now: &Targets) -> bool {
-    (kept.airspeed_mps - now.airspeed_mps).abs() > CHANGE.airspeed_mps
-        || (kept.heading_rad - now.heading_rad).abs() > CHANGE.heading_rad
-        || (kept.altitude_m - now.altitude_m).abs() > CHANGE.altitude_m
+/// Whether another mode is flown, or what it captured differs by more than
+/// small change.
+fn differ(kept: &Progress, now: &Progress) -> bool {
+    let (was, is) = (kept.captured, now.captured);
+    kept.mode != now.mode
+        || (was.airspeed_mps - is.airspeed_mps).abs() > CHANGE.airspeed_mps
+        || (was.heading_rad - is.heading_rad).abs() > CHANGE.heading_rad
+        || (was.altitude_m - is.altitude_m).abs() > CHANGE.altitude_m
 }
 
 #[cfg(test)]

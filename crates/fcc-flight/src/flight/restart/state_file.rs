@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
-use fcc_core::flight::guidance::Targets;
+use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{Resume, Surfaces};
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ use super::boot_clock::BootInstant;
 /// Begins every state file.
 const NAME: &str = "fccd-flight";
 /// The present layout.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What is kept of a flight.
 #[derive(Clone, PartialEq, Debug)]
@@ -44,10 +44,11 @@ struct Page {
     config: u32,
     switch_on: bool,
     take_ups: u32,
+    mode: String,
+    elapsed_s: f64,
     airspeed_mps: f64,
     heading_rad: f64,
     altitude_m: f64,
-    pattern_s: Option<f64>,
     throttle: f64,
     elevator: f64,
     aileron: f64,
@@ -105,21 +106,19 @@ fn sync_folder(path: &Path) -> io::Result<()> {
 }
 
 fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
-    let Resume {
-        targets,
-        pattern_s,
-        surfaces,
-    } = saved.resume;
+    let Resume { progress, surfaces } = saved.resume;
+    let targets = progress.captured;
     let body = serde_json::to_vec(&Page {
         boot: saved.at.boot.clone(),
         boottime_ns: saved.at.ns,
         config: saved.config,
         switch_on: saved.switch_on,
         take_ups: saved.take_ups,
+        mode: progress.mode.to_string(),
+        elapsed_s: progress.elapsed_s,
         airspeed_mps: targets.airspeed_mps,
         heading_rad: targets.heading_rad,
         altitude_m: targets.altitude_m,
-        pattern_s,
         throttle: surfaces.throttle,
         elevator: surfaces.elevator,
         aileron: surfaces.aileron,
@@ -157,6 +156,7 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
         return Err(StateFileError::Damaged);
     }
     let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
+    let mode = Mode::ALL.into_iter().find(|mode| mode.name() == page.mode);
     Ok(Saved {
         at: BootInstant {
             boot: page.boot,
@@ -166,12 +166,16 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
         switch_on: page.switch_on,
         take_ups: page.take_ups,
         resume: Resume {
-            targets: Targets {
-                airspeed_mps: page.airspeed_mps,
-                heading_rad: page.heading_rad,
-                altitude_m: page.altitude_m,
+            progress: Progress {
+                mode: mode.ok_or(StateFileError::Damaged)?,
+                elapsed_s: page.elapsed_s,
+                captured: Targets {
+                    airspeed_mps: page.airspeed_mps,
+                    heading_rad: page.heading_rad,
+                    altitude_m: page.altitude_m,
+                },
+                ..Progress::default()
             },
-            pattern_s: page.pattern_s,
             surfaces: Surfaces {
                 throttle: page.throttle,
                 elevator: page.elevator,
@@ -187,7 +191,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn saved(pattern_s: Option<f64>) -> Saved {
+    fn saved(mode: Mode, elapsed_s: f64) -> Saved {
         Saved {
             at: BootInstant {
                 boot: "e8a5f3f2-6a62-4b1c-9a57-0f2d5b1c0c11".to_owned(),
@@ -197,12 +201,16 @@ mod tests {
             switch_on: true,
             take_ups: 2,
             resume: Resume {
-                targets: Targets {
-                    airspeed_mps: 51.4,
-                    heading_rad: 6.1,
-                    altitude_m: 914.4,
+                progress: Progress {
+                    mode,
+                    elapsed_s,
+                    captured: Targets {
+                        airspeed_mps: 51.4,
+                        heading_rad: 6.1,
+                        altitude_m: 914.4,
+                    },
+                    ..Progress::default()
                 },
-                pattern_s,
                 surfaces: Surfaces {
                     throttle: 0.7,
                     elevator: -0.1,
@@ -218,9 +226,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fccd.flight");
         assert!(read(&path).unwrap().is_none());
-        for pattern_s in [None, Some(65.25)] {
-            write(&path, &saved(pattern_s)).unwrap();
-            assert_eq!(read(&path).unwrap(), Some(saved(pattern_s)));
+        for flown in [saved(Mode::Hold, 3.5), saved(Mode::TimedPattern, 65.25)] {
+            write(&path, &flown).unwrap();
+            assert_eq!(read(&path).unwrap(), Some(flown));
         }
         remove(&path).unwrap();
         assert!(read(&path).unwrap().is_none());
@@ -230,14 +238,14 @@ mod tests {
 
     #[test]
     fn what_is_not_ours_is_told_from_what_is_broken() {
-        let good = encode(&saved(None)).unwrap();
+        let good = encode(&saved(Mode::Hold, 3.5)).unwrap();
         let said = |bytes: &[u8]| decode(bytes).unwrap_err().to_string();
         assert!(said(b"root:x:0:0:root:/root:/bin/bash\n").contains("no state file of fccd"));
         assert!(said(&[0xff; 40]).contains("no state file of fccd"));
-        assert!(said(b"fccd-flight 2 00000000\n{}").contains("another version"));
+        assert!(said(b"fccd-flight 3 00000000\n{}").contains("another version"));
         assert!(said(b"").contains("damaged"), "a disk that lost it");
         assert!(said(&good[..good.len() - 1]).contains("damaged"));
-        assert!(said(b"fccd-flight 1 00000000\n").contains("damaged"));
+        assert!(said(b"fccd-flight 2 00000000\n").contains("damaged"));
     }
 
     proptest! {
@@ -245,13 +253,13 @@ mod tests {
         /// the line before it has no room for another meaning.
         #[test]
         fn one_changed_byte_is_noticed(place in any::<prop::sample::Index>(), by in 1_u8..) {
-            let mut bytes = encode(&saved(Some(3.0))).unwrap();
+            let mut bytes = encode(&saved(Mode::TimedPattern, 3.0)).unwrap();
             let place = place.index(bytes.len());
             bytes[place] ^= by;
             match decode(&bytes) {
                 Err(_) => {}
                 // Upper and lower case are the same number.
-                Ok(read) => prop_assert_eq!(read, saved(Some(3.0))),
+                Ok(read) => prop_assert_eq!(read, saved(Mode::TimedPattern, 3.0)),
             }
         }
 

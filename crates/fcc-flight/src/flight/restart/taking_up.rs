@@ -114,12 +114,10 @@ impl TakingUp {
         if !seen.engage_inhibits.is_empty() {
             return Next::Wait;
         }
-        // The pattern's time went on while nobody flew it.
-        let pattern_s = self.saved.resume.pattern_s;
-        Next::Command(Resume {
-            pattern_s: pattern_s.map(|elapsed_s| elapsed_s + age.as_secs_f64()),
-            ..self.saved.resume
-        })
+        // The mode's time went on while nobody flew it.
+        let mut resume = self.saved.resume;
+        resume.progress.elapsed_s += age.as_secs_f64();
+        Next::Command(resume)
     }
 
     /// Commands it: engage first, for engaging forgets what was ordered before.
@@ -148,15 +146,13 @@ fn taken_up(resume: &Resume, age: Duration) -> String {
         airspeed_mps,
         heading_rad,
         altitude_m,
-    } = resume.targets;
-    let place = resume
-        .pattern_s
-        .map(|elapsed_s| format!(", {elapsed_s:.1} s into a pattern that began at"))
-        .unwrap_or_default();
+    } = resume.progress.captured;
     format!(
-        "the flight was taken up {:.2} s after it was last kept{place}: heading {:.0}°, altitude \
-         {:.0} ft, airspeed {:.1} kt",
+        "the flight was taken up {:.2} s after it was last kept: {}, {:.1} s after it captured \
+         heading {:.0}°, altitude {:.0} ft, airspeed {:.1} kt",
         age.as_secs_f64(),
+        resume.progress.mode,
+        resume.progress.elapsed_s,
         heading_rad.to_degrees(),
         altitude_m * M_FT,
         airspeed_mps * MPS_KT
@@ -165,6 +161,7 @@ fn taken_up(resume: &Resume, age: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
+    use fcc_core::flight::guidance::{Mode, Progress};
     use fcc_core::flight::{Autopilot, Surfaces};
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
@@ -175,12 +172,10 @@ mod tests {
     #[test]
     fn both_orders_are_sent_or_neither() {
         let resume = Resume {
-            targets: Targets {
-                airspeed_mps: 50.0,
-                heading_rad: 1.0,
-                altitude_m: 900.0,
+            progress: Progress {
+                mode: Mode::Hold,
+                ..Progress::default()
             },
-            pattern_s: None,
             surfaces: Surfaces::default(),
         };
         let saved = Saved {

@@ -145,7 +145,7 @@ fn field(of: &'static Field) -> MessageField {
 /// What a struct's message is called; a reading is called after its value.
 pub(crate) fn name_of(of: &Structure) -> String {
     let value = match of.fields {
-        [value, _] if of.is_reading => value,
+        [value, ..] if of.is_reading => value,
         _ => return of.name.to_owned(),
     };
     let kind = match value.of {

@@ -1,0 +1,102 @@
+//! Flights with several sensors: what a second one costs, what it saves, and
+//! that a replay reproduces which was used.
+
+use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
+use fcc_flight::config::Config;
+use fcc_flight::replay::{Replay, run};
+use fcc_telemetry::{FlightMessage, FlightRecord};
+
+use super::assert_identical;
+use super::flights::{Happenings, fly, records, rough};
+
+fn flown(seconded: bool, silent: bool) -> Vec<FlightMessage> {
+    let two_seconds = 1_001..=1_080;
+    let happenings = Happenings {
+        seconded,
+        silent: silent.then_some(two_seconds).into_iter().collect(),
+        steps: 2_000,
+        ..Happenings::default()
+    };
+    fly(&rough(), &happenings)
+}
+
+/// The changes of the sensor, each with its tick.
+fn changes(messages: &[FlightMessage]) -> Vec<(u64, SourceChange)> {
+    messages
+        .iter()
+        .filter_map(|message| match message {
+            Message::Event(event) => match event.kind {
+                EventKind::SourceChanged(change) => Some((event.tick, change)),
+                _ => None,
+            },
+            Message::Tick(_) => None,
+        })
+        .collect()
+}
+
+#[test]
+fn a_second_sensor_that_is_not_needed_changes_no_bit() {
+    let (one, two) = (flown(false, false), flown(true, false));
+    assert_eq!(records(&one), records(&two));
+    assert_eq!(changes(&two), []);
+}
+
+/// Silent for 2 s: with one sensor that is failsafe after 250 ms, with two a
+/// change after 100 ms and another when it is back.
+#[test]
+fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
+    let one = flown(false, true);
+    let has_failed = |record: &FlightRecord| matches!(record.state.state(), State::Failsafe(_));
+    assert!(records(&one).iter().any(has_failed));
+
+    let two = flown(true, true);
+    let states = assert_identical(&rough(), &two);
+    assert_eq!(states, [State::Standby, State::Engaged]);
+    let all = Flags::from_bits(0b1111_1111_1111);
+    let (to, back) = ((0, 1), (1, 0));
+    let change = |(from, to)| SourceChange {
+        readings: all,
+        from,
+        to,
+    };
+    assert_eq!(changes(&two), [(1_005, change(to)), (1_081, change(back))]);
+    for record in records(&two) {
+        let source = u8::from((1_005..=1_080).contains(&record.tick.number));
+        assert_eq!(record.measurements.airspeed_mps.source, source);
+    }
+}
+
+#[test]
+fn a_replay_reproduces_which_sensor_was_used() {
+    let messages = flown(true, true);
+    let replay = Replay::new(&rough()).unwrap();
+    let mut used = 0;
+    run(replay, messages.iter().copied(), |recorded, again| {
+        assert_eq!(recorded.measurements, again.measurements);
+        used += u32::from(again.measurements.attitude.source == 1);
+    });
+    assert_eq!(used, 76);
+}
+
+/// By configuration: an X-Plane that never answers is preferred, and all comes
+/// from the built-in aircraft.
+#[test]
+fn the_simulator_stands_in_for_a_sensor_that_never_answers() {
+    let text = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\nsimulator = \"127.0.0.1:9\"\n";
+    let listed = Config::parse(text, "test").unwrap();
+    let alone = Config::parse("[built-in]\n", "test").unwrap();
+    let happenings = Happenings {
+        steps: 1_000,
+        ..Happenings::default()
+    };
+    let (listed, alone) = (fly(&listed, &happenings), fly(&alone, &happenings));
+    let (listed, alone) = (records(&listed), records(&alone));
+    assert_eq!(listed.len(), 1_000);
+    for (listed, alone) in listed.iter().zip(&alone) {
+        assert_eq!(listed.outputs, alone.outputs);
+        assert_eq!(listed.state, alone.state);
+        assert_eq!(listed.measurements.heading_rad.source, 1);
+        assert_eq!(alone.measurements.heading_rad.source, 0);
+    }
+    assert!(listed.iter().any(|record| record.sent));
+}
