@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -78,13 +79,43 @@ WRONG = {
         "budget.control_us",
         "no more than tick_us",
     ),
+    "a tick longer than its period": (
+        "[built-in]\n[loop]\nrate_hz = 50\n[budget]\ntick_us = 20001\n",
+        5,
+        "budget.tick_us",
+        "no more than the period, 20000",
+    ),
+    "a key that is meant": (
+        "[built-in]\n[loop]\nrate_hertz = 50\n",
+        3,
+        "loop.rate_hertz",
+        "did you mean `rate_hz`",
+    ),
+    "a section that is meant": ("[buildin]\n", 1, "buildin", "did you mean `built-in`"),
+    "a key of another section": (
+        "[built-in]\n[autopilot]\nmax_bank_deg = 25\n",
+        3,
+        "autopilot.max_bank_deg",
+        "did you mean `autopilot.envelope.max_bank_deg`",
+    ),
+    "a choice that is meant": (
+        '[built-in]\ngusts = "modrate"\n',
+        2,
+        "built-in.gusts",
+        'did you mean "moderate"',
+    ),
     "a hang that is none": (
         "[built-in]\n[watchdog]\nhang_after_ms = 5\n",
         3,
         "watchdog.hang_after_ms",
         "50 to 60000",
     ),
-    "a leg of a hold": ('[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n', 2, "guidance", "leg_s"),
+    "a leg of a hold": (
+        '[x-plane]\n[guidance]\nmode = "hold"\nleg_s = 3\n',
+        2,
+        "guidance",
+        "leg_s",
+    ),
     "a section by its former name": (
         '[x-plane]\n[course]\nkind = "hold"\n',
         2,
@@ -132,6 +163,66 @@ def test_every_problem_is_named_in_the_order_of_the_file(fccd: Path, tmp_path: P
     ]
 
 
+def test_one_problem_hides_no_other(fccd: Path, tmp_path: Path) -> None:
+    """Of syntax, of keys, of types, of choices, of ranges, and of what belongs together."""
+    file = tmp_path / "wrong.toml"
+    file.write_text(
+        "[x-plane]\n"
+        "simulater = 3\n"
+        'engines = "two"\n'
+        "rate_hz = = 5\n"
+        "resubscribe_s = 0\n"
+        "[failsafe]\n"
+        'then = "land"\n'
+        "hold_s = -1\n"
+        "hold_s = -2\n"
+        "[lop]\n"
+        "[autopilot.envelope]\n"
+        "min_airspeed_kt = 120\n"
+        "max_airspeed_kt = 110\n"
+    )
+    ended = run([fccd, "check", file])
+    assert ended.returncode == 2
+    lines = [int(line.split(":")[1]) for line in ended.stderr.splitlines()]
+    assert lines == [2, 3, 4, 5, 7, 8, 9, 10, 12], ended.stderr
+    problems = json.loads(run([fccd, "check", file, "--json"]).stdout)["problems"]
+    assert [problem["line"] for problem in problems] == lines
+
+
+@pytest.mark.parametrize("what", ["folder", "pipe", "device", "huge"])
+def test_what_is_no_configuration_file_is_refused_at_once(
+    fccd: Path, tmp_path: Path, what: str
+) -> None:
+    path = tmp_path / what
+    if what == "folder":
+        path.mkdir()
+    elif what == "pipe":
+        os.mkfifo(path)
+    elif what == "device":
+        path = Path("/dev/zero")
+    else:
+        path.write_bytes(b"#" * 1_000_001)
+    says = {"folder": "a folder", "huge": "more than 1000000 bytes"}.get(what, "a pipe or a device")
+    for words in (["check"], ["run", "--config"], ["fly", "--config"]):
+        ended = run([fccd, *words, path])
+        assert ended.returncode == 2
+        assert ended.stderr.startswith(f"{path}: cannot be read: ")
+        assert says in ended.stderr
+
+
+def test_a_switch_that_is_left_to_the_default_is_named(fccd: Path, tmp_path: Path) -> None:
+    file = tmp_path / "right.toml"
+    file.write_text("[x-plane]\n")
+    ended = run([fccd, "check", file])
+    assert ended.returncode == 0
+    switch = "x-plane.engage_switch is not given: what engages is sim/cockpit2/switches/generic"
+    assert switch in ended.stdout
+    (remark,) = json.loads(run([fccd, "check", file, "--json"]).stdout)["remarks"]
+    assert switch in remark
+    file.write_text('[x-plane]\nengage_switch = "sim/mine"\n')
+    assert json.loads(run([fccd, "check", file, "--json"]).stdout)["remarks"] == []
+
+
 def test_what_is_no_text(fccd: Path, tmp_path: Path) -> None:
     file = tmp_path / "latin-1.toml"
     file.write_bytes("[x-plane]\n# für\n".encode("latin-1"))
@@ -158,6 +249,7 @@ def test_what_is_right(fccd: Path, tmp_path: Path, section: str) -> None:
     ended = run([fccd, "check", file])
     assert (ended.returncode, ended.stderr) == (0, "")
     checked = json.loads(run([fccd, "check", file, "--json"]).stdout)
+    assert checked.pop("remarks") is not None
     assert checked == {"file": str(file), "ok": True, "problems": []}
 
 

@@ -143,9 +143,7 @@ def test_a_flight_that_was_not_recorded_does_not_end_as_if_it_was(
     fccd: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "file").write_text("in the way of a folder")
-    ended = run(
-        [fccd, "fly", "--seconds", "1", "--lockstep", "--recordings", tmp_path / "file"]
-    )
+    ended = run([fccd, "fly", "--seconds", "1", "--lockstep", "--recordings", tmp_path / "file"])
     assert ended.returncode == NOT_RECORDED, ended.stderr
     assert "NOT RECORDED" in ended.stdout
 

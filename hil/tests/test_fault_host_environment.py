@@ -21,7 +21,6 @@ from daemon_under_test import (
     engage,
     flight,
     start,
-    wait_until,
     write_config,
 )
 from fault_flights import (

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from daemon_under_test import DaemonUnderTest, assert_released, engage, flight, wait_until
+from daemon_under_test import DaemonUnderTest, assert_released, engage, flight
 from fault_flights import (
     ENGAGED,
     FAILSAFE,
@@ -179,7 +179,9 @@ def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     record = flight.records[place]
     assert record.state.cause == OVERRUN
     # Told once, of the stage, and each counted: in its own record.
-    told = [event.kind.overrun for event in flight.events if event.kind.WhichOneof("kind") == "overrun"]
+    told = [
+        event.kind.overrun for event in flight.events if event.kind.WhichOneof("kind") == "overrun"
+    ]
     assert 1 <= len(told) <= 2
     assert told[-1].longest == CONTROL
     assert told[-1].took_ns > 30_000_000

@@ -7,7 +7,6 @@ import fcntl
 import os
 import pty
 import shutil
-import signal
 import subprocess
 import termios
 import time
@@ -73,7 +72,7 @@ def fly(
         stdin=subprocess.DEVNULL,
         stdout=theirs,
         stderr=theirs,
-        preexec_fn=prepare,
+        preexec_fn=prepare,  # noqa: PLW1509
     )
 
 
@@ -92,7 +91,9 @@ def ended(process: subprocess.Popen[bytes], scratch: Path) -> Flown:
     return Flown.of(Ending(code, {}, ""), scratch / "recordings")
 
 
-def unwritable(fccd: Path, scratch: Path, output: Output, spoil: Callable[[Output], object]) -> Flown:
+def unwritable(
+    fccd: Path, scratch: Path, output: Output, spoil: Callable[[Output], object]
+) -> Flown:
     """Fly, and let the output break once control is taken."""
     with flying(fly(fccd, scratch, output.theirs, FLOWN_S)) as process:
         os.close(output.theirs)
@@ -141,7 +142,7 @@ def _terminal_of_its_own() -> None:
 def a_terminal_that_hangs_up(
     fccd: Path, scratch: Path, before: tuple[str, ...], seconds: float
 ) -> Flown:
-    """A line that is cut: the kernel sends SIGHUP, too."""
+    """Cut the line: the kernel sends SIGHUP, too."""
     output = Output(*pty.openpty())
     process = fly(fccd, scratch, output.theirs, seconds, before, _terminal_of_its_own)
     with flying(process):

@@ -22,21 +22,19 @@ const WAITING: usize = 2_048;
 /// end waits longer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What goes to the publishing thread.
-#[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are records, and the ring's slots are made for them"
-)]
+/// What goes to the publishing thread: plain data of a fixed size, which could
+/// as well go to another process.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(super) enum Item<C: Telemetry> {
     /// Each tick.
     Record(RecordOf<C>),
     /// What happened once.
     Event(Event),
     /// Who publishes; once, and again if it changes.
-    Info(Box<Info>),
+    Info(Info),
     /// How recording goes.
-    Recorder(Box<RecorderStatus>),
+    Recorder(RecorderStatus),
 }
 
 /// Publishes a flight to whoever watches.
@@ -125,15 +123,15 @@ impl<C: Telemetry> PublisherOf<C> {
     /// Publishes who publishes; before this nobody can watch.
     pub fn describe(&mut self, info: Info) {
         let record_bytes = size_of::<C::Words>() as u32;
-        self.put(Item::Info(Box::new(Info {
+        self.put(Item::Info(Info {
             record_bytes,
             ..info
-        })));
+        }));
     }
 
     /// Tells how recording goes: it is in the next status.
     pub fn recorder(&mut self, status: RecorderStatus) {
-        self.put(Item::Recorder(Box::new(status)));
+        self.put(Item::Recorder(status));
     }
 
     /// The next command from another program, if there is one. Each wants its

@@ -55,7 +55,8 @@ pub enum RecorderState {
 }
 
 /// What is known of the recorder.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[repr(C)]
 pub struct RecorderStatus {
     /// What it is doing.
     pub state: RecorderState,
@@ -66,7 +67,7 @@ pub struct RecorderStatus {
     /// Size of the file.
     pub bytes: u64,
     /// The file's name, or why there is none.
-    pub name: String,
+    pub name: Text<128>,
 }
 
 impl Status {

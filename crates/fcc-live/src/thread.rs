@@ -16,7 +16,7 @@ use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
-use super::{Event, Info, PublishError, RecorderStatus, Status, Text};
+use super::{Event, Info, PublishError, RecorderStatus, Status};
 use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 
 /// The thread's name, as `top -H` shows it.
@@ -181,10 +181,10 @@ impl<C: Telemetry> Publishing<C> {
             }
             Item::Info(info) => {
                 if !self.paused {
-                    let _ = self.infos.send_copy(*info);
+                    let _ = self.infos.send_copy(info);
                 }
             }
-            Item::Recorder(status) => self.recorder = *status,
+            Item::Recorder(status) => self.recorder = status,
         }
     }
 
@@ -220,7 +220,7 @@ impl<C: Telemetry> Publishing<C> {
             recorded: self.recorder.recorded,
             not_recorded: self.recorder.not_recorded,
             recording_bytes: self.recorder.bytes,
-            recording: Text::new(&self.recorder.name),
+            recording: self.recorder.name,
         };
         let _ = self.statuses.send_copy(status);
     }

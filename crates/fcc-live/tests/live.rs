@@ -88,7 +88,7 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
     publisher.recorder(RecorderStatus {
         state: RecorderState::Recording,
         recorded: 8,
-        name: "flight.mcap".to_owned(),
+        name: Text::new("flight.mcap"),
         ..RecorderStatus::default()
     });
     for number in 0..10 {

@@ -40,7 +40,7 @@ impl Report {
                             @for finding in &self.findings { li { (finding) } }
                         }
                     }
-                    @for figure in &figures.course { (figure_markup(figure)) }
+                    @for figure in &figures.timeline { (figure_markup(figure)) }
                     @if !figures.flight.is_empty() {
                         h2 { "Flight" }
                         @for figure in &figures.flight { (figure_markup(figure)) }

@@ -296,7 +296,7 @@ mod tests {
                     aileron,
                     rudder,
                     speed,
-                    course,
+                    aimed,
                     height,
                     bank,
                 ] = b;
@@ -305,7 +305,7 @@ mod tests {
                 record.outputs.aileron = aileron;
                 record.outputs.rudder = rudder;
                 record.setpoints.airspeed_mps = speed;
-                record.setpoints.heading_rad = course;
+                record.setpoints.heading_rad = aimed;
                 record.setpoints.altitude_m = height;
                 record.setpoints.roll_rad = bank;
                 record

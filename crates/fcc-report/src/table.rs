@@ -217,6 +217,23 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     table.to_string()
 }
 
+/// The cells of a leg, under [`LEG_COLUMNS`].
+pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
+    let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
+    vec![
+        name,
+        settle(leg.heading_settle_s),
+        format!("{:.2}", leg.heading_overshoot_deg),
+        format!("{:.2}", leg.heading_rms_deg),
+        settle(leg.altitude_settle_s),
+        format!("{:.2}", leg.altitude_overshoot_ft),
+        format!("{:.2}", leg.altitude_rms_ft),
+        format!("{:.2}", leg.turn_loss_ft),
+        format!("{:.2}", leg.airspeed_error_kt),
+        format!("{:.3}", leg.lateral_acceleration_g),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

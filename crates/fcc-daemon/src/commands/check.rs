@@ -1,5 +1,7 @@
 //! `fccd check FILE`.
 
+use std::fmt::Write as _;
+
 use serde::Serialize;
 
 use crate::cli::CheckArgs;
@@ -12,11 +14,19 @@ struct Checked {
     file: String,
     ok: bool,
     problems: Vec<Problem>,
+    /// What is left to a default and worth to be known.
+    remarks: Vec<String>,
 }
 
 /// Checks a configuration file.
 pub(super) fn check(args: &CheckArgs) -> Exit {
-    let checked = Config::load(&args.file);
+    let (checked, remarks) = match Config::load_with_text(&args.file) {
+        Ok((config, text)) => {
+            let remarks = config.remarks(&text);
+            (Ok(config), remarks)
+        }
+        Err(error) => (Err(error), Vec::new()),
+    };
     let exit = if checked.is_ok() {
         Exit::Success
     } else {
@@ -31,6 +41,7 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
             file: args.file.display().to_string(),
             ok: checked.is_ok(),
             problems,
+            remarks,
         };
         return output::json(&checked, exit);
     }
@@ -40,12 +51,15 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
                 Aircraft::XPlane(_) => "X-Plane's aircraft",
                 Aircraft::BuiltIn(_) => "the built-in aircraft",
             };
-            let words = format!(
+            let mut words = format!(
                 "{}: good: flies {aircraft} at {} Hz by {}",
                 args.file.display(),
                 config.tick.rate_hz,
                 config.tick.timer
             );
+            for remark in remarks {
+                let _ = write!(words, "\n{}: {remark}", args.file.display());
+            }
             output::result(words, exit)
         }
         Err(error) => {

@@ -107,7 +107,7 @@ fn failsafe_that_ends_the_loop() {
     config.failsafe.hold_s = 2.0;
     let (run, identity) = again(&config, &messages);
     assert_eq!(run.unflown, None);
-    assert_eq!(identity.first.unwrap().field, "state");
+    assert_eq!(identity.first.unwrap().field, "state.phase");
 }
 
 #[test]

@@ -115,7 +115,7 @@ fn a_flight_is_told_as_it_was_flown() {
     assert_eq!(
         texts(&html, "figure", "h3"),
         [
-            "Course",
+            "Timeline",
             "Heading",
             "Altitude and pitch",
             "Airspeed and throttle",
@@ -249,7 +249,7 @@ fn plots_are_svg_files() {
     assert_eq!(
         names,
         [
-            "course.svg",
+            "timeline.svg",
             "heading.svg",
             "altitude-and-pitch.svg",
             "airspeed-and-throttle.svg",

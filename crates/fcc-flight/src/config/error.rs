@@ -6,10 +6,6 @@ use std::str::Utf8Error;
 
 use serde::Serialize;
 
-use super::devices::in_entry;
-use super::places::{Places, line_of};
-use super::wording::plainly;
-
 /// What is wrong with a configuration file.
 #[derive(Debug)]
 #[non_exhaustive]
@@ -42,26 +38,6 @@ pub struct Problem {
 }
 
 impl ConfigError {
-    pub(super) fn syntax(file: &str, text: &str, error: &toml::de::Error) -> Self {
-        let span = error.span();
-        let line = span.as_ref().map(|span| line_of(text, span));
-        let key = span
-            .clone()
-            .and_then(|span| Places::of(text).key_at(span.start));
-        let (line, key) = match key.and_then(|key| in_entry(text, &key, error.message())) {
-            Some(key) => (Places::of(text).nearest_line(&key), Some(key)),
-            None => (
-                line,
-                span.and_then(|span| Places::of(text).key_at(span.start)),
-            ),
-        };
-        let message = plainly(error.message(), key.as_deref());
-        Self::Invalid {
-            file: file.to_owned(),
-            problems: vec![Problem { line, key, message }],
-        }
-    }
-
     /// The file is no text.
     pub(super) fn not_text(file: &str, bytes: &[u8], error: Utf8Error) -> Self {
         let good = bytes.get(..error.valid_up_to()).unwrap_or_default();

@@ -12,12 +12,15 @@ mod cpu;
 mod devices;
 mod early_wake;
 mod error;
+mod file;
 mod guidance;
 mod places;
 mod ranges;
+mod read;
 mod recording;
 mod restart;
 mod runtime;
+mod similar;
 mod telemetry;
 mod units;
 mod values;
@@ -90,6 +93,32 @@ pub struct Config {
     pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
+/// Everything that is wrong, in the order of the text; the configuration if
+/// nothing is.
+fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
+    let read::Read {
+        config,
+        mut problems,
+        places,
+    } = read;
+    // What could not be read may be the section that is missed, and a line is
+    // wrong once.
+    let unread: Vec<_> = problems.iter().map(|problem| problem.line).collect();
+    let more = ranges::check(&config, &places);
+    problems.extend(more.into_iter().filter(|problem| match problem.line {
+        None => unread.is_empty(),
+        line => !unread.contains(&line),
+    }));
+    problems.sort_by_key(|problem| problem.line);
+    if problems.is_empty() {
+        return Ok(config);
+    }
+    Err(ConfigError::Invalid {
+        file: file.to_owned(),
+        problems,
+    })
+}
+
 /// Which aircraft a configuration flies.
 #[derive(Clone, Copy, Debug)]
 pub enum Aircraft<'a> {
@@ -119,7 +148,7 @@ impl Config {
     /// As [`Config::load`].
     pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
         let file = path.display().to_string();
-        let bytes = match std::fs::read(path) {
+        let bytes = match file::read(path) {
             Ok(bytes) => bytes,
             Err(source) => return Err(ConfigError::Unreadable { file, source }),
         };
@@ -133,7 +162,7 @@ impl Config {
     /// # Errors
     /// As [`Config::load`], but for reading.
     pub fn parse(text: &str, file: &str) -> Result<Self, ConfigError> {
-        Self::read(text, file)?.checked(text, file)
+        checked(read::read(text), file)
     }
 
     /// Checks a text for who flies an aircraft of their own: no `[x-plane]`
@@ -142,11 +171,11 @@ impl Config {
     /// # Errors
     /// As [`Config::parse`].
     pub fn parse_without_aircraft(text: &str, file: &str) -> Result<Self, ConfigError> {
-        let mut config = Self::read(text, file)?;
-        if config.x_plane.is_none() {
-            config.built_in.get_or_insert_default();
+        let mut read = read::read(text);
+        if read.config.x_plane.is_none() {
+            read.config.built_in.get_or_insert_default();
         }
-        config.checked(text, file)
+        checked(read, file)
     }
 
     /// The autopilot's part of such a text.
@@ -157,19 +186,19 @@ impl Config {
         Ok(Self::parse_without_aircraft(text, file)?.autopilot_config())
     }
 
-    fn read(text: &str, file: &str) -> Result<Self, ConfigError> {
-        toml::from_str(text).map_err(|error| ConfigError::syntax(file, text, &error))
-    }
-
-    fn checked(self, text: &str, file: &str) -> Result<Self, ConfigError> {
-        let problems = ranges::check(&self, text);
-        if problems.is_empty() {
-            return Ok(self);
+    /// What a text leaves to a default that whoever flies should know.
+    pub fn remarks(&self, text: &str) -> Vec<String> {
+        let places = read::read(text).places;
+        let mut remarks = Vec::new();
+        if let Some(section) = &self.x_plane
+            && !places.has("x-plane.engage_switch")
+        {
+            remarks.push(format!(
+                "x-plane.engage_switch is not given: what engages is {}",
+                section.engage_switch
+            ));
         }
-        Err(ConfigError::Invalid {
-            file: file.to_owned(),
-            problems,
-        })
+        remarks
     }
 
     /// The core's configuration.

@@ -8,21 +8,32 @@ use toml::de::{DeTable, DeValue};
 /// Where the keys of a text are.
 pub(super) struct Places<'a> {
     text: &'a str,
-    /// None where the text is no TOML.
-    table: Option<Spanned<DeTable<'a>>>,
+    table: Spanned<DeTable<'a>>,
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn of(text: &'a str) -> Self {
-        Self {
-            text,
-            table: DeTable::parse(text).ok(),
+    /// Of a text, and of what could be made of it.
+    pub(super) const fn new(text: &'a str, table: Spanned<DeTable<'a>>) -> Self {
+        Self { text, table }
+    }
+
+    /// Whether the text gives a key.
+    pub(super) fn has(&self, key: &str) -> bool {
+        let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
+        let sections = sections.split('.').filter(|section| !section.is_empty());
+        let mut table = self.table.get_ref();
+        for section in sections {
+            match table.get(section).map(|value| value.get_ref().as_table()) {
+                Some(Some(inner)) => table = inner,
+                _ => return false,
+            }
         }
+        table.contains_key(name)
     }
 
     /// The line of a key or, if the text leaves it out, of its section.
     pub(super) fn nearest_line(&self, key: &str) -> Option<usize> {
-        let mut table = self.table.as_ref()?.get_ref();
+        let mut table = self.table.get_ref();
         let mut found = None;
         for part in key.split('.') {
             let (part, index) = indexed(part);
@@ -42,22 +53,19 @@ impl<'a> Places<'a> {
         found
     }
 
-    /// The key, with its sections, that a place in the text belongs to.
-    pub(super) fn key_at(&self, offset: usize) -> Option<String> {
-        match &self.table {
-            Some(table) => path_to(table.get_ref(), offset).map(|parts| parts.join(".")),
-            None => self.key_by_lines(offset),
-        }
+    /// The sections and the key that a place in the text belongs to; none of
+    /// them where it belongs to no key.
+    pub(super) fn path_at(&self, offset: usize) -> Vec<String> {
+        path_to(self.table.get_ref(), offset).unwrap_or_default()
     }
 
-    /// The same for a text that is no TOML: the nearest section above, and what
+    /// The key at a place in a text that is no TOML: the nearest section above, and what
     /// stands before the equals sign.
-    fn key_by_lines(&self, offset: usize) -> Option<String> {
-        let line = line_of(self.text, &(offset..offset));
-        let (key, _) = self.text.lines().nth(line - 1)?.split_once('=')?;
+    pub(super) fn key_by_lines(text: &str, offset: usize) -> Option<String> {
+        let line = line_of(text, &(offset..offset));
+        let (key, _) = text.lines().nth(line - 1)?.split_once('=')?;
         let key = key.trim();
-        let section = self
-            .text
+        let section = text
             .lines()
             .take(line - 1)
             .filter_map(|line| line.trim().strip_prefix('[')?.split_once(']'))

@@ -136,8 +136,7 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
 
 /// Everything that is wrong with the values of a configuration, in the order
 /// of the text.
-pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
-    let places = Places::of(text);
+pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
     let mut problems = Vec::new();
     let mut complain = |key: &str, message: String| {
         problems.push(Problem {
@@ -165,11 +164,11 @@ pub(super) fn check(config: &Config, text: &str) -> Vec<Problem> {
     relations(config, &mut complain);
     lists(config, &mut complain);
     if let Some(section) = &config.x_plane {
-        x_plane("x-plane", section, &mut problems, &places);
+        x_plane("x-plane", section, &mut problems, places);
     }
     for (at, entry) in config.sensor.iter().enumerate() {
         if let SensorEntry::XPlane(section) = entry {
-            x_plane(&format!("sensor[{at}]"), section, &mut problems, &places);
+            x_plane(&format!("sensor[{at}]"), section, &mut problems, places);
         }
     }
     if config.x_plane.is_none() && config.built_in.is_none() {
@@ -225,6 +224,19 @@ fn relations(config: &Config, complain: &mut impl FnMut(&str, String)) {
         ("budget.control_us", budget.control_us),
         ("budget.actuators_us", budget.actuators_us),
     ];
+    // The rate may be out of its own range here.
+    let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
+    if let Some(tick_us) = budget.tick_us
+        && f64::from(tick_us) > period_us
+    {
+        complain(
+            "budget.tick_us",
+            format!(
+                "is {tick_us}: choose no more than the period, {period_us}: a tick that takes \
+                 longer has missed the next"
+            ),
+        );
+    }
     for (key, stage_us) in stages {
         if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
             && stage_us > tick_us
@@ -324,6 +336,10 @@ fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
+
+    fn check(config: &Config, text: &str) -> Vec<Problem> {
+        super::check(config, &super::super::read::read(text).places)
+    }
 
     /// A new key without a range would be a key whose nonsense is believed.
     #[test]

@@ -147,10 +147,7 @@ mod tests {
             "config: autopilot.envelope.max_bank_deg: is 95: choose 5 to 60"
         );
         let unknown = words("autopilot.bank", Value::Float(1.0));
-        assert!(
-            unknown.contains("there is no such key: choose"),
-            "{unknown}"
-        );
+        assert!(unknown.contains("there is no such key"), "{unknown}");
         let former = words("course.kind", Value::String("hold".to_owned()));
         assert!(former.contains("[guidance], its kind mode"), "{former}");
         let stage = words("budget.guidance_us", Value::Integer(1_000));

@@ -4,6 +4,7 @@
 //! knows keys, values and numbers.
 
 use super::ranges::range_of;
+use super::similar::{elsewhere, most_alike};
 
 /// A complaint of the reader about `key`, in plainer words.
 pub(super) fn plainly(complaint: &str, key: Option<&str>) -> String {
@@ -42,22 +43,34 @@ pub(super) fn renamed(key: &str) -> Option<String> {
 }
 
 fn unknown_key(complaint: &str) -> Option<String> {
-    let (_, expected) = complaint
+    let (name, expected) = complaint
         .strip_prefix("unknown field `")?
         .split_once("`, ")?;
-    Some(match expected.strip_prefix("expected ") {
-        Some(known) => format!("there is no such key: choose {known}"),
-        None => "there is no such key: take it out".to_owned(),
+    let known = expected.strip_prefix("expected ");
+    let meant = most_alike(name, known.map(names).into_iter().flatten())
+        .map(str::to_owned)
+        .or_else(|| elsewhere(name));
+    let meant = meant.map_or_else(String::new, |name| format!(", did you mean `{name}`"));
+    Some(match known {
+        Some(known) => format!("there is no such key{meant}: choose {known}"),
+        None => format!("there is no such key{meant}: take it out"),
     })
 }
 
 fn unknown_value(complaint: &str) -> Option<String> {
     let rest = complaint.strip_prefix("unknown variant `")?;
     let (value, expected) = rest.split_once("`, expected ")?;
+    let meant = most_alike(value, names(expected))
+        .map_or_else(String::new, |name| format!(", did you mean \"{name}\""));
     Some(format!(
-        "is \"{value}\": choose {}",
+        "is \"{value}\"{meant}: choose {}",
         expected.replace('`', "\"")
     ))
+}
+
+/// The names that stand in backticks.
+fn names(expected: &str) -> impl Iterator<Item = &str> {
+    expected.split('`').skip(1).step_by(2)
 }
 
 fn wrong_type(complaint: &str, range: Option<&str>) -> Option<String> {

@@ -14,9 +14,10 @@ use super::hang::HangWatch;
 use super::host::Host;
 use super::observer::{Facts, Observer};
 use super::observers::{Names, Observers};
+use super::outcome::Outcome;
+use super::pilot::{self, Pilot};
 use super::plan::{Length, Pace, Plan};
 use super::run_statistics::RunStatistics;
-use super::{Outcome, Pilot};
 use crate::config::{LoopSection, WatchdogSection};
 
 /// How long the end of a flight waits for the plant to show that it has its
@@ -84,8 +85,8 @@ pub fn fly(
     };
     let parts = Parts {
         timer,
-        sensors: super::sensors(assembly.sensors),
-        controller: super::pilot(assembly.autopilot),
+        sensors: pilot::sensors(assembly.sensors),
+        controller: pilot::pilot(assembly.autopilot),
         actuators: assembly.actuators,
     };
     let report = match plan.pace {

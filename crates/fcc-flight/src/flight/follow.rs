@@ -9,10 +9,10 @@ use fcc_core::framework::{ControlAuthority, Event, EventKind, Message};
 use fcc_runtime::Link;
 use fcc_telemetry::FlightMessage;
 
-use super::Pilot;
 use super::hang::{HangWatch, Hung};
 use super::host::Host;
 use super::observers::Observers;
+use super::pilot::Pilot;
 use super::plan::Length;
 use super::run_statistics::RunStatistics;
 

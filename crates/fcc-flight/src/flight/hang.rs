@@ -17,7 +17,7 @@ use fcc_core::framework::ControlAuthority;
 use fcc_runtime::{Hang, Link, WatchdogConfig, watch};
 use fcc_timer::RealtimeGranted;
 
-use super::Pilot;
+use super::pilot::Pilot;
 
 /// How long the watchdog waits for the plant to show that it has its controls
 /// back.

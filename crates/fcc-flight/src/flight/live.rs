@@ -134,8 +134,8 @@ fn recorder(now: &recording::RecorderStatus) -> RecorderStatus {
         not_recorded: now.not_recorded,
         bytes: now.bytes,
         name: match &now.stopped {
-            Some(why) => why.clone(),
-            None => name.unwrap_or_default().to_string_lossy().into_owned(),
+            Some(why) => Text::new(why),
+            None => Text::new(&name.unwrap_or_default().to_string_lossy()),
         },
     }
 }

@@ -21,6 +21,7 @@ mod monitor;
 mod observer;
 mod observers;
 mod outcome;
+mod pilot;
 mod plan;
 mod recording;
 mod restart;
@@ -33,36 +34,7 @@ pub use fly::{FlyError, fly};
 pub use host::Host;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
+pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};
 pub use scorer::true_sample;
-
-type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
-
-/// What the loop runs.
-#[cfg(not(feature = "fault-injection"))]
-pub type Pilot = fcc_core::flight::Autopilot;
-/// What the loop runs: an autopilot that goes wrong when it is told to.
-#[cfg(feature = "fault-injection")]
-pub type Pilot = injection::Faulty;
-
-#[cfg(not(feature = "fault-injection"))]
-fn sensors(sensors: Sensors) -> Sensors {
-    sensors
-}
-
-#[cfg(feature = "fault-injection")]
-fn sensors(mut sensors: Sensors) -> Sensors {
-    sensors.push(Box::new(injection::Blocking::default()));
-    sensors
-}
-
-#[cfg(not(feature = "fault-injection"))]
-fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
-    autopilot
-}
-
-#[cfg(feature = "fault-injection")]
-fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
-    injection::Faulty::new(autopilot)
-}

@@ -8,13 +8,13 @@
 
 mod axis;
 mod canvas;
-mod course;
 mod flight;
 mod ground_track;
 mod marks;
 mod panel;
 mod percentile_ranges;
 mod time_figure;
+mod timeline;
 mod timing;
 
 pub use canvas::PlotError;
@@ -34,7 +34,7 @@ pub(super) struct Figure {
 /// The figures of a page, by its sections.
 pub(super) struct Figures {
     /// States and events.
-    pub(super) course: Vec<Figure>,
+    pub(super) timeline: Vec<Figure>,
     /// How the aircraft flew.
     pub(super) flight: Vec<Figure>,
     /// How the loop kept time.
@@ -44,7 +44,7 @@ pub(super) struct Figures {
 impl Figures {
     /// In the order of the page.
     pub(super) fn into_all(self) -> impl Iterator<Item = Figure> {
-        let sections = [self.course, self.flight, self.timing];
+        let sections = [self.timeline, self.flight, self.timing];
         sections.into_iter().flatten()
     }
 }
@@ -53,13 +53,13 @@ impl Figures {
 pub(super) fn figures(report: &Report) -> Result<Figures, PlotError> {
     if report.continuity.ticks == 0 {
         return Ok(Figures {
-            course: Vec::new(),
+            timeline: Vec::new(),
             flight: Vec::new(),
             timing: Vec::new(),
         });
     }
     Ok(Figures {
-        course: vec![course::course(report)?],
+        timeline: vec![timeline::timeline(report)?],
         flight: flight::figures(report)?,
         timing: timing::figures(report)?,
     })

@@ -15,7 +15,7 @@ use fcc_telemetry::FlightMessage;
 
 use super::boot_clock::BootInstant;
 use super::state_file::Saved;
-use crate::flight::Pilot;
+use crate::flight::pilot::Pilot;
 
 const M_FT: f64 = 1.0 / 0.304_8;
 const MPS_KT: f64 = 3_600.0 / 1_852.0;

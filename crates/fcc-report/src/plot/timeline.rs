@@ -1,4 +1,4 @@
-//! The course of a flight: its states as a bar, and events in words below it.
+//! The timeline of a flight: its states as a bar, and events in words below it.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -24,7 +24,7 @@ const MOST_TRIED: usize = 80;
 const MOST_LETTERS: usize = 70;
 
 /// States and events over time.
-pub(super) fn course(report: &Report) -> Result<Figure, PlotError> {
+pub(super) fn timeline(report: &Report) -> Result<Figure, PlotError> {
     let notes = place_notes(report);
     let rows = notes.iter().map(|note| note.row + 1).max().unwrap_or(0);
     let height_px = BAR_TOP_PX + BAR_PX + LEAD_PX + rows as f64 * ROW_PX + 6.0;
@@ -48,7 +48,7 @@ pub(super) fn course(report: &Report) -> Result<Figure, PlotError> {
             .to_owned()
     };
     Ok(Figure {
-        title: "Course",
+        title: "Timeline",
         caption,
         svg,
     })
