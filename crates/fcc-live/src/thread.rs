@@ -22,8 +22,13 @@ use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
 
-/// Where the memory of the process is locked, all of a stack is in memory.
-pub(super) const STACK_BYTES: usize = 512 << 10;
+/// Size of the thread's stack. With locked memory all of it is resident, so it is
+/// kept small; unoptimised code needs larger stack frames.
+pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
+    4 << 20
+} else {
+    1 << 20
+};
 
 /// How long it sleeps if nobody wakes it.
 const LOOK_EVERY: Duration = Duration::from_millis(20);

@@ -19,10 +19,11 @@ use super::summary;
 /// ```no_run
 /// use fcc_core::framework::Message;
 /// use fcc_record::Recording;
+/// use fcc_telemetry::FlightMessage;
 ///
 /// let recording = Recording::open("recordings/2026-11-20T04-21-33.512Z-built-in-01.mcap")?;
 /// println!("{} at {} Hz", recording.about().aircraft, recording.about().rate_hz);
-/// let mut messages = recording.messages()?;
+/// let mut messages = recording.messages::<FlightMessage>()?;
 /// for message in &mut messages {
 ///     if let Message::Tick(record) = message {
 ///         println!("{} {}", record.tick.number, record.outputs.elevator);
