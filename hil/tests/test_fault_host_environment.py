@@ -200,7 +200,7 @@ def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> No
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == NOT_RECORDED
     kinds = [event.kind.WhichOneof("kind") for event in flown.events]
-    gap = flown.events[kinds.index("records_dropped")].records_dropped
+    gap = flown.events[kinds.index("records_dropped")].kind.records_dropped
     assert gap.count == flown.records[-1].records_dropped > 0
     ticks = [record.tick for record in flown.records]
     lost = set(range(gap.first, gap.last + 1))
