@@ -165,8 +165,10 @@ impl Assembly {
         // There is nothing to watch where time does not pass.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
-            let airspeeds_mps = self.autopilot.config().envelope.allowed_airspeeds();
-            observers.push(Box::new(Live::new(&config.telemetry, airspeeds_mps)));
+            observers.push(Box::new(Live::new(
+                &config.telemetry,
+                self.autopilot.config().envelope.allowed_airspeeds(),
+            )));
         }
         // The last, so that it has what the others report at their end.
         observers.push(Box::new(EventLog::default()));
