@@ -1,6 +1,6 @@
 //! All who observe a flight.
 
-use fcc_core::flight::AutopilotCommand;
+use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::Message;
 use fcc_runtime::CommandSender;
 use fcc_telemetry::{FlightMessage, event_words};
@@ -47,7 +47,8 @@ impl Observers {
                 }
             }
             Message::Event(event) => {
-                let words = event_words(event, &self.names.sensors, &self.names.actuators);
+                let words =
+                    event_words::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {
                     observer.event(event, &words, &at);
                 }

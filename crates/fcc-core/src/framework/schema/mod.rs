@@ -34,6 +34,8 @@
 //! A number is never given to another field, and never changes: a field that
 //! goes takes its number with it.
 
+use core::fmt;
+
 mod declare;
 mod field;
 mod leaves;
@@ -50,7 +52,7 @@ pub use value::{Unknown, Value};
 pub use values::Values;
 
 /// Plain data whose values are declared: see [`schema!`](crate::schema).
-pub trait Schema: Copy + Default + Send + 'static {
+pub trait Schema: Copy + Default + fmt::Debug + Send + 'static {
     /// What it is, for whoever describes it.
     const TYPE: Type;
 
