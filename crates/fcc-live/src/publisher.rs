@@ -26,6 +26,10 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// as well go to another process.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all are records, and the ring's slots have their size"
+)]
 pub(super) enum Item<C: Telemetry> {
     /// Each tick.
     Record(RecordOf<C>),

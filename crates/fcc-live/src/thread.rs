@@ -68,7 +68,7 @@ pub(super) fn publish<C: Telemetry>(
             let _ = say.try_send(words);
         }
         while let Ok(item) = items.pop() {
-            thread.take(item);
+            thread.take(&item);
         }
         if next_status <= Instant::now() || over {
             // From now on: after a stall there is nothing to make up for.
@@ -164,7 +164,7 @@ impl<C: Telemetry> Publishing<C> {
         }
     }
 
-    fn take(&mut self, item: Item<C>) {
+    fn take(&mut self, item: &Item<C>) {
         match item {
             Item::Record(record) => {
                 self.lateness.take(&record.tick);
@@ -172,7 +172,7 @@ impl<C: Telemetry> Publishing<C> {
                 if self.paused
                     || self
                         .records
-                        .send_copy(Published(C::Words::of_record(&record)))
+                        .send_copy(Published(C::Words::of_record(record)))
                         .is_err()
                 {
                     self.not_published += 1;
@@ -181,15 +181,15 @@ impl<C: Telemetry> Publishing<C> {
             Item::Event(event) => {
                 if !self.paused {
                     // Nobody to tell that something could not be told.
-                    let _ = self.events.send_copy(event);
+                    let _ = self.events.send_copy(*event);
                 }
             }
             Item::Info(info) => {
                 if !self.paused {
-                    let _ = self.infos.send_copy(info);
+                    let _ = self.infos.send_copy(*info);
                 }
             }
-            Item::Recorder(status) => self.recorder = status,
+            Item::Recorder(status) => self.recorder = *status,
         }
     }
 

@@ -58,10 +58,6 @@ pub(super) type AnyMessage = Message<(), (), (), (), ()>;
 
 /// One thing in a recording.
 #[derive(Clone, PartialEq, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are messages, and a box for each would be work for nothing"
-)]
 pub enum Item<M> {
     /// A record or an event of the loop.
     Message(M),

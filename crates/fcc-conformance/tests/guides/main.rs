@@ -1,5 +1,6 @@
 //! The sensor of docs/guides/add-a-sensor.md and the actuator of
 //! docs/guides/add-an-actuator.md, with the suites that both have to pass.
+#![cfg(test)]
 
 mod barometer;
 mod servo_board;

@@ -30,10 +30,6 @@ const COMMIT_BYTES: u64 = 1 << 20;
 
 /// What comes to the recorder's thread.
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are messages, and a box for each would be work for nothing"
-)]
 pub(super) enum Feed<M> {
     Message(M),
     Remark(String),
