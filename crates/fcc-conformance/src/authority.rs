@@ -1,5 +1,9 @@
 //! What [`ControlAuthority`] promises. Each promise is one function, and panics
 //! where it is broken.
+#![allow(
+    clippy::expect_used,
+    reason = "every function here is a test: it panics when the promise is broken"
+)]
 
 use std::time::Duration;
 
