@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
+.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -167,6 +167,17 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
+
+# Those that no registry gets: the Python module is published as a wheel.
+PRIVATE := fcc-py thermostat bench-tick
+
+package-check: $(STAMPS)/rust $(STAMPS)/python ## Build every crate from its package, and check both Python packages (10 minutes)
+	cargo package --locked --allow-dirty --workspace $(addprefix --exclude ,$(PRIVATE))
+	$(PYTHON) -m pip install --quiet 'build>=1.2' 'twine>=6.1'
+	rm -rf $(TARGET)/package-check
+	cd crates/fcc-py && $(abspath $(VENV))/bin/maturin build --locked --quiet --out $(abspath $(TARGET))/package-check
+	$(PYTHON) -m build --outdir $(TARGET)/package-check hil
+	$(PYTHON) -m twine check --strict $(TARGET)/package-check/*
 
 wheels: $(STAMPS)/rust $(STAMPS)/wheel-tools ## Build the Python module's wheels for x86-64 and ARM, and try one
 	./scripts/build-wheels $(abspath $(VENV))/bin $(WHEELS)

@@ -7,7 +7,7 @@ use std::{env, fs};
 
 use prost::Message as _;
 
-const PROTO: &str = "../../proto";
+const PROTO: &str = "proto";
 
 /// The file of each topic's schema, and what its descriptors are called here.
 const SCHEMAS: [(&str, &str); 3] = [

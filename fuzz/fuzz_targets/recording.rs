@@ -71,7 +71,7 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
     };
     fs::write(&*FILE, &file).expect("a temporary file");
     if let Ok(recording) = Recording::open(&*FILE) {
-        let mut messages = recording.messages().expect("it was opened");
+        let mut messages = recording.messages::<fcc_telemetry::FlightMessage>().expect("it was opened");
         // No message is shorter than its head.
         assert!(messages.by_ref().count() <= file.len() / 9);
         let cut = messages.cut().is_some();

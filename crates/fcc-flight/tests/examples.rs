@@ -48,7 +48,10 @@ fn the_built_in_example_says_every_default() {
     say_the_choices(&mut expected);
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
-    let keys = uncommented(BUILT_IN).matches(" = ").count();
+    let keys = uncommented(BUILT_IN)
+        .lines()
+        .filter(|line| !line.starts_with('#') && line.contains(" = "))
+        .count();
     let leaves = leaves(&as_value(&expected));
     assert_eq!(keys, leaves, "a key of the configuration is not explained");
 }

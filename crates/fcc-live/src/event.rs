@@ -1,9 +1,8 @@
 //! What happened once, in numbers and in words.
 
-use fcc_core::framework::{EventKind, LoopCommand, StateCode};
+use fcc_core::framework::{self, EventKind, LoopCommand, StateCode};
 
 use super::Text;
-use fcc_telemetry::FlightEvent;
 
 /// What happened once, in numbers for programs and in words for people.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -75,7 +74,7 @@ pub enum EventCode {
 
 impl Event {
     /// An event of a flight; `text` tells it in words.
-    pub fn new(event: &FlightEvent, text: &str) -> Self {
+    pub fn new<O: Copy>(event: &framework::Event<O>, text: &str) -> Self {
         let (code, index, values) = numbers(event);
         Self {
             tick: event.tick,
@@ -98,7 +97,7 @@ impl Event {
     }
 }
 
-fn numbers(event: &FlightEvent) -> (EventCode, u32, [u64; 3]) {
+fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
     const NONE: [u64; 3] = [0; 3];
     match event.kind {
         EventKind::StateChanged { from, to } => {

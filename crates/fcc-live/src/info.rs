@@ -4,7 +4,6 @@ use nix::sys::time::TimeValLike;
 use nix::time::{ClockId, clock_gettime};
 
 use super::{Event, LAYOUT, Status, Text};
-use fcc_telemetry::FlightRecord;
 
 /// Who publishes, in which layout, and under which conditions.
 ///
@@ -15,7 +14,7 @@ use fcc_telemetry::FlightRecord;
 pub struct Info {
     /// The version of all other layouts: [`LAYOUT`].
     pub layout: u32,
-    /// Size of a record.
+    /// Size of a record, which the plant's types say.
     pub record_bytes: u32,
     /// Size of an event.
     pub event_bytes: u32,
@@ -55,7 +54,7 @@ impl Default for Info {
     fn default() -> Self {
         Self {
             layout: LAYOUT,
-            record_bytes: size_of::<FlightRecord>() as u32,
+            record_bytes: 0,
             event_bytes: size_of::<Event>() as u32,
             status_bytes: size_of::<Status>() as u32,
             process_id: 0,
@@ -87,20 +86,11 @@ impl Info {
         }
     }
 
-    /// Whether records, events and status are laid out as this program knows
-    /// them.
+    /// Whether events and status are laid out as this program knows them, and
+    /// records by the same rules.
     pub fn is_understood(&self) -> bool {
         let own = Self::default();
-        (
-            self.layout,
-            self.record_bytes,
-            self.event_bytes,
-            self.status_bytes,
-        ) == (
-            own.layout,
-            own.record_bytes,
-            own.event_bytes,
-            own.status_bytes,
-        )
+        (self.layout, self.event_bytes, self.status_bytes)
+            == (own.layout, own.event_bytes, own.status_bytes)
     }
 }

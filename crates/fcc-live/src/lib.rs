@@ -12,7 +12,7 @@
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
-//! | `fcc/INSTANCE/record/v2` | a [`FlightRecord`](fcc_telemetry::FlightRecord) for each tick | 1 |
+//! | `fcc/INSTANCE/record/v2` | the record of each tick | 1 |
 //! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
 //! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
 //!
@@ -45,11 +45,15 @@ pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
 pub use info::Info;
 pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
+#[cfg(feature = "flight")]
 pub use publisher::Publisher;
+pub use publisher::PublisherOf;
 pub use services::{EVENT_HISTORY, MAX_WATCHERS, RECORD_BUFFER};
 pub use status::{RecorderState, RecorderStatus, Status};
 pub use text::Text;
+#[cfg(feature = "flight")]
 pub use watcher::Watcher;
+pub use watcher::WatcherOf;
 
 /// The version of all layouts but [`Info`]'s. Whoever changes one of them,
 /// a field's meaning included, counts this up.

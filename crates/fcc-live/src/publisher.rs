@@ -6,12 +6,13 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use fcc_core::framework::RecordOf;
 use rtrb::{Producer, RingBuffer};
 
 use super::command::{Asked, CommandServer, Ends, Verdict};
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
-use fcc_telemetry::{FlightRecord, Instance};
+use fcc_telemetry::{Instance, Telemetry};
 
 /// What waits to be published: two seconds of records at 1 kHz. When a watcher
 /// joins or leaves, the publishing thread may be held up for one.
@@ -25,9 +26,13 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// as well go to another process.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) enum Item {
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nearly all are records, and the ring's slots have their size"
+)]
+pub(super) enum Item<C: Telemetry> {
     /// Each tick.
-    Record(FlightRecord),
+    Record(RecordOf<C>),
     /// What happened once.
     Event(Event),
     /// Who publishes; once, and again if it changes.
@@ -36,13 +41,17 @@ pub(super) enum Item {
     Recorder(RecorderStatus),
 }
 
+/// Publishes a flight to whoever watches.
+#[cfg(feature = "flight")]
+pub type Publisher = PublisherOf<fcc_core::flight::Autopilot>;
+
 /// Publishes what happens to whoever watches.
 ///
 /// Everything handed over goes to a thread of its own by a ring; where that is
 /// full, it is left out and counted. Dropping a publisher ends the services.
 #[derive(Debug)]
-pub struct Publisher {
-    ring: Producer<Item>,
+pub struct PublisherOf<C: Telemetry> {
+    ring: Producer<Item<C>>,
     /// Records for which there was no room, for the next status.
     left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
@@ -51,7 +60,7 @@ pub struct Publisher {
     over: bool,
 }
 
-impl Publisher {
+impl<C: Telemetry> PublisherOf<C> {
     /// Starts to publish as `instance`, and takes no commands.
     ///
     /// # Errors
@@ -106,7 +115,7 @@ impl Publisher {
     }
 
     /// Publishes a tick.
-    pub fn record(&mut self, record: &FlightRecord) {
+    pub fn record(&mut self, record: &RecordOf<C>) {
         self.put(Item::Record(*record));
     }
 
@@ -117,7 +126,11 @@ impl Publisher {
 
     /// Publishes who publishes; before this nobody can watch.
     pub fn describe(&mut self, info: Info) {
-        self.put(Item::Info(info));
+        let record_bytes = size_of::<C::Words>() as u32;
+        self.put(Item::Info(Info {
+            record_bytes,
+            ..info
+        }));
     }
 
     /// Tells how recording goes: it is in the next status.
@@ -158,7 +171,7 @@ impl Publisher {
         None
     }
 
-    fn put(&mut self, item: Item) {
+    fn put(&mut self, item: Item<C>) {
         let is_record = matches!(item, Item::Record(_));
         if self.ring.push(item).is_err() && is_record {
             self.left_out.fetch_add(1, Ordering::Relaxed);
@@ -166,7 +179,7 @@ impl Publisher {
     }
 }
 
-impl Drop for Publisher {
+impl<C: Telemetry> Drop for PublisherOf<C> {
     fn drop(&mut self) {
         // The thread sees the ring abandoned; what is in it is still published.
         let (ring, _) = RingBuffer::new(1);

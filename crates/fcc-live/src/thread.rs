@@ -17,13 +17,18 @@ use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, PublishError, RecorderStatus, Status};
-use fcc_telemetry::{FlightWords, Instance};
+use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
 
-/// Where the memory of the process is locked, all of a stack is in memory.
-pub(super) const STACK_BYTES: usize = 512 << 10;
+/// Size of the thread's stack. With locked memory all of it is resident, so it is
+/// kept small; unoptimised code needs larger stack frames.
+pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
+    4 << 20
+} else {
+    1 << 20
+};
 
 /// How long it sleeps if nobody wakes it.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -35,15 +40,15 @@ pub(super) type Started = Result<(), PublishError>;
 
 /// Publishes what comes by the ring, until nobody can put anything there, and
 /// takes commands if there are rings for them.
-pub(super) fn publish(
+pub(super) fn publish<C: Telemetry>(
     instance: &Instance,
     commands: Option<Rings>,
-    mut items: Consumer<Item>,
+    mut items: Consumer<Item<C>>,
     left_out: &AtomicU64,
     started: &SyncSender<Started>,
     say: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::open(instance, commands) {
+    let mut thread = match Publishing::<C>::open(instance, commands) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this; if it has given up, nobody does.
@@ -63,7 +68,7 @@ pub(super) fn publish(
             let _ = say.try_send(words);
         }
         while let Ok(item) = items.pop() {
-            thread.take(item);
+            thread.take(&item);
         }
         if next_status <= Instant::now() || over {
             // From now on: after a stall there is nothing to make up for.
@@ -88,10 +93,10 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
     }
 }
 
-struct Publishing {
+struct Publishing<C: Telemetry> {
     desk: Option<CommandServer>,
-    records: Out<Published>,
-    service: Service<Published>,
+    records: Out<Published<C>>,
+    service: Service<Published<C>>,
     events: Out<Event>,
     statuses: Out<Status>,
     infos: Out<Info>,
@@ -104,7 +109,7 @@ struct Publishing {
     access: Access,
 }
 
-impl Publishing {
+impl<C: Telemetry> Publishing<C> {
     fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
@@ -159,7 +164,7 @@ impl Publishing {
         }
     }
 
-    fn take(&mut self, item: Item) {
+    fn take(&mut self, item: &Item<C>) {
         match item {
             Item::Record(record) => {
                 self.lateness.take(&record.tick);
@@ -167,7 +172,7 @@ impl Publishing {
                 if self.paused
                     || self
                         .records
-                        .send_copy(Published(FlightWords::of(&record)))
+                        .send_copy(Published(C::Words::of_record(record)))
                         .is_err()
                 {
                     self.not_published += 1;
@@ -176,15 +181,15 @@ impl Publishing {
             Item::Event(event) => {
                 if !self.paused {
                     // Nobody to tell that something could not be told.
-                    let _ = self.events.send_copy(event);
+                    let _ = self.events.send_copy(*event);
                 }
             }
             Item::Info(info) => {
                 if !self.paused {
-                    let _ = self.infos.send_copy(info);
+                    let _ = self.infos.send_copy(*info);
                 }
             }
-            Item::Recorder(status) => self.recorder = status,
+            Item::Recorder(status) => self.recorder = *status,
         }
     }
 

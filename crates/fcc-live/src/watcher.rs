@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use fcc_core::framework::RecordOf;
 use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
 use iceoryx2::prelude::{PortFactory, ZeroCopySend};
 
@@ -10,7 +11,7 @@ use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Ipc, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
-use fcc_telemetry::{FlightRecord, Instance};
+use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 
 /// How long a daemon may take to say who it is: long after one on a busy
 /// machine has. One that is gone is noticed at once.
@@ -19,7 +20,11 @@ const LOOK_EVERY: Duration = Duration::from_millis(5);
 
 type In<T> = Subscriber<Ipc, T, ()>;
 
-/// Watches a daemon on this machine, from this or another process.
+/// Watches a flight on this machine.
+#[cfg(feature = "flight")]
+pub type Watcher = WatcherOf<fcc_core::flight::Autopilot>;
+
+/// Watches a loop on this machine, from this or another process.
 ///
 /// ```no_run
 /// use fcc_telemetry::Instance;
@@ -36,18 +41,18 @@ type In<T> = Subscriber<Ipc, T, ()>;
 /// # Ok::<(), fcc_live::WatchError>(())
 /// ```
 #[derive(Debug)]
-pub struct Watcher {
+pub struct WatcherOf<C: Telemetry> {
     instance: Instance,
     info: Info,
-    records: In<Published>,
+    records: In<Published<C>>,
     events: In<Event>,
     statuses: In<Status>,
-    service: Service<Published>,
+    service: Service<Published<C>>,
     // Last: it cleans up after the others.
     access: Access,
 }
 
-impl Watcher {
+impl<C: Telemetry> WatcherOf<C> {
     /// Begins to watch. The newest record, the newest status and up to 64
     /// events of the past are there at once.
     ///
@@ -61,7 +66,7 @@ impl Watcher {
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
         check_layout(&info, instance)?;
-        let service = RECORD.watch::<Published>(&access, instance)?;
+        let service = RECORD.watch::<Published<C>>(&access, instance)?;
         Ok(Self {
             info,
             records: subscribe(&service, instance)?,
@@ -83,7 +88,7 @@ impl Watcher {
     ///
     /// # Errors
     /// When what is there is no record, or shared memory fails.
-    pub fn latest(&mut self) -> Result<Option<FlightRecord>, WatchError> {
+    pub fn latest(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
         let mut newest = None;
         while let Some(found) = next(&self.records)? {
             newest = Some(found);
@@ -96,7 +101,7 @@ impl Watcher {
     ///
     /// # Errors
     /// When what is there is no record, or shared memory fails.
-    pub fn next_record(&mut self) -> Result<Option<FlightRecord>, WatchError> {
+    pub fn next_record(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
         next(&self.records)?
             .map(|found| self.record(&found))
             .transpose()
@@ -128,10 +133,10 @@ impl Watcher {
         publishes(&self.access, &self.service)
     }
 
-    fn record(&self, found: &Published) -> Result<FlightRecord, WatchError> {
+    fn record(&self, found: &Published<C>) -> Result<RecordOf<C>, WatchError> {
         found
             .0
-            .get()
+            .record()
             .map_err(|_| WatchError::Damaged(self.instance.clone()))
     }
 }

@@ -1,5 +1,6 @@
 //! Something that happened once.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, Time};
 use fcc_telemetry::{FlightEvent, event_words};
 use pyo3::prelude::*;
@@ -39,7 +40,7 @@ impl PyEvent {
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(event),
-            text: event_words(event, sensors, actuators),
+            text: event_words::<Autopilot>(event, sensors, actuators),
         }
     }
 }

@@ -3,13 +3,12 @@
 
 use std::fmt;
 
-use fcc_core::framework::{EventKind, Tick, Time};
+use fcc_core::framework::{Event, EventKind, Tick, Time};
 use serde::Serialize;
 
 use super::end::End;
 use super::items::Remark;
 use super::raw::DamagedBytes;
-use fcc_telemetry::FlightEvent;
 
 /// Bytes of a recording that are not what was written, and what of the flight
 /// is missing for it.
@@ -88,14 +87,14 @@ impl Damage {
 impl Damage {
     /// The gap as an event of the loop; none where nothing of the flight is
     /// missing. Where no tick is, it is at the tick behind.
-    pub fn event(&self) -> Option<FlightEvent> {
+    pub fn event<C>(&self) -> Option<Event<C>> {
         if !self.messages {
             return None;
         }
         let (before, time) = self.after.unwrap_or((0, Time::NEVER));
         let first = self.first_tick.unwrap_or(before.saturating_add(1));
         let last = self.last_tick.unwrap_or(first);
-        Some(FlightEvent {
+        Some(Event {
             tick: last,
             time,
             kind: EventKind::NotRecorded {
@@ -108,6 +107,16 @@ impl Damage {
 }
 
 impl Damage {
+    /// The [event](Self::event) in words.
+    pub(super) fn event_text(&self) -> String {
+        match self.event::<()>().map(|event| event.kind) {
+            Some(EventKind::NotRecorded { count, first, last }) => {
+                format!("{count} messages not recorded, ticks {first} to {last}: damaged")
+            }
+            _ => String::new(),
+        }
+    }
+
     /// In words, in its place among what was recorded.
     pub fn remark(&self) -> Remark {
         Remark {

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use fcc_core::framework::{EventKind, Message, State};
+use fcc_core::framework::{EventKind, Message, Record, State};
 
 use super::about::{fields, number};
-use fcc_telemetry::{FlightMessage, FlightRecord};
 
 /// The account of a flight at the end of its recording, or of what a file
 /// holds of it.
@@ -74,7 +73,7 @@ pub(super) struct RunStatistics {
 }
 
 impl RunStatistics {
-    pub(super) fn take(&mut self, message: &FlightMessage) {
+    pub(super) fn take<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) {
         match message {
             Message::Tick(record) => self.count(record),
             Message::Event(event) => {
@@ -85,7 +84,7 @@ impl RunStatistics {
         }
     }
 
-    fn count(&mut self, record: &FlightRecord) {
+    fn count<M, E, S, O>(&mut self, record: &Record<M, E, S, O>) {
         let tick = &record.tick;
         let woke_ns = tick.woke.as_nanos();
         let end = &mut self.end;

@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use fcc_core::framework::{EventOf, Message, MessageOf, RecordOf};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
@@ -12,13 +13,14 @@ use mcap::{Attachment, McapError, WriteOptions};
 use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
 use super::disk::Disk;
 use super::end::{END, RunStatistics};
-use super::foxglove::{self, Thinned};
+use super::foxglove;
 use super::outlet::Outlet;
-use super::schema::{self, Topic};
+use super::schema::{self, OWN_TOPICS, Topic, topics};
 use super::settings::Compression;
 use super::wire::log::Level;
+use crate::recorded::{Recorded, Views};
+use fcc_telemetry::event_words;
 use fcc_telemetry::schema::protobuf::encode;
-use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// What a chunk holds at most before it is compressed: what a reader needs in
 /// memory at once.
@@ -29,18 +31,17 @@ const CHUNK_BYTES: u64 = 1 << 20;
 /// What is given to it gathers in memory until [`commit`](Self::commit) writes
 /// it as one whole chunk and syncs it: at any moment the file on the disk ends
 /// where a record ends.
-pub(super) struct RecordingFile {
+pub(super) struct RecordingFile<C: Recorded> {
     path: PathBuf,
     writer: mcap::Writer<NoSeek<Outlet>>,
     outlet: Outlet,
-    channels: [u16; Topic::ALL.len()],
+    channels: Vec<u16>,
     offset_ns: i64,
     first_log_ns: Option<u64>,
     last_log_ns: u64,
     sequence: u32,
     gathered_bytes: u64,
-    attitude: Thinned,
-    position: Thinned,
+    views: C::Views,
     run_statistics: RunStatistics,
     names: Names,
     /// A message's bytes, kept for the next.
@@ -53,7 +54,7 @@ struct Names {
     actuators: Vec<String>,
 }
 
-impl RecordingFile {
+impl<C: Recorded> RecordingFile<C> {
     /// Begins a file with all that is known of the flight, and syncs that.
     pub(super) fn begin(
         disk: &mut dyn Disk,
@@ -78,8 +79,7 @@ impl RecordingFile {
             last_log_ns: about.started_unix_ns,
             sequence: 0,
             gathered_bytes: 0,
-            attitude: Thinned::new(),
-            position: Thinned::new(),
+            views: C::Views::default(),
             run_statistics: RunStatistics::default(),
             names: Names {
                 sensors: about.sensors.clone(),
@@ -93,7 +93,7 @@ impl RecordingFile {
         outlet: &Outlet,
         about: &About,
         compression: Compression,
-    ) -> Result<(mcap::Writer<NoSeek<Outlet>>, [u16; Topic::ALL.len()]), McapError> {
+    ) -> Result<(mcap::Writer<NoSeek<Outlet>>, Vec<u16>), McapError> {
         let mut writer = options(compression)
             .library(about.software.clone())
             .create(NoSeek::new(outlet.clone()))?;
@@ -116,12 +116,10 @@ impl RecordingFile {
                 })?;
             }
         }
-        let mut channels = [0; Topic::ALL.len()];
-        for (channel, topic) in channels.iter_mut().zip(Topic::ALL) {
-            let schema =
-                writer.add_schema(topic.schema(), schema::ENCODING, &topic.descriptors())?;
-            *channel =
-                writer.add_channel(schema, topic.name(), schema::ENCODING, &BTreeMap::new())?;
+        let mut channels = Vec::new();
+        for (name, schema_name, descriptors) in topics::<C>() {
+            let schema = writer.add_schema(&schema_name, schema::ENCODING, &descriptors)?;
+            channels.push(writer.add_channel(schema, name, schema::ENCODING, &BTreeMap::new())?);
         }
         writer.flush()?;
         outlet.sync()?;
@@ -129,49 +127,51 @@ impl RecordingFile {
     }
 
     /// Takes a record or an event.
-    pub(super) fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
+    pub(super) fn take(&mut self, message: &MessageOf<C>) -> io::Result<()> {
         self.run_statistics.take(message);
         match message {
-            FlightMessage::Tick(record) => self.record(record),
-            FlightMessage::Event(event) => self.event(event),
+            Message::Tick(record) => self.record(record),
+            Message::Event(event) => self.event(event),
         }
         .map_err(to_io)
     }
 
-    fn record(&mut self, record: &FlightRecord) -> Result<(), McapError> {
+    fn record(&mut self, record: &RecordOf<C>) -> Result<(), McapError> {
         let log_ns = self.log_time(record.tick.woke.as_nanos());
         self.bytes.clear();
         encode(record, &mut self.bytes);
-        self.write_bytes(Topic::Record, log_ns)?;
-        if let Some(transform) = foxglove::transform(record, &mut self.attitude, log_ns) {
-            self.write(Topic::Attitude, log_ns, &transform)?;
-        }
-        if let Some(location) = foxglove::location(record, &mut self.position, log_ns) {
-            self.write(Topic::Position, log_ns, &location)?;
+        self.write_bytes(Topic::Record as usize, log_ns)?;
+        self.views.take(record, log_ns);
+        for view in 0..C::Views::TOPICS.len() {
+            self.bytes.clear();
+            if self.views.append(view, &mut self.bytes) {
+                self.write_bytes(OWN_TOPICS + view, log_ns)?;
+            }
         }
         Ok(())
     }
 
-    fn event(&mut self, event: &FlightEvent) -> Result<(), McapError> {
+    fn event(&mut self, event: &EventOf<C>) -> Result<(), McapError> {
         let log_ns = self.log_time(event.time.as_nanos());
         let text = self.words(event);
         self.bytes.clear();
         schema::encode_event(event, &text, &mut self.bytes);
-        self.write_bytes(Topic::Event, log_ns)?;
+        self.write_bytes(Topic::Event as usize, log_ns)?;
         let line = foxglove::line(foxglove::EVENT, text, foxglove::level(event), log_ns);
-        self.write(Topic::Log, log_ns, &line)
+        self.write(Topic::Log as usize, log_ns, &line)
     }
 
     /// Takes words that are not an event of the loop.
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
         let log_ns = self.last_log_ns;
         let line = foxglove::line(foxglove::REMARK, text, Level::Info, log_ns);
-        self.write(Topic::Log, log_ns, &line).map_err(to_io)
+        self.write(Topic::Log as usize, log_ns, &line)
+            .map_err(to_io)
     }
 
     fn write(
         &mut self,
-        topic: Topic,
+        topic: usize,
         log_time: u64,
         message: &impl prost::Message,
     ) -> Result<(), McapError> {
@@ -182,9 +182,9 @@ impl RecordingFile {
         self.write_bytes(topic, log_time)
     }
 
-    fn write_bytes(&mut self, topic: Topic, log_time: u64) -> Result<(), McapError> {
+    fn write_bytes(&mut self, topic: usize, log_time: u64) -> Result<(), McapError> {
         let header = MessageHeader {
-            channel_id: self.channels.get(topic as usize).copied().unwrap_or(0),
+            channel_id: self.channels.get(topic).copied().unwrap_or(0),
             sequence: self.sequence,
             log_time,
             publish_time: log_time,
@@ -207,8 +207,8 @@ impl RecordingFile {
         self.last_log_ns
     }
 
-    fn words(&self, event: &FlightEvent) -> String {
-        event_words(event, &self.names.sensors, &self.names.actuators)
+    fn words(&self, event: &EventOf<C>) -> String {
+        event_words::<C>(event, &self.names.sensors, &self.names.actuators)
     }
 
     /// Writes what has gathered and waits until it is safe from a loss of

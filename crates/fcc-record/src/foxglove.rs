@@ -1,112 +1,15 @@
-//! What of a flight goes into Foxglove's well-known messages.
-//!
-//! Its 3D view has x east, y north, z up, and bodies with x forward, y left,
-//! z up. The attitude there is the estimated one, its heading magnetic.
+//! The log of a recording, as Foxglove shows it.
 
-use std::f64::consts::FRAC_PI_2;
-
-use fcc_core::flight::{Attitude, Position};
-use fcc_core::framework::{EventKind, Reading, State};
+use fcc_core::framework::{Event, EventKind, State};
 use prost_types::Timestamp;
 
 use super::utc::SECOND_NS;
-use super::wire::{FrameTransform, LocationFix, Log, Quaternion, Vector3, log};
-use fcc_telemetry::{FlightEvent, FlightRecord};
-
-/// The frame that attitude is given in.
-const LOCAL_FRAME: &str = "local";
-/// The aircraft's own frame.
-const BODY_FRAME: &str = "body";
-/// No more of these a second: eyes need no more, and disks like less.
-const MIN_SPACING_NS: i64 = 20_000_000;
-
-/// Lets readings through that are new, at most 50 a second.
-#[derive(Debug)]
-pub(super) struct Thinned {
-    last_ns: i64,
-}
-
-impl Thinned {
-    pub(super) const fn new() -> Self {
-        Self { last_ns: i64::MIN }
-    }
-
-    fn lets_through<T>(&mut self, reading: &Reading<T>) -> bool {
-        let taken_ns = reading.taken.as_nanos();
-        let passes = !reading.is_never() && taken_ns.saturating_sub(self.last_ns) >= MIN_SPACING_NS;
-        if passes {
-            self.last_ns = taken_ns;
-        }
-        passes
-    }
-}
+use super::wire::{Log, log};
 
 pub(super) fn timestamp(unix_ns: u64) -> Timestamp {
     Timestamp {
         seconds: (unix_ns / SECOND_NS) as i64,
         nanos: (unix_ns % SECOND_NS) as i32,
-    }
-}
-
-/// The position of a record, if it has a new one; stamped with `unix_ns`.
-pub(super) fn location(
-    record: &FlightRecord,
-    thinned: &mut Thinned,
-    unix_ns: u64,
-) -> Option<LocationFix> {
-    let reading = &record.measurements.position;
-    thinned.lets_through(reading).then(|| {
-        let Position {
-            latitude_rad,
-            longitude_rad,
-            altitude_m,
-        } = reading.value;
-        LocationFix {
-            timestamp: Some(timestamp(unix_ns)),
-            frame_id: BODY_FRAME.to_owned(),
-            latitude: latitude_rad.to_degrees(),
-            longitude: longitude_rad.to_degrees(),
-            altitude: altitude_m,
-        }
-    })
-}
-
-/// How the aircraft lies in the local frame, if a record has a new attitude;
-/// stamped with `unix_ns`. It stays where it is: places are on the map.
-pub(super) fn transform(
-    record: &FlightRecord,
-    thinned: &mut Thinned,
-    unix_ns: u64,
-) -> Option<FrameTransform> {
-    let measured = &record.measurements;
-    if measured.heading_rad.is_never() || !thinned.lets_through(&measured.attitude) {
-        return None;
-    }
-    let estimate = &record.estimate;
-    let attitude = Attitude {
-        pitch_rad: estimate.pitch_rad,
-        roll_rad: estimate.roll_rad,
-    };
-    Some(FrameTransform {
-        timestamp: Some(timestamp(unix_ns)),
-        parent_frame_id: LOCAL_FRAME.to_owned(),
-        child_frame_id: BODY_FRAME.to_owned(),
-        translation: Some(Vector3::default()),
-        rotation: Some(orientation(attitude, estimate.heading_rad)),
-    })
-}
-
-/// Yaw, then pitch, then roll, about axes that point left and up: there the
-/// nose goes up by a negative pitch, and east is a yaw of zero.
-fn orientation(attitude: Attitude, heading_rad: f64) -> Quaternion {
-    let (sin_yaw, cos_yaw) = ((FRAC_PI_2 - heading_rad) / 2.0).sin_cos();
-    let (sin_pitch, cos_pitch) = (-attitude.pitch_rad / 2.0).sin_cos();
-    let (sin_roll, cos_roll) = (attitude.roll_rad / 2.0).sin_cos();
-    Quaternion {
-        x: cos_yaw * cos_pitch * sin_roll - sin_yaw * sin_pitch * cos_roll,
-        y: cos_yaw * sin_pitch * cos_roll + sin_yaw * cos_pitch * sin_roll,
-        z: sin_yaw * cos_pitch * cos_roll - cos_yaw * sin_pitch * sin_roll,
-        w: cos_yaw * cos_pitch * cos_roll + sin_yaw * sin_pitch * sin_roll,
     }
 }
 
@@ -126,7 +29,7 @@ pub(super) fn line(name: &str, text: String, level: log::Level, unix_ns: u64) ->
 }
 
 /// How bad an event is.
-pub(super) fn level(event: &FlightEvent) -> log::Level {
+pub(super) fn level<O>(event: &Event<O>) -> log::Level {
     match event.kind {
         EventKind::StateChanged {
             to: State::Failsafe(_),
@@ -143,62 +46,5 @@ pub(super) fn level(event: &FlightEvent) -> log::Level {
         | EventKind::NotRecorded { .. }
         | EventKind::Overrun { .. } => log::Level::Warning,
         _ => log::Level::Info,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Where a body axis points: the rotation matrix of a unit quaternion
-    /// (Diebel 2006, eq. 125), column by column.
-    fn axes(q: &Quaternion) -> [[f64; 3]; 3] {
-        let Quaternion { x, y, z, w } = *q;
-        [
-            [
-                1.0 - 2.0 * (y * y + z * z),
-                2.0 * (x * y + w * z),
-                2.0 * (x * z - w * y),
-            ],
-            [
-                2.0 * (x * y - w * z),
-                1.0 - 2.0 * (x * x + z * z),
-                2.0 * (y * z + w * x),
-            ],
-            [
-                2.0 * (x * z + w * y),
-                2.0 * (y * z - w * x),
-                1.0 - 2.0 * (x * x + y * y),
-            ],
-        ]
-    }
-
-    fn pointing(pitch_deg: f64, roll_deg: f64, heading_deg: f64) -> [[f64; 3]; 3] {
-        let attitude = Attitude {
-            pitch_rad: pitch_deg.to_radians(),
-            roll_rad: roll_deg.to_radians(),
-        };
-        axes(&orientation(attitude, heading_deg.to_radians()))
-    }
-
-    /// What a hand holding a model sees; x east, y north, z up.
-    #[test]
-    fn the_model_points_where_the_aircraft_does() {
-        let (forward, left, up) = (0, 1, 2);
-        let cases = [
-            (pointing(0.0, 0.0, 90.0), forward, [1.0, 0.0, 0.0]),
-            (pointing(0.0, 0.0, 0.0), forward, [0.0, 1.0, 0.0]),
-            (pointing(0.0, 0.0, 0.0), left, [-1.0, 0.0, 0.0]),
-            (pointing(90.0, 0.0, 0.0), forward, [0.0, 0.0, 1.0]),
-            // Northbound with the right wing straight down: the left one is up,
-            // and the roof points east.
-            (pointing(0.0, 90.0, 0.0), left, [0.0, 0.0, 1.0]),
-            (pointing(0.0, 90.0, 0.0), up, [1.0, 0.0, 0.0]),
-        ];
-        for (n, (axes, axis, expected)) in cases.into_iter().enumerate() {
-            for (found, expected) in axes[axis].into_iter().zip(expected) {
-                assert!((found - expected).abs() < 1e-12, "case {n}: {axes:?}");
-            }
-        }
     }
 }

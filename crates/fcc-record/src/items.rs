@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use fcc_core::framework::schema::Schema;
 use fcc_core::framework::{Message, Tick, Time};
 use mcap::records::{MessageHeader, Record};
 use prost::Message as _;
@@ -12,18 +13,54 @@ use super::foxglove::REMARK;
 use super::raw::{DamagedBytes, Found, RawReader};
 use super::schema::{self, Topic};
 use super::wire;
-use fcc_telemetry::FlightMessage;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
+
+/// A record or an event of a loop, of which plant ever: what is declared of its
+/// values says how it is read.
+pub trait RecordedMessage: Sized {
+    /// The record in a message.
+    ///
+    /// # Errors
+    /// When the bytes are none.
+    fn record(bytes: &[u8]) -> Result<Self, DecodeError>;
+
+    /// The event in a message.
+    ///
+    /// # Errors
+    /// When the bytes are none.
+    fn event(bytes: &[u8]) -> Result<Self, DecodeError>;
+
+    /// The tick that it is all of; none for an event.
+    fn tick(&self) -> Option<&Tick>;
+}
+
+impl<M: Schema, E: Schema, S: Schema, O: Schema, R: Schema> RecordedMessage
+    for Message<M, E, S, O, R>
+{
+    fn record(bytes: &[u8]) -> Result<Self, DecodeError> {
+        decode(bytes).map(Self::Tick)
+    }
+
+    fn event(bytes: &[u8]) -> Result<Self, DecodeError> {
+        decode(bytes).map(Self::Event)
+    }
+
+    fn tick(&self) -> Option<&Tick> {
+        match self {
+            Self::Tick(record) => Some(&record.tick),
+            Self::Event(_) => None,
+        }
+    }
+}
+
+/// What every loop tells of itself, whatever its plant: ticks, states, events.
+pub(super) type AnyMessage = Message<(), (), (), (), ()>;
 
 /// One thing in a recording.
 #[derive(Clone, PartialEq, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are messages, and a box for each would be work for nothing"
-)]
-pub enum Item {
+pub enum Item<M> {
     /// A record or an event of the loop.
-    Message(FlightMessage),
+    Message(M),
     /// Words that are no event of the loop.
     Remark(Remark),
     /// What is here is damaged, and what was here is missing.
@@ -46,7 +83,7 @@ const MOST_HELD_BACK: usize = 1_024;
 
 /// The records, events and remarks of a recording. What is damaged is passed
 /// over, and said in its place.
-pub struct Items {
+pub struct Items<M> {
     raw: RawReader,
     channels: Channels,
     clock_offset_ns: i64,
@@ -56,12 +93,12 @@ pub struct Items {
     /// Damage behind which no tick was found yet.
     damage: Option<Damage>,
     /// What was read behind it.
-    held_back: VecDeque<Item>,
+    held_back: VecDeque<Item<M>>,
     over: bool,
     cut: Option<String>,
 }
 
-impl Items {
+impl<M: RecordedMessage> Items<M> {
     pub(super) fn new(raw: RawReader, clock_offset_ns: i64, end: Option<End>) -> Self {
         Self {
             raw,
@@ -87,7 +124,7 @@ impl Items {
         self.raw.bytes_read()
     }
 
-    fn read(&mut self) -> Option<Result<Item, DamagedBytes>> {
+    fn read(&mut self) -> Option<Result<Item<M>, DamagedBytes>> {
         loop {
             let (channels, offset_ns) = (&mut self.channels, self.clock_offset_ns);
             match self.raw.next(|record| channels.item(&record, offset_ns)) {
@@ -111,11 +148,11 @@ impl Items {
     }
 
     /// Takes what was read next; gives it back if nothing is to come before it.
-    fn take(&mut self, read: Option<Result<Item, DamagedBytes>>) -> Option<Item> {
+    fn take(&mut self, read: Option<Result<Item<M>, DamagedBytes>>) -> Option<Item<M>> {
         match read {
             Some(Ok(item)) => {
                 let tick = match &item {
-                    Item::Message(Message::Tick(record)) => Some(record.tick),
+                    Item::Message(message) => message.tick().copied(),
                     _ => None,
                 };
                 if tick.is_some() || self.held_back.len() >= MOST_HELD_BACK {
@@ -149,10 +186,10 @@ impl Items {
     }
 }
 
-impl Iterator for Items {
-    type Item = Item;
+impl<M: RecordedMessage> Iterator for Items<M> {
+    type Item = Item<M>;
 
-    fn next(&mut self) -> Option<Item> {
+    fn next(&mut self) -> Option<Item<M>> {
         loop {
             if self.damage.is_none()
                 && let Some(item) = self.held_back.pop_front()
@@ -171,13 +208,13 @@ impl Iterator for Items {
 }
 
 /// The records and events of a recording.
-pub struct Messages {
-    items: Items,
+pub struct Messages<M> {
+    items: Items<M>,
     damages: Vec<Damage>,
 }
 
-impl Messages {
-    pub(super) const fn new(items: Items) -> Self {
+impl<M: RecordedMessage> Messages<M> {
+    pub(super) const fn new(items: Items<M>) -> Self {
         Self {
             items,
             damages: Vec::new(),
@@ -204,10 +241,10 @@ impl Messages {
     }
 }
 
-impl Iterator for Messages {
-    type Item = FlightMessage;
+impl<M: RecordedMessage> Iterator for Messages<M> {
+    type Item = M;
 
-    fn next(&mut self) -> Option<FlightMessage> {
+    fn next(&mut self) -> Option<M> {
         for item in self.items.by_ref() {
             match item {
                 Item::Message(message) => return Some(message),
@@ -229,11 +266,11 @@ pub(super) struct Channels {
 
 impl Channels {
     /// What a record of MCAP holds, if it is something of ours.
-    pub(super) fn item(
+    pub(super) fn item<M: RecordedMessage>(
         &mut self,
         record: &Record<'_>,
         clock_offset_ns: i64,
-    ) -> Option<Result<Item, String>> {
+    ) -> Option<Result<Item<M>, String>> {
         match record {
             Record::Channel(channel) if channel.message_encoding == schema::ENCODING => {
                 for (topic, id) in [
@@ -250,9 +287,17 @@ impl Channels {
             Record::Message { header, data } => {
                 let id = Some(header.channel_id);
                 if id == self.record {
-                    Some(decode_record(data).map(Item::Message))
+                    Some(
+                        M::record(data)
+                            .map_err(|error| refused("a record", error))
+                            .map(Item::Message),
+                    )
                 } else if id == self.event {
-                    Some(decode_event(data).map(Item::Message))
+                    Some(
+                        M::event(data)
+                            .map_err(|error| refused("an event", error))
+                            .map(Item::Message),
+                    )
                 } else if id == self.log {
                     remark(header, data, clock_offset_ns).map(|remark| Ok(Item::Remark(remark)))
                 } else {
@@ -262,18 +307,6 @@ impl Channels {
             _ => None,
         }
     }
-}
-
-fn decode_record(data: &[u8]) -> Result<FlightMessage, String> {
-    decode(data)
-        .map(Message::Tick)
-        .map_err(|error| refused("a record", error))
-}
-
-fn decode_event(data: &[u8]) -> Result<FlightMessage, String> {
-    decode(data)
-        .map(Message::Event)
-        .map_err(|error| refused("an event", error))
 }
 
 fn refused(what: &str, error: DecodeError) -> String {

@@ -51,6 +51,7 @@ mod parse;
 mod part;
 mod raw;
 mod reader;
+mod recorded;
 mod recorder;
 mod recover;
 mod schema;
@@ -58,6 +59,8 @@ mod settings;
 mod status;
 mod summary;
 mod utc;
+#[cfg(feature = "flight")]
+mod views;
 mod wire;
 mod writing;
 
@@ -66,11 +69,16 @@ pub use crash::repair_last;
 pub use damage::Damage;
 pub use disk::{Disk, DiskFile, FileSystem, is_being_written};
 pub use end::End;
-pub use items::{Item, Items, Messages, Remark};
+pub use items::{Item, Items, Messages, RecordedMessage, Remark};
 pub use list::{Entry, Wholeness, entry, files, glance};
 pub use reader::{OpenError, Recording, Verified};
+pub use recorded::{Recorded, Views};
+#[cfg(feature = "flight")]
 pub use recorder::Recorder;
+pub use recorder::RecorderOf;
 pub use recover::{RecoverError, Recovered, recover};
 pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};
 pub use status::{News, RecorderStatus};
+#[cfg(feature = "flight")]
+pub use views::FoxgloveViews;

@@ -1,8 +1,6 @@
 //! What did not get into a file: how many messages, and of which ticks.
 
-use fcc_core::framework::{Event, EventKind, Time};
-
-use fcc_telemetry::FlightMessage;
+use fcc_core::framework::{Event, EventKind, Message, Time};
 
 /// Messages that are missing between two that are not.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -14,13 +12,13 @@ pub(super) struct Lost {
 
 impl Lost {
     /// The gap that a message tells of, if it is one that does.
-    pub(super) fn told_by(message: &FlightMessage) -> Option<Self> {
+    pub(super) fn told_by<M, E, S, O, R>(message: &Message<M, E, S, O, R>) -> Option<Self> {
         match message {
-            FlightMessage::Event(event) => match event.kind {
+            Message::Event(event) => match event.kind {
                 EventKind::NotRecorded { count, first, last } => Some(Self { count, first, last }),
                 _ => None,
             },
-            FlightMessage::Tick(_) => None,
+            Message::Tick(_) => None,
         }
     }
 
@@ -29,7 +27,7 @@ impl Lost {
     }
 
     /// One message more.
-    pub(super) fn widen(&mut self, message: &FlightMessage) {
+    pub(super) fn widen<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) {
         let (tick, _) = place(message);
         self.join(Self {
             count: 1,
@@ -49,9 +47,12 @@ impl Lost {
     }
 
     /// The gap as an event, at the message that ends it.
-    pub(super) fn event(&self, next: Option<&FlightMessage>) -> FlightMessage {
+    pub(super) fn event<M, E, S, O, R>(
+        &self,
+        next: Option<&Message<M, E, S, O, R>>,
+    ) -> Message<M, E, S, O, R> {
         let (tick, time) = next.map_or((self.last, Time::NEVER), place);
-        FlightMessage::Event(Event {
+        Message::Event(Event {
             tick,
             time,
             kind: EventKind::NotRecorded {
@@ -75,9 +76,9 @@ impl Lost {
     }
 }
 
-fn place(message: &FlightMessage) -> (u64, Time) {
+fn place<M, E, S, O, R>(message: &Message<M, E, S, O, R>) -> (u64, Time) {
     match message {
-        FlightMessage::Tick(record) => (record.tick.number, record.tick.woke),
-        FlightMessage::Event(event) => (event.tick, event.time),
+        Message::Tick(record) => (record.tick.number, record.tick.woke),
+        Message::Event(event) => (event.tick, event.time),
     }
 }

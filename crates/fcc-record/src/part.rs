@@ -5,13 +5,15 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use fcc_core::framework::MessageOf;
+
 use super::file::RecordingFile;
 use super::lost::Lost;
-use fcc_telemetry::FlightMessage;
+use crate::recorded::Recorded;
 
 /// A part of a recording that is being written.
-pub(super) struct Part {
-    file: RecordingFile,
+pub(super) struct Part<C: Recorded> {
+    file: RecordingFile<C>,
     /// Records that are committed.
     committed_ticks: u64,
     /// Messages given to the file since.
@@ -37,8 +39,8 @@ pub(super) struct Abandoned {
     pub(super) remarks: Vec<String>,
 }
 
-impl Part {
-    pub(super) fn new(file: RecordingFile) -> Self {
+impl<C: Recorded> Part<C> {
+    pub(super) fn new(file: RecordingFile<C>) -> Self {
         Self {
             file,
             committed_ticks: 0,
@@ -49,7 +51,7 @@ impl Part {
     }
 
     /// Takes a record or an event.
-    pub(super) fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
+    pub(super) fn take(&mut self, message: &MessageOf<C>) -> io::Result<()> {
         match Lost::told_by(message) {
             Some(gap) => self.gaps.join(gap),
             None => self.uncommitted.widen(message),
@@ -105,7 +107,7 @@ impl Part {
     }
 
     /// Records that are safe on the disk.
-    pub(super) const fn ticks(&self) -> u64 {
+    pub(super) fn ticks(&self) -> u64 {
         self.committed_ticks
     }
 
@@ -115,7 +117,7 @@ impl Part {
     }
 
     /// Bytes that have gathered since, before they are compressed.
-    pub(super) const fn gathered_bytes(&self) -> u64 {
+    pub(super) fn gathered_bytes(&self) -> u64 {
         self.file.gathered_bytes()
     }
 
@@ -125,7 +127,7 @@ impl Part {
     }
 
     /// What was lost before, and what of it is told in the file.
-    pub(super) const fn gaps(&self) -> Lost {
+    pub(super) fn gaps(&self) -> Lost {
         self.gaps
     }
 }

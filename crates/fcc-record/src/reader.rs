@@ -9,7 +9,7 @@ use mcap::records::Record;
 use super::about::About;
 use super::damage::Damage;
 use super::end::{End, RunStatistics};
-use super::items::{Items, Messages};
+use super::items::{AnyMessage, Items, Messages, RecordedMessage};
 use super::raw::{Found, RawReader};
 use super::schema;
 use super::summary;
@@ -19,10 +19,11 @@ use super::summary;
 /// ```no_run
 /// use fcc_core::framework::Message;
 /// use fcc_record::Recording;
+/// use fcc_telemetry::FlightMessage;
 ///
 /// let recording = Recording::open("recordings/2026-11-20T04-21-33.512Z-built-in-01.mcap")?;
 /// println!("{} at {} Hz", recording.about().aircraft, recording.about().rate_hz);
-/// let mut messages = recording.messages()?;
+/// let mut messages = recording.messages::<FlightMessage>()?;
 /// for message in &mut messages {
 ///     if let Message::Tick(record) = message {
 ///         println!("{} {}", record.tick.number, record.outputs.elevator);
@@ -188,7 +189,7 @@ impl Recording {
     /// Reads message by message.
     fn count(&self, mut go_on: impl FnMut(u64) -> bool) -> Result<Option<Verified>, OpenError> {
         let mut run_statistics = RunStatistics::default();
-        let mut messages = self.messages()?;
+        let mut messages = self.messages::<AnyMessage>()?;
         while let Some(message) = messages.next() {
             run_statistics.take(&message);
             if run_statistics.ticks().is_multiple_of(CHECK_EVERY) && !go_on(messages.bytes_read()) {
@@ -222,7 +223,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file cannot be opened any more.
-    pub fn messages(&self) -> Result<Messages, OpenError> {
+    pub fn messages<M: RecordedMessage>(&self) -> Result<Messages<M>, OpenError> {
         self.items().map(Messages::new)
     }
 
@@ -231,7 +232,7 @@ impl Recording {
     ///
     /// # Errors
     /// When the file cannot be opened any more.
-    pub fn items(&self) -> Result<Items, OpenError> {
+    pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
         self.raw()
             .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
     }

@@ -6,13 +6,15 @@ use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use fcc_core::framework::MessageOf;
+
 use super::about::About;
 use super::disk::{Disk, FileSystem};
 use super::lost::Lost;
 use super::settings::{RecorderSettings, RecordingPace};
 use super::status::{Board, News, RecorderStatus};
 use super::writing::{Feed, Writing};
-use fcc_telemetry::FlightMessage;
+use crate::recorded::Recorded;
 
 /// The name of a recorder's thread.
 const THREAD_NAME: &str = "fcc-recorder";
@@ -22,15 +24,18 @@ const THREAD_NAME: &str = "fcc-recorder";
 const PATIENCE: Duration = Duration::from_secs(10);
 const POLL: Duration = Duration::from_millis(2);
 
-/// Writes a flight's recording in a thread of its own.
+/// Writes a flight's recording.
+#[cfg(feature = "flight")]
+pub type Recorder = RecorderOf<fcc_core::flight::Autopilot>;
+
+/// Writes the recording of a loop in a thread of its own.
 ///
 /// [`take`](Self::take) and [`remark`](Self::remark) never wait in real time:
 /// what the disk is too slow for is dropped, and the gap is recorded. Whatever
 /// goes wrong with the disk is [news](Self::news), and never an error of the
 /// flight.
-#[derive(Debug)]
-pub struct Recorder {
-    feed: SyncSender<Feed>,
+pub struct RecorderOf<C: Recorded> {
+    feed: SyncSender<Feed<MessageOf<C>>>,
     pace: RecordingPace,
     lost: Lost,
     board: Board,
@@ -38,7 +43,7 @@ pub struct Recorder {
     thread: JoinHandle<()>,
 }
 
-impl Recorder {
+impl<C: Recorded> RecorderOf<C> {
     /// Begins a recording in a folder of the file system.
     ///
     /// # Errors
@@ -64,7 +69,7 @@ impl Recorder {
         let on_the_thread = board.clone();
         let write = move || {
             let (seen, say) = (on_the_thread.clone(), tell.clone());
-            let writing = Writing::new(disk, about, settings, on_the_thread, tell);
+            let writing = Writing::<C>::new(disk, about, settings, on_the_thread, tell);
             // The file stays as it was when last committed.
             if panic::catch_unwind(AssertUnwindSafe(|| writing.run(&fed))).is_err() {
                 give_up(&seen, &say);
@@ -85,7 +90,7 @@ impl Recorder {
 
     /// Records a message. In real time it never waits; in lockstep it waits for
     /// the disk.
-    pub fn take(&mut self, message: &FlightMessage) {
+    pub fn take(&mut self, message: &MessageOf<C>) {
         if !self.tell_gap(message) || !self.send(Feed::Message(*message)) {
             self.lose(message);
         }
@@ -129,14 +134,14 @@ impl Recorder {
         (self.board.read(), news)
     }
 
-    fn send(&self, feed: Feed) -> bool {
+    fn send(&self, feed: Feed<MessageOf<C>>) -> bool {
         match self.pace {
             RecordingPace::RealTime => self.feed.try_send(feed).is_ok(),
             RecordingPace::Lockstep => self.feed.send(feed).is_ok(),
         }
     }
 
-    fn send_patiently(&self, mut feed: Feed, began: Instant) {
+    fn send_patiently(&self, mut feed: Feed<MessageOf<C>>, began: Instant) {
         while began.elapsed() < PATIENCE {
             match self.feed.try_send(feed) {
                 Ok(()) | Err(TrySendError::Disconnected(_)) => return,
@@ -148,7 +153,7 @@ impl Recorder {
 
     /// Tells of a gap before the message that ends it; whether there is none
     /// left to tell.
-    fn tell_gap(&mut self, next: &FlightMessage) -> bool {
+    fn tell_gap(&mut self, next: &MessageOf<C>) -> bool {
         if self.lost.is_none() {
             return true;
         }
@@ -159,7 +164,7 @@ impl Recorder {
         told
     }
 
-    fn lose(&mut self, message: &FlightMessage) {
+    fn lose(&mut self, message: &MessageOf<C>) {
         self.lost.widen(message);
         self.board.update(|status| status.not_recorded += 1);
     }

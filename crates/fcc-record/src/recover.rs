@@ -17,14 +17,13 @@ use super::disk;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
-use super::items::{Channels, Item};
+use super::items::{AnyMessage, Channels, Item};
 use super::name::{damaged, unfinished};
 use super::raw::{Cut, Found, RawReader};
 use super::reader::{OpenError, Recording, Verified};
 use super::schema::encode_event;
 use super::settings::Compression;
 use super::wire::log::Level;
-use fcc_telemetry::{FlightMessage, event_words};
 
 /// What came of recovering a file.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -259,7 +258,7 @@ impl Copy {
     /// Copies a record, unless it is a message that cannot be understood.
     fn take(&mut self, record: &Record<'_>) -> Result<bool, McapError> {
         self.records += 1;
-        match self.channels.item(record, 0) {
+        match self.channels.item::<AnyMessage>(record, 0) {
             Some(Ok(Item::Message(message))) => self.run_statistics.take(&message),
             Some(Err(_)) => return Ok(false),
             _ => {}
@@ -307,9 +306,9 @@ impl Copy {
     /// Says where something is missing: as an event, for programs, and as a
     /// line of the log, for people.
     fn gap(&mut self, damage: &Damage) -> Result<(), McapError> {
-        if let Some(event) = damage.event() {
-            self.run_statistics.take(&FlightMessage::Event(event));
-            let text = event_words(&event, &[], &[]);
+        if let Some(event) = damage.event::<()>() {
+            self.run_statistics.take(&AnyMessage::Event(event));
+            let text = damage.event_text();
             let mut bytes = Vec::new();
             encode_event(&event, &text, &mut bytes);
             self.write(self.channels.event, &bytes)?;

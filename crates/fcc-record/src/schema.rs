@@ -1,11 +1,10 @@
 //! The topics of a recording and their schemas.
 
-use std::borrow::Cow;
+use fcc_core::framework::schema::Schema;
+use fcc_core::framework::{Event, EventOf, RecordOf};
 
-use fcc_core::framework::schema::Schema as _;
-
+use crate::recorded::{Recorded, TopicOf, Views};
 use fcc_telemetry::schema::protobuf::{Extra, File, append_text, describe, encode};
-use fcc_telemetry::{FlightEvent, FlightRecord};
 
 /// What says in a file that it is one of ours, in this format.
 pub(super) const PROFILE: &str = "fcc.v2";
@@ -28,72 +27,52 @@ pub(super) const TEXT: Extra = Extra {
 };
 
 /// Appends an event and its words for people as a message.
-pub(super) fn encode_event(event: &FlightEvent, text: &str, into: &mut Vec<u8>) {
+pub(super) fn encode_event<O: Schema>(event: &Event<O>, text: &str, into: &mut Vec<u8>) {
     encode(event, into);
     append_text(TEXT.number, text, into);
 }
 
-/// The topics of a recording.
+/// The topics of every recording; what its plant adds comes after them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Topic {
     Record,
     Event,
-    Position,
-    Attitude,
     Log,
 }
 
-macro_rules! descriptors {
-    ($name:literal) => {
-        include_bytes!(concat!(env!("OUT_DIR"), "/", $name, ".fds"))
-    };
-}
+/// How many they are.
+pub(super) const OWN_TOPICS: usize = 3;
 
 impl Topic {
-    pub(super) const ALL: [Self; 5] = [
-        Self::Record,
-        Self::Event,
-        Self::Position,
-        Self::Attitude,
-        Self::Log,
-    ];
-
     pub(super) const fn name(self) -> &'static str {
         match self {
             Self::Record => "/fcc/record",
             Self::Event => "/fcc/event",
-            Self::Position => "/fcc/position",
-            Self::Attitude => "/fcc/attitude",
             Self::Log => "/fcc/log",
         }
     }
-
-    /// The full name of the message's type.
-    pub(super) const fn schema(self) -> &'static str {
-        match self {
-            Self::Record => "fcc.v2.Record",
-            Self::Event => "fcc.v2.Event",
-            Self::Position => "foxglove.LocationFix",
-            Self::Attitude => "foxglove.FrameTransform",
-            Self::Log => "foxglove.Log",
-        }
-    }
-
-    /// The type and all it is made of, as a `FileDescriptorSet`.
-    pub(super) fn descriptors(self) -> Cow<'static, [u8]> {
-        let described = match self {
-            Self::Record | Self::Event => {
-                return describe(&messages(), "fcc/v2/flight.proto", PACKAGE).into();
-            }
-            Self::Position => descriptors!("location_fix").as_slice(),
-            Self::Attitude => descriptors!("frame_transform"),
-            Self::Log => descriptors!("log"),
-        };
-        described.into()
-    }
 }
 
-/// The messages of a flight: its records and events.
-pub fn messages() -> File {
-    File::of(&[FlightRecord::TYPE, FlightEvent::TYPE], &[TEXT])
+/// All topics of a recording.
+pub(super) fn topics<C: Recorded>() -> Vec<TopicOf> {
+    let described = describe(&messages::<C>(), "fcc/v2/loop.proto", PACKAGE);
+    let log = include_bytes!(concat!(env!("OUT_DIR"), "/log.fds"));
+    let record = format!("{PACKAGE}.Record");
+    let own = [
+        (Topic::Record.name(), record, described.clone().into()),
+        (
+            Topic::Event.name(),
+            format!("{PACKAGE}.Event"),
+            described.into(),
+        ),
+        (Topic::Log.name(), "foxglove.Log".to_owned(), log.into()),
+    ];
+    let more = C::Views::TOPICS.iter();
+    let more = more.map(|(name, of, described)| (*name, (*of).to_owned(), (*described).into()));
+    own.into_iter().chain(more).collect()
+}
+
+/// The messages of a loop: its records and events.
+pub fn messages<C: Recorded>() -> File {
+    File::of(&[RecordOf::<C>::TYPE, EventOf::<C>::TYPE], &[TEXT])
 }

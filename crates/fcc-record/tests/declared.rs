@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::{env, fs};
 
+use fcc_core::flight::Autopilot;
 use fcc_record::{PACKAGE, messages};
 use fcc_telemetry::FlightRecord;
 use fcc_telemetry::schema::layout_table;
@@ -34,7 +35,7 @@ fn committed() -> FileDescriptorProto {
 /// What was declared once keeps its number for ever: no field of the committed
 /// messages has another, and a number that is free now is marked so.
 fn with_reserved(committed: &FileDescriptorProto) -> File {
-    let mut file = messages();
+    let mut file = messages::<Autopilot>();
     for old in &committed.message_type {
         let name = old.name();
         let Some(new) = file.messages.iter_mut().find(|new| new.name == name) else {
@@ -92,7 +93,7 @@ fn the_proto_is_what_is_declared() {
     let declared = if path(PROTO).exists() {
         text(&with_reserved(&committed()), PACKAGE)
     } else {
-        text(&messages(), PACKAGE)
+        text(&messages::<Autopilot>(), PACKAGE)
     };
     if update() {
         fs::create_dir_all(path(PROTO).parent().unwrap()).unwrap();

@@ -5,17 +5,19 @@
 
 use std::fs::{self, File};
 use std::io;
+use std::marker::PhantomData;
 use std::path::Path;
 
-use fcc_core::framework::{Message, Time};
+use fcc_core::framework::{Controller, EventOf, Message, MessageOf, RecordOf, Time};
 
 use super::origin::Origin;
 use fcc_record::Remark;
+use fcc_telemetry::event_words;
 use fcc_telemetry::schema::{Row, header};
-use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord, event_words};
 
 /// Writes the messages of a flight into two CSV files.
-pub struct CsvFolder {
+pub struct CsvFolder<C> {
+    of: PhantomData<fn() -> C>,
     records: csv::Writer<File>,
     events: csv::Writer<File>,
     origin: Origin,
@@ -25,7 +27,7 @@ pub struct CsvFolder {
 /// Bytes that are gathered before they are written.
 const BUFFER_BYTES: usize = 1 << 18;
 
-impl CsvFolder {
+impl<C: Controller> CsvFolder<C> {
     /// Makes the folder if need be, and in it `records.csv` and `events.csv`,
     /// in the place of those that may be there.
     ///
@@ -39,10 +41,11 @@ impl CsvFolder {
                 .from_writer(File::create(folder.join(name))?))
         };
         let mut records = open("records.csv")?;
-        records.write_record(header::<FlightRecord>())?;
+        records.write_record(header::<RecordOf<C>>())?;
         let mut events = open("events.csv")?;
         events.write_record(["tick", "time_ns", "event"])?;
         Ok(Self {
+            of: PhantomData,
             records,
             events,
             origin: origin.clone(),
@@ -54,7 +57,7 @@ impl CsvFolder {
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn take(&mut self, message: &FlightMessage) -> io::Result<()> {
+    pub fn take(&mut self, message: &MessageOf<C>) -> io::Result<()> {
         match message {
             Message::Tick(record) => self.take_record(record),
             Message::Event(event) => self.take_event(event),
@@ -80,7 +83,7 @@ impl CsvFolder {
         self.events.flush()
     }
 
-    fn take_record(&mut self, record: &FlightRecord) -> io::Result<()> {
+    fn take_record(&mut self, record: &RecordOf<C>) -> io::Result<()> {
         self.row.take(record);
         for cell in self.row.cells() {
             self.records.write_field(cell)?;
@@ -89,11 +92,11 @@ impl CsvFolder {
         Ok(())
     }
 
-    fn take_event(&mut self, event: &FlightEvent) -> io::Result<()> {
+    fn take_event(&mut self, event: &EventOf<C>) -> io::Result<()> {
         self.events.write_record([
             event.tick.to_string(),
             instant(event.time),
-            event_words(event, &self.origin.sensors, &self.origin.actuators),
+            event_words::<C>(event, &self.origin.sensors, &self.origin.actuators),
         ])?;
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! What happened in a flight, numbered to be found in the plots.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::{EventKind, State};
 use serde::Serialize;
@@ -48,7 +49,8 @@ pub(super) struct Events {
 impl Events {
     pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
         self.push(time_s, event.tick, weight(event.kind), || {
-            event_words(event, &origin.sensors, &origin.actuators).replace("->", "\u{2192}")
+            event_words::<Autopilot>(event, &origin.sensors, &origin.actuators)
+                .replace("->", "\u{2192}")
         });
     }
 

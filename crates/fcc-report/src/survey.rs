@@ -128,7 +128,7 @@ impl Survey {
     ///
     /// # Errors
     /// As for [`take`](Self::take).
-    pub fn take_item(&mut self, item: &Item) -> Result<(), TimerError> {
+    pub fn take_item(&mut self, item: &Item<FlightMessage>) -> Result<(), TimerError> {
         match item {
             Item::Message(message) => self.take(message)?,
             Item::Remark(remark) => self.take_remark(remark),

@@ -17,8 +17,13 @@ use crate::heartbeat::{Heartbeat, HeartbeatReading};
 
 /// The name of the watchdog's thread.
 const THREAD_NAME: &str = "fcc-watchdog";
-/// Where the memory of the process is locked, all of a stack is in memory.
-const STACK_BYTES: usize = 512 << 10;
+/// Size of the thread's stack. With locked memory all of it is resident, so it is
+/// kept small; unoptimised code needs larger stack frames.
+const STACK_BYTES: usize = if cfg!(debug_assertions) {
+    4 << 20
+} else {
+    1 << 20
+};
 
 /// How often the heartbeat is read within the time limit: the watchdog is late by
 /// at most this share of it.

@@ -16,7 +16,7 @@ struct Plant;
 
 fcc_core::schema! {
     /// What the plant measures.
-    #[derive(Clone, Copy, Default)]
+    #[derive(Clone, Copy, Debug, Default)]
     struct Measured {
         #[field(1)]
         value: f64,

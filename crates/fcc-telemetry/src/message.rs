@@ -1,24 +1,41 @@
-//! What a loop that runs the autopilot tells of itself.
+//! What a loop tells of itself, in words; and what a flight's loop tells.
 
-use fcc_core::flight::{Autopilot, Measurements};
-use fcc_core::framework::{EventKind, EventOf, MessageOf, Readings, RecordOf, SourceChange};
+use fcc_core::framework::{Controller, EventKind, EventOf, Readings, SourceChange};
 
-use crate::schema::{Words, words};
+#[cfg(feature = "flight")]
+pub use of_flights::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
 
-/// The record of one tick of a flight.
-pub type FlightRecord = RecordOf<Autopilot>;
+#[cfg(feature = "flight")]
+mod of_flights {
+    use fcc_core::flight::Autopilot;
+    use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 
-/// The words of a flight's record, as they lie in shared memory and in arrays.
-pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
+    use crate::schema::{Words, words};
+    use crate::telemetry::Telemetry;
 
-/// Something that happened in a flight.
-pub type FlightEvent = EventOf<Autopilot>;
+    /// The record of one tick of a flight.
+    pub type FlightRecord = RecordOf<Autopilot>;
 
-/// A record or an event of a flight.
-pub type FlightMessage = MessageOf<Autopilot>;
+    /// The words of a flight's record, as they lie in shared memory and in arrays.
+    pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
+
+    /// Something that happened in a flight.
+    pub type FlightEvent = EventOf<Autopilot>;
+
+    /// A record or an event of a flight.
+    pub type FlightMessage = MessageOf<Autopilot>;
+
+    impl Telemetry for Autopilot {
+        type Words = FlightWords;
+    }
+}
 
 /// An event in words, with the names of the parts it speaks of.
-pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> String {
+pub fn event_words<C: Controller>(
+    event: &EventOf<C>,
+    sensors: &[String],
+    actuators: &[String],
+) -> String {
     let name = |names: &[String], index: u16| {
         names
             .get(usize::from(index))
@@ -41,11 +58,11 @@ pub fn event_words(event: &FlightEvent, sensors: &[String], actuators: &[String]
         EventKind::SourceChanged(SourceChange { readings, from, to }) => {
             let names = readings
                 .iter()
-                .map(|bit| Measurements::NAMES.get(bit as usize));
+                .map(|bit| C::Measurements::NAMES.get(bit as usize));
             let names: Vec<_> = names.flatten().copied().collect();
             let (from, to) = (name(sensors, from.into()), name(sensors, to.into()));
             format!("{}: from {to} instead of {from}", names.join(", "))
         }
-        kind => kind.description::<Autopilot>().to_string(),
+        kind => kind.description::<C>().to_string(),
     }
 }

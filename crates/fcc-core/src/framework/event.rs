@@ -288,20 +288,7 @@ pub struct EventDescription<C: Controller> {
 impl<C: Controller> fmt::Display for EventDescription<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind {
-            EventKind::StateChanged { from, to } => {
-                write!(f, "{from} -> {to}")?;
-                match to {
-                    State::Failsafe(Cause::Faults(flags)) => {
-                        f.write_str(": ")?;
-                        name_flags::<C>(f, flags)
-                    }
-                    State::Failsafe(Cause::InvalidOutput) => f.write_str(": invalid output"),
-                    State::Failsafe(Cause::Overrun) => {
-                        f.write_str(": too many ticks in a row overran their budget")
-                    }
-                    _ => Ok(()),
-                }
-            }
+            EventKind::StateChanged { from, to } => state_change::<C>(f, from, to),
             EventKind::CommandReceived(LoopCommand::Engage) => f.write_str("command: engage"),
             EventKind::CommandReceived(LoopCommand::Disengage) => f.write_str("command: disengage"),
             EventKind::CommandReceived(LoopCommand::Stop) => f.write_str("command: stop"),
@@ -392,6 +379,22 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 write!(f, ": from sensor {to} instead of {from}")
             }
         }
+    }
+}
+
+/// A change of state with the cause of a failsafe.
+fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: State) -> fmt::Result {
+    write!(f, "{from} -> {to}")?;
+    match to {
+        State::Failsafe(Cause::Faults(flags)) => {
+            f.write_str(": ")?;
+            name_flags::<C>(f, flags)
+        }
+        State::Failsafe(Cause::InvalidOutput) => f.write_str(": invalid output"),
+        State::Failsafe(Cause::Overrun) => {
+            f.write_str(": too many ticks in a row overran their budget")
+        }
+        _ => Ok(()),
     }
 }
 

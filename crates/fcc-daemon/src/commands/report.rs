@@ -51,7 +51,7 @@ fn read(args: &ReportArgs) -> Result<Report, String> {
     let mut csv = match &args.csv {
         None => None,
         Some(folder) => Some(
-            CsvFolder::create(folder, &origin)
+            CsvFolder::<fcc_core::flight::Autopilot>::create(folder, &origin)
                 .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?,
         ),
     };

@@ -64,7 +64,7 @@ impl<'a> Process<'a> {
 impl Host for Process<'_> {
     fn prepare(&mut self, authority: Option<&Arc<dyn ControlAuthority>>) -> io::Result<()> {
         let lock = authority.map(|authority| InstanceLock::of(Arc::clone(authority)));
-        self.held_signals = Some(Kept::from_new_threads().map_err(uncaught)?);
+        self.held_signals = Some(Kept::from_new_threads().map_err(|error| uncaught(&error))?);
         self.plant = authority.zip(lock).map(|(authority, lock)| Plant {
             authority: Arc::clone(authority),
             guard: lock.taken().is_none().then(|| guard(self.config)).flatten(),
@@ -75,7 +75,7 @@ impl Host for Process<'_> {
     }
 
     fn attach(&mut self, stop: &StopHandle) -> io::Result<()> {
-        self.interrupted = signals::stop_by(stop).map_err(uncaught)?;
+        self.interrupted = signals::stop_by(stop).map_err(|error| uncaught(&error))?;
         Ok(())
     }
 
@@ -164,6 +164,6 @@ fn guard(config: &Config) -> Option<Guard> {
         .ok()
 }
 
-fn uncaught(error: io::Error) -> io::Error {
+fn uncaught(error: &io::Error) -> io::Error {
     io::Error::new(error.kind(), format!("signals cannot be caught: {error}"))
 }

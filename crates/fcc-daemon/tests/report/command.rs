@@ -102,7 +102,7 @@ fn the_csv_is_the_recording() {
     let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
     let messages: Vec<_> = Recording::open(&file)
         .unwrap()
-        .messages()
+        .messages::<FlightMessage>()
         .unwrap()
         .collect();
     let records: Vec<&FlightRecord> = messages

@@ -49,12 +49,11 @@ impl LoopSection {
     /// # Errors
     /// When the operating system refuses, or a value is out of range.
     pub fn build_timer(&self) -> Result<Box<dyn Timer>, TimerError> {
-        if self.early_wake.enabled != EarlyWakeChoice::Off {
-            let early = EarlyWake::from(&self.early_wake);
-            self.timer.build_early(self.period(), &early)
-        } else {
-            self.timer.build(self.period())
+        if self.early_wake.enabled == EarlyWakeChoice::Off {
+            return self.timer.build(self.period());
         }
+        let early = EarlyWake::from(&self.early_wake);
+        self.timer.build_early(self.period(), &early)
     }
 
     /// Time between ticks, to the nanosecond.

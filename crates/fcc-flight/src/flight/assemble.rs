@@ -165,8 +165,10 @@ impl Assembly {
         // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
-            let airspeeds_mps = self.autopilot.config().envelope.allowed_airspeeds();
-            observers.push(Box::new(Live::new(&config.telemetry, airspeeds_mps)));
+            observers.push(Box::new(Live::new(
+                &config.telemetry,
+                self.autopilot.config().envelope.allowed_airspeeds(),
+            )));
         }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));

@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::AutopilotCommand;
+use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{EventKind, LoopCommand, State};
 use fcc_live::{Asked, FlightCommand, Verdict};
 use fcc_runtime::CommandSender;
@@ -82,7 +82,7 @@ impl Commands {
                 for waiting in self.waiting.iter_mut().filter(|w| {
                     w.read_in == Some(event.tick) && w.asked.command == FlightCommand::Engage
                 }) {
-                    waiting.refusal = Some(event_words(event, &[], &[]));
+                    waiting.refusal = Some(event_words::<Autopilot>(event, &[], &[]));
                 }
             }
             _ => {}

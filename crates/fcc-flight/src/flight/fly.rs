@@ -250,7 +250,7 @@ fn await_release(
     let confirmed = held.is_none_or(|(authority, plant)| {
         let released = authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)
-            .is_ok_and(|released| released.is_over());
+            .is_ok_and(fcc_core::framework::Released::is_over);
         if !released {
             observers.remark(format!(
                 "{plant} did not confirm the release of its controls{}",

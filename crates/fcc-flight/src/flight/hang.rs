@@ -85,6 +85,6 @@ fn release_controls(authority: &dyn ControlAuthority) -> bool {
     authority.held().is_none_or(|plant| {
         authority
             .release(&plant, GIVE_BACK_WITHIN, &mut || false)
-            .is_ok_and(|released| released.is_over())
+            .is_ok_and(fcc_core::framework::Released::is_over)
     })
 }

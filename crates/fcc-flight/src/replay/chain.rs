@@ -136,7 +136,7 @@ fn follows(before: &Recording, next: &Recording) -> Result<(), ChainError> {
 /// All records and events of a recording, file by file.
 pub struct ChainMessages<'a> {
     waiting: std::slice::Iter<'a, Recording>,
-    present: Option<(&'a Path, Items)>,
+    present: Option<(&'a Path, Items<FlightMessage>)>,
     bytes_before: u64,
     cuts: Vec<String>,
     damages: Vec<String>,

@@ -19,7 +19,9 @@ mod wire;
 
 use std::ops::RangeInclusive;
 
+#[cfg(feature = "flight")]
 use fcc_core::flight::AutopilotCommand;
+#[cfg(feature = "flight")]
 use fcc_core::framework::LoopCommand;
 
 pub(super) use command_server::{CommandServer, Ends, Rings};
@@ -96,6 +98,7 @@ impl FlightCommand {
     }
 
     /// What goes to the loop for it, in this sequence.
+    #[cfg(feature = "flight")]
     pub fn for_the_loop(&self) -> Vec<LoopCommand<AutopilotCommand>> {
         match self {
             Self::Engage => vec![LoopCommand::Engage],

@@ -98,7 +98,7 @@ fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
     let folder = csv.unwrap_or(Path::new(""));
     let refused = |error: std::io::Error| not_written(folder, &error);
     let mut tables = csv
-        .map(|folder| CsvFolder::create(folder, &origin))
+        .map(|folder| CsvFolder::<fcc_core::flight::Autopilot>::create(folder, &origin))
         .transpose()
         .map_err(refused)?;
     let mut survey = Survey::new(origin, pattern(&recording));

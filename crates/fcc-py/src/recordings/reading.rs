@@ -168,7 +168,7 @@ impl PyRecording {
         let mut events = Vec::new();
         let mut messages = self
             .recording
-            .messages()
+            .messages::<fcc_telemetry::FlightMessage>()
             .map_err(|error| errors::RECORDING.say(error))?;
         for message in &mut messages {
             match message {

@@ -10,12 +10,13 @@ use super::super::folder;
 use super::super::name::file_name;
 use super::super::part::Part;
 use super::Writing;
+use crate::recorded::Recorded;
 
 /// Names tried, and recordings deleted, for one file to begin.
 const MAX_ATTEMPTS: usize = 100;
 
-impl Writing {
-    pub(super) fn is_full(&self, part: &Part) -> bool {
+impl<C: Recorded> Writing<C> {
+    pub(super) fn is_full(&self, part: &Part<C>) -> bool {
         let too_large = |most| part.bytes() >= most;
         let too_old = |most: Duration| u128::from(part.span_ns()) >= most.as_nanos();
         self.settings.max_file_bytes.is_some_and(too_large)
@@ -85,7 +86,7 @@ impl Writing {
 
     /// Begins a file under a name that is free, where there is room or room
     /// may be made.
-    fn begin_file(&mut self) -> Result<RecordingFile, (PathBuf, io::Error)> {
+    fn begin_file(&mut self) -> Result<RecordingFile<C>, (PathBuf, io::Error)> {
         for _ in 0..MAX_ATTEMPTS {
             let about = &self.about;
             let name = file_name(about.started_unix_ns, &about.aircraft, about.part);

@@ -9,13 +9,15 @@ use std::mem;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
+use fcc_core::framework::MessageOf;
+
 use super::about::About;
 use super::disk::Disk;
 use super::lost::Lost;
 use super::part::Part;
 use super::settings::RecorderSettings;
 use super::status::{Board, News};
-use fcc_telemetry::FlightMessage;
+use crate::recorded::Recorded;
 
 /// How often what has gathered is written and synced. A loss of power costs
 /// this much and the time that takes on a busy machine, and must cost less than
@@ -28,25 +30,21 @@ const COMMIT_BYTES: u64 = 1 << 20;
 
 /// What comes to the recorder's thread.
 #[derive(Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are messages, and a box for each would be work for nothing"
-)]
-pub(super) enum Feed {
-    Message(FlightMessage),
+pub(super) enum Feed<M> {
+    Message(M),
     Remark(String),
     End(String),
 }
 
 /// The recorder's thread.
-pub(super) struct Writing {
+pub(super) struct Writing<C: Recorded> {
     disk: Box<dyn Disk>,
     about: About,
     settings: RecorderSettings,
     board: Board,
     news: Sender<News>,
     /// What is being written; none while the disk fails.
-    part: Option<Part>,
+    part: Option<Part<C>>,
     /// What is lost and not told in a file yet.
     lost: Lost,
     /// Why nothing was recorded, until a file has taken something again.
@@ -62,7 +60,7 @@ pub(super) struct Writing {
     bytes_before: u64,
 }
 
-impl Writing {
+impl<C: Recorded> Writing<C> {
     pub(super) fn new(
         disk: Box<dyn Disk>,
         about: About,
@@ -88,7 +86,7 @@ impl Writing {
     }
 
     /// Writes until the flight ends, or whoever feeds is gone.
-    pub(super) fn run(mut self, fed: &Receiver<Feed>) {
+    pub(super) fn run(mut self, fed: &Receiver<Feed<MessageOf<C>>>) {
         self.begin();
         loop {
             let patience = self.pause().saturating_sub(self.acted.elapsed());
@@ -99,7 +97,7 @@ impl Writing {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return self.end("the recorder was dropped"),
             }
-            let gathered = self.part.as_ref().map_or(0, Part::gathered_bytes);
+            let gathered = self.part.as_ref().map_or(0, Part::<C>::gathered_bytes);
             if self.acted.elapsed() < self.pause() && gathered < COMMIT_BYTES {
                 continue;
             }
@@ -120,7 +118,7 @@ impl Writing {
         }
     }
 
-    fn take(&mut self, message: &FlightMessage) {
+    fn take(&mut self, message: &MessageOf<C>) {
         self.tell_gap(Some(message));
         if self.part.is_none() {
             return self.lose(message);
@@ -133,14 +131,14 @@ impl Writing {
 
     /// Tells of what is lost in the file, if there is one, before the message
     /// that ends the gap.
-    fn tell_gap(&mut self, next: Option<&FlightMessage>) {
+    fn tell_gap(&mut self, next: Option<&MessageOf<C>>) {
         if self.part.is_some() && !self.lost.is_none() {
             let gap = mem::take(&mut self.lost).event(next);
             self.attempt(|part| part.take(&gap));
         }
     }
 
-    fn lose(&mut self, message: &FlightMessage) {
+    fn lose(&mut self, message: &MessageOf<C>) {
         if let Some(gap) = Lost::told_by(message) {
             self.lost.join(gap);
         } else {
@@ -151,7 +149,7 @@ impl Writing {
 
     /// Does something with the file, if there is one; deals with a disk that
     /// fails.
-    fn attempt(&mut self, work: impl FnOnce(&mut Part) -> io::Result<()>) -> bool {
+    fn attempt(&mut self, work: impl FnOnce(&mut Part<C>) -> io::Result<()>) -> bool {
         let Some(part) = &mut self.part else {
             return false;
         };

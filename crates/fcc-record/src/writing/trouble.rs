@@ -9,11 +9,12 @@ use super::super::part::Abandoned;
 use super::super::status::News;
 use super::Writing;
 use super::files::is_full;
+use crate::recorded::Recorded;
 
 /// Words that are kept for the next file while there is none.
 const MAX_WORDS_KEPT: usize = 100;
 
-impl Writing {
+impl<C: Recorded> Writing<C> {
     /// The disk failed: makes room if it may, or stops for now. The file stays
     /// as it was when last committed.
     pub(super) fn fail(&mut self, error: &io::Error) {

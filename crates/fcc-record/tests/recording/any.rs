@@ -45,7 +45,7 @@ impl Source for AnyBits {
     fn value(&mut self, field: &'static Field) -> Option<Value> {
         let (bits, special) = self.bits.next().unwrap();
         let Type::Leaf(kind) = field.of else {
-            unreachable!()
+            panic!("{} is no single value", field.name)
         };
         match kind {
             _ if self.in_state => None,

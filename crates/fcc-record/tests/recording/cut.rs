@@ -184,7 +184,7 @@ proptest! {
         fs::write(&path, &bytes).unwrap();
         if let Ok(recording) = Recording::open(&path) {
             let ticks = recording
-                .messages()
+                .messages::<FlightMessage>()
                 .unwrap()
                 .filter(|message| matches!(message, Message::Tick(_)))
                 .count();

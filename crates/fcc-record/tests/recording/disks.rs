@@ -134,7 +134,7 @@ pub(crate) fn wait_for_ticks(recorder: &Recorder, ticks: u64) {
 pub(crate) fn ticks(path: &Path) -> Vec<u64> {
     let recording = Recording::open(path).unwrap();
     recording
-        .messages()
+        .messages::<fcc_telemetry::FlightMessage>()
         .unwrap()
         .filter_map(|message| match message {
             Message::Tick(record) => Some(record.tick.number),
@@ -148,7 +148,7 @@ pub(crate) fn ticks(path: &Path) -> Vec<u64> {
 pub(crate) fn gaps(path: &Path) -> Vec<(u64, u64, u64)> {
     let recording = Recording::open(path).unwrap();
     recording
-        .messages()
+        .messages::<fcc_telemetry::FlightMessage>()
         .unwrap()
         .filter_map(|message| match message {
             Message::Event(event) => match event.kind {

@@ -32,8 +32,7 @@ fn message<'a>(set: &'a FileDescriptorSet, name: &str) -> &'a DescriptorProto {
     files
         .flat_map(|file| file.message_type.iter().map(move |message| (file, message)))
         .find(|(file, message)| is_named(file, message))
-        .map(|(_, message)| message)
-        .unwrap_or_else(|| panic!("{name}"))
+        .map_or_else(|| panic!("{name}"), |(_, message)| message)
 }
 
 /// Whether a message has a number at the end of a path of fields.

@@ -197,7 +197,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
     assert_eq!(recording.about().part, 2);
     assert_eq!(recording.end().unwrap().not_recorded, 50);
     let told: Vec<_> = recording
-        .items()
+        .items::<fcc_telemetry::FlightMessage>()
         .unwrap()
         .filter_map(|item| match item {
             Item::Remark(remark) => Some(remark.text),

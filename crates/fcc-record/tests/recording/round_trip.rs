@@ -197,7 +197,7 @@ fn remarks_come_back_at_the_time_of_the_message_before() {
     recorder.finish("stopped by command");
     let items: Vec<_> = Recording::open(only_file(folder.path()))
         .unwrap()
-        .items()
+        .items::<FlightMessage>()
         .unwrap()
         .collect();
     // The event of engaging, three ticks, the remark, a tick; the log's line

@@ -43,7 +43,7 @@ fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
     let path = only_file(folder.path());
     let messages: Vec<FlightMessage> = Recording::open(&path)
         .unwrap()
-        .messages()
+        .messages::<FlightMessage>()
         .unwrap()
         .skip(capacity)
         .collect();

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
 use fcc_record::Recording;
-use fcc_telemetry::FlightRecord;
+use fcc_telemetry::{FlightMessage, FlightRecord};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
@@ -78,12 +78,14 @@ mode = \"hold\"\n"
                 .extension()
                 .is_some_and(|extension| extension == "mcap")
             {
-                records.extend(Recording::open(&path)?.messages()?.filter_map(|message| {
-                    match message {
-                        Message::Tick(record) => Some(record),
-                        Message::Event(_) => None,
-                    }
-                }));
+                records.extend(
+                    Recording::open(&path)?
+                        .messages::<FlightMessage>()?
+                        .filter_map(|message| match message {
+                            Message::Tick(record) => Some(record),
+                            Message::Event(_) => None,
+                        }),
+                );
             }
         }
         Ok(records)

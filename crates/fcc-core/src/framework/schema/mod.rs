@@ -35,6 +35,8 @@
 //! A field's number never changes and is never given to another field, even
 //! after the field is removed.
 
+use core::fmt;
+
 mod declare;
 mod field;
 mod leaves;
@@ -51,8 +53,13 @@ pub use value::{Unknown, Value};
 pub use values::Values;
 
 /// Plain data whose values are declared: see [`schema!`](crate::schema).
+<<<<<<< HEAD
 pub trait Schema: Copy + Default + Send + 'static {
     /// Its type, for descriptions.
+=======
+pub trait Schema: Copy + Default + fmt::Debug + Send + 'static {
+    /// What it is, for whoever describes it.
+>>>>>>> main
     const TYPE: Type;
 
     /// Its fields, in their order; none for a single value.
