@@ -60,7 +60,7 @@ def _assert_restarted_soon(service: Service, figures: list[str], what: str) -> N
     ended_s, scheduled_s, starting_s, started_s = (_when(service, step, -1) for step in steps)
     figures.append(
         f"{what}: active again {started_s - ended_s:.2f} s after the process' end; until the "
-        f"guard had released {scheduled_s - ended_s:.2f} s (0.1 s of it RestartSec), until "
+        f"helper had released {scheduled_s - ended_s:.2f} s (0.1 s of it RestartSec), until "
         f"systemd began {starting_s - scheduled_s:.2f} s, until it was ready "
         f"{started_s - starting_s:.2f} s"
     )
@@ -107,7 +107,7 @@ def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
         pid = service.pid
         _kill(service, "KILL")
         _wait_for_restart(service, pid)
-        service.wait_until(lambda: not simulator.progress().overridden, "the guard releases")
+        service.wait_until(lambda: not simulator.progress().overridden, "the helper releases")
         service.wait_for_status("standby")
         service.fly_on(simulator, 3.0)
         assert not simulator.progress().overridden
@@ -131,7 +131,7 @@ def test_who_gives_no_sign_of_life_is_ended_and_started_again(
         assert ended[-1]["EXIT_CODE"] == "killed"
         assert int(ended[-1]["EXIT_STATUS"]) == signal.SIGABRT
         _assert_restarted_soon(service, figures, "stopped, and ended by the watchdog")
-        service.wait_until(lambda: not simulator.progress().overridden, "the guard releases")
+        service.wait_until(lambda: not simulator.progress().overridden, "the helper releases")
         # And it flies again, when somebody wants it to.
         service.engage_again(simulator)
 

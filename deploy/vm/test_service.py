@@ -67,7 +67,7 @@ def test_the_loop_and_its_watchdog_are_real_time_threads_and_nothing_else(flying
 
 
 def test_it_may_do_nothing_but_fly(flying: Flying) -> None:
-    """Of the daemon and of its guard process."""
+    """Of the daemon and of its release helper."""
     _, service = flying
     uid = service.guest.sh("id --user fccd").strip()
     gid = service.guest.sh("id --group fccd").strip()

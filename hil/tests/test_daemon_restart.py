@@ -1,7 +1,7 @@
 """A daemon that is killed in flight and started again: asserted on the aircraft.
 
 What is killed is the daemon alone; the simulator flies on, its engage switch still on, and
-the guard process gives the controls back to a pilot who leaves them as they were.
+the release helper releases the controls to a pilot who leaves them as they were.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
         assert resumed.altitude_ft == pytest.approx(aims.altitude_ft, abs=1.0)
         assert resumed.airspeed_kt == pytest.approx(aims.airspeed_kt, abs=0.2)
         taken_at_s = simulator.progress().time_s
-        # The guard of the killed daemon does not pull the controls away again.
+        # The release helper of the killed daemon does not release the controls again.
         wait_until(
             lambda: simulator.progress().time_s > taken_at_s + 25.0, "25 s of flight", within_s=90.0
         )
@@ -161,7 +161,7 @@ def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill("")
     with cockpit.daemon("") as again:
         assert "staying in standby" in again.wait_for('restart.mode is "cold"')
-        wait_until(lambda: not cockpit.simulator.progress().overridden, "the guard releases")
+        wait_until(lambda: not cockpit.simulator.progress().overridden, "the helper releases")
         again.wait_until_ready()
         assert "standby" in again.wait_for("heading")
         assert not cockpit.simulator.progress().overridden
@@ -214,24 +214,24 @@ def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> N
     assert "was interrupted" not in ending.said
 
 
-def test_a_guard_that_still_releases_is_relieved(fccd: Path) -> None:
-    """At a simulator that never answers, a guard goes on for two minutes."""
+def test_a_helper_that_still_releases_is_ended(fccd: Path) -> None:
+    """At a simulator that never answers, a release helper continues for two minutes."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as simulator:
         simulator.bind(("127.0.0.1", 0))
         simulator.settimeout(15.0)
         address = "{}:{}".format(*simulator.getsockname())
         with subprocess.Popen(
-            [fccd, "guard"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        ) as guard:
-            assert guard.stdin is not None
-            assert guard.stderr is not None
+            [fccd, "release-helper"], stdin=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as helper:
+            assert helper.stdin is not None
+            assert helper.stderr is not None
             config = json.dumps(f'[x-plane]\nsimulator = "{address}"\n')
-            guard.stdin.write(f"{config}\nheld X-Plane at {address}\n")
-            guard.stdin.close()
+            helper.stdin.write(f"{config}\nheld X-Plane at {address}\n")
+            helper.stdin.close()
             assert simulator.recv(600), "it releases"
-            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as relief:
-                relief.connect(f"\0fccd-guard-X-Plane at {address}")
-                relief.settimeout(15.0)
-                assert relief.recv(1) == b"", "it is gone"
-            assert "another has taken" in guard.stderr.read()
-    assert guard.returncode == SUCCESS
+            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as successor:
+                successor.connect(f"\0fccd-release-helper-X-Plane at {address}")
+                successor.settimeout(15.0)
+                assert successor.recv(1) == b"", "it has ended"
+            assert "another daemon has taken over" in helper.stderr.read()
+    assert helper.returncode == SUCCESS

@@ -79,7 +79,7 @@ def test_a_command_that_is_no_number_never_leaves_the_daemon(
     assert_in_the_same_tick(flown, flown.failsafes[0], after_s=1.0)
 
 
-def test_a_killed_daemon_leaves_a_guard_that_centres_and_releases(
+def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
     fccd: Path, tmp_path: Path
 ) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
@@ -88,7 +88,7 @@ def test_a_killed_daemon_leaves_a_guard_that_centres_and_releases(
         ending = daemon.end(signal.SIGKILL)
         assert_released(simulator)
         assert simulator.releases()[0].time_s - killed_at_s < AT_ONCE_S
-        wait_until(lambda: "fccd guard: the daemon is gone" in daemon.said, "the guard's word")
+        wait_until(lambda: "fccd release-helper: the daemon has ended" in daemon.said, "the helper's message")
     assert ending.exit_code == -signal.SIGKILL
 
 

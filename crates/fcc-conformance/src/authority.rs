@@ -66,7 +66,7 @@ pub fn a_release_from_outside_is_confirmed<B: AuthorityBench>() {
 }
 
 /// A release that is called off before it begins sends nothing.
-pub fn a_release_that_is_called_off_sends_nothing<B: AuthorityBench>() {
+pub fn a_cancelled_release_sends_nothing<B: AuthorityBench>() {
     let mut run = Run::<B>::holding();
     let plant = run.bench.authority().plant().expect("a plant is there");
     let before = run.bench.messages();
@@ -74,7 +74,7 @@ pub fn a_release_that_is_called_off_sends_nothing<B: AuthorityBench>() {
         .bench
         .authority()
         .release(&plant, Duration::from_secs(60), &mut || true);
-    assert_eq!(released, Ok(Released::CalledOff));
+    assert_eq!(released, Ok(Released::Cancelled));
     assert_eq!(run.bench.messages(), before);
     assert!(run.bench.is_held());
 }

@@ -153,7 +153,7 @@ macro_rules! authority_conformance {
             what_is_held_is_known_outside
             without_permission_nothing_is_taken
             a_release_from_outside_is_confirmed
-            a_release_that_is_called_off_sends_nothing
+            a_cancelled_release_sends_nothing
             a_plant_of_another_kind_is_refused
             the_unique_name_is_its_own
             what_has_not_changed_is_not_reported_again

@@ -47,10 +47,10 @@ pub enum Action {
     Doctor(DoctorArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
-    /// Give X-Plane's controls back if the daemon is killed; started by the
+    /// Release X-Plane's controls if the daemon is killed; started by the
     /// daemon itself
     #[command(hide = true)]
-    Guard,
+    ReleaseHelper,
     /// Print a completion script for a shell
     Completions {
         /// Which shell

@@ -6,11 +6,11 @@ mod check;
 mod command;
 mod doctor;
 mod fly;
-mod guard;
 mod list;
 mod outcome;
 mod progress;
 mod recover;
+mod release_helper;
 mod replay;
 mod report;
 mod run;
@@ -62,7 +62,7 @@ fn carry_out(command: Action) -> Exit {
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args),
         Action::Report(args) => report::report(&args),
-        Action::Guard => guard::guard(),
+        Action::ReleaseHelper => release_helper::release_helper(),
         Action::Completions { shell } => completions(shell),
         Action::Man { folder } => man(&folder),
     }

@@ -2,13 +2,13 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `guard`, `relief` | a second process that gives controls back if this one is killed |
+//! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
 //! | `instance_lock` | keeps two daemons from one plant |
 //! | `signals` | the signals that end a flight |
 
-mod guard;
 mod instance_lock;
-mod relief;
+mod release_handover;
+mod release_helper;
 mod signals;
 
 use std::io;
@@ -23,14 +23,15 @@ use fcc_runtime::StopHandle;
 
 use crate::exit::Exit;
 use crate::output;
-use guard::Guard;
-pub(crate) use guard::run_release_helper;
 use instance_lock::InstanceLock;
+use release_helper::ReleaseHelper;
+pub(crate) use release_helper::run_release_helper;
 use signals::Kept;
 
-/// While control is held, it is looked this often for a guard of an earlier
-/// daemon that gives it away; looking is one refused connection.
-const RELIEVE_EVERY: Duration = Duration::from_secs(1);
+/// While control is held, this is the interval of checks for a release helper
+/// of an earlier daemon, which would release it; a check is one refused
+/// connection.
+const CHECK_EVERY: Duration = Duration::from_secs(1);
 
 /// This process, as the host of one flight.
 pub(crate) struct Process<'a> {
@@ -40,13 +41,13 @@ pub(crate) struct Process<'a> {
     plant: Option<Plant>,
 }
 
-/// What outlives the process, or other processes may have.
+/// What outlives the process, or is shared with other processes.
 struct Plant {
     authority: Arc<dyn ControlAuthority>,
     lock: InstanceLock,
-    guard: Option<Guard>,
-    /// When a guard was last looked for.
-    relieved: Instant,
+    helper: Option<ReleaseHelper>,
+    /// When an earlier helper was last checked for.
+    checked: Instant,
 }
 
 impl<'a> Process<'a> {
@@ -67,9 +68,13 @@ impl Host for Process<'_> {
         self.held_signals = Some(Kept::from_new_threads().map_err(|error| uncaught(&error))?);
         self.plant = authority.zip(lock).map(|(authority, lock)| Plant {
             authority: Arc::clone(authority),
-            guard: lock.taken().is_none().then(|| guard(self.config)).flatten(),
+            helper: lock
+                .taken()
+                .is_none()
+                .then(|| start_helper(self.config))
+                .flatten(),
             lock,
-            relieved: Instant::now(),
+            checked: Instant::now(),
         });
         Ok(())
     }
@@ -87,11 +92,11 @@ impl Host for Process<'_> {
         if let Some(plant) = &mut self.plant {
             plant.lock.follow();
             let held = plant.authority.held();
-            if held.is_some() && plant.relieved.elapsed() >= RELIEVE_EVERY {
-                plant.relieve_guard();
+            if held.is_some() && plant.checked.elapsed() >= CHECK_EVERY {
+                plant.end_earlier_helper();
             }
-            if let Some(guard) = &mut plant.guard {
-                guard.tell(held);
+            if let Some(helper) = &mut plant.helper {
+                helper.report(held);
             }
         }
     }
@@ -102,12 +107,12 @@ impl Host for Process<'_> {
 
     fn before_control(&mut self) {
         if let Some(plant) = &mut self.plant {
-            plant.relieve_guard();
+            plant.end_earlier_helper();
         }
     }
 
-    /// At once, as a crash would: what runs at an orderly exit may wait for a
-    /// thread that hangs, and has had its time.
+    /// Ends at once, like a crash: the orderly exit had its time, and may wait
+    /// for a thread that hangs.
     fn last_resort(&self) -> Box<dyn FnOnce(bool) + Send> {
         Box::new(|released| {
             let exit = if released {
@@ -121,18 +126,19 @@ impl Host for Process<'_> {
 
     fn continues_release(&self) -> &'static str {
         match &self.plant {
-            Some(Plant { guard: Some(_), .. }) => {
-                "; the guard process goes on trying for two minutes"
-            }
+            Some(Plant {
+                helper: Some(_), ..
+            }) => "; the release helper continues for two minutes",
             _ => "",
         }
     }
 
-    /// A guard that is not dismissed sees the pipe end, and goes on trying.
+    /// A helper that is not ended here reads the end of the pipe, and continues
+    /// the release.
     fn end(&mut self, released: bool) {
-        let guard = self.plant.as_mut().and_then(|plant| plant.guard.take());
-        if let Some(guard) = guard.filter(|_| released) {
-            guard.dismiss();
+        let helper = self.plant.as_mut().and_then(|plant| plant.helper.take());
+        if let Some(helper) = helper.filter(|_| released) {
+            helper.end();
         }
     }
 
@@ -142,22 +148,22 @@ impl Host for Process<'_> {
 }
 
 impl Plant {
-    /// Sends away the guard of a daemon that was killed, if one still releases
-    /// the controls that are, or are to be, held here.
-    fn relieve_guard(&mut self) {
-        self.relieved = Instant::now();
+    /// Ends the helper of a daemon that was killed, if it still releases the
+    /// controls that are, or are to be, held here.
+    fn end_earlier_helper(&mut self) {
+        self.checked = Instant::now();
         if let Some(plant) = self.authority.plant() {
-            relief::relieve(&plant);
+            release_handover::end_helper(&plant);
         }
     }
 }
 
-/// Without a guard the flight goes on, and says so.
-fn guard(config: &Config) -> Option<Guard> {
-    Guard::start(config)
+/// Without a helper the flight continues, and this is reported.
+fn start_helper(config: &Config) -> Option<ReleaseHelper> {
+    ReleaseHelper::start(config)
         .inspect_err(|error| {
             output::message(format!(
-                "no guard process ({error}): if this process is killed, release the controls by \
+                "no release helper ({error}): if this process is killed, release the controls by \
                  hand"
             ));
         })

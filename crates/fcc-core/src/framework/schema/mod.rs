@@ -53,13 +53,8 @@ pub use value::{Unknown, Value};
 pub use values::Values;
 
 /// Plain data whose values are declared: see [`schema!`](crate::schema).
-<<<<<<< HEAD
-pub trait Schema: Copy + Default + Send + 'static {
-    /// Its type, for descriptions.
-=======
 pub trait Schema: Copy + Default + fmt::Debug + Send + 'static {
-    /// What it is, for whoever describes it.
->>>>>>> main
+    /// Its type, for descriptions.
     const TYPE: Type;
 
     /// Its fields, in their order; none for a single value.

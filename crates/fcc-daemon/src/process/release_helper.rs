@@ -1,13 +1,13 @@
-//! A second process that outlives this one by a moment, to give the
-//! controls back if this one is killed.
+//! A second process that outlives this one, to release the controls if this one
+//! is killed.
 //!
-//! A simulator never takes its controls back by itself, and a process that is
-//! killed can do nothing more. So before a flight, this program starts itself
-//! again as `fccd guard`, which waits at the end of a pipe. The pipe tells it
-//! where control is held, and closes when this process ends, however it does;
-//! if control was held by then, the guard gives it back, until the
-//! plant shows that it has it, or until a daemon that takes
-//! control itself [relieves](super::relief) it.
+//! A simulator never clears its overrides by itself, and a process that is
+//! killed can do nothing more. So before a flight this program starts itself
+//! again as `fccd release-helper`, which waits at the end of a pipe. Through
+//! the pipe it receives where control is held; the pipe closes when this
+//! process ends for any reason. If control was held then, the helper releases
+//! it until the plant confirms it, or until a daemon that takes control itself
+//! [takes over](super::release_handover).
 
 use std::io::{self, BufRead, Write};
 use std::os::unix::process::CommandExt;
@@ -18,31 +18,31 @@ use fcc_core::framework::{ActuatorFault, PlantId, Released};
 use fcc_flight::config::{Config, ConfigError};
 use fcc_flight::flight::authority_without_connection;
 
-use super::relief::Post;
+use super::release_handover::HandoverPoint;
 
-/// Begins a line that says where control is held.
+/// Prefix of a line that gives the plant whose control is held.
 const HELD: &str = "held ";
-/// Says that control is nobody's of ours.
+/// The line that reports that control is not held.
 const FREE: &str = "free";
-/// How long a guard goes on trying: a simulator that loads scenery hangs for a
-/// while.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// How long a helper repeats the release: a simulator that loads scenery hangs
+/// for some time.
+const RELEASE_FOR: Duration = Duration::from_secs(120);
 
-/// The guard, as the process that it guards sees it.
-pub(super) struct Guard {
+/// The release helper, as seen by the process that started it.
+pub(super) struct ReleaseHelper {
     child: Child,
     held: Option<PlantId>,
 }
 
-impl Guard {
-    /// Starts the guard.
+impl ReleaseHelper {
+    /// Starts the helper.
     ///
     /// # Errors
     /// When this program cannot be started a second time.
     pub(super) fn start(config: &Config) -> io::Result<Self> {
         let mut child = Command::new(std::env::current_exe()?)
-            .arg("guard")
-            // A group of its own: Ctrl-C is not for it.
+            .arg("release-helper")
+            // A separate process group, so that Ctrl-C does not end it.
             .process_group(0)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
@@ -54,9 +54,9 @@ impl Guard {
         Ok(Self { child, held: None })
     }
 
-    /// Says where control is held, if it is. A guard that is gone is no reason
-    /// to stop.
-    pub(super) fn tell(&mut self, held: Option<PlantId>) {
+    /// Reports where control is held, if it is. A helper that has ended is no
+    /// reason to stop.
+    pub(super) fn report(&mut self, held: Option<PlantId>) {
         if self.held == held {
             return;
         }
@@ -69,9 +69,9 @@ impl Guard {
         }
     }
 
-    /// Lets the guard go, and waits until it is gone.
-    pub(super) fn dismiss(mut self) {
-        self.tell(None);
+    /// Ends the helper, and waits until it has ended.
+    pub(super) fn end(mut self) {
+        self.report(None);
         drop(self.child.stdin.take());
         let _ = self.child.wait();
     }
@@ -83,31 +83,31 @@ fn in_one_line(config: &Config) -> io::Result<String> {
     Ok(serde_json::to_string(&text)?)
 }
 
-/// What a guard had to give back.
+/// What a helper had to release.
 #[derive(Debug)]
-pub(crate) struct GivenBack {
+pub(crate) struct HelperResult {
     /// The plant.
     pub(crate) plant: PlantId,
-    /// How that ended.
+    /// The result of the release.
     pub(crate) released: Released,
-    /// What a person does there if it did not succeed.
+    /// What a user does at the plant if it did not succeed.
     pub(crate) by_hand: &'static str,
 }
 
-/// Stands guard: reads `from` until it ends, and then gives back what is held;
+/// Runs the helper: reads `from` until it ends, and then releases what is held;
 /// none if nothing is.
 ///
 /// # Errors
-/// When what is read makes no sense, or nothing can be sent.
+/// When the input is invalid, or nothing can be sent.
 pub(crate) fn run_release_helper(
     from: impl BufRead,
-) -> Result<Option<GivenBack>, ReleaseHelperError> {
+) -> Result<Option<HelperResult>, ReleaseHelperError> {
     let mut lines = from.lines();
     let first = lines.next().ok_or(ReleaseHelperError::Nothing)??;
     let text: String = serde_json::from_str(&first)?;
     let config = Config::parse(&text, "standard input")?;
     let mut held: Option<PlantId> = None;
-    // A pipe that breaks is a pipe that ends.
+    // A broken pipe counts as its end.
     for line in lines.map_while(Result::ok) {
         if line == FREE {
             held = None;
@@ -118,33 +118,33 @@ pub(crate) fn run_release_helper(
     let Some((plant, authority)) = held.zip(authority_without_connection(&config)) else {
         return Ok(None);
     };
-    let mut post = Post::at(&plant);
-    let released = authority.release(&plant, PATIENCE, &mut || post.is_relieved())?;
-    Ok(Some(GivenBack {
+    let mut handover = HandoverPoint::at(&plant);
+    let released = authority.release(&plant, RELEASE_FOR, &mut || handover.is_requested())?;
+    Ok(Some(HelperResult {
         plant,
         released,
         by_hand: authority.by_hand(),
     }))
 }
 
-/// Why a guard could not do its work.
+/// Why a helper could not do its work.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub(crate) enum ReleaseHelperError {
     /// Nothing came through the pipe.
-    #[error("fccd guard is started by fccd itself, which tells it what to guard")]
+    #[error("fccd release-helper is started by fccd itself, with its input")]
     Nothing,
-    /// The pipe broke before it said anything.
+    /// The pipe broke before the first line.
     #[error("standard input: {0}")]
     Input(#[from] io::Error),
     /// The first line is not a string.
-    #[error("the first line is no configuration as a string of JSON: {0}")]
+    #[error("the first line is not a configuration as a string of JSON: {0}")]
     Line(#[from] serde_json::Error),
     /// The string is not a configuration.
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// Nothing can be sent to the plant.
-    #[error("the controls cannot be given back: {0}")]
+    #[error("the controls cannot be released: {0}")]
     Release(#[from] ActuatorFault),
 }
 
@@ -175,10 +175,10 @@ mod tests {
         socket
     }
 
-    /// Answers as X-Plane's layouts say: DREF is five bytes, an f32, the path;
+    /// Answers with X-Plane's layouts: DREF is five bytes, an f32, the path;
     /// RREF five bytes, frequency, index, the path; its reply five bytes, then
     /// pairs of index and f32.
-    fn answer(simulator: &UdpSocket, deaf_for: u32) -> f32 {
+    fn answer(simulator: &UdpSocket, ignored: u32) -> f32 {
         let mut joystick = 1.0_f32;
         let mut bytes = [0; 600];
         let mut written = 0;
@@ -186,7 +186,7 @@ mod tests {
             let text = String::from_utf8_lossy(&bytes[..length]).into_owned();
             if text.starts_with("DREF") && text.contains("override_joystick") {
                 written += 1;
-                if written > deaf_for {
+                if written > ignored {
                     joystick = f32::from_le_bytes(bytes[5..9].try_into().unwrap());
                 }
             }
@@ -206,27 +206,27 @@ mod tests {
     }
 
     #[test]
-    fn a_pipe_that_just_ends_gives_the_controls_back_until_it_shows() {
-        for deaf_for in [0, 3] {
+    fn when_the_pipe_ends_the_controls_are_released_until_confirmed() {
+        for ignored in [0, 3] {
             let simulator = simulator();
             let script = script(&simulator, "");
-            let guard = std::thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
-            assert!(answer(&simulator, deaf_for).abs() < 0.5);
-            let released = guard.join().unwrap().unwrap().released;
+            let helper = std::thread::spawn(move || run_release_helper(script.as_bytes()).unwrap());
+            assert!(answer(&simulator, ignored).abs() < 0.5);
+            let released = helper.join().unwrap().unwrap().released;
             assert_eq!(released, Released::Confirmed);
         }
     }
 
     #[test]
-    fn what_is_free_is_left_alone() {
+    fn controls_that_are_not_held_are_not_released() {
         let simulator = simulator();
-        let told = run_release_helper(script(&simulator, "free\n").as_bytes()).unwrap();
-        assert!(told.is_none());
+        let result = run_release_helper(script(&simulator, "free\n").as_bytes()).unwrap();
+        assert!(result.is_none());
         assert!(simulator.recv(&mut [0; 600]).is_err(), "something was sent");
     }
 
     #[test]
-    fn a_simulator_that_is_gone_holds_nothing() {
+    fn an_unreachable_simulator_holds_nothing() {
         let simulator = simulator();
         let script = script(&simulator, "");
         drop(simulator);
@@ -238,9 +238,9 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_refused_in_words() {
+    fn invalid_input_is_refused_with_a_message() {
         let error = run_release_helper("what?\n".as_bytes()).unwrap_err();
-        assert!(error.to_string().contains("no configuration"), "{error}");
+        assert!(error.to_string().contains("not a configuration"), "{error}");
         assert!(matches!(
             run_release_helper(&b""[..]),
             Err(ReleaseHelperError::Nothing)

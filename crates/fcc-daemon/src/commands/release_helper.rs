@@ -1,0 +1,49 @@
+//! `fccd release-helper`: releases the controls of a daemon that was killed.
+
+use std::io;
+
+use fcc_core::framework::Released;
+use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
+
+use super::fail;
+use crate::exit::Exit;
+use crate::output;
+use crate::process::run_release_helper;
+
+/// Waits until the daemon that started this has ended.
+pub(super) fn release_helper() -> Exit {
+    // A signal to all processes of the daemon must not end the helper before
+    // the controls are released: it ends only after the daemon's end. ABRT is
+    // sent by a service manager's watchdog.
+    for signal in [SIGTERM, SIGINT, SIGHUP, SIGABRT] {
+        let ignored = signal_hook::flag::register(signal, std::sync::Arc::default());
+        if let Err(error) = ignored {
+            return fail(&format!(
+                "release helper: signals cannot be caught: {error}"
+            ));
+        }
+    }
+    let result = match run_release_helper(io::stdin().lock()) {
+        Ok(Some(result)) => result,
+        Ok(None) => return Exit::Success,
+        Err(error) => return fail(&format!("release helper: {error}")),
+    };
+    let plant = result.plant;
+    let (text, exit) = match result.released {
+        Released::Unreachable => return Exit::Success,
+        Released::Cancelled => (
+            format!("; another daemon has taken over {plant}"),
+            Exit::Success,
+        ),
+        Released::Confirmed => (format!("; {plant} was released"), Exit::Success),
+        Released::Unconfirmed => (
+            format!(
+                ", and {plant} did not confirm the release of its controls: {}",
+                result.by_hand
+            ),
+            Exit::NotReleased,
+        ),
+    };
+    output::message(format!("fccd release-helper: the daemon has ended{text}"));
+    exit
+}
