@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue, Deserializer, Error};
 
 use super::devices::in_entry;
 use super::places::{Places, line_of};
-use super::wording::plainly;
+use super::wording::reword;
 use super::{Config, Problem};
 
 /// A configuration as far as it could be read, and the errors in the rest.
@@ -62,7 +62,7 @@ fn syntax(text: &str, error: &Error) -> Problem {
     let key = span.and_then(|span| Places::key_by_lines(text, span.start));
     Problem {
         line,
-        message: plainly(error.message(), key.as_deref()),
+        message: reword(error.message(), key.as_deref()),
         key,
     }
 }
@@ -80,7 +80,7 @@ fn value(text: &str, places: &Places<'_>, path: &[String], error: &Error) -> Pro
     let key = inside.or(key);
     Problem {
         line,
-        message: plainly(error.message(), key.as_deref()),
+        message: reword(error.message(), key.as_deref()),
         key,
     }
 }

@@ -63,9 +63,9 @@ impl Folder {
     fn found(&self) -> (bool, String) {
         let (restart, words) = Restart::begin(self.request.clone());
         let restart = restart.expect("the path is usable");
-        let taking_up = restart.taking_up.is_some();
+        let recovery = restart.recovery.is_some();
         restart.end();
-        (taking_up, words.unwrap_or_default())
+        (recovery, words.unwrap_or_default())
     }
 
     fn is_kept(&self) -> bool {
