@@ -76,7 +76,7 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
         while let Some(message) = link.messages.receive() {
             match message {
                 Message::Tick(record) => last = Some(record),
-                Message::Event(event) => println!("{}", event.kind.words::<Thermostat>()),
+                Message::Event(event) => println!("{}", event.kind.description::<Thermostat>()),
             }
         }
         if let Some(record) = last {
