@@ -56,15 +56,15 @@ pub trait VanishingPlant: ActuatorBench {
 }
 
 /// A bench and its clock.
-struct Run<B: ActuatorBench> {
-    bench: B,
+pub(crate) struct Run<B: ActuatorBench> {
+    pub(crate) bench: B,
     ticks: Ticks,
     number: u32,
 }
 
 impl<B: ActuatorBench> Run<B> {
     /// One whose plant has lived a while.
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let mut run = Self {
             bench: B::new(),
             ticks: Ticks::default(),
@@ -75,7 +75,7 @@ impl<B: ActuatorBench> Run<B> {
     }
 
     /// One whose actuator has control.
-    fn holding() -> Self {
+    pub(crate) fn holding() -> Self {
         let mut run = Self::new();
         for _ in 0..20 {
             run.assert_applies();
@@ -84,7 +84,7 @@ impl<B: ActuatorBench> Run<B> {
         run
     }
 
-    fn live(&mut self, ticks: usize) {
+    pub(crate) fn live(&mut self, ticks: usize) {
         for _ in 0..ticks {
             let tick = self.ticks.next_tick();
             self.bench.live(&tick);
@@ -92,7 +92,7 @@ impl<B: ActuatorBench> Run<B> {
     }
 
     /// A tick in which other outputs than before are applied.
-    fn apply(&mut self) -> (Result<(), ActuatorFault>, B::Outputs) {
+    pub(crate) fn apply(&mut self) -> (Result<(), ActuatorFault>, B::Outputs) {
         let tick = self.ticks.next_tick();
         self.bench.live(&tick);
         self.number += 1;
@@ -114,13 +114,13 @@ impl<B: ActuatorBench> Run<B> {
         assert_eq!(self.bench.messages(), before, "a warm-up sends");
     }
 
-    fn assert_applies(&mut self) {
+    pub(crate) fn assert_applies(&mut self) {
         let (applied, outputs) = self.apply();
         assert_eq!(applied, Ok(()));
         assert!(self.bench.follows(&outputs), "does not do as {outputs:?}");
     }
 
-    fn release(&mut self) -> Result<(), ActuatorFault> {
+    pub(crate) fn release(&mut self) -> Result<(), ActuatorFault> {
         self.bench.actuator().release()
     }
 

@@ -67,6 +67,7 @@
 
 pub mod actuator;
 mod allocations;
+pub mod authority;
 mod flight;
 pub mod sensor;
 mod ticks;
@@ -74,6 +75,7 @@ mod waiting;
 
 pub use actuator::{ActuatorBench, VanishingPlant};
 pub use allocations::allocator_calls;
+pub use authority::AuthorityBench;
 pub use flight::flight_times;
 pub use sensor::{SensorBench, VanishingSource};
 pub use ticks::Ticks;
@@ -137,6 +139,24 @@ macro_rules! actuator_conformance {
             an_actuator_runs_in_a_thread_it_was_not_made_in
             its_name_stays
             $($more)*
+        }
+    };
+}
+
+/// Makes a module with one test for each promise of
+/// [`ControlAuthority`](fcc_core::framework::ControlAuthority), asked of an
+/// [`AuthorityBench`].
+#[macro_export]
+macro_rules! authority_conformance {
+    ($name:ident: $bench:ty) => {
+        $crate::promises! { authority $name $bench:
+            what_is_held_is_known_outside
+            without_permission_nothing_is_taken
+            a_release_from_outside_is_confirmed
+            a_release_that_is_called_off_sends_nothing
+            a_plant_of_another_kind_is_refused
+            the_unique_name_is_its_own
+            what_has_not_changed_is_not_reported_again
         }
     };
 }

@@ -5,14 +5,18 @@
 
 mod support;
 
+use std::thread;
+use std::time::Duration;
+
 use fcc_conformance::{
-    ActuatorBench, SensorBench, VanishingPlant, VanishingSource, actuator_conformance,
-    flight_times, sensor_conformance,
+    ActuatorBench, AuthorityBench, SensorBench, VanishingPlant, VanishingSource,
+    actuator_conformance, authority_conformance, flight_times, sensor_conformance,
 };
 use fcc_core::flight::{Measurements, Surfaces};
-use fcc_core::framework::{Actuator, Sensor, Tick, Time};
+use fcc_core::framework::{Actuator, ControlAuthority, PlantId, Released, Sensor, Tick, Time};
 use fcc_xplane::{
-    DataRows, Input, Output, RowsVersion, XPlane, XPlaneActuator, XPlaneConfig, XPlaneSensor,
+    DataRows, Input, Output, RowsVersion, XPlane, XPlaneActuator, XPlaneAuthority, XPlaneConfig,
+    XPlaneSensor,
 };
 use support::{
     FLIGHT_TIME, FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, THROTTLE, YOKE_HEADING,
@@ -24,6 +28,7 @@ struct Plane {
     simulator: FakeXPlane,
     sensor: XPlaneSensor,
     actuator: XPlaneActuator,
+    authority: XPlaneAuthority,
     measured: Measurements,
     /// Where the rows of Data Output go, if they are the input.
     rows_to: Option<u16>,
@@ -48,6 +53,7 @@ impl Plane {
         let (sensor, actuator) = XPlane::open(&config).unwrap();
         Self {
             simulator,
+            authority: XPlaneAuthority::of(sensor.status(), &config),
             sensor,
             actuator,
             measured: Measurements::default(),
@@ -222,7 +228,33 @@ impl<C: Case> VanishingPlant for Bench<C> {
     }
 }
 
+impl<C: Case> AuthorityBench for Bench<C> {
+    fn authority(&self) -> &dyn ControlAuthority {
+        &self.0.authority
+    }
+
+    fn release_from_outside(&mut self, plant: &PlantId) -> Released {
+        let plane = &mut self.0;
+        let Plane {
+            authority,
+            simulator,
+            ..
+        } = plane;
+        thread::scope(|scope| {
+            let release =
+                scope.spawn(|| authority.release(plant, Duration::from_secs(60), &mut || false));
+            while !release.is_finished() {
+                simulator.live(0.002);
+                thread::sleep(Duration::from_millis(2));
+            }
+            release.join().unwrap().unwrap()
+        })
+    }
+}
+
 sensor_conformance!(rref: Bench<Rref>, vanishes);
 sensor_conformance!(rows: Bench<Rows>, vanishes);
 actuator_conformance!(dref: Bench<Rref>, vanishes);
 actuator_conformance!(data: Bench<Rows>, vanishes);
+authority_conformance!(authority_dref: Bench<Rref>);
+authority_conformance!(authority_data: Bench<Rows>);

@@ -7,3 +7,17 @@ mod status;
 pub(crate) use announcer::Announcer;
 pub(crate) use service::Service;
 pub(crate) use status::StatusLine;
+
+#[cfg(test)]
+mod tests {
+    use fcc_flight::flight::conformance::observer_conforms;
+
+    use super::*;
+
+    #[test]
+    fn every_observer_keeps_what_the_trait_promises() {
+        observer_conforms(|| Box::new(Announcer));
+        observer_conforms(|| Box::new(StatusLine::default()));
+        observer_conforms(|| Box::new(Service::from_environment()));
+    }
+}

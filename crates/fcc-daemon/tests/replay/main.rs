@@ -18,7 +18,7 @@ use flights::{again, records};
 
 /// The outputs of a tick: 4 surfaces, 12 set points with guidance's progress, the estimate,
 /// the step's length, state,
-/// `engage_inhibits`, faults, and whether they were sent.
+/// engage inhibits, faults, and whether they were sent.
 const OUTPUTS: u64 = 34;
 
 /// Asserts that a recording flown again is the same in every bit, and gives

@@ -8,6 +8,8 @@
 mod assemble;
 #[cfg(feature = "live")]
 mod commands;
+#[cfg(any(test, feature = "conformance"))]
+pub mod conformance;
 mod event_log;
 mod fly;
 mod follow;

@@ -139,3 +139,50 @@ fn distinct(names: impl Iterator<Item = &'static str>) -> Vec<String> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::assemble::assemble;
+    use super::super::conformance::observer_conforms;
+    use super::super::event_log::EventLog;
+    #[cfg(feature = "live")]
+    use super::super::live::Live;
+    use super::super::recording::{Recording, RecordingRequest};
+    use super::super::restart::{RestartKeeper, RestartRequest};
+    use super::super::scorer::Scorer;
+    use crate::config::Config;
+
+    /// Files in a folder of the test's own, and a name of its own.
+    fn config(folder: &tempfile::TempDir) -> Config {
+        let path = folder.path().display();
+        let text = format!(
+            "[built-in]\n[recording]\nfolder = \"{path}\"\n[restart]\nstate_file = \
+             \"{path}/test.flight\"\n[telemetry]\ninstance = \"conformance-{}\"\n",
+            std::process::id()
+        );
+        Config::parse(&text, "test").unwrap()
+    }
+
+    #[test]
+    fn every_observer_keeps_what_the_trait_promises() {
+        let folder = tempfile::tempdir().unwrap();
+        let config = config(&folder);
+        observer_conforms(|| Box::new(EventLog::default()));
+        observer_conforms(|| {
+            let mut assembly = assemble(&config).unwrap();
+            let guidance = assembly.autopilot.config().guidance;
+            Box::new(Scorer::new(&guidance, assembly.truth.take()))
+        });
+        observer_conforms(|| {
+            let assembly = assemble(&config).unwrap();
+            let guidance = assembly.autopilot.config().guidance;
+            Box::new(Scorer::new(&guidance, None))
+        });
+        observer_conforms(|| {
+            Box::new(Recording::new(RecordingRequest::of(&config, None).unwrap()))
+        });
+        observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
+        #[cfg(feature = "live")]
+        observer_conforms(|| Box::new(Live::new(&config.telemetry, 30.0..=80.0)));
+    }
+}
