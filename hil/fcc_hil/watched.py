@@ -77,7 +77,8 @@ def fly(load: Load, watchers: int, number: int) -> Flight:
     with tempfile.TemporaryDirectory() as scratch, Path(scratch, "report.json").open("w+") as out:
         config = Path(scratch, "fccd.toml")
         config.write_text(
-            f'[built-in]\nengage_at_s = 1.5\n[loop]\nrate_hz = {RATE_HZ}\n[guidance]\nmode = "hold"\n'
+            f"[built-in]\nengage_at_s = 1.5\n[loop]\nrate_hz = {RATE_HZ}\n"
+            '[guidance]\nmode = "hold"\n'
         )
         words: list[str | Path] = [load.fccd, "fly", "--json", "--quiet", "--config", config]
         words += ["--instance", instance, "--seconds", str(load.seconds)]

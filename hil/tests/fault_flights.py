@@ -119,6 +119,7 @@ def assert_regular(records: Iterable[Any], period_ns: int) -> None:
     records = list(records)
     for last, record in itertools.pairwise(records):
         assert record.tick.number == last.tick.number + 1 + record.tick.missed
-        assert record.tick.scheduled_ns - last.tick.scheduled_ns == (
-            record.tick.number - last.tick.number
-        ) * period_ns
+        assert (
+            record.tick.scheduled_ns - last.tick.scheduled_ns
+            == (record.tick.number - last.tick.number) * period_ns
+        )
