@@ -26,7 +26,7 @@ const FLOWN: Resume = Resume {
     },
 };
 
-/// A folder with the state folder_with_state by a flight.
+/// A folder with the state left by a flight.
 struct Folder {
     folder: TempDir,
     request: RestartRequest,
@@ -82,23 +82,23 @@ fn without_a_state_file_nothing_is_reported() {
 
 #[test]
 fn a_recent_flight_is_recovered_if_configured() {
-    let folder_with_state = Folder::new(RestartMode::Warm);
-    folder_with_state.leave(2, |_| {});
-    let (recovered, said) = folder_with_state.found();
+    let folder = Folder::new(RestartMode::Warm);
+    folder.leave(2, |_| {});
+    let (recovered, said) = folder.found();
     assert!(recovered && said.contains("recovering it"), "{said}");
-    assert!(folder_with_state.is_kept(), "until it is decided");
+    assert!(folder.is_kept(), "until it is decided");
 }
 
 #[test]
 fn a_cold_restart_is_reported_once() {
-    let folder_with_state = Folder::new(RestartMode::Cold);
-    folder_with_state.leave(2, |_| {});
-    let (recovered, said) = folder_with_state.found();
+    let folder = Folder::new(RestartMode::Cold);
+    folder.leave(2, |_| {});
+    let (recovered, said) = folder.found();
     assert!(
         !recovered && said.contains("restart.mode is \"cold\""),
         "{said}"
     );
-    assert_eq!(folder_with_state.found(), (false, String::new()));
+    assert_eq!(folder.found(), (false, String::new()));
 }
 
 #[test]
@@ -111,52 +111,52 @@ fn an_unsuitable_state_is_not_recovered() {
         }),
         ("another configuration", 2, |saved| saved.config = 8),
         ("recovered 3 times in a row", 2, |saved| {
-            saved.recoveries = 3
+            saved.recoveries = 3;
         }),
     ];
     for (because, seconds_ago, change) in reasons {
-        let folder_with_state = Folder::new(RestartMode::Warm);
-        folder_with_state.leave(seconds_ago, change);
-        let (recovered, said) = folder_with_state.found();
+        let folder = Folder::new(RestartMode::Warm);
+        folder.leave(seconds_ago, change);
+        let (recovered, said) = folder.found();
         assert!(!recovered && said.contains(because), "{said}");
         assert!(said.contains("staying in standby"), "{said}");
-        assert!(!folder_with_state.is_kept());
+        assert!(!folder.is_kept());
     }
 }
 
 #[test]
 fn a_damaged_file_is_reported_and_a_foreign_one_kept() {
-    let folder_with_state = Folder::new(RestartMode::Warm);
-    fs::write(&folder_with_state.request.path, "fccd-flight 2 0\n{").unwrap();
-    let (recovered, said) = folder_with_state.found();
+    let folder = Folder::new(RestartMode::Warm);
+    fs::write(&folder.request.path, "fccd-flight 2 0\n{").unwrap();
+    let (recovered, said) = folder.found();
     assert!(!recovered && said.contains("damaged"), "{said}");
 
-    fs::write(&folder_with_state.request.path, "my diary\n").unwrap();
-    let (restart, said) = Restart::begin(folder_with_state.request.clone());
+    fs::write(&folder.request.path, "my diary\n").unwrap();
+    let (restart, said) = Restart::begin(folder.request.clone());
     assert!(restart.is_none());
     assert!(said.unwrap().contains("not a state file of fccd"));
     assert_eq!(
-        fs::read_to_string(&folder_with_state.request.path).unwrap(),
+        fs::read_to_string(&folder.request.path).unwrap(),
         "my diary\n"
     );
 }
 
 #[test]
 fn two_daemons_do_not_share_a_file() {
-    let folder_with_state = Folder::new(RestartMode::Warm);
-    folder_with_state.leave(2, |_| {});
-    let (first, _) = Restart::begin(folder_with_state.request.clone());
-    let (second, said) = Restart::begin(folder_with_state.request.clone());
+    let folder = Folder::new(RestartMode::Warm);
+    folder.leave(2, |_| {});
+    let (first, _) = Restart::begin(folder.request.clone());
+    let (second, said) = Restart::begin(folder.request.clone());
     assert!(first.is_some() && second.is_none());
     assert!(said.unwrap().contains("another fccd"));
 }
 
 #[test]
 fn an_impossible_path_is_reported() {
-    let mut folder_with_state = Folder::new(RestartMode::Warm);
-    fs::write(folder_with_state.folder.path().join("file"), "").unwrap();
-    folder_with_state.request.path = folder_with_state.folder.path().join("file/fccd.flight");
-    let (restart, said) = Restart::begin(folder_with_state.request.clone());
+    let mut folder = Folder::new(RestartMode::Warm);
+    fs::write(folder.folder.path().join("file"), "").unwrap();
+    folder.request.path = folder.folder.path().join("file/fccd.flight");
+    let (restart, said) = Restart::begin(folder.request.clone());
     assert!(restart.is_none());
     assert!(
         said.unwrap()
@@ -196,8 +196,8 @@ fn the_recorded_state_is_stored_until_the_flight_ends_regularly() {
     pattern.progress.mode = Mode::TimedPattern;
     pattern.progress.elapsed_s = 45.0;
     for (broken, is_left) in [(false, false), (true, true)] {
-        let folder_with_state = Folder::new(RestartMode::Warm);
-        let (restart, _) = Restart::begin(folder_with_state.request.clone());
+        let folder = Folder::new(RestartMode::Warm);
+        let (restart, _) = Restart::begin(folder.request.clone());
         let mut restart = restart.unwrap();
         restart.take(&engaged(&FLOWN));
         restart.take(&engaged(&pattern));
@@ -206,7 +206,7 @@ fn the_recorded_state_is_stored_until_the_flight_ends_regularly() {
         }
         restart.take(&event(ENDS));
         restart.end();
-        let kept = state_file::read(&folder_with_state.request.path).unwrap();
+        let kept = state_file::read(&folder.request.path).unwrap();
         assert_eq!(kept.map(|saved| saved.resume), is_left.then_some(pattern));
     }
 }
