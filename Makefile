@@ -62,6 +62,8 @@ test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon --no-default-features
+	@! cargo tree --locked -p thermostat -e features -i fcc-core | grep 'feature "flight"' || \
+	    { echo "the thermostat is compiled with an aircraft: see above"; exit 1; }
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil

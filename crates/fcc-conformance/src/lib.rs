@@ -68,6 +68,7 @@
 pub mod actuator;
 mod allocations;
 pub mod authority;
+#[cfg(feature = "flight")]
 mod flight;
 pub mod sensor;
 mod ticks;
@@ -76,6 +77,7 @@ mod waiting;
 pub use actuator::{ActuatorBench, VanishingPlant};
 pub use allocations::allocator_calls;
 pub use authority::AuthorityBench;
+#[cfg(feature = "flight")]
 pub use flight::flight_times;
 pub use sensor::{SensorBench, VanishingSource};
 pub use ticks::Ticks;

@@ -3,20 +3,25 @@
 //! same way.
 //!
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room.
-
-#![expect(clippy::print_stdout, reason = "all that it does is to print")]
+//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
+//! flights are.
 
 #[cfg(test)]
 mod conformance;
+mod recording;
 mod room;
 mod thermostat;
 
+use std::env;
 use std::error::Error;
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-use fcc_runtime::{Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts};
+use fcc_record::{RecorderOf, RecordingPace};
+use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
@@ -27,17 +32,21 @@ const WANTED_C: f64 = 20.0;
 const SECONDS: u64 = 8;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let report = heat(TimerKind::Timerfd.build(PERIOD)?, SECONDS)?;
-    let timing = &report.timing;
-    println!("\nEnded: {}", report.ending);
-    println!("Runtime  {:8.3} s", timing.runtime_s);
-    println!("Average  {:8.3} ms", timing.period_mean_ms);
-    println!("Median   {:8.3} ms", timing.period_median_ms);
-    println!("Min      {:8.3} ms", timing.period_min_ms);
-    println!("Max      {:8.3} ms", timing.period_max_ms);
-    println!("Range    {:8.3} ms", timing.period_range_ms);
-    println!("Missed   {:8}", timing.missed);
+    let folder = recording_folder(env::args_os().skip(1))?;
+    let timer = TimerKind::Timerfd.build(PERIOD)?;
+    heat(timer, SECONDS, folder.as_deref(), &mut io::stdout())?;
     Ok(())
+}
+
+/// The folder to record into, if the command line names one.
+fn recording_folder(
+    mut arguments: impl Iterator<Item = OsString>,
+) -> Result<Option<PathBuf>, String> {
+    match (arguments.next(), arguments.next(), arguments.next()) {
+        (None, ..) => Ok(None),
+        (Some(option), Some(folder), None) if option == "--record" => Ok(Some(folder.into())),
+        _ => Err("usage: thermostat [--record DIR]".to_owned()),
+    }
 }
 
 /// Puts the parts together.
@@ -54,9 +63,18 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     }
 }
 
-/// Heats for a while and tells of it once a second.
-fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error>> {
+/// Heats for a while, reports it once a second, and records it if there is a
+/// folder to record into. Output that cannot be written ends nothing.
+fn heat(
+    timer: Box<dyn Timer>,
+    seconds: u64,
+    folder: Option<&Path>,
+    out: &mut dyn Write,
+) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
+    let mut recorder = folder
+        .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
+        .transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -67,20 +85,14 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
     let (this, mut link) = Loop::new(parts, &config)?;
     let handle = this.spawn()?;
     for denied in &handle.granted().denied {
-        println!("goes on without: {denied}");
+        let _ = writeln!(out, "goes on without: {denied}");
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
         thread::sleep(Duration::from_secs(1));
-        let mut last = None;
-        while let Some(message) = link.messages.receive() {
-            match message {
-                Message::Tick(record) => last = Some(record),
-                Message::Event(event) => println!("{}", event.kind.description::<Thermostat>()),
-            }
-        }
-        if let Some(record) = last {
-            println!(
+        if let Some(record) = receive(&mut link, recorder.as_mut(), out) {
+            let _ = writeln!(
+                out,
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
                 record.state,
                 record.measurements.room_c.value,
@@ -89,12 +101,58 @@ fn heat(timer: Box<dyn Timer>, seconds: u64) -> Result<LoopReport, Box<dyn Error
         }
     }
     link.commands.send(LoopCommand::Stop)?;
-    Ok(handle.join())
+    let report = handle.join();
+    // For the recording; how the loop ended is in the report.
+    receive(&mut link, recorder.as_mut(), &mut io::sink());
+    let _ = print_report(&report, out);
+    if let Some(recorder) = recorder {
+        let recorded = recording::finish(recorder, &report.ending.to_string())?;
+        for file in recorded.files {
+            let _ = writeln!(out, "Recorded {}", file.display());
+        }
+    }
+    Ok(report)
+}
+
+/// Receives what the loop has sent, and returns the last record of it.
+fn receive(
+    link: &mut Link<Thermostat>,
+    mut recorder: Option<&mut RecorderOf<Thermostat>>,
+    out: &mut dyn Write,
+) -> Option<RecordOf<Thermostat>> {
+    let mut last = None;
+    while let Some(message) = link.messages.receive() {
+        if let Some(recorder) = &mut recorder {
+            recorder.take(&message);
+        }
+        match message {
+            Message::Tick(record) => last = Some(record),
+            Message::Event(event) => {
+                let _ = writeln!(out, "{}", event.kind.description::<Thermostat>());
+            }
+        }
+    }
+    last
+}
+
+fn print_report(report: &LoopReport, out: &mut dyn Write) -> io::Result<()> {
+    let timing = &report.timing;
+    writeln!(out, "\nEnded: {}", report.ending)?;
+    writeln!(out, "Runtime  {:8.3} s", timing.runtime_s)?;
+    writeln!(out, "Average  {:8.3} ms", timing.period_mean_ms)?;
+    writeln!(out, "Median   {:8.3} ms", timing.period_median_ms)?;
+    writeln!(out, "Min      {:8.3} ms", timing.period_min_ms)?;
+    writeln!(out, "Max      {:8.3} ms", timing.period_max_ms)?;
+    writeln!(out, "Range    {:8.3} ms", timing.period_range_ms)?;
+    writeln!(out, "Missed   {:8}", timing.missed)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+
     use fcc_core::framework::{Actuator, State, Tick};
+    use fcc_record::Recording;
     use fcc_runtime::{Ending, Machine};
     use fcc_timer::ManualTimer;
 
@@ -143,12 +201,29 @@ mod tests {
         assert!(heater.power() <= 0.0, "the heater is still on");
     }
 
+    /// And is recorded to the last tick, even where nothing can be printed.
     #[test]
     fn it_runs_on_a_real_clock() {
-        let report = heat(TimerKind::Timerfd.build(PERIOD).unwrap(), 1).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
+        let mut full = File::options().write(true).open("/dev/full").unwrap();
+        let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopOrder));
         assert!(report.released);
         assert!(report.ticks > 1);
         assert!(report.timing.runtime_s >= 1.0);
+        let file = fcc_record::files(folder.path()).unwrap().remove(0);
+        let recording = Recording::open(file).unwrap();
+        assert_eq!(recording.end().unwrap().ticks, report.ticks);
+    }
+
+    #[test]
+    fn it_records_only_where_it_is_asked_to() {
+        let folder = |words: &[&str]| recording_folder(words.iter().map(OsString::from));
+        assert_eq!(folder(&[]), Ok(None));
+        assert_eq!(folder(&["--record", "runs"]), Ok(Some("runs".into())));
+        for wrong in [&["--record"][..], &["runs"], &["--record", "runs", "2"]] {
+            assert!(folder(wrong).unwrap_err().contains("--record DIR"));
+        }
     }
 }
