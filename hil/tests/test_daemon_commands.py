@@ -87,7 +87,17 @@ def test_timing_as_json(fccd: Path, timer: str) -> None:
 
 @pytest.mark.parametrize("when", ["auto", "on", "off"])
 def test_timing_wakes_early_where_it_may(fccd: Path, when: str) -> None:
-    words = [fccd, "timing", "--rate", "100", "--seconds", "0.2", "--early-wake", when, "--json"]
+    words: list[str | Path] = [
+        fccd,
+        "timing",
+        "--rate",
+        "100",
+        "--seconds",
+        "0.2",
+        "--early-wake",
+        when,
+        "--json",
+    ]
     ended = run(words)
     assert ended.returncode == 0, ended.stderr
     (timing,) = json.loads(ended.stdout)

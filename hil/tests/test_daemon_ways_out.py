@@ -88,7 +88,10 @@ def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
         ending = daemon.end(signal.SIGKILL)
         assert_released(simulator)
         assert simulator.releases()[0].time_s - killed_at_s < AT_ONCE_S
-        wait_until(lambda: "fccd release-helper: the daemon has ended" in daemon.said, "the helper's message")
+        wait_until(
+            lambda: "fccd release-helper: the daemon has ended" in daemon.said,
+            "the helper's message",
+        )
     assert ending.exit_code == -signal.SIGKILL
 
 
