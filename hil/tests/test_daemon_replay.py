@@ -14,8 +14,8 @@ from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
 from fcc_hil.standin import Mode, Settings
 
-OUTPUTS_PER_TICK = 15
-"""4 surfaces, 6 set points, step, state, engage_inhibits, faults, whether sent."""
+OUTPUTS_PER_TICK = 34
+"""Surfaces, set points with mode and progress, estimate, step, state, inhibits, faults, sent."""
 
 SUCCESS = 0
 FAILSAFE = 3

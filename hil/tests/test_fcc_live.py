@@ -118,7 +118,7 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
 
 
 def test_a_daemon_that_takes_no_orders_says_so(fccd: Path, tmp_path: Path, instance: str) -> None:
-    with fly(fccd, tmp_path, instance, "[telemetry]\norders = false\n") as daemon:
+    with fly(fccd, tmp_path, instance, "[telemetry]\ncommands = false\n") as daemon:
         daemon.wait_for("standby -> engaged")
         with pytest.raises(fcc.TelemetryError, match="takes no commands"):
             fcc.Commander(instance)

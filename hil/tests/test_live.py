@@ -99,7 +99,7 @@ def test_users_do_not_meet_in_shared_memory(fccd: Path, tmp_path: Path, instance
 
 
 def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> None:
-    assert ctypes.sizeof(live.Record) == 624
+    assert ctypes.sizeof(live.Record) == 760
     records: list[live.Record] = []
     with fly(fccd, tmp_path, instance) as daemon:
         watcher = watch(instance, daemon)

@@ -37,12 +37,15 @@ Words = list[str | Path]
 IN_LOCKSTEP: Words = ["--lockstep", "--json", "--quiet"]
 
 
-def run(words: Words, **options: Any) -> dict[str, Any]:
-    """Run `fccd` to a good end; return its JSON."""
+RECORDING_LOST = 14
+
+
+def run(words: Words, exit_code: int = 0, **options: Any) -> dict[str, Any]:
+    """Run `fccd` to its end with this exit code; return its JSON."""
     done = subprocess.run(
         [str(word) for word in words], capture_output=True, text=True, check=False, **options
     )
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == exit_code, done.stderr
     found = json.loads(done.stdout)
     assert isinstance(found, dict)
     return found
@@ -186,7 +189,7 @@ def test_a_full_disk_ends_the_recording_and_not_the_flight(
     config = write_config(tmp_path, 40, 'compression = "none"')
     with small(tmp_path) as (folder, limit):
         words: Words = [fccd, "fly", *IN_LOCKSTEP, "--config", config, "--recordings", folder]
-        outcome = run([*words, "--seconds", "100"], preexec_fn=limit)
+        outcome = run([*words, "--seconds", "100"], RECORDING_LOST, preexec_fn=limit)
         flown = outcome["timing"]["ticks"]
         assert flown >= 100 * 40
         recording = outcome["recording"]
@@ -201,7 +204,8 @@ def test_a_full_disk_ends_the_recording_and_not_the_flight(
 def test_a_read_only_folder_is_said_and_the_flight_goes_on(fccd: Path, tmp_path: Path) -> None:
     with a_small_disk(tmp_path) as (disk, _):
         subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
-        outcome = run([fccd, "fly", *IN_LOCKSTEP, "--recordings", disk, "--seconds", "10"])
+        words: Words = [fccd, "fly", *IN_LOCKSTEP, "--recordings", disk, "--seconds", "10"]
+        outcome = run(words, RECORDING_LOST)
     assert "Read-only file system" in outcome["recording"]["stopped"]
     assert outcome["timing"]["ticks"] >= 400
 

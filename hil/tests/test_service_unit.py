@@ -85,7 +85,6 @@ def _calls(group: str) -> set[str]:
         ("Type", ["notify"]),
         # Who watches is not in a world of their own.
         ("RemoveIPC", ["no"]),
-        ("PrivateTmp", ["no"]),
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),
         ("Restart", ["on-failure"]),
