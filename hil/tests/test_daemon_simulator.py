@@ -189,7 +189,7 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     records = Flown.of(ending, tmp_path / "recordings").records
-    paused = [record for record in records if record.measurements.plant.state == PAUSED]
+    paused = [record for record in records if record.measurements.plant.value.state == PAUSED]
     assert (paused[0].tick.woke_ns - paused_ns) * NS < AT_ONCE_S
     assert len({str(record.outputs) for record in paused[1:]}) == 1, "they are held"
 

@@ -241,7 +241,7 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     last = flight.events[-1]
     assert last.kind.WhichOneof("kind") == "hung"
     # It looks ten times in that time, and counts two looks at most for one.
-    assert HANG_AFTER_NS <= last.hung.silent_ns < 1.2 * HANG_AFTER_NS
+    assert HANG_AFTER_NS <= last.kind.hung.silent_ns < 1.2 * HANG_AFTER_NS
     assert "the watchdog released the controls" in flight.ending.said
     # All up to the tick that hangs, which has no end and so no record.
     assert [record.tick.number for record in flight.records][-1] == last.tick
