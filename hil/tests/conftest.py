@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import hypothesis
@@ -13,6 +14,10 @@ hypothesis.settings.register_profile(
     "busy-machine", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.load_profile("busy-machine")
+
+
+# Under nohup a hang-up is ignored, and whoever is started here inherits that.
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def _program(variable: str, build: str) -> Path:
