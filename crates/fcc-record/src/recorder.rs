@@ -91,7 +91,7 @@ impl<C: Recorded> RecorderOf<C> {
     /// Records a message. In real time it never waits; in lockstep it waits for
     /// the disk.
     pub fn take(&mut self, message: &MessageOf<C>) {
-        if !self.tell_gap(message) || !self.send(Feed::Message(*message)) {
+        if !self.report_gap(message) || !self.send(Feed::Message(*message)) {
             self.lose(message);
         }
     }
@@ -153,7 +153,7 @@ impl<C: Recorded> RecorderOf<C> {
 
     /// Tells of a gap before the message that ends it; whether there is none
     /// left to tell.
-    fn tell_gap(&mut self, next: &MessageOf<C>) -> bool {
+    fn report_gap(&mut self, next: &MessageOf<C>) -> bool {
         if self.lost.is_none() {
             return true;
         }

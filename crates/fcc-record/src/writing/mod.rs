@@ -119,7 +119,7 @@ impl<C: Recorded> Writing<C> {
     }
 
     fn take(&mut self, message: &MessageOf<C>) {
-        self.tell_gap(Some(message));
+        self.report_gap(Some(message));
         if self.part.is_none() {
             return self.lose(message);
         }
@@ -131,7 +131,7 @@ impl<C: Recorded> Writing<C> {
 
     /// Tells of what is lost in the file, if there is one, before the message
     /// that ends the gap.
-    fn tell_gap(&mut self, next: Option<&MessageOf<C>>) {
+    fn report_gap(&mut self, next: Option<&MessageOf<C>>) {
         if self.part.is_some() && !self.lost.is_none() {
             let gap = mem::take(&mut self.lost).event(next);
             self.attempt(|part| part.take(&gap));
@@ -189,7 +189,7 @@ impl<C: Recorded> Writing<C> {
         self.over = true;
         // A second time where a full disk got room, and another file, just now.
         for _ in 0..2 {
-            self.tell_gap(None);
+            self.report_gap(None);
             if self.close(ending) || self.part.is_none() {
                 break;
             }
