@@ -2,11 +2,9 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::schema::{Kind, Schema, Value, Values};
-use fcc_core::framework::{Controller, Flags};
-use fcc_telemetry::FlightRecord;
-use fcc_telemetry::schema::columns;
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Value};
+use fcc_core::framework::{Controller, Flags, RecordOf};
+use fcc_telemetry::schema::{Column, columns};
 
 /// What of a record the loop works out, causes before what they lead to, so
 /// that the first that differs is the most telling. The rest is what came into
@@ -22,44 +20,43 @@ const OUTPUTS: [&str; 8] = [
     "sent",
 ];
 
-/// How many single values a record has.
-pub(super) const VALUES: usize = <FlightRecord as Schema>::TYPE.leaves();
-
-/// One output of a tick: its name, and which of a record's values it is.
-#[derive(Clone, Debug)]
-pub(super) struct Output {
-    /// As in the record.
-    pub(super) name: String,
-    pub(super) index: usize,
-    pub(super) kind: Kind,
+/// All outputs of a tick, each with its place among the values of a record.
+pub(super) fn outputs<C: Controller>() -> Vec<(usize, Column)> {
+    let found = OUTPUTS.into_iter().flat_map(columns_of::<C>);
+    found.collect()
 }
 
-/// All outputs of a tick.
-pub(super) fn outputs() -> Vec<Output> {
-    let columns = columns::<FlightRecord>();
-    let is_in = |path: &str, output: &str| {
-        path.strip_prefix(output)
+/// The values of one part of a record, each with its place among all of them.
+pub(super) fn columns_of<C: Controller>(part: &str) -> Vec<(usize, Column)> {
+    let is_in = |path: &str| {
+        path.strip_prefix(part)
             .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
-    let of = |output: &'static str| {
-        let all = columns.iter().enumerate();
-        all.filter(move |(_, column)| is_in(&column.path, output))
-    };
-    let found = OUTPUTS.into_iter().flat_map(of);
-    found
-        .map(|(index, column)| Output {
-            name: column.path.clone(),
-            index,
-            kind: column.kind,
-        })
-        .collect()
+    let all = columns::<RecordOf<C>>().into_iter().enumerate();
+    all.filter(|(_, column)| is_in(&column.path)).collect()
 }
 
-/// The values of a record, one after another.
-pub(super) fn values(record: &FlightRecord) -> Values<VALUES> {
-    let mut values = Values::default();
-    record.visit(&mut values);
-    values
+/// The values of a record, one after another; it keeps its memory from record
+/// to record.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RecordValues(Vec<Value>);
+
+impl RecordValues {
+    /// Replaces the values by those of another record.
+    pub(super) fn take(&mut self, record: &impl Schema) {
+        self.0.clear();
+        record.visit(self);
+    }
+
+    pub(super) fn get(&self, index: usize) -> Option<Value> {
+        self.0.get(index).copied()
+    }
+}
+
+impl Sink for RecordValues {
+    fn value(&mut self, _: &'static Field, value: Value) {
+        self.0.push(value);
+    }
 }
 
 /// How far two numbers are apart; none for what is no number.
@@ -73,7 +70,7 @@ pub(super) fn distance(one: Value, other: Value) -> Option<f64> {
 }
 
 /// A value for people.
-pub(super) fn words(kind: Kind, value: Value) -> String {
+pub(super) fn words(kind: Kind, value: Value, flag_name: fn(u32) -> &'static str) -> String {
     match (kind, value) {
         // As many digits as tell it from every other number.
         (_, Value::Number(number)) => format!("{number:?}"),
@@ -83,7 +80,7 @@ pub(super) fn words(kind: Kind, value: Value) -> String {
             let mut text = String::new();
             for bit in Flags::from_bits(bits).iter() {
                 let separator = if text.is_empty() { "" } else { ", " };
-                let _ = write!(text, "{separator}{}", Autopilot::flag_name(bit));
+                let _ = write!(text, "{separator}{}", flag_name(bit));
             }
             text
         }
