@@ -40,12 +40,12 @@ fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<
     for message in messages {
         recorder.take(message);
     }
-    let (status, _) = recorder.finish("told to stop");
+    let (status, _) = recorder.finish("stop requested");
     assert_eq!((status.not_recorded, status.stopped), (0, None));
     status.files
 }
 
-/// 25 s, with commands, and told to stop at the end.
+/// 25 s, with commands, and stopped at the end.
 fn flight() -> Vec<FlightMessage> {
     let happenings = Happenings {
         commands: vec![

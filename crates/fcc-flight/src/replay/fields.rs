@@ -88,7 +88,7 @@ pub(super) fn words(kind: Kind, value: Value) -> String {
             text
         }
         (Kind::Code(of), Value::Code(number)) => {
-            fcc_telemetry::schema::words_of(of.name_of(number).unwrap_or_default())
+            fcc_telemetry::schema::spaced(of.name_of(number).unwrap_or_default())
         }
         (_, value) => value.bits().to_string(),
     }
