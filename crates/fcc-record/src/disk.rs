@@ -87,16 +87,27 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
 }
 
+/// Opens a file to read it. A FIFO or a device is refused: opening one may block
+/// without end.
+pub(super) fn open(path: &Path) -> io::Result<File> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is not a regular file: give a recording, a file that ends in .mcap",
+        ));
+    }
+    File::open(path)
+}
+
 /// Locks a file against other writers until the returned value is dropped; none
 /// if it is locked already. Not every file system has locks.
 pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
-    let file = File::open(path)?;
+    let file = open(path)?;
     let is_taken = matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock));
     Ok((!is_taken).then_some(file))
 }
 
 /// Whether a program is writing the file now.
 pub fn is_being_written(path: &Path) -> bool {
-    File::open(path)
-        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
+    open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
 }

@@ -1,6 +1,5 @@
 //! Reads recordings.
 
-use std::fs::File;
 use std::io::{self, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -8,6 +7,7 @@ use mcap::records::Record;
 
 use super::about::About;
 use super::damage::Damage;
+use super::disk;
 use super::end::{End, RunStatistics};
 use super::items::{AnyMessage, Items, Messages, RecordedMessage};
 use super::raw::{Next, RawReader};
@@ -94,7 +94,7 @@ impl Recording {
             path: path.clone(),
             source,
         };
-        let mut file = File::open(&path).map_err(refused)?;
+        let mut file = disk::open(&path).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
         let index = summary::read_footer(&mut file, bytes);
         let end = index.as_ref().and_then(|at| {
@@ -236,7 +236,7 @@ impl Recording {
     }
 
     fn raw(&self) -> Result<RawReader, OpenError> {
-        File::open(&self.path)
+        disk::open(&self.path)
             .and_then(RawReader::new)
             .map_err(|source| OpenError::Io {
                 path: self.path.clone(),

@@ -194,7 +194,7 @@ fn rewrite(
     damages: &[Damage],
     mut go_on: impl FnMut(u64) -> bool,
 ) -> io::Result<Rewritten> {
-    let mut raw = RawReader::new(File::open(from)?)?;
+    let mut raw = RawReader::new(disk::open(from)?)?;
     let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
     let mut damages = damages.iter().peekable();
     let ending = loop {

@@ -152,3 +152,25 @@ fn a_damaged_index_loses_nothing_of_the_flight() {
     assert_eq!(recovered["ticks"], ticks);
     assert_eq!(recovered["damages"][0]["ticks"], 0);
 }
+
+/// Opening a FIFO would wait for somebody to write into it.
+#[test]
+fn a_fifo_and_a_device_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("flight.mcap");
+    nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    for command in ["report", "recover", "replay"] {
+        for file in [text(&fifo), "/dev/zero"] {
+            let output = fccd(&[command, file]);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(!output.status.success(), "{command} {file}");
+            assert!(
+                said.contains(file) && said.contains("not a regular file"),
+                "{said}"
+            );
+        }
+    }
+    let output = fccd(&["list", text(folder.path())]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("not a regular file"), "{said}");
+}

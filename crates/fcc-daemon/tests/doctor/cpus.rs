@@ -148,4 +148,3 @@ fn without_interrupts_of_devices_the_finding_is_ok() {
         "no device has interrupted yet"
     );
 }
-

@@ -76,11 +76,7 @@ fn the_preemption_mode_is_the_present_one_or_that_of_the_command_line() {
     put(root.path(), "proc/cmdline", "root=/dev/vda\n");
     let unknown = of(root.path());
     assert!(unknown.found.ends_with("mode: unknown"));
-    assert!(
-        unknown.why.contains("is not mounted"),
-        "{}",
-        unknown.why
-    );
+    assert!(unknown.why.contains("is not mounted"), "{}", unknown.why);
     assert_eq!(
         lines(&unknown)[0],
         ("shell", "mount -t debugfs debugfs /sys/kernel/debug")
@@ -113,4 +109,3 @@ fn conditions_that_stop_a_loop_are_lacking() {
         assert!(found.lacks_something());
     }
 }
-
