@@ -24,12 +24,7 @@ pub const fn words<T>() -> usize {
 impl<T: Schema, const N: usize> Words<T, N> {
     /// The words of a struct.
     pub fn of(value: &T) -> Self {
-        const {
-            assert!(
-                N == words::<T>(),
-                "N must be the number of words of the struct"
-            )
-        };
+        const { assert!(N == words::<T>(), "the words of the struct") };
         let mut memory = Memory::<N> {
             words: [0; N],
             offset: 0,
