@@ -123,7 +123,11 @@ fn parts_that_do_not_begin_or_go_on_with_the_loop_are_not_replayed() {
 
     let output = fccd_replay(&[PathBuf::from("Cargo.toml")], &[]);
     assert_eq!(code(&output), Some(8));
-    assert!(said(&output).contains("not a recording"), "{}", said(&output));
+    assert!(
+        said(&output).contains("not a recording"),
+        "{}",
+        said(&output)
+    );
 }
 
 #[test]
