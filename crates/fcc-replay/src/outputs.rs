@@ -85,7 +85,7 @@ pub(super) fn words(kind: Kind, value: Value, flag_name: fn(u32) -> &'static str
             text
         }
         (Kind::Code(of), Value::Code(number)) => {
-            fcc_telemetry::schema::words_of(of.name_of(number).unwrap_or_default())
+            fcc_telemetry::schema::spaced(of.name_of(number).unwrap_or_default())
         }
         (_, value) => value.bits().to_string(),
     }

@@ -1,4 +1,4 @@
-//! What a loop tells of itself, in words; and what a flight's loop tells.
+//! Text for events, and the types of a flight's messages.
 
 use fcc_core::framework::{Controller, EventKind, EventOf, Readings, SourceChange};
 
@@ -17,10 +17,10 @@ mod of_flights {
     /// The record of one tick of a flight.
     pub type FlightRecord = RecordOf<Autopilot>;
 
-    /// The words of a flight's record, as they lie in shared memory and in arrays.
+    /// The words of a flight's record, as in shared memory and arrays.
     pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
 
-    /// Something that happened in a flight.
+    /// An event of a flight.
     pub type FlightEvent = EventOf<Autopilot>;
 
     /// A record or an event of a flight.
@@ -32,8 +32,8 @@ mod of_flights {
     }
 }
 
-/// An event in words, with the names of the parts it speaks of.
-pub fn event_words<C: Controller>(
+/// An event as text, with the names of its sensors and actuators.
+pub fn describe_event<C: Controller>(
     event: &EventOf<C>,
     sensors: &[String],
     actuators: &[String],

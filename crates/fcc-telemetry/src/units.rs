@@ -2,10 +2,10 @@
 
 use crate::schema::Column;
 
-/// Feet in a metre.
+/// Feet per metre.
 pub const M_FT: f64 = 1.0 / 0.304_8;
 
-/// Knots in a metre per second.
+/// Knots per metre per second.
 pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// Standard gravity, m/s².

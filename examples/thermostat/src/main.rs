@@ -224,7 +224,7 @@ mod tests {
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
         let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
-        assert!(matches!(report.ending, Ending::StopOrder));
+        assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);
         assert!(report.timing.runtime_s >= 1.0);

@@ -40,12 +40,12 @@ fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<
     for message in messages {
         recorder.take(message);
     }
-    let (status, _) = recorder.finish("told to stop");
+    let (status, _) = recorder.finish("stop requested");
     assert_eq!((status.not_recorded, status.stopped), (0, None));
     status.files
 }
 
-/// 25 s, with commands, and told to stop at the end.
+/// 25 s, with commands, and stopped at the end.
 fn flight() -> Vec<FlightMessage> {
     let happenings = Happenings {
         commands: vec![
@@ -123,7 +123,11 @@ fn parts_that_do_not_begin_or_go_on_with_the_loop_are_not_replayed() {
 
     let output = fccd_replay(&[PathBuf::from("Cargo.toml")], &[]);
     assert_eq!(code(&output), Some(8));
-    assert!(said(&output).contains("no recording"), "{}", said(&output));
+    assert!(
+        said(&output).contains("not a recording"),
+        "{}",
+        said(&output)
+    );
 }
 
 #[test]
