@@ -259,7 +259,7 @@ def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) ->
         nobody.bind(("127.0.0.1", 0))
         port = nobody.getsockname()[1]
         with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
-            daemon.wait_for("no aircraft yet")
+            daemon.wait_for("no measurements yet")
             said = daemon.wait_for("does not answer")
             assert "X-Plane" in said
             assert str(port) in said

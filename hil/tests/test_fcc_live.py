@@ -145,7 +145,7 @@ def test_an_engagement_that_is_refused_says_what_blocks_it(
     path.write_text('[x-plane]\nsimulator = "127.0.0.1:9"\n')
     words: list[str | Path] = [fccd, "run", "--config", path, "--instance", instance, "--json"]
     with DaemonUnderTest([*words, "--recordings", tmp_path], tmp_path) as daemon:
-        daemon.wait_for("no aircraft yet")
+        daemon.wait_for("no measurements yet")
         commander = fcc.Commander(instance)
         with pytest.raises(fcc.CommandError, match="attitude is missing or too old"):
             commander.engage()
