@@ -3,23 +3,25 @@
 //! same way.
 //!
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
-//! flights are.
+//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, with
+//! `-- --live` it is published for `thermostat top`; `thermostat report FILE`
+//! reports on a recording.
 
 #[cfg(test)]
 mod conformance;
 mod recording;
 mod room;
+mod show;
 mod thermostat;
 
-use std::env;
 use std::error::Error;
-use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
+use clap::{Parser, Subcommand};
+use fcc_live::PublisherOf;
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
@@ -30,23 +32,59 @@ use thermostat::Thermostat;
 const PERIOD: Duration = Duration::from_millis(25);
 const WANTED_C: f64 = 20.0;
 const SECONDS: u64 = 8;
+/// How often the loop's messages are received: a watcher sees them as late.
+const LOOKS_A_SECOND: u32 = 20;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = recording_folder(env::args_os().skip(1))?;
-    let timer = TimerKind::Timerfd.build(PERIOD)?;
-    heat(timer, SECONDS, folder.as_deref(), &mut io::stdout())?;
-    Ok(())
+/// Heats a simulated room.
+#[derive(Parser)]
+struct Arguments {
+    /// Record the run into this folder.
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Publish the run for `thermostat top`.
+    #[arg(long)]
+    live: bool,
+    #[command(subcommand)]
+    command: Option<Command>,
 }
 
-/// The folder to record into, if the command line names one.
-fn recording_folder(
-    mut arguments: impl Iterator<Item = OsString>,
-) -> Result<Option<PathBuf>, String> {
-    match (arguments.next(), arguments.next(), arguments.next()) {
-        (None, ..) => Ok(None),
-        (Some(option), Some(folder), None) if option == "--record" => Ok(Some(folder.into())),
-        _ => Err("usage: thermostat [--record DIR]".to_owned()),
+#[derive(Subcommand)]
+enum Command {
+    /// Report on a recording.
+    Report {
+        file: PathBuf,
+        /// Write a page with all plots.
+        #[arg(long, value_name = "PAGE")]
+        html: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Watch a run that was started with --live.
+    Top,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let mut out = io::stdout();
+    match arguments.command {
+        Some(Command::Report { file, html, json }) => {
+            let report = show::report(&file, html.as_deref())?;
+            let text = if json {
+                serde_json::to_string_pretty(&report)?
+            } else {
+                report.to_text()
+            };
+            writeln!(out, "{text}")?;
+        }
+        Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
+        None => {
+            let timer = TimerKind::Timerfd.build(PERIOD)?;
+            let folder = arguments.record.as_deref();
+            heat(timer, SECONDS, folder, arguments.live, &mut out)?;
+        }
     }
+    Ok(())
 }
 
 /// Puts the parts together.
@@ -69,12 +107,15 @@ fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
     folder: Option<&Path>,
+    live: bool,
     out: &mut dyn Write,
 ) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let mut recorder = folder
         .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
         .transpose()?;
+    let instance = show::instance()?;
+    let mut publisher = live.then(|| show::publish(&instance, &parts)).transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -89,8 +130,13 @@ fn heat(
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
-        thread::sleep(Duration::from_secs(1));
-        if let Some(record) = receive(&mut link, recorder.as_mut(), out) {
+        let mut last = None;
+        for _ in 0..LOOKS_A_SECOND {
+            thread::sleep(Duration::from_secs(1) / LOOKS_A_SECOND);
+            let newest = receive(&mut link, recorder.as_mut(), publisher.as_mut(), out);
+            last = newest.or(last);
+        }
+        if let Some(record) = last {
             let _ = writeln!(
                 out,
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
@@ -103,7 +149,12 @@ fn heat(
     link.commands.send(LoopCommand::Stop)?;
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
-    receive(&mut link, recorder.as_mut(), &mut io::sink());
+    receive(
+        &mut link,
+        recorder.as_mut(),
+        publisher.as_mut(),
+        &mut io::sink(),
+    );
     let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
@@ -118,6 +169,7 @@ fn heat(
 fn receive(
     link: &mut Link<Thermostat>,
     mut recorder: Option<&mut RecorderOf<Thermostat>>,
+    mut publisher: Option<&mut PublisherOf<Thermostat>>,
     out: &mut dyn Write,
 ) -> Option<RecordOf<Thermostat>> {
     let mut last = None;
@@ -125,12 +177,18 @@ fn receive(
         if let Some(recorder) = &mut recorder {
             recorder.take(&message);
         }
+        if let Some(publisher) = &mut publisher {
+            show::publish_message(publisher, &message);
+        }
         match message {
             Message::Tick(record) => last = Some(record),
             Message::Event(event) => {
                 let _ = writeln!(out, "{}", event.kind.description::<Thermostat>());
             }
         }
+    }
+    if let Some(publisher) = publisher {
+        publisher.flush();
     }
     last
 }
@@ -207,7 +265,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
-        let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
+        let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopOrder));
         assert!(report.released);
         assert!(report.ticks > 1);
@@ -215,15 +273,5 @@ mod tests {
         let file = fcc_record::files(folder.path()).unwrap().remove(0);
         let recording = Recording::open(file).unwrap();
         assert_eq!(recording.end().unwrap().ticks, report.ticks);
-    }
-
-    #[test]
-    fn it_records_only_where_it_is_asked_to() {
-        let folder = |words: &[&str]| recording_folder(words.iter().map(OsString::from));
-        assert_eq!(folder(&[]), Ok(None));
-        assert_eq!(folder(&["--record", "runs"]), Ok(Some("runs".into())));
-        for wrong in [&["--record"][..], &["runs"], &["--record", "runs", "2"]] {
-            assert!(folder(wrong).unwrap_err().contains("--record DIR"));
-        }
     }
 }

@@ -6,15 +6,16 @@ mod command;
 mod flown;
 
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_report::{FileEnd, Origin, Report, Survey};
+use fcc_report::{FileEnd, FlightAddition, FlightReport, FlightSurvey, Origin};
 use fcc_telemetry::FlightMessage;
 use flown::Plan;
 use html5ever::tendril::TendrilSink as _;
 use markup5ever_rcdom::{Handle, NodeData, RcDom};
 
 /// The report on a flight of which only some messages were kept.
-fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> Report {
-    let mut survey = Survey::new(Origin::default(), Some(TimedPatternConfig::default()));
+fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> FlightReport {
+    let addition = FlightAddition::new(Some(TimedPatternConfig::default()));
+    let mut survey = FlightSurvey::new(Origin::default(), addition);
     plan.fly(|message| {
         if keep(message) {
             survey.take(message).unwrap();
@@ -27,7 +28,7 @@ fn all(_: &FlightMessage) -> bool {
     true
 }
 
-fn says(report: &Report, words: &str) -> bool {
+fn says(report: &FlightReport, words: &str) -> bool {
     report.findings.iter().any(|said| said.contains(words))
 }
 
@@ -102,9 +103,9 @@ fn a_flight_is_told_as_it_was_flown() {
     assert!((timing.table.period_ms.mean - 25.0).abs() < 1e-9);
     // Table 6.1 of the thesis.
     assert_eq!(timing.thesis.unwrap().max_ms, 32.593);
-    assert!(says(&report, "flown in lockstep"));
+    assert!(says(&report, "ran in lockstep"));
 
-    let flight = report.flight.as_ref().unwrap();
+    let flight = report.addition.flight.as_ref().unwrap();
     assert_eq!(flight.legs.len(), 2, "the third leg is not whole");
     let worst = flight.worst.unwrap();
     // The design's bounds, widened by the sensors' noise.
@@ -185,7 +186,7 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
 fn standby_alone_has_nothing_desired() {
     let report = report(Plan::seconds(1), all);
     assert!(says(&report, "never engaged"));
-    assert!(report.flight.is_none());
+    assert!(report.addition.flight.is_none());
     let page = report.to_html().unwrap();
     sound(&page);
     assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
@@ -193,7 +194,8 @@ fn standby_alone_has_nothing_desired() {
 
 #[test]
 fn a_recording_without_ticks_says_so() {
-    let report = Survey::new(Origin::default(), None).finish(FileEnd::Unknown);
+    let report =
+        FlightSurvey::new(Origin::default(), FlightAddition::default()).finish(FileEnd::Unknown);
     assert!(says(&report, "no tick"));
     let html = sound(&report.to_html().unwrap());
     assert!(texts(&html, "body", "figure").is_empty());
