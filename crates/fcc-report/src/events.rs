@@ -4,7 +4,7 @@ use fcc_core::framework::{Controller, EventKind, EventOf};
 use serde::Serialize;
 
 use super::origin::Origin;
-use fcc_telemetry::event_words;
+use fcc_telemetry::describe_event;
 
 /// As many events are kept; the rest are counted.
 const MOST_EVENTS: usize = 2_000;
@@ -47,7 +47,7 @@ pub(super) struct Events {
 impl Events {
     pub(super) fn take<C: Controller>(&mut self, time_s: f64, event: &EventOf<C>, origin: &Origin) {
         self.push(time_s, event.tick, weight(&event.kind), || {
-            event_words::<C>(event, &origin.sensors, &origin.actuators).replace("->", "\u{2192}")
+            describe_event::<C>(event, &origin.sensors, &origin.actuators).replace("->", "\u{2192}")
         });
     }
 

@@ -6,7 +6,7 @@ use fcc_core::framework::schema::{Kind, Schema, Value, unit};
 use fcc_core::framework::{Readings, Record, RecordOf, State, Time};
 use fcc_telemetry::Telemetry;
 use fcc_telemetry::schema::{Column, columns};
-use fcc_telemetry::units::for_people;
+use fcc_telemetry::units::{SI, Shown};
 use serde::Serialize;
 
 use super::page::capitalized;
@@ -35,8 +35,6 @@ pub struct Panel {
     pub(crate) height_px: f64,
     pub(crate) scale: Scale,
     pub(crate) curves: Vec<Curve>,
-    /// In the record.
-    unit: &'static str,
     /// Display units in one of the record's.
     factor: f64,
     /// Whether it is an angle that begins again after a full turn.
@@ -135,7 +133,7 @@ impl Quantities {
     }
 
     /// Measurement, estimate and set point of a name.
-    pub(crate) fn panel(&self, name: &'static str) -> Panel {
+    pub(crate) fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
         let measured = self.find("measurements", name);
         let estimated = self.find("estimate", name);
         let desired = self.find("setpoints", name);
@@ -155,15 +153,15 @@ impl Quantities {
             curves.push(Curve::new(Ink::Desired, "desired", Role::Desired, value));
         }
         let column = measured.or(estimated).or(desired);
-        Panel::of(name, column.map(|(_, column)| column), curves)
+        Panel::of(name, column.map(|(_, column)| column), units, curves)
     }
 
     /// An output.
-    pub(crate) fn output(&self, name: &'static str) -> Panel {
+    pub(crate) fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
         let output = self.find("outputs", name);
         let curve = |(value, _)| Curve::new(Ink::Actual, "commanded", Role::Output, value);
         let curves = output.map(curve).into_iter().collect();
-        Panel::of(name, output.map(|(_, column)| column), curves)
+        Panel::of(name, output.map(|(_, column)| column), units, curves)
     }
 }
 
@@ -179,7 +177,7 @@ pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
         }
         shown.push(name);
         let reading = column.reading.as_deref().unwrap_or(&column.path);
-        let panel = of.panel(name);
+        let panel = of.panel(name, SI);
         if let Some(plot) = plots.last_mut()
             && readings.last() == Some(&reading)
         {
@@ -202,12 +200,12 @@ pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
         Plot {
             title: "Other estimates and set points".to_owned(),
             caption: "What is not measured.".to_owned(),
-            panels: more.into_iter().map(|name| of.panel(name)).collect(),
+            panels: more.into_iter().map(|name| of.panel(name, SI)).collect(),
         },
         Plot {
             title: "Outputs".to_owned(),
             caption: "What was commanded while the loop was in control.".to_owned(),
-            panels: outputs.map(|name| of.output(name)).collect(),
+            panels: outputs.map(|name| of.output(name, SI)).collect(),
         },
     ]);
     plots.retain(|plot| !plot.panels.is_empty());
@@ -231,15 +229,19 @@ fn title_of<C: Telemetry>(path: &str) -> String {
 }
 
 impl Panel {
-    fn of(name: &'static str, column: Option<&Column>, curves: Vec<Curve>) -> Self {
-        let named = unit::of(name);
-        let (unit, factor) = for_people(named.unit);
+    fn of(
+        name: &'static str,
+        column: Option<&Column>,
+        units: &[Shown],
+        curves: Vec<Curve>,
+    ) -> Self {
+        let shown = column.map(|column| Shown::of(column, units));
+        let (shown_in, factor) = shown.map_or(("", 1.0), |shown| (shown.unit, shown.scale));
         let range = column.and_then(|column| column.range);
         let span = range.map(|(from, to)| (to - from) * factor);
         Self {
-            quantity: named.quantity.replace('_', " "),
-            shown_in: unit,
-            unit: named.unit,
+            quantity: unit::of(name).quantity.replace('_', " "),
+            shown_in,
             height_px: 120.0,
             scale: Scale::Around(
                 span.filter(|span| span.is_finite())
@@ -247,7 +249,7 @@ impl Panel {
             ),
             curves,
             factor,
-            wraps: unit == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
+            wraps: shown_in == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
             in_failsafe: false,
         }
     }
@@ -275,21 +277,15 @@ impl Panel {
         })
     }
 
-    /// The same under another name, in the units of `units`.
-    pub(crate) fn read_as(
-        mut self,
-        quantity: &str,
-        units: fn(&'static str) -> (&'static str, f64),
-    ) -> Self {
-        let (unit, factor) = units(self.unit);
-        self.quantity = quantity.to_owned();
-        (self.shown_in, self.factor) = (unit, factor);
+    /// The same under another name.
+    pub(crate) fn called(mut self, quantity: &str) -> Self {
+        quantity.clone_into(&mut self.quantity);
         self
     }
 
-    /// The same as a percentage of 1.
-    pub(crate) fn in_percent(mut self) -> Self {
-        (self.shown_in, self.factor) = ("%", 100.0);
+    /// The same in the record's own unit, a fraction of 1.
+    pub(crate) fn as_fraction(mut self) -> Self {
+        (self.shown_in, self.factor) = ("", 1.0);
         self
     }
 

@@ -3,7 +3,7 @@
 use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_core::framework::{RecordOf, State};
 use fcc_telemetry::schema::{Column, Leaves, columns};
-use fcc_telemetry::units::for_people;
+use fcc_telemetry::units::{SI, Shown};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Stylize;
@@ -49,7 +49,7 @@ pub(super) fn json<C: Watched>(record: &RecordOf<C>) -> Map<String, Json> {
 struct Row {
     field: &'static str,
     quantity: String,
-    unit: &'static str,
+    shown: Shown,
     actual: Option<f64>,
     desired: Option<f64>,
     is_output: bool,
@@ -57,9 +57,9 @@ struct Row {
 
 impl Row {
     fn line(&self) -> Line<'static> {
-        let (unit, factor) = for_people(self.unit);
+        let Shown { unit, scale, .. } = self.shown;
         let number = |value: Option<f64>| {
-            value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}", value * factor))
+            value.map_or_else(|| "–".to_owned(), |value| format!("{:.2}", value * scale))
         };
         let desired = if self.is_output {
             "".into()
@@ -111,12 +111,11 @@ fn rows<C: Watched>(record: &RecordOf<C>) -> Vec<Row> {
             ("measurements", Some(_)) => {}
             (_, Some(row)) => row.actual = number,
             (_, None) => {
-                let named = unit::of(column.field);
                 let is_desired = part == "setpoints";
                 rows.push(Row {
                     field: column.field,
-                    quantity: named.quantity.replace('_', " "),
-                    unit: named.unit,
+                    quantity: unit::of(column.field).quantity.replace('_', " "),
+                    shown: Shown::of(column, SI),
                     actual: number.filter(|_| !is_desired),
                     desired: number.filter(|_| is_desired),
                     is_output,

@@ -3,13 +3,14 @@
 //! same way.
 //!
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, with
-//! `-- --live` it is published for `thermostat top`; `thermostat report FILE`
-//! reports on a recording.
+//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
+//! flights are, and `-- replay FILE` replays it, `-- report FILE` reports on it;
+//! a run with `-- --live` is watched by `-- top`.
 
 #[cfg(test)]
 mod conformance;
 mod recording;
+mod replay;
 mod room;
 mod show;
 mod thermostat;
@@ -17,6 +18,7 @@ mod thermostat;
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::thread;
 use std::time::Duration;
 
@@ -27,15 +29,14 @@ use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Part
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
-use thermostat::Thermostat;
+use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
-const WANTED_C: f64 = 20.0;
 const SECONDS: u64 = 8;
 /// How often the loop's messages are received: a watcher sees them as late.
 const LOOKS_A_SECOND: u32 = 20;
 
-/// Heats a simulated room.
+/// Heats a simulated room for eight seconds.
 #[derive(Parser)]
 struct Arguments {
     /// Record the run into this folder.
@@ -50,8 +51,15 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Replay a recording, and compare every output bit for bit.
+    Replay {
+        /// The recording, or its parts, oldest first.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
     /// Report on a recording.
     Report {
+        /// The recording.
         file: PathBuf,
         /// Write a page with all plots.
         #[arg(long, value_name = "PAGE")]
@@ -64,10 +72,16 @@ enum Command {
     Top,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<ExitCode, Box<dyn Error>> {
     let arguments = Arguments::parse();
-    let mut out = io::stdout();
+    let out = &mut io::stdout();
     match arguments.command {
+        None => {
+            let timer = TimerKind::Timerfd.build(PERIOD)?;
+            let folder = arguments.record.as_deref();
+            heat(timer, SECONDS, folder, arguments.live, out)?;
+        }
+        Some(Command::Replay { files }) => return replay::replay(&files, out),
         Some(Command::Report { file, html, json }) => {
             let report = show::report(&file, html.as_deref())?;
             let text = if json {
@@ -78,13 +92,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             writeln!(out, "{text}")?;
         }
         Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
-        None => {
-            let timer = TimerKind::Timerfd.build(PERIOD)?;
-            let folder = arguments.record.as_deref();
-            heat(timer, SECONDS, folder, arguments.live, &mut out)?;
-        }
     }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Puts the parts together.
@@ -96,7 +105,7 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     Parts {
         timer,
         sensors: vec![Box::new(thermometer)],
-        controller: Thermostat::new(WANTED_C),
+        controller: Thermostat::new(&Config::default()),
         actuators: vec![Box::new(heater.clone())],
     }
 }
@@ -245,15 +254,16 @@ mod tests {
             Machine::new(parts(timer, &heater), &LoopConfig::default()).unwrap();
         machine.start().unwrap();
         link.commands.send(LoopCommand::Engage).unwrap();
+        let wanted_c = Config::default().wanted_c;
         let mut warmest_c = 0.0_f64;
         for _ in 0..40 * SECONDS {
             assert_eq!(machine.step(), State::Engaged);
             warmest_c = warmest_c.max(machine.record().measurements.room_c.value);
         }
         let room_c = machine.record().measurements.room_c.value;
-        assert!((room_c - WANTED_C).abs() < 0.01, "{room_c} °C");
-        assert!(warmest_c < WANTED_C + 0.1, "overshoot to {warmest_c} °C");
-        let lost_w = (WANTED_C - OUTSIDE_C) / RESISTANCE_K_PER_W;
+        assert!((room_c - wanted_c).abs() < 0.01, "{room_c} °C");
+        assert!(warmest_c < wanted_c + 0.1, "overshoot to {warmest_c} °C");
+        let lost_w = (wanted_c - OUTSIDE_C) / RESISTANCE_K_PER_W;
         assert!((heater.power() * HEATER_W - lost_w).abs() < 1.0);
         machine.finish();
         assert!(heater.power() <= 0.0, "the heater is still on");
@@ -266,12 +276,27 @@ mod tests {
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
         let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
-        assert!(matches!(report.ending, Ending::StopOrder));
+        assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);
         assert!(report.timing.runtime_s >= 1.0);
         let file = fcc_record::files(folder.path()).unwrap().remove(0);
         let recording = Recording::open(file).unwrap();
         assert_eq!(recording.end().unwrap().ticks, report.ticks);
+    }
+
+    #[test]
+    fn its_command_line_is_read_as_documented() {
+        let parse = |words: &[&str]| Arguments::try_parse_from([&["thermostat"], words].concat());
+        assert!(parse(&[]).unwrap().record.is_none());
+        let recorded = parse(&["--record", "runs"]).unwrap().record;
+        assert_eq!(recorded, Some("runs".into()));
+        assert!(matches!(
+            parse(&["replay", "run.mcap"]).unwrap().command,
+            Some(Command::Replay { files }) if files == [PathBuf::from("run.mcap")]
+        ));
+        for wrong in [&["--record"][..], &["runs"], &["replay"]] {
+            assert!(parse(wrong).is_err(), "{wrong:?}");
+        }
     }
 }

@@ -7,7 +7,7 @@ use fcc_live::{Info, PublisherOf, Text};
 use fcc_record::Recording;
 use fcc_report::{Report, Reported, Survey, Words};
 use fcc_runtime::{Message, MessageOf, Parts};
-use fcc_telemetry::{Instance, event_words};
+use fcc_telemetry::{Instance, describe_event};
 use fcc_top::Watched;
 
 use crate::thermostat::Thermostat;
@@ -66,7 +66,7 @@ pub(crate) fn publish_message(
     match message {
         Message::Tick(record) => publisher.record(record),
         Message::Event(event) => {
-            let words = event_words::<Thermostat>(event, &[], &[]);
+            let words = describe_event::<Thermostat>(event, &[], &[]);
             publisher.event(fcc_live::Event::new(event, &words));
         }
     }
@@ -145,7 +145,10 @@ mod tests {
         assert!(room.lowest < 12.5, "{room:?}");
         assert_eq!(value("room", "desired").last, 20.0);
         let power = value("power", "commanded");
-        assert!((power.last * 2_000.0 - 900.0).abs() < 1.0, "{power:?}");
+        assert!(
+            (power.last / 100.0 * 2_000.0 - 900.0).abs() < 1.0,
+            "{power:?}"
+        );
         assert!(report.to_text().contains("The thermostat was engaged for"));
 
         let page = std::fs::read_to_string(page).unwrap();
@@ -197,7 +200,7 @@ mod tests {
             row.split_whitespace().take(5).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(row("room"), "room 20.00 → 20.00 °C", "{screen}");
-        assert!(row("power").starts_with("power 0.45"), "{screen}");
+        assert!(row("power").starts_with("power 45.0"), "{screen}");
         assert!(rows[0].contains("ENGAGED"), "{screen}");
         assert!(screen.contains("the room's"), "{screen}");
 

@@ -21,7 +21,7 @@ fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> FlightReport {
             survey.take(message).unwrap();
         }
     });
-    survey.finish(FileEnd::Finished("told to stop".to_owned()))
+    survey.finish(FileEnd::Finished("stop requested".to_owned()))
 }
 
 fn all(_: &FlightMessage) -> bool {

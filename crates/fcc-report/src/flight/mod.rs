@@ -9,7 +9,7 @@ mod track;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
-use fcc_telemetry::units::for_pilots;
+use fcc_telemetry::units::AVIATION;
 use fcc_telemetry::{FlightScore, ScoredBy};
 use serde::Serialize;
 
@@ -128,8 +128,11 @@ impl Reported for Autopilot {
     }
 
     fn plots(of: &Quantities) -> Vec<Plot> {
-        let panel = |name, quantity| of.panel(name).read_as(quantity, for_pilots);
-        let surface = |name| of.output(name).sized(64.0, Scale::Together(0.1));
+        let panel = |name, quantity| of.panel(name, AVIATION).called(quantity);
+        let surface = |name| {
+            let panel = of.output(name, AVIATION).as_fraction();
+            panel.sized(64.0, Scale::Together(0.1))
+        };
         let plot = |title: &str, caption: &str, panels: Vec<Panel>| Plot {
             title: title.to_owned(),
             caption: caption.to_owned(),
@@ -158,9 +161,7 @@ impl Reported for Autopilot {
                 "Indicated airspeed, desired and actual, and the throttle commanded.",
                 vec![
                     panel("airspeed_mps", "airspeed").sized(130.0, Scale::Around(4.0)),
-                    of.output("throttle")
-                        .in_percent()
-                        .sized(80.0, Scale::Percent),
+                    of.output("throttle", AVIATION).sized(80.0, Scale::Percent),
                 ],
             ),
             plot(
