@@ -284,7 +284,7 @@ impl Panel {
     }
 
     /// The same in the record's own unit, a fraction of 1.
-    pub(crate) fn as_fraction(mut self) -> Self {
+    pub(crate) fn unscaled(mut self) -> Self {
         (self.shown_in, self.factor) = ("", 1.0);
         self
     }

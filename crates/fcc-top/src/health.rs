@@ -60,11 +60,17 @@ pub(super) fn ages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Pict
         .each_source(&mut |_, time| taken.push(time));
     let readings: Vec<_> = C::READINGS.iter().copied().zip(taken).collect();
     let (left, right) = readings.split_at(readings.len().min(area.height.into()));
+    // Where one column is enough, it has all the room.
+    let width = if right.is_empty() {
+        usize::from(area.width).saturating_sub(5).max(9)
+    } else {
+        9
+    };
     let lines: Vec<_> = left
         .iter()
         .enumerate()
         .map(|(row, reading)| {
-            let mut spans = age(*reading, 9, now).to_vec();
+            let mut spans = age(*reading, width, now).to_vec();
             if let Some(reading) = right.get(row) {
                 spans.push(" ".into());
                 spans.extend(age(*reading, 7, now));

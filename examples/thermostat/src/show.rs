@@ -163,9 +163,9 @@ mod tests {
             "room, °C",
             "desired",
             "Outputs",
-            "power",
+            "power, %",
         ] {
-            assert!(found.iter().any(|text| text == words), "{words}");
+            assert!(found.iter().any(|text| text == words), "{words}: {found:?}");
         }
         for words in ["autopilot", "Ground track", "Aircraft"] {
             assert!(!page.contains(words), "{words}");

@@ -5,7 +5,9 @@
 mod command;
 mod flown;
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_core::framework::{Reading, RecordOf, Time};
 use fcc_report::{FileEnd, FlightAddition, FlightReport, FlightSurvey, Origin};
 use fcc_telemetry::FlightMessage;
 use flown::Plan;
@@ -261,9 +263,59 @@ fn plots_are_svg_files() {
     );
     for (name, svg) in &svgs {
         assert!(
-            svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""),
+            svg.starts_with("<svg ") && svg.contains("xmlns=\"http://www.w3.org/2000/svg\""),
             "{name}"
         );
         assert!(svg.trim_end().ends_with("</svg>"), "{name}");
     }
+}
+
+/// A spike of one tick in an hour, of which the overview's bins are 1.8 s long:
+/// the lines for a zoomed plot have more points around it, in a page that is
+/// still small.
+#[test]
+fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
+    let mut record = RecordOf::<Autopilot>::default();
+    let mut survey = FlightSurvey::new(Origin::default(), FlightAddition::default());
+    for number in 1..=144_000_u64 {
+        let at = Time::from_nanos(number as i64 * 25_000_000);
+        (record.tick.number, record.tick.dt_s) = (number, 0.025);
+        (record.tick.scheduled, record.tick.woke) = (at, at);
+        // Noise of a generator by Lehmer (1951).
+        let noise = |of: u64| (number * of * 48_271 % 2_147_483_647) as f64 / 2_147_483_647.0;
+        let measured = &mut record.measurements;
+        measured.altitude_m = Reading::new(1_000.0 + noise(1), at);
+        measured.airspeed_mps = Reading::new(50.0 + noise(3), at);
+        measured.heading_rad = Reading::new(1.0 + 0.1 * noise(5), at);
+        record.estimate.altitude_m = 1_000.0 + noise(7);
+        record.estimate.airspeed_mps = 50.0 + noise(11);
+        record.estimate.heading_rad = 1.0 + 0.1 * noise(13);
+        survey.take(&FlightMessage::Tick(record)).unwrap();
+    }
+    let report = survey.finish(FileEnd::Unknown);
+    let page = report.to_html().unwrap();
+    sound(&page);
+    let paths = |class: &str| -> Vec<usize> {
+        let begin = format!("<path class=\"{class}\"");
+        let pieces = page.split(&begin).skip(1);
+        pieces
+            .map(|piece| {
+                let (path, _) = piece.split_once("/>").unwrap();
+                path.matches([' ', '-', 'h', 'l']).count()
+            })
+            .collect()
+    };
+    let (overview, detail) = (paths("overview"), paths("detail"));
+    assert_eq!(overview.len(), detail.len());
+    assert!(overview.len() >= 6, "{overview:?}");
+    let finer = overview.iter().zip(&detail);
+    let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
+    assert!(finer.count() >= 6, "{overview:?} {detail:?}");
+    assert!(page.len() < 4_500_000, "{}", page.len());
+    let svgs = report.to_svgs().unwrap();
+    let mut files = svgs.iter();
+    assert!(
+        files.all(|(_, svg)| !svg.contains("detail")),
+        "on paper, too"
+    );
 }

@@ -130,7 +130,7 @@ impl Reported for Autopilot {
     fn plots(of: &Quantities) -> Vec<Plot> {
         let panel = |name, quantity| of.panel(name, AVIATION).called(quantity);
         let surface = |name| {
-            let panel = of.output(name, AVIATION).as_fraction();
+            let panel = of.output(name, AVIATION).unscaled();
             panel.sized(64.0, Scale::Together(0.1))
         };
         let plot = |title: &str, caption: &str, panels: Vec<Panel>| Plot {

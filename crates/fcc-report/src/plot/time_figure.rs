@@ -81,6 +81,10 @@ pub(super) fn time_figure(
     let lines: String = panels.iter().zip(&frames).map(curves).collect();
     let end = svg.rfind("</svg>").unwrap_or(svg.len());
     svg.insert_str(end, &lines);
+    // For the page's script: where the axis of time is.
+    let (left, right, end_s) = (px(LEFT_PX), px(RIGHT_PX), end_s(report));
+    let axis = format!(" data-left=\"{left}\" data-right=\"{right}\" data-end=\"{end_s}\"");
+    svg.insert_str("<svg".len(), &axis);
     Ok(svg)
 }
 
