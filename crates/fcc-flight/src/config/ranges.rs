@@ -170,12 +170,13 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             x_plane(&format!("sensor[{at}]"), section, &mut problems, places);
         }
     }
-    if config.x_plane.is_none() && config.built_in.is_none() {
+    let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
+    if !has_simulator && !config.is_without_simulator() {
         problems.push(Problem {
             line: None,
             key: None,
             message: "has neither [x-plane] nor [built-in]: add the section of the aircraft that \
-                      is to be flown"
+                      is to be flown, or list sensors and actuators that need none"
                 .to_owned(),
         });
     }
@@ -257,27 +258,22 @@ fn relations(config: &Config, report: &mut impl FnMut(&str, String)) {
 
 /// Constraints on the lists of sensors and actuators.
 fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let actuators = config.actuator.as_deref().unwrap_or_default();
-    let simulators = |list: &str, are: Vec<bool>| {
-        let at = are
-            .iter()
-            .enumerate()
-            .filter(|(_, is)| **is)
-            .map(|(at, _)| at);
-        at.skip(1)
-            .map(|at| format!("{list}[{at}].kind"))
-            .collect::<Vec<_>>()
-    };
-    let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
-    let twice = simulators("sensor", sensors.collect());
-    let moved = simulators("actuator", vec![true; actuators.len()]);
-    for key in twice.iter().chain(&moved) {
-        report(key, "is the simulator a second time: keep one".to_owned());
-    }
-    for (list, length) in [
-        ("sensor", config.sensor.len()),
-        ("actuator", actuators.len()),
-    ] {
+    let sensors: Vec<bool> = config
+        .sensor
+        .iter()
+        .map(SensorEntry::is_simulator)
+        .collect();
+    // The only kind of an actuator.
+    let actuators = vec![true; config.actuators().len()];
+    for (list, are_simulators) in [("sensor", sensors), ("actuator", actuators)] {
+        let simulators = are_simulators.iter().enumerate().filter(|(_, is)| **is);
+        for (at, _) in simulators.skip(1) {
+            report(
+                &format!("{list}[{at}].kind"),
+                "is the simulator a second time: keep one".to_owned(),
+            );
+        }
+        let length = are_simulators.len();
         if length > MOST_ENTRIES {
             report(
                 list,
