@@ -14,10 +14,6 @@ use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use fcc_telemetry::{Instance, Telemetry};
 
-/// What waits to be published: two seconds of records at 1 kHz. When a watcher
-/// joins or leaves, the publishing thread may be held up for one.
-const WAITING: usize = 2_048;
-
 /// How long publishing may take to start, and to end. Neither a flight nor its
 /// end waits longer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -61,13 +57,15 @@ pub struct PublisherOf<C: Telemetry> {
 }
 
 impl<C: Telemetry> PublisherOf<C> {
-    /// Starts to publish as `instance`, and takes no commands.
+    /// Starts to publish as `instance`, and takes no commands. Up to `waiting`
+    /// records wait to be published: two seconds of them are enough, as the
+    /// publishing thread may be held up for one when a watcher joins or leaves.
     ///
     /// # Errors
     /// When there is no shared memory to be had, or the name is taken. Whoever
     /// flies goes on without.
-    pub fn start(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, false)
+    pub fn start(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, false)
     }
 
     /// Starts to publish as `instance`, and to take commands: who flies looks
@@ -75,12 +73,16 @@ impl<C: Telemetry> PublisherOf<C> {
     ///
     /// # Errors
     /// As [`start`](Self::start).
-    pub fn start_with_commands(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, true)
+    pub fn start_with_commands(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, true)
     }
 
-    fn start_thread(instance: &Instance, takes_orders: bool) -> Result<Self, PublishError> {
-        let (ring, items) = RingBuffer::new(WAITING);
+    fn start_thread(
+        instance: &Instance,
+        waiting: usize,
+        takes_orders: bool,
+    ) -> Result<Self, PublishError> {
+        let (ring, items) = RingBuffer::new(waiting.max(1));
         let (started, start) = mpsc::sync_channel::<Started>(1);
         // More than the thread will ever have to say unheard.
         let (say, words) = mpsc::sync_channel(16);

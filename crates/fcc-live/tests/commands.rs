@@ -29,7 +29,7 @@ fn describe(mut publisher: Publisher) -> Publisher {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    describe(Publisher::start_with_commands(instance).unwrap())
+    describe(Publisher::start_with_commands(instance, 2_048).unwrap())
 }
 
 fn next(publisher: &mut Publisher) -> Asked {
@@ -121,7 +121,7 @@ fn a_daemon_that_takes_none_is_told_from_none_at_all() {
         Commander::open(&instance).unwrap_err(),
         CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
     );
-    let _publisher = describe(Publisher::start(&instance).unwrap());
+    let _publisher = describe(Publisher::start(&instance, 2_048).unwrap());
     let words = Commander::open(&instance).unwrap_err().to_string();
     assert!(
         words.contains("version 1.2.3, takes no commands"),
@@ -133,7 +133,7 @@ fn a_daemon_that_takes_none_is_told_from_none_at_all() {
 #[test]
 fn a_daemon_with_another_layout_is_refused_in_words() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start_with_commands(&instance).unwrap();
+    let mut publisher = Publisher::start_with_commands(&instance, 2_048).unwrap();
     publisher.describe(Info {
         layout: u32::MAX,
         software: Text::new("9.0.0"),

@@ -5,6 +5,7 @@
 //! conversion to the core's. Optional keys have defaults; a value out of its
 //! range is refused with line, key and range.
 
+mod as_text;
 mod autopilot;
 mod budget;
 mod built_in;

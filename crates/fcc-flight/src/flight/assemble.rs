@@ -171,7 +171,7 @@ impl Assembly {
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::new(
-                &config.telemetry,
+                config,
                 self.autopilot.config().envelope.allowed_airspeeds(),
             )));
         }
