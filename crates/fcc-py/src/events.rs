@@ -2,7 +2,7 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{EventKind, Time};
-use fcc_telemetry::{FlightEvent, event_words};
+use fcc_telemetry::{FlightEvent, describe_event};
 use pyo3::prelude::*;
 
 /// Something that happened once: the number of its tick, when that tick woke
@@ -40,7 +40,7 @@ impl PyEvent {
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(event),
-            text: event_words::<Autopilot>(event, sensors, actuators),
+            text: describe_event::<Autopilot>(event, sensors, actuators),
         }
     }
 }

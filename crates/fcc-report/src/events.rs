@@ -6,7 +6,7 @@ use fcc_core::framework::{EventKind, State};
 use serde::Serialize;
 
 use super::origin::Origin;
-use fcc_telemetry::{FlightEvent, event_words};
+use fcc_telemetry::{FlightEvent, describe_event};
 
 /// As many events are kept; the rest are counted.
 const MOST_EVENTS: usize = 2_000;
@@ -49,7 +49,7 @@ pub(super) struct Events {
 impl Events {
     pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
         self.push(time_s, event.tick, weight(event.kind), || {
-            event_words::<Autopilot>(event, &origin.sensors, &origin.actuators)
+            describe_event::<Autopilot>(event, &origin.sensors, &origin.actuators)
                 .replace("->", "\u{2192}")
         });
     }

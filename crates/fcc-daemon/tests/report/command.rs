@@ -38,7 +38,7 @@ fn a_file_becomes_tables_a_page_and_json() {
         "2026-11-20 04:21:33 UTC",
         "SCHED_FIFO 80 was refused",
         "0123456789ab",
-        "told to stop",
+        "stop requested",
         "40 Hz thesis",
         "32.593 ms",
         "Every tick that was served from 1 to 1800 is in the file.",

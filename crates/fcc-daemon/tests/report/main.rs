@@ -20,7 +20,7 @@ fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> Report {
             survey.take(message).unwrap();
         }
     });
-    survey.finish(FileEnd::Finished("told to stop".to_owned()))
+    survey.finish(FileEnd::Finished("stop requested".to_owned()))
 }
 
 fn all(_: &FlightMessage) -> bool {

@@ -19,6 +19,7 @@ mod places;
 mod ranges;
 mod read;
 mod recording;
+mod relations;
 mod restart;
 mod runtime;
 mod similar;

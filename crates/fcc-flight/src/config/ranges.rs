@@ -5,9 +5,8 @@
 
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
-use super::devices::MOST_ENTRIES;
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection};
+use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -123,9 +122,6 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.seed", 0.0, 9.3e18),
 ];
 
-/// Of `SCHED_FIFO` (sched(7)).
-const HIGHEST_PRIORITY: u8 = 99;
-
 /// Smallest and largest value of a numeric key.
 pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
     RANGES
@@ -160,8 +156,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             format!("is too large: choose 0 to {}", i64::MAX),
         ),
     }
-    relations(config, &mut report);
-    lists(config, &mut report);
+    relations::check(config, &mut report);
     if let Some(section) = &config.x_plane {
         x_plane("x-plane", section, &mut problems, places);
     }
@@ -182,105 +177,6 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
     }
     problems.sort_by_key(|problem| problem.line);
     problems
-}
-
-/// Constraints between values.
-fn relations(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let early = &config.tick.early_wake;
-    if early.min_us > early.max_us {
-        report(
-            "loop.early_wake.min_us",
-            format!(
-                "is {}: choose no more than max_us, {}",
-                early.min_us, early.max_us
-            ),
-        );
-    }
-    if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
-        report(
-            "realtime.priority",
-            format!(
-                "is {HIGHEST_PRIORITY}: choose at most {}, or the watchdog cannot have a higher \
-                 one and a loop that spins keeps it away",
-                HIGHEST_PRIORITY - 1
-            ),
-        );
-    }
-    let envelope = &config.autopilot.envelope;
-    if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
-        report(
-            "autopilot.envelope.min_airspeed_kt",
-            format!(
-                "is {}: choose less than max_airspeed_kt, {}",
-                envelope.min_airspeed_kt, envelope.max_airspeed_kt
-            ),
-        );
-    }
-    let budget = &config.budget;
-    let stages = [
-        ("budget.sensors_us", budget.sensors_us),
-        ("budget.estimate_us", budget.estimate_us),
-        ("budget.guide_us", budget.guide_us),
-        ("budget.control_us", budget.control_us),
-        ("budget.actuators_us", budget.actuators_us),
-    ];
-    // The rate itself may be out of range here.
-    let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
-    if let Some(tick_us) = budget.tick_us
-        && f64::from(tick_us) > period_us
-    {
-        report(
-            "budget.tick_us",
-            format!(
-                "is {tick_us}: choose no more than the period, {period_us}: a tick that takes \
-                 longer has missed the next"
-            ),
-        );
-    }
-    for (key, stage_us) in stages {
-        if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
-            && stage_us > tick_us
-        {
-            report(
-                key,
-                format!("is {stage_us}: choose no more than tick_us, {tick_us}"),
-            );
-        }
-    }
-    if config.x_plane.is_some() && config.built_in.is_some() {
-        report(
-            "built-in",
-            "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
-                .to_owned(),
-        );
-    }
-}
-
-/// Constraints on the lists of sensors and actuators.
-fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let sensors: Vec<bool> = config
-        .sensor
-        .iter()
-        .map(SensorEntry::is_simulator)
-        .collect();
-    // The only kind of an actuator.
-    let actuators = vec![true; config.actuators().len()];
-    for (list, are_simulators) in [("sensor", sensors), ("actuator", actuators)] {
-        let simulators = are_simulators.iter().enumerate().filter(|(_, is)| **is);
-        for (at, _) in simulators.skip(1) {
-            report(
-                &format!("{list}[{at}].kind"),
-                "is the simulator a second time: keep one".to_owned(),
-            );
-        }
-        let length = are_simulators.len();
-        if length > MOST_ENTRIES {
-            report(
-                list,
-                format!("has {length} entries: keep at most {MOST_ENTRIES}"),
-            );
-        }
-    }
 }
 
 /// Errors found by the adapter itself, other than those of ranges.

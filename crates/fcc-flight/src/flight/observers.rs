@@ -3,7 +3,7 @@
 use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::Message;
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightMessage, event_words};
+use fcc_telemetry::{FlightMessage, describe_event};
 
 use super::assemble::Assembly;
 use super::host::Host;
@@ -48,7 +48,7 @@ impl Observers {
             }
             Message::Event(event) => {
                 let words =
-                    event_words::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
+                    describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {
                     observer.event(event, &words, &at);
                 }

@@ -8,11 +8,13 @@
 
 use std::path::{Path, PathBuf};
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_flight::config::Config;
-use fcc_flight::replay::{Chain, Deviation, Identity, Replay, Run, run};
+use fcc_flight::replay::{recorded_config, replay as replay_of};
 use fcc_record::{Item, Recording};
+use fcc_replay::{Chain, Deviation, Identity, Replayed};
 use fcc_report::{CsvFolder, FileEnd, Origin, Report, Survey};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -98,7 +100,7 @@ fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
     let folder = csv.unwrap_or(Path::new(""));
     let refused = |error: std::io::Error| not_written(folder, &error);
     let mut tables = csv
-        .map(|folder| CsvFolder::<fcc_core::flight::Autopilot>::create(folder, &origin))
+        .map(|folder| CsvFolder::<Autopilot>::create(folder, &origin))
         .transpose()
         .map_err(refused)?;
     let mut survey = Survey::new(origin, pattern(&recording));
@@ -157,9 +159,7 @@ pub(crate) fn replay<'py>(
     #[derive(Serialize)]
     struct Flown {
         #[serde(flatten)]
-        run: Run,
-        cuts: Vec<String>,
-        damages: Vec<String>,
+        replayed: Replayed,
         identical: Option<bool>,
         identity: Option<Identity>,
         deviation: Option<Deviation>,
@@ -173,28 +173,28 @@ pub(crate) fn replay<'py>(
         .transpose()?;
     let flown = py.detach(|| -> Result<Flown, String> {
         let chain = Chain::open(&paths).map_err(|error| error.to_string())?;
-        let mut config = other.clone().unwrap_or_else(|| chain.config().clone());
+        let recorded = recorded_config(&chain).map_err(|error| error.to_string())?;
+        let same = other.is_none();
+        let rate_hz = recorded.tick.rate_hz;
+        let mut config = other.unwrap_or(recorded);
         // The times of a recording cannot be changed.
-        config.tick.rate_hz = chain.config().tick.rate_hz;
-        let replay = Replay::new(&config).map_err(|error| format!("the loop's timer: {error}"))?;
-        let mut messages = chain.messages();
-        let mut identity = Identity::default();
-        let mut deviation = Deviation::default();
-        let run = run(replay, &mut messages, |recorded, again| {
-            if other.is_some() {
-                deviation.take(recorded, again);
-            } else {
+        config.tick.rate_hz = rate_hz;
+        let replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;
+        let mut identity = same.then(Identity::of::<Autopilot>);
+        let mut deviation = (!same).then(Deviation::of::<Autopilot>);
+        let compare = |recorded: &_, again: &_| {
+            if let Some(identity) = &mut identity {
                 identity.take(recorded, again);
             }
-        });
-        let same = other.is_none();
+            if let Some(deviation) = &mut deviation {
+                deviation.take(recorded, again);
+            }
+        };
         Ok(Flown {
-            run,
-            cuts: messages.cuts().to_vec(),
-            damages: messages.damages().to_vec(),
-            identical: same.then(|| identity.is_identical()),
-            identity: same.then_some(identity),
-            deviation: (!same).then_some(deviation),
+            replayed: chain.replay(replay, compare, |_| {}),
+            identical: identity.as_ref().map(Identity::is_identical),
+            identity,
+            deviation,
         })
     });
     json::to_python(py, &flown.map_err(|words| errors::RECORDING.say(words))?)

@@ -1,4 +1,5 @@
-//! Recordings from outside: what goes in comes back, whatever the disk does.
+//! Recordings from outside: what is written is read back, whatever the disk
+//! does.
 #![cfg(test)]
 
 mod any;

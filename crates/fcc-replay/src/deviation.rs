@@ -1,39 +1,46 @@
 //! Where another configuration would have commanded otherwise.
 
-use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-use fcc_core::blocks::wrap_pi;
-use fcc_telemetry::FlightRecord;
-use fcc_telemetry::units::{M_FT, MPS_KT};
+use fcc_core::framework::Record;
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use super::profile::Profile;
+use crate::outputs::RecordValues;
+use crate::profile::Profile;
+use crate::quantity::Quantity;
 
 /// Where another configuration would have commanded otherwise, had it seen
 /// these measurements.
 ///
-/// The aircraft did not react to it: small differences that flight would have
-/// evened out add up in the integrators.
+/// The plant did not react to it: small differences that it would have evened
+/// out add up in the integrators.
 #[derive(Clone, Debug, Serialize)]
 pub struct Deviation {
     /// Ticks in which both commanded something: what is compared.
     pub compared: u64,
-    /// Ticks in which only the recorded flight commanded something.
+    /// Ticks in which only the recorded loop commanded something.
     pub only_recorded: u64,
     /// Ticks in which only the other configuration would have.
     pub only_other: u64,
-    /// Throttle, surfaces and set points.
+    /// Outputs and set points.
     pub quantities: Vec<QuantityDeviation>,
     #[serde(skip)]
+    compares: Vec<Quantity>,
+    #[serde(skip)]
     began_ns: Option<i64>,
+    #[serde(skip)]
+    recorded: RecordValues,
+    #[serde(skip)]
+    other: RecordValues,
 }
 
 /// How far one quantity is from the recorded one.
 #[derive(Clone, Debug, Serialize)]
 pub struct QuantityDeviation {
     /// Its name.
-    pub name: &'static str,
+    pub name: String,
     /// The unit of what follows.
     pub unit: &'static str,
     /// Ticks in which it differs at all.
@@ -50,78 +57,12 @@ pub struct QuantityDeviation {
     profile: Profile,
 }
 
-/// One thing that the autopilot commands or aims for.
-pub struct Quantity {
-    /// Its name.
-    pub name: &'static str,
-    /// Its unit, for people.
-    pub unit: &'static str,
-    /// That many of the unit in one of the record's.
-    scale: f64,
-    /// Whether it goes round: 359° and 1° are 2° apart.
-    goes_round: bool,
-    value: fn(&FlightRecord) -> f64,
-}
-
-const DEG: f64 = 180.0 / PI;
-
-const fn quantity(
-    name: &'static str,
-    unit: &'static str,
-    scale: f64,
-    value: fn(&FlightRecord) -> f64,
-) -> Quantity {
-    Quantity {
-        name,
-        unit,
-        scale,
-        goes_round: false,
-        value,
-    }
-}
-
-impl Quantity {
-    /// All there are: what is commanded, then what is aimed for.
-    pub const ALL: [Self; 10] = [
-        quantity("throttle", "%", 100.0, |r| r.outputs.throttle),
-        quantity("elevator", "%", 100.0, |r| r.outputs.elevator),
-        quantity("aileron", "%", 100.0, |r| r.outputs.aileron),
-        quantity("rudder", "%", 100.0, |r| r.outputs.rudder),
-        quantity("airspeed set point", "kt", MPS_KT, |r| {
-            r.setpoints.airspeed_mps
-        }),
-        Self {
-            goes_round: true,
-            ..quantity("heading set point", "°", DEG, |r| r.setpoints.heading_rad)
-        },
-        quantity("altitude set point", "ft", M_FT, |r| r.setpoints.altitude_m),
-        quantity("bank set point", "°", DEG, |r| r.setpoints.roll_rad),
-        quantity("climb set point", "ft/min", M_FT * 60.0, |r| {
-            r.setpoints.climb_rate_mps
-        }),
-        quantity("pitch set point", "°", DEG, |r| r.setpoints.pitch_rad),
-    ];
-
-    /// Its value in a record, in [`unit`](Self::unit)s.
-    pub fn of(&self, record: &FlightRecord) -> f64 {
-        (self.value)(record) * self.scale
-    }
-
-    fn difference(&self, recorded: &FlightRecord, other: &FlightRecord) -> f64 {
-        let difference = (self.value)(other) - (self.value)(recorded);
-        let difference = if self.goes_round {
-            wrap_pi(difference)
-        } else {
-            difference
-        };
-        difference * self.scale
-    }
-}
-
-impl Default for Deviation {
-    fn default() -> Self {
-        let quantities = Quantity::ALL.iter().map(|quantity| QuantityDeviation {
-            name: quantity.name,
+impl Deviation {
+    /// Nothing compared yet, of this controller's records.
+    pub fn of<C: Telemetry>() -> Self {
+        let compares = Quantity::all::<C>();
+        let quantities = compares.iter().map(|quantity| QuantityDeviation {
+            name: quantity.name.clone(),
             unit: quantity.unit,
             differing: 0,
             largest: 0.0,
@@ -135,14 +76,19 @@ impl Default for Deviation {
             only_recorded: 0,
             only_other: 0,
             quantities: quantities.collect(),
+            compares,
             began_ns: None,
+            recorded: RecordValues::default(),
+            other: RecordValues::default(),
         }
     }
-}
 
-impl Deviation {
     /// Compares one tick as recorded and as the other configuration has it.
-    pub fn take(&mut self, recorded: &FlightRecord, other: &FlightRecord) {
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        other: &Record<M, E, S, O>,
+    ) {
         let at_ns = recorded.tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(at_ns);
         let at_s = at_ns.saturating_sub(began_ns) as f64 * 1e-9;
@@ -150,9 +96,11 @@ impl Deviation {
         self.compared += u64::from(both);
         self.only_recorded += u64::from(recorded.sent && !other.sent);
         self.only_other += u64::from(!recorded.sent && other.sent);
-        for (quantity, deviation) in Quantity::ALL.iter().zip(&mut self.quantities) {
+        self.recorded.take(recorded);
+        self.other.take(other);
+        for (quantity, deviation) in self.compares.iter().zip(&mut self.quantities) {
             if both {
-                let difference = quantity.difference(recorded, other);
+                let difference = quantity.difference(&self.recorded, &self.other);
                 deviation.take(difference, at_s, self.compared);
             } else {
                 deviation.profile.push(0.0);
@@ -162,16 +110,18 @@ impl Deviation {
 
     /// For people.
     pub fn to_text(&self) -> String {
+        let names = self.quantities.iter().map(|quantity| quantity.name.len());
+        let width = names.max().unwrap_or(0).max(19);
         let mut text = format!(
-            "{:19} {:>8} {:>12} {:>12} {:>7} {:>9}  {}\n{}",
+            "{:width$} {:>8} {:>12} {:>12} {:>7} {:>9}  {}\n{}",
             "other - recorded",
             "ticks",
             "rms",
             "largest",
             "",
             "at",
-            "size over the flight",
-            "─".repeat(100)
+            "size over the recording",
+            "─".repeat(width + 81)
         );
         for quantity in &self.quantities {
             let at = quantity
@@ -179,7 +129,7 @@ impl Deviation {
                 .map_or(String::new(), |at_s| format!("{at_s:.2} s"));
             let _ = write!(
                 text,
-                "\n{:19} {:>8} {:>12.5} {:>+12.5} {:7} {at:>9}  {}",
+                "\n{:width$} {:>8} {:>12.5} {:>+12.5} {:7} {at:>9}  {}",
                 quantity.name,
                 quantity.differing,
                 quantity.rms,
@@ -190,10 +140,10 @@ impl Deviation {
         }
         let _ = write!(
             text,
-            "\n\n{} ticks compared, in which both command the aircraft; only the recorded \
-             flight did in {}, only the other configuration would have in {}.\n\
-             The measurements are as recorded: the aircraft did not react to the other \
-             configuration, so differences may add up that flight would have evened out.",
+            "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \
+             {}, only the other configuration would have in {}.\n\
+             The measurements are as recorded: the plant did not react to the other \
+             configuration, so differences may add up that it would have evened out.",
             self.compared, self.only_recorded, self.only_other
         );
         text

@@ -1,13 +1,15 @@
-//! Whether a recording flown again gives the same outputs, bit for bit.
+//! Whether a replay gives the same outputs, bit for bit.
 
 use std::fmt::Write as _;
 
-use fcc_telemetry::FlightRecord;
+use fcc_core::framework::schema::Schema;
+use fcc_core::framework::{Controller, Record};
+use fcc_telemetry::schema::Column;
 use serde::Serialize;
 
-use super::fields::{Output, distance, outputs, values, words};
+use crate::outputs::{RecordValues, distance, outputs, words};
 
-/// Whether a recording flown again gives the same outputs, bit for bit.
+/// Whether a replay gives the same outputs, bit for bit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Identity {
     /// Outputs compared, of all ticks.
@@ -21,7 +23,13 @@ pub struct Identity {
     #[serde(skip)]
     began_ns: Option<i64>,
     #[serde(skip)]
-    compared: Vec<Output>,
+    compared: Vec<(usize, Column)>,
+    #[serde(skip)]
+    flag_name: fn(u32) -> &'static str,
+    #[serde(skip)]
+    recorded: RecordValues,
+    #[serde(skip)]
+    again: RecordValues,
 }
 
 /// One output of one tick that differs.
@@ -35,11 +43,11 @@ pub struct Difference {
     pub field: String,
     /// What was recorded, in words for people.
     pub recorded: String,
-    /// What it is when flown again.
+    /// What it is in the replay.
     pub again: String,
     /// The recorded bits, hexadecimal.
     pub recorded_bits: String,
-    /// The bits when flown again.
+    /// The bits in the replay.
     pub again_bits: String,
 }
 
@@ -57,30 +65,34 @@ pub struct FieldDifference {
     pub largest: Option<f64>,
 }
 
-impl Default for Identity {
-    fn default() -> Self {
+impl Identity {
+    /// Nothing compared yet, of this controller's records.
+    pub fn of<C: Controller>() -> Self {
         Self {
             outputs: 0,
             differing: 0,
             first: None,
             fields: Vec::new(),
             began_ns: None,
-            compared: outputs(),
+            compared: outputs::<C>(),
+            flag_name: C::flag_name,
+            recorded: RecordValues::default(),
+            again: RecordValues::default(),
         }
     }
-}
 
-impl Identity {
-    /// Compares one tick as recorded and as flown again.
-    pub fn take(&mut self, recorded: &FlightRecord, again: &FlightRecord) {
+    /// Compares one tick as recorded and as replayed.
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        again: &Record<M, E, S, O>,
+    ) {
         let at_ns = recorded.tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(at_ns);
-        let (recorded_values, again_values) = (values(recorded), values(again));
-        for output in &self.compared {
-            let (Some(was), Some(is)) = (
-                recorded_values.as_slice().get(output.index).copied(),
-                again_values.as_slice().get(output.index).copied(),
-            ) else {
+        self.recorded.take(recorded);
+        self.again.take(again);
+        for (index, output) in &self.compared {
+            let (Some(was), Some(is)) = (self.recorded.get(*index), self.again.get(*index)) else {
                 continue;
             };
             if was.bits() == is.bits() {
@@ -91,21 +103,21 @@ impl Identity {
                 self.first = Some(Difference {
                     tick: recorded.tick.number,
                     time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
-                    field: output.name.clone(),
-                    recorded: words(output.kind, was),
-                    again: words(output.kind, is),
+                    field: output.path.clone(),
+                    recorded: words(output.kind, was, self.flag_name),
+                    again: words(output.kind, is, self.flag_name),
                     recorded_bits: format!("{:#018x}", was.bits()),
                     again_bits: format!("{:#018x}", is.bits()),
                 });
             }
             let distance = distance(was, is);
-            match self.fields.iter_mut().find(|f| f.field == output.name) {
+            match self.fields.iter_mut().find(|f| f.field == output.path) {
                 Some(known) => {
                     known.differing += 1;
                     known.largest = known.largest.max_of(distance);
                 }
                 None => self.fields.push(FieldDifference {
-                    field: output.name.clone(),
+                    field: output.path.clone(),
                     differing: 1,
                     first_tick: recorded.tick.number,
                     largest: distance,

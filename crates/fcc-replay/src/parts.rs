@@ -1,13 +1,12 @@
-//! What takes the place of clock and aircraft in a replay.
+//! What replaces the clock and the plant in a replay.
 
 use std::time::Duration;
 
-use fcc_core::flight::{Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault, Tick};
 use fcc_timer::{Expiry, Timer, TimerError};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// A timer that is there for its period: the recorded times are handed to the
+/// A timer of which only the period is used: the recorded times are given to the
 /// machine tick by tick.
 pub(super) struct RecordedTimes {
     pub(super) period: Duration,
@@ -36,24 +35,24 @@ impl Timer for RecordedTimes {
     }
 }
 
-/// Hands out recorded measurements.
+/// Returns recorded measurements.
 ///
 /// They are what all sensors of the loop had measured by then, with the times
 /// they were taken: a sensor that was silent or failed left them as they were.
-pub(super) struct RecordedSensor {
-    measured: Consumer<Measurements>,
+pub(super) struct RecordedSensor<M> {
+    measured: Consumer<M>,
 }
 
-impl RecordedSensor {
-    /// A sensor, and where to put what it is to hand out next.
-    pub(super) fn new() -> (Producer<Measurements>, Self) {
+impl<M> RecordedSensor<M> {
+    /// A sensor, and where to put what it is to return next.
+    pub(super) fn new() -> (Producer<M>, Self) {
         let (measured_in, measured) = RingBuffer::new(1);
         (measured_in, Self { measured })
     }
 }
 
-impl Sensor<Measurements> for RecordedSensor {
-    fn sample(&mut self, _: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
+impl<M: Send> Sensor<M> for RecordedSensor<M> {
+    fn sample(&mut self, _: &Tick, into: &mut M) -> Result<(), SensorFault> {
         *into = self.measured.pop().map_err(|_| SensorFault::Silent)?;
         Ok(())
     }
@@ -63,11 +62,11 @@ impl Sensor<Measurements> for RecordedSensor {
     }
 }
 
-/// No aircraft: what would be sent is taken from the machine's record.
-pub(super) struct NoAircraft;
+/// No plant: what would be sent is taken from the machine's record.
+pub(super) struct NoPlant;
 
-impl Actuator<Surfaces> for NoAircraft {
-    fn apply(&mut self, _: &Tick, _: &Surfaces) -> Result<(), ActuatorFault> {
+impl<O> Actuator<O> for NoPlant {
+    fn apply(&mut self, _: &Tick, _: &O) -> Result<(), ActuatorFault> {
         Ok(())
     }
 

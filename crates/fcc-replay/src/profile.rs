@@ -1,4 +1,4 @@
-//! A value over a flight of unknown length, small enough for a
+//! A value over a recording of unknown length, small enough for a
 //! line of a terminal.
 
 /// Columns of a line at most.
@@ -8,7 +8,7 @@ const COLUMNS: usize = 48;
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
 /// The largest of a value in each of up to 48 equal spans of ticks. When the
-/// flight outgrows them, each two become one.
+/// recording outgrows them, each two become one.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
     /// Ticks that one span holds.

@@ -1,41 +1,38 @@
 //! Runs recorded inputs through the loop.
 
-use fcc_core::flight::{Autopilot, Measurements};
-use fcc_core::framework::{Message, State};
-use fcc_runtime::{Link, Machine, Parts};
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use std::time::Duration;
+
+use fcc_core::framework::{Controller, Message, MessageOf, RecordOf, State, Tick};
+use fcc_runtime::{Link, LoopConfig, Machine, Parts};
 use fcc_timer::{Expiry, TimerError};
 use rtrb::Producer;
 use serde::Serialize;
 
-use super::parts::{NoAircraft, RecordedSensor, RecordedTimes};
+use super::parts::{NoPlant, RecordedSensor, RecordedTimes};
 use super::sequence::{Cut, Sequence};
-use crate::config::Config;
 
-/// A loop that flies what was recorded.
-pub struct Replay {
-    machine: Machine<Autopilot>,
-    link: Link<Autopilot>,
-    measured: Producer<Measurements>,
-    sequence: Sequence,
+/// A loop whose inputs are what was recorded.
+pub struct Replay<C: Controller> {
+    machine: Machine<C>,
+    link: Link<C>,
+    measured: Producer<C::Measurements>,
+    sequence: Sequence<C::Command>,
 }
 
-impl Replay {
-    /// A loop as `config` says, before its first tick.
+impl<C: Controller> Replay<C> {
+    /// A loop of this controller, before its first tick.
     ///
     /// # Errors
     /// When the period cannot be kept statistics of.
-    pub fn new(config: &Config) -> Result<Self, TimerError> {
+    pub fn new(controller: C, period: Duration, config: &LoopConfig) -> Result<Self, TimerError> {
         let (measured, sensor) = RecordedSensor::new();
         let parts = Parts {
-            timer: Box::new(RecordedTimes {
-                period: config.tick.period(),
-            }),
+            timer: Box::new(RecordedTimes { period }),
             sensors: vec![Box::new(sensor)],
-            controller: Autopilot::new(config.autopilot_config()),
-            actuators: vec![Box::new(NoAircraft)],
+            controller,
+            actuators: vec![Box::new(NoPlant)],
         };
-        let (mut machine, link) = Machine::new(parts, &config.loop_config())?;
+        let (mut machine, link) = Machine::new(parts, config)?;
         machine.start()?;
         Ok(Self {
             machine,
@@ -45,12 +42,12 @@ impl Replay {
         })
     }
 
-    /// Takes the next message of a recording. A record's tick is flown again,
-    /// and its record of now comes back.
+    /// Takes the next message of a recording. A record's tick is performed
+    /// again, and its present record is returned.
     ///
     /// # Errors
-    /// When it cannot be flown from here on.
-    pub fn take(&mut self, message: &FlightMessage) -> Result<Option<&FlightRecord>, Cut> {
+    /// When it cannot be replayed from here on.
+    pub fn take(&mut self, message: &MessageOf<C>) -> Result<Option<&RecordOf<C>>, Cut> {
         let (Some(inputs), Message::Tick(recorded)) = (self.sequence.take(message)?, message)
         else {
             return Ok(None);
@@ -62,7 +59,7 @@ impl Replay {
         for command in inputs.commands {
             // A tick reads 16 at most, and the ring holds more.
             let sent = self.link.commands.send(command);
-            sent.map_err(|_| Cut::OrderOutOfPlace { tick: tick.number })?;
+            sent.map_err(|_| Cut::CommandOutOfPlace { tick: tick.number })?;
         }
         if inputs.stop_requested {
             self.link.stop.stop();
@@ -83,20 +80,20 @@ impl Replay {
     }
 }
 
-/// How far a recording was flown again.
+/// How far a recording was replayed.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Run {
-    /// Ticks flown again.
+    /// Ticks replayed.
     pub ticks: u64,
     /// The last of them; none if there is none.
     pub last_tick: Option<u64>,
     /// From the first of them to the last, s.
     pub span_s: f64,
-    /// What was not flown again; none if all was.
+    /// What was not replayed; none if all was.
     pub unflown: Option<Unflown>,
 }
 
-/// The part of a recording that was not flown again.
+/// The part of a recording that was not replayed.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Unflown {
     /// How many recorded ticks.
@@ -109,18 +106,18 @@ pub struct Unflown {
     pub why: String,
 }
 
-/// Flies a recording again, as far as it goes, and shows `compare` each tick
-/// as recorded and as flown again.
-pub fn run(
-    mut replay: Replay,
-    messages: impl IntoIterator<Item = FlightMessage>,
-    mut compare: impl FnMut(&FlightRecord, &FlightRecord),
+/// Replays a recording, as far as it goes, and gives `compare` each tick
+/// as recorded and as replayed.
+pub fn run<C: Controller>(
+    mut replay: Replay<C>,
+    messages: impl IntoIterator<Item = MessageOf<C>>,
+    mut compare: impl FnMut(&RecordOf<C>, &RecordOf<C>),
 ) -> Run {
     let mut run = Run::default();
     let mut began_ns = None;
     for message in messages {
         if let Some(unflown) = &mut run.unflown {
-            unflown.count(&message);
+            unflown.count(tick_of::<C>(&message));
             continue;
         }
         match (replay.take(&message), &message) {
@@ -139,7 +136,7 @@ pub fn run(
                     last: None,
                     why: cut.to_string(),
                 });
-                unflown.count(message);
+                unflown.count(tick_of::<C>(message));
             }
         }
     }
@@ -147,11 +144,18 @@ pub fn run(
 }
 
 impl Unflown {
-    fn count(&mut self, message: &FlightMessage) {
-        if let Message::Tick(record) = message {
+    fn count(&mut self, tick: Option<&Tick>) {
+        if let Some(tick) = tick {
             self.ticks += 1;
-            self.first.get_or_insert(record.tick.number);
-            self.last = Some(record.tick.number);
+            self.first.get_or_insert(tick.number);
+            self.last = Some(tick.number);
         }
+    }
+}
+
+const fn tick_of<C: Controller>(message: &MessageOf<C>) -> Option<&Tick> {
+    match message {
+        Message::Tick(record) => Some(&record.tick),
+        Message::Event(_) => None,
     }
 }

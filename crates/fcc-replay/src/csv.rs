@@ -1,35 +1,48 @@
-//! Both flights, tick by tick, for other tools.
+//! Both runs, tick by tick, for other tools.
 
 use std::io::{self, Write};
 
-use fcc_telemetry::FlightRecord;
+use fcc_core::framework::Record;
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::Telemetry;
 
-use super::deviation::Quantity;
+use crate::outputs::RecordValues;
+use crate::quantity::Quantity;
 
 /// Writes a line a tick: time, tick, both states, and every quantity as
 /// recorded and as the other configuration has it; empty where nothing was
 /// commanded.
 pub struct Csv<W: Write> {
     out: W,
+    quantities: Vec<Quantity>,
     began_ns: Option<i64>,
+    recorded: RecordValues,
+    other: RecordValues,
 }
 
 impl<W: Write> Csv<W> {
-    /// Writes the header.
+    /// Writes the header of a table for this controller.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn begin(mut out: W) -> io::Result<Self> {
+    pub fn begin<C: Telemetry>(mut out: W) -> io::Result<Self> {
         out.write_all(b"time_s,tick,state_recorded,state_other")?;
-        for quantity in &Quantity::ALL {
+        let quantities = Quantity::all::<C>();
+        for quantity in &quantities {
             for whose in ["recorded", "other"] {
-                write!(out, ",{} {whose} ({})", quantity.name, quantity.unit)?;
+                write!(out, ",{} {whose}", quantity.name)?;
+                if !quantity.unit.is_empty() {
+                    write!(out, " ({})", quantity.unit)?;
+                }
             }
         }
         out.write_all(b"\n")?;
         Ok(Self {
             out,
+            quantities,
             began_ns: None,
+            recorded: RecordValues::default(),
+            other: RecordValues::default(),
         })
     }
 
@@ -37,7 +50,11 @@ impl<W: Write> Csv<W> {
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn take(&mut self, recorded: &FlightRecord, other: &FlightRecord) -> io::Result<()> {
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        other: &Record<M, E, S, O>,
+    ) -> io::Result<()> {
         let at_ns = recorded.tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(at_ns);
         write!(
@@ -48,10 +65,12 @@ impl<W: Write> Csv<W> {
             recorded.state,
             other.state
         )?;
-        for quantity in &Quantity::ALL {
-            for record in [recorded, other] {
-                if record.sent {
-                    write!(self.out, ",{}", quantity.of(record))?;
+        self.recorded.take(recorded);
+        self.other.take(other);
+        for quantity in &self.quantities {
+            for (sent, values) in [(recorded.sent, &self.recorded), (other.sent, &self.other)] {
+                if sent {
+                    write!(self.out, ",{}", quantity.of(values))?;
                 } else {
                     self.out.write_all(b",")?;
                 }

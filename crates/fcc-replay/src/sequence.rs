@@ -1,9 +1,7 @@
 //! Puts together, tick by tick, what came into the loop, and notices what is
 //! missing.
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::framework::{EventKind, LoopCommand, Message, Tick};
-use fcc_telemetry::{FlightEvent, FlightMessage};
+use fcc_core::framework::{Event, EventKind, LoopCommand, Message, Tick};
 
 /// Why a recording cannot be flown again from some tick on.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
@@ -31,10 +29,10 @@ pub enum Cut {
     },
     /// Time went back.
     #[error(
-        "tick {tick} follows tick {after}: that is another flight, or the recordings are not \
+        "tick {tick} follows tick {after}: that is another run, or the recordings are not \
          given oldest first"
     )]
-    AnotherFlight {
+    AnotherRun {
         /// The tick that does not follow.
         tick: u64,
         /// The tick before it.
@@ -50,11 +48,11 @@ pub enum Cut {
     },
     /// A command is not with the record of its tick.
     #[error("a command of tick {tick} is not recorded beside the record of its tick")]
-    OrderOutOfPlace {
+    CommandOutOfPlace {
         /// The command's tick.
         tick: u64,
     },
-    /// A part of the loop panicked in flight; how far that tick got is not
+    /// A part of the loop panicked; how far that tick got is not
     /// known.
     #[error("a part of the loop panicked in tick {tick}: how far that tick got is not recorded")]
     Panicked {
@@ -62,50 +60,65 @@ pub enum Cut {
         tick: u64,
     },
     /// The replay's own loop stopped, and the recorded one did not.
-    #[error("the loop stopped before tick {tick} when it was flown again, and went on in flight")]
+    #[error("the loop stopped before tick {tick} in the replay, and went on in the recording")]
     StoppedEarly {
         /// The first tick it did not perform.
         tick: u64,
     },
 }
 
-/// Far more commands than a loop reads in a tick: only a file that nobody flew
-/// has as many before a record, and they are not gathered without end.
-const MOST_ORDERS: usize = 1_024;
+/// Far more commands than a loop reads in a tick: only a file that no loop
+/// recorded has as many before a record, and the memory for them is limited.
+const MOST_COMMANDS: usize = 1_024;
 
 /// Puts together what came into the loop from outside in each tick.
-#[derive(Debug, Default)]
-pub(super) struct Sequence {
+#[derive(Debug)]
+pub(super) struct Sequence<R> {
     last: Option<Tick>,
     /// The tick of what waits for its record.
     awaited: Option<u64>,
-    commands: Vec<LoopCommand<AutopilotCommand>>,
+    commands: Vec<LoopCommand<R>>,
     stop_requested: bool,
     panicked: bool,
 }
 
 /// What came into the loop in one tick, beside measurements.
-#[derive(Debug, Default, PartialEq)]
-pub(super) struct Inputs {
+#[derive(Debug, PartialEq)]
+pub(super) struct Inputs<R> {
     /// In the sequence they were read.
-    pub(super) commands: Vec<LoopCommand<AutopilotCommand>>,
+    pub(super) commands: Vec<LoopCommand<R>>,
     /// Whether the stop flag was seen.
     pub(super) stop_requested: bool,
 }
 
-impl Sequence {
+impl<R> Default for Sequence<R> {
+    fn default() -> Self {
+        Self {
+            last: None,
+            awaited: None,
+            commands: Vec::new(),
+            stop_requested: false,
+            panicked: false,
+        }
+    }
+}
+
+impl<R: Copy> Sequence<R> {
     /// Takes the next message; a record comes back as the inputs of its tick.
     ///
     /// # Errors
     /// When from here on it is not known what came into the loop.
-    pub(super) fn take(&mut self, message: &FlightMessage) -> Result<Option<Inputs>, Cut> {
+    pub(super) fn take<M, E, S, O>(
+        &mut self,
+        message: &Message<M, E, S, O, R>,
+    ) -> Result<Option<Inputs<R>>, Cut> {
         match message {
             Message::Event(event) => self.event(event).map(|()| None),
             Message::Tick(record) => self.tick(&record.tick).map(Some),
         }
     }
 
-    fn event(&mut self, event: &FlightEvent) -> Result<(), Cut> {
+    fn event(&mut self, event: &Event<R>) -> Result<(), Cut> {
         match event.kind {
             EventKind::CommandReceived(command) => {
                 self.await_record(event.tick)?;
@@ -133,21 +146,21 @@ impl Sequence {
 
     fn await_record(&mut self, tick: u64) -> Result<(), Cut> {
         let is_late = self.last.is_some_and(|last| tick <= last.number);
-        if is_late || self.commands.len() >= MOST_ORDERS {
-            return Err(Cut::OrderOutOfPlace { tick });
+        if is_late || self.commands.len() >= MOST_COMMANDS {
+            return Err(Cut::CommandOutOfPlace { tick });
         }
         match self.awaited.replace(tick) {
-            Some(awaited) if awaited != tick => Err(Cut::OrderOutOfPlace { tick: awaited }),
+            Some(awaited) if awaited != tick => Err(Cut::CommandOutOfPlace { tick: awaited }),
             _ => Ok(()),
         }
     }
 
-    fn tick(&mut self, tick: &Tick) -> Result<Inputs, Cut> {
+    fn tick(&mut self, tick: &Tick) -> Result<Inputs<R>, Cut> {
         self.follows(tick)?;
         if let Some(awaited) = self.awaited.take()
             && awaited != tick.number
         {
-            return Err(Cut::OrderOutOfPlace { tick: awaited });
+            return Err(Cut::CommandOutOfPlace { tick: awaited });
         }
         if self.panicked {
             return Err(Cut::Panicked { tick: tick.number });
@@ -173,7 +186,7 @@ impl Sequence {
         };
         let next = last.number.saturating_add(1);
         if number < next || due < next || tick.scheduled <= last.scheduled {
-            return Err(Cut::AnotherFlight {
+            return Err(Cut::AnotherRun {
                 tick: number,
                 after: last.number,
             });
@@ -190,13 +203,15 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::framework::{Event, Record, State, Time};
+    use fcc_core::framework::{Record, State, Time};
 
     use super::*;
 
+    type Told = Message<(), (), (), (), f64>;
+
     const MS: i64 = 1_000_000;
 
-    fn record(number: u64, missed: u64) -> FlightMessage {
+    fn record(number: u64, missed: u64) -> Told {
         let scheduled = Time::from_nanos(number as i64 * 25 * MS);
         let tick = Tick {
             number,
@@ -208,7 +223,7 @@ mod tests {
         Message::Tick(Record::new(tick, State::Standby))
     }
 
-    fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> FlightMessage {
+    fn event(tick: u64, kind: EventKind<f64>) -> Told {
         Message::Event(Event {
             tick,
             time: Time::NEVER,
@@ -216,11 +231,10 @@ mod tests {
         })
     }
 
-    const HEADING: LoopCommand<AutopilotCommand> =
-        LoopCommand::Controller(AutopilotCommand::Heading(1.0));
+    const WANTED: LoopCommand<f64> = LoopCommand::Controller(1.0);
 
     /// The cut that ends a sequence of messages, if one does.
-    fn cut(messages: &[FlightMessage]) -> Option<Cut> {
+    fn cut(messages: &[Told]) -> Option<Cut> {
         let mut sequence = Sequence::default();
         messages
             .iter()
@@ -228,10 +242,10 @@ mod tests {
     }
 
     #[test]
-    fn orders_and_the_stop_flag_go_with_their_tick() {
+    fn commands_and_the_stop_flag_go_with_their_tick() {
         let mut sequence = Sequence::default();
         let messages = [
-            event(1, EventKind::CommandReceived(HEADING)),
+            event(1, EventKind::CommandReceived(WANTED)),
             event(1, EventKind::CommandReceived(LoopCommand::Engage)),
             record(1, 0),
             record(2, 0),
@@ -246,7 +260,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                (vec![HEADING, LoopCommand::Engage], false),
+                (vec![WANTED, LoopCommand::Engage], false),
                 (vec![], false),
                 (vec![], true)
             ]
@@ -274,23 +288,23 @@ mod tests {
     }
 
     #[test]
-    fn an_order_after_its_record_is_out_of_place() {
-        let late = event(1, EventKind::CommandReceived(HEADING));
-        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 1 });
+    fn a_command_after_its_record_is_out_of_place() {
+        let late = event(1, EventKind::CommandReceived(WANTED));
+        let out_of_place = Some(Cut::CommandOutOfPlace { tick: 1 });
         assert_eq!(cut(&[record(1, 0), late]), out_of_place);
-        let out_of_place = Some(Cut::OrderOutOfPlace { tick: 2 });
-        let early = event(2, EventKind::CommandReceived(HEADING));
+        let out_of_place = Some(Cut::CommandOutOfPlace { tick: 2 });
+        let early = event(2, EventKind::CommandReceived(WANTED));
         assert_eq!(cut(&[early, record(1, 0)]), out_of_place);
-        let next = event(3, EventKind::CommandReceived(HEADING));
+        let next = event(3, EventKind::CommandReceived(WANTED));
         assert_eq!(cut(&[record(1, 0), early, next]), out_of_place);
     }
 
     #[test]
-    fn orders_without_a_record_are_not_gathered_without_end() {
-        let mut commands = vec![event(1, EventKind::CommandReceived(HEADING)); MOST_ORDERS];
+    fn commands_without_a_record_are_not_gathered_without_end() {
+        let mut commands = vec![event(1, EventKind::CommandReceived(WANTED)); MOST_COMMANDS];
         assert_eq!(cut(&commands), None);
-        commands.push(event(1, EventKind::CommandReceived(HEADING)));
-        assert_eq!(cut(&commands), Some(Cut::OrderOutOfPlace { tick: 1 }));
+        commands.push(event(1, EventKind::CommandReceived(WANTED)));
+        assert_eq!(cut(&commands), Some(Cut::CommandOutOfPlace { tick: 1 }));
     }
 
     #[test]
