@@ -36,6 +36,9 @@ pub(crate) fn report(file: &Path, page: Option<&Path>) -> Result<Report<()>, Str
     Ok(report)
 }
 
+/// Records that may wait to be published: as many as a run in lockstep has.
+const WAITING: usize = 512;
+
 /// The name under which a run is published.
 pub(crate) fn instance() -> Result<Instance, String> {
     let name: Result<Instance, _> = "thermostat".parse();
@@ -47,7 +50,7 @@ pub(crate) fn publish(
     instance: &Instance,
     parts: &Parts<Thermostat>,
 ) -> Result<PublisherOf<Thermostat>, String> {
-    let mut publisher = PublisherOf::start(instance).map_err(|error| error.to_string())?;
+    let mut publisher = PublisherOf::start(instance, WAITING).map_err(|error| error.to_string())?;
     publisher.describe(Info {
         software: Text::new(env!("CARGO_PKG_VERSION")),
         aircraft: Text::new("room"),
