@@ -4,13 +4,15 @@
 //!
 //! `cargo run -p thermostat` heats the room for eight seconds, of which each
 //! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
-//! flights are, and `-- replay FILE` replays it.
+//! flights are, and `-- replay FILE` replays it, `-- report FILE` reports on it;
+//! a run with `-- --live` is watched by `-- top`.
 
 #[cfg(test)]
 mod conformance;
 mod recording;
 mod replay;
 mod room;
+mod show;
 mod thermostat;
 
 use std::error::Error;
@@ -21,6 +23,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use fcc_live::PublisherOf;
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
@@ -30,6 +33,8 @@ use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
 const SECONDS: u64 = 8;
+/// How often the loop's messages are received: a watcher sees them as late.
+const LOOKS_A_SECOND: u32 = 20;
 
 /// Heats a simulated room for eight seconds.
 #[derive(Parser)]
@@ -37,6 +42,9 @@ struct Arguments {
     /// Record the run into this folder.
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
+    /// Publish the run for `thermostat top`.
+    #[arg(long)]
+    live: bool,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -49,6 +57,19 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Report on a recording.
+    Report {
+        /// The recording.
+        file: PathBuf,
+        /// Write a page with all plots.
+        #[arg(long, value_name = "PAGE")]
+        html: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Watch a run that was started with --live.
+    Top,
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -57,11 +78,22 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     match arguments.command {
         None => {
             let timer = TimerKind::Timerfd.build(PERIOD)?;
-            heat(timer, SECONDS, arguments.record.as_deref(), out)?;
-            Ok(ExitCode::SUCCESS)
+            let folder = arguments.record.as_deref();
+            heat(timer, SECONDS, folder, arguments.live, out)?;
         }
-        Some(Command::Replay { files }) => replay::replay(&files, out),
+        Some(Command::Replay { files }) => return replay::replay(&files, out),
+        Some(Command::Report { file, html, json }) => {
+            let report = show::report(&file, html.as_deref())?;
+            let text = if json {
+                serde_json::to_string_pretty(&report)?
+            } else {
+                report.to_text()
+            };
+            writeln!(out, "{text}")?;
+        }
+        Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
     }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Puts the parts together.
@@ -84,12 +116,15 @@ fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
     folder: Option<&Path>,
+    live: bool,
     out: &mut dyn Write,
 ) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let mut recorder = folder
         .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
         .transpose()?;
+    let instance = show::instance()?;
+    let mut publisher = live.then(|| show::publish(&instance, &parts)).transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -104,8 +139,13 @@ fn heat(
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
-        thread::sleep(Duration::from_secs(1));
-        if let Some(record) = receive(&mut link, recorder.as_mut(), out) {
+        let mut last = None;
+        for _ in 0..LOOKS_A_SECOND {
+            thread::sleep(Duration::from_secs(1) / LOOKS_A_SECOND);
+            let newest = receive(&mut link, recorder.as_mut(), publisher.as_mut(), out);
+            last = newest.or(last);
+        }
+        if let Some(record) = last {
             let _ = writeln!(
                 out,
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
@@ -118,7 +158,12 @@ fn heat(
     link.commands.send(LoopCommand::Stop)?;
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
-    receive(&mut link, recorder.as_mut(), &mut io::sink());
+    receive(
+        &mut link,
+        recorder.as_mut(),
+        publisher.as_mut(),
+        &mut io::sink(),
+    );
     let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
@@ -133,6 +178,7 @@ fn heat(
 fn receive(
     link: &mut Link<Thermostat>,
     mut recorder: Option<&mut RecorderOf<Thermostat>>,
+    mut publisher: Option<&mut PublisherOf<Thermostat>>,
     out: &mut dyn Write,
 ) -> Option<RecordOf<Thermostat>> {
     let mut last = None;
@@ -140,12 +186,18 @@ fn receive(
         if let Some(recorder) = &mut recorder {
             recorder.take(&message);
         }
+        if let Some(publisher) = &mut publisher {
+            show::publish_message(publisher, &message);
+        }
         match message {
             Message::Tick(record) => last = Some(record),
             Message::Event(event) => {
                 let _ = writeln!(out, "{}", event.kind.description::<Thermostat>());
             }
         }
+    }
+    if let Some(publisher) = publisher {
+        publisher.flush();
     }
     last
 }
@@ -223,7 +275,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
-        let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
+        let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);

@@ -3,25 +3,35 @@
 use fcc_core::framework::{EventOf, RecordOf};
 use fcc_live::{Event, Info, PublisherOf, RecorderState, RecorderStatus, Text};
 use fcc_record as recording;
-use fcc_telemetry::Telemetry;
+use fcc_telemetry::{Instance, Telemetry};
 
 use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
-use crate::config::TelemetrySection;
+use crate::config::Config;
+
+/// How long the publishing thread may be delayed before records are left out, at
+/// 1 kHz or less.
+const PUBLISHED_WITHIN_S: f64 = 2.0;
+const MOST_WAITING: usize = 2_048;
 
 /// Publishes the run of a loop and receives commands; without effect if that is
 /// not possible.
 pub(super) struct Live<C: Telemetry> {
-    section: TelemetrySection,
+    instance: Instance,
+    takes_commands: bool,
+    /// The most records that wait to be published.
+    waiting: usize,
     publisher: Option<PublisherOf<C>>,
     commands: Commands<C>,
 }
 
 impl<C: Telemetry> Live<C> {
-    pub(super) fn new(section: &TelemetrySection, commands: Commands<C>) -> Self {
+    pub(super) fn new(config: &Config, commands: Commands<C>) -> Self {
         Self {
-            section: section.clone(),
+            instance: config.telemetry.instance.clone(),
+            takes_commands: config.telemetry.commands,
+            waiting: config.tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
             publisher: None,
             commands,
         }
@@ -32,12 +42,12 @@ impl<C: Telemetry<Command: PartialEq>> Observer<C> for Live<C> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
-        let start = if self.section.commands {
+        let start = if self.takes_commands {
             PublisherOf::start_with_commands
         } else {
             PublisherOf::start
         };
-        match start(&self.section.instance) {
+        match start(&self.instance, self.waiting) {
             Ok(publisher) => self.publisher = Some(publisher),
             Err(error) => reports.mention(format!("no live telemetry for this flight: {error}")),
         }

@@ -190,7 +190,7 @@ mod tests {
         #[cfg(feature = "live")]
         observer_conforms(|| {
             let commands = Commands::new(30.0..=80.0, FlightCommand::for_the_loop);
-            Box::new(Live::<Autopilot>::new(&config.telemetry, commands))
+            Box::new(Live::<Autopilot>::new(&config, commands))
         });
     }
 }

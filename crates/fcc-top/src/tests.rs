@@ -1,10 +1,10 @@
 //! The whole screen, drawn from a fixed picture.
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Attitude, Surfaces};
-use fcc_core::framework::{Flags, Reading, State, Tick, Time};
+use fcc_core::flight::{Attitude, Autopilot, Surfaces};
+use fcc_core::framework::{Flags, Reading, RecordOf, State, Tick, Time};
 use fcc_live::{Event, EventCode, Info, RecorderState, Status, Text};
-use fcc_telemetry::{FlightRecord, Instance};
+use fcc_telemetry::Instance;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -12,7 +12,7 @@ use super::picture::Picture;
 use super::screen;
 
 /// 60 s into a flight: turning right and climbing.
-fn picture() -> Picture {
+fn picture() -> Picture<Autopilot> {
     let mut picture = Picture::of(&Info {
         rate_hz: 40.0,
         timer: Text::new("timerfd"),
@@ -33,7 +33,7 @@ fn picture() -> Picture {
         });
     }
     let woke = Time::from_nanos(60_000_000_000);
-    let mut record = FlightRecord {
+    let mut record = RecordOf::<Autopilot> {
         tick: Tick {
             number: 2_400,
             scheduled: woke,
@@ -49,7 +49,7 @@ fn picture() -> Picture {
             aileron: 1.0,
             rudder: 0.0,
         },
-        ..FlightRecord::default()
+        ..RecordOf::<Autopilot>::default()
     };
     let taken = Time::from_nanos(59_980_000_000);
     let measured = &mut record.measurements;
@@ -91,7 +91,7 @@ fn picture() -> Picture {
     picture
 }
 
-fn drawn(picture: &Picture, width: u16, height: u16) -> Vec<String> {
+fn drawn(picture: &Picture<Autopilot>, width: u16, height: u16) -> Vec<String> {
     let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
     terminal
         .draw(|frame| screen::draw(frame, &Instance::default(), picture))
@@ -128,7 +128,7 @@ fn any_size_is_drawn() {
 
 #[test]
 fn nothing_known_yet_is_drawn() {
-    let rows = drawn(&Picture::of(&Info::default()), 80, 24).concat();
+    let rows = drawn(&Picture::<Autopilot>::of(&Info::default()), 80, 24).concat();
     assert!(rows.contains("waiting for the first tick"), "{rows}");
 }
 

@@ -1,7 +1,7 @@
-//! What makes the flight possible: the stages of a tick, the sensors, the
+//! What carries the loop: the stages of a tick, the sensors, the
 //! recorder and the live telemetry itself.
 
-use fcc_core::framework::{Reading, Time};
+use fcc_core::framework::{Readings as _, Stage, Time};
 use fcc_live::{RecorderState, Status};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -11,34 +11,34 @@ use ratatui::widgets::Paragraph;
 
 use super::picture::Picture;
 use super::timing::duration;
+use super::watched::Watched;
 
 /// Older than this is worth a colour, ms: half of what the loop takes for a
 /// loss unless told otherwise.
 const OLD_MS: u128 = 125;
 
 /// How long each stage took, now and at most.
-pub(super) fn stages(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+pub(super) fn stages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
         return;
     };
     let (now, most) = (&record.stages, &picture.longest);
-    let lines: Vec<_> = [
-        ("sensors", now.sensors_ns, most.sensors_ns),
-        ("estimate", now.estimate_ns, most.estimate_ns),
-        ("guide", now.guide_ns, most.guide_ns),
-        ("control", now.control_ns, most.control_ns),
-        ("actuat.", now.actuators_ns, most.actuators_ns),
-        ("total", now.total_ns, most.total_ns),
-    ]
-    .into_iter()
-    .map(|(name, now_ns, most_ns)| {
-        Line::from(vec![
-            format!("{name:<8}").dim(),
-            format!("{:>7}", short(now_ns)).bold(),
-            format!(" ≤{:>6}", short(most_ns)).into(),
-        ])
-    })
-    .collect();
+    let stages = Stage::TIMED.into_iter().chain([Stage::Tick]);
+    let lines: Vec<_> = stages
+        .map(|stage| {
+            let (now_ns, most_ns) = (now.of(stage), most.of(stage));
+            let name = match stage {
+                Stage::Tick => "total".to_owned(),
+                Stage::Actuators => "actuat.".to_owned(),
+                stage => stage.to_string(),
+            };
+            Line::from(vec![
+                format!("{name:<8}").dim(),
+                format!("{:>7}", short(now_ns)).bold(),
+                format!(" ≤{:>6}", short(most_ns)).into(),
+            ])
+        })
+        .collect();
     frame.render_widget(Paragraph::new(lines), area);
 }
 
@@ -47,57 +47,43 @@ fn short(ns: u64) -> String {
     duration(ns).replace(' ', "")
 }
 
-/// How old each reading was at the tick.
-pub(super) fn ages(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+/// How old each reading was at the tick: as many as there is room for, in two
+/// columns.
+pub(super) fn ages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
         return;
     };
     let now = record.tick.woke;
-    let m = &record.measurements;
-    let rows = [
-        [
-            ("attitude", m.attitude.taken),
-            ("AoA", m.angle_of_attack_rad.taken),
-        ],
-        [
-            ("heading", taken(&m.heading_rad)),
-            ("pos.", taken(&m.position)),
-        ],
-        [
-            ("rates", taken(&m.body_rates)),
-            ("vel.", taken(&m.velocity)),
-        ],
-        [
-            ("force", taken(&m.specific_force)),
-            ("surf.", taken(&m.surfaces)),
-        ],
-        [
-            ("airspeed", taken(&m.airspeed_mps)),
-            ("switch", taken(&m.engage_switch)),
-        ],
-        [
-            ("altitude", taken(&m.altitude_m)),
-            ("plant", taken(&m.plant)),
-        ],
-    ];
-    let lines: Vec<_> = rows
-        .into_iter()
-        .map(|[left, right]| {
-            let mut spans = age(left, 9, now).to_vec();
-            spans.push(" ".into());
-            spans.extend(age(right, 7, now));
+    let mut taken = Vec::new();
+    record
+        .measurements
+        .each_source(&mut |_, time| taken.push(time));
+    let readings: Vec<_> = C::READINGS.iter().copied().zip(taken).collect();
+    let (left, right) = readings.split_at(readings.len().min(area.height.into()));
+    // Where one column is enough, it has all the room.
+    let width = if right.is_empty() {
+        usize::from(area.width).saturating_sub(5).max(9)
+    } else {
+        9
+    };
+    let lines: Vec<_> = left
+        .iter()
+        .enumerate()
+        .map(|(row, reading)| {
+            let mut spans = age(*reading, width, now).to_vec();
+            if let Some(reading) = right.get(row) {
+                spans.push(" ".into());
+                spans.extend(age(*reading, 7, now));
+            }
             Line::from(spans)
         })
         .collect();
     frame.render_widget(Paragraph::new(lines), area);
 }
 
-const fn taken<T>(reading: &Reading<T>) -> Time {
-    reading.taken
-}
-
 fn age((name, taken): (&'static str, Time), width: usize, now: Time) -> [Span<'static>; 2] {
-    let name = format!("{name:<width$}").dim();
+    let most = width - 1;
+    let name = format!("{name:<width$.most$}").dim();
     if taken.is_never() {
         return [name, "   –".dim()];
     }
@@ -119,7 +105,7 @@ fn age((name, taken): (&'static str, Time), width: usize, now: Time) -> [Span<'s
 }
 
 /// How recording goes, and who watches.
-pub(super) fn recorder(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+pub(super) fn recorder<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(status) = &picture.status else {
         return;
     };
@@ -147,7 +133,7 @@ pub(super) fn recorder(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     frame.render_widget(Paragraph::new(lines), area);
 }
 
-fn watched(status: &Status, picture: &Picture) -> Line<'static> {
+fn watched<C: Watched>(status: &Status, picture: &Picture<C>) -> Line<'static> {
     let percent = status.cpu_ns as f64 * 1e-7 / picture.seconds(status.time_ns).max(1.0);
     Line::from(format!("{} watching, {percent:.1} % CPU", status.watchers))
 }

@@ -1,7 +1,7 @@
 //! What is flown: actual values, set points, and where the controls stand.
 
-use fcc_core::framework::State;
-use fcc_telemetry::FlightRecord;
+use fcc_core::flight::Autopilot;
+use fcc_core::framework::{RecordOf, State};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -9,7 +9,7 @@ use ratatui::style::Stylize;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
-use super::picture::Picture;
+use crate::picture::Picture;
 
 const MPS_FPM: f64 = 60.0 * M_FT;
 
@@ -17,7 +17,7 @@ const MPS_FPM: f64 = 60.0 * M_FT;
 const WORDS: usize = 15;
 
 /// Draws the table and, below it, the controls.
-pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilot>) {
     let Some(record) = &picture.record else {
         return;
     };
@@ -26,7 +26,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     frame.render_widget(Paragraph::new(lines), area);
 }
 
-fn table(record: &FlightRecord) -> Vec<Line<'static>> {
+fn table(record: &RecordOf<Autopilot>) -> Vec<Line<'static>> {
     let measured = &record.measurements;
     let aims = &record.setpoints;
     let engaged = record.state == State::Engaged;
@@ -96,7 +96,7 @@ fn table(record: &FlightRecord) -> Vec<Line<'static>> {
     ]
 }
 
-fn controls(record: &FlightRecord, width: usize) -> Vec<Line<'static>> {
+fn controls(record: &RecordOf<Autopilot>, width: usize) -> Vec<Line<'static>> {
     let outputs = &record.outputs;
     let room = width.saturating_sub(WORDS).max(3);
     [

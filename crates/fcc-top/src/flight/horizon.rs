@@ -1,12 +1,13 @@
 //! The artificial horizon.
 
+use fcc_core::flight::Autopilot;
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Color, Style};
 use ratatui::widgets::{Paragraph, Widget};
 
-use super::picture::Picture;
+use crate::picture::Picture;
 
 /// A character is about twice as high as it is wide.
 const ASPECT: f64 = 2.0;
@@ -21,7 +22,7 @@ const SKY: Color = Color::Blue;
 const GROUND: Color = Color::Yellow;
 
 /// Draws it, once the attitude is known.
-pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilot>) {
     match &picture.record {
         Some(record) if !record.measurements.attitude.is_never() => {
             let attitude = record.measurements.attitude.value;

@@ -1,7 +1,6 @@
 //! The screen: where its parts are, its first and its last line, and the events.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Controller, State};
+use fcc_core::framework::State;
 use fcc_telemetry::Instance;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -10,22 +9,27 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph};
 
 use super::picture::Picture;
-use super::{flight, health, horizon, timing};
+use super::watched::{Part, Watched};
+use super::{health, timing};
 
 /// Smallest screen on which everything has its place.
 const LEAST: (u16, u16) = (80, 24);
 
 /// Heights of the first row of parts, with its title, and of the second.
-const FLIGHT_ROWS: u16 = 11;
-const HEALTH_ROWS: u16 = 7;
+const UPPER_ROWS: u16 = 11;
+const LOWER_ROWS: u16 = 7;
 
-/// Draws the screen.
-pub(super) fn draw(frame: &mut Frame<'_>, instance: &Instance, picture: &Picture) {
+/// Draws the whole screen.
+pub fn draw<C: Watched>(frame: &mut Frame<'_>, instance: &Instance, picture: &Picture<C>) {
     let area = frame.area();
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let words = format!(
-            "fccd top needs {} x {} characters; here are {} x {}. q quits",
-            LEAST.0, LEAST.1, area.width, area.height
+            "{} top needs {} x {} characters; here are {} x {}. q quits",
+            C::PROGRAM,
+            LEAST.0,
+            LEAST.1,
+            area.width,
+            area.height
         );
         frame.render_widget(
             Paragraph::new(words).wrap(ratatui::widgets::Wrap { trim: true }),
@@ -33,40 +37,35 @@ pub(super) fn draw(frame: &mut Frame<'_>, instance: &Instance, picture: &Picture
         );
         return;
     }
-    // A high screen gives the horizon more room, and the events what is left.
-    let flight_rows = FLIGHT_ROWS + (area.height - LEAST.1) / 3;
+    // A high screen gives the first row more room, and the events what is left.
+    let upper_rows = UPPER_ROWS + (area.height - LEAST.1) / 3;
     let [head, upper, lower, events, foot] = Layout::vertical([
         Constraint::Length(1),
-        Constraint::Length(flight_rows),
-        Constraint::Length(HEALTH_ROWS),
+        Constraint::Length(upper_rows),
+        Constraint::Length(LOWER_ROWS),
         Constraint::Fill(1),
         Constraint::Length(1),
     ])
     .areas(area);
-    // A wide one widens all three.
-    let columns = [
-        Constraint::Fill(23),
-        Constraint::Fill(27),
-        Constraint::Fill(28),
-    ];
-    let [left, middle, right] = Layout::horizontal(columns).spacing(1).areas(upper);
-    let [lower_left, lower_middle, lower_right] =
-        Layout::horizontal(columns).spacing(1).areas(lower);
-
-    // Engaged, the mode of guidance and where it is.
-    let flown = match &picture.record {
-        Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
-        _ => "Flight".to_owned(),
+    let row = |area: Rect, parts: Vec<(String, u16, Part<C>)>| {
+        // A wide screen widens all of them.
+        let widths = parts.iter().map(|(_, width, _)| Constraint::Fill(*width));
+        let areas = Layout::horizontal(widths).spacing(1).split(area);
+        let areas: Vec<Rect> = areas.to_vec();
+        let parts = parts.into_iter().zip(areas);
+        parts.map(|((title, _, draw), area)| (title, area, draw))
     };
-    let parts: [(&str, Rect, Part); 7] = [
-        ("Attitude", left, horizon::draw),
-        (&flown, middle, flight::draw),
-        ("Lateness", right, timing::draw),
-        ("Stages", lower_left, health::stages),
-        ("Sensor ages", lower_middle, health::ages),
-        ("Telemetry", lower_right, health::recorder),
-        ("Events", events, draw_events),
+    let mut above = C::parts(picture.record.as_ref());
+    above.push(("Lateness".to_owned(), 28, timing::draw));
+    let below: Vec<(String, u16, Part<C>)> = vec![
+        ("Stages".to_owned(), 23, health::stages),
+        ("Sensor ages".to_owned(), 27, health::ages),
+        ("Telemetry".to_owned(), 28, health::recorder),
     ];
+    let events_part: Vec<(String, u16, Part<C>)> = vec![("Events".to_owned(), 1, draw_events)];
+    let parts = row(upper, above)
+        .chain(row(lower, below))
+        .chain(row(events, events_part));
     frame.render_widget(head_line(instance, picture), head);
     for (title, area, draw) in parts {
         let block = Block::new()
@@ -80,10 +79,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, instance: &Instance, picture: &Picture
     frame.render_widget(foot_line(instance, picture), foot);
 }
 
-/// Draws a part of the screen into its place.
-type Part = fn(&mut Frame<'_>, Rect, &Picture);
-
-fn head_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
+fn head_line<'a, C: Watched>(instance: &Instance, picture: &Picture<C>) -> Line<'a> {
     let info = &picture.info;
     let mut spans = vec![format!(" {instance} ").bold().reversed(), " ".into()];
     spans.push(state(picture));
@@ -114,7 +110,7 @@ fn head_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
     Line::from(spans)
 }
 
-fn state(picture: &Picture) -> Span<'static> {
+fn state<C: Watched>(picture: &Picture<C>) -> Span<'static> {
     if picture.ended {
         return " ENDED ".white().on_red();
     }
@@ -128,17 +124,19 @@ fn state(picture: &Picture) -> Span<'static> {
 }
 
 /// What matters most now, and how to leave.
-fn foot_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
+fn foot_line<'a, C: Watched>(instance: &Instance, picture: &Picture<C>) -> Line<'a> {
     let quits = " q quits ".reversed();
     let words: Span<'a> = if picture.ended {
-        format!(" fccd '{instance}' has ended. This shows it again when it is started again.").red()
+        let program = C::PROGRAM;
+        format!(" {program} '{instance}' has ended. This shows it again when it is started again.")
+            .red()
     } else if let Some(record) = &picture.record {
         let (title, flags, color) = if record.faults.is_empty() {
             ("not ready", record.engage_inhibits, Color::Yellow)
         } else {
             ("faults", record.faults, Color::Red)
         };
-        let names: Vec<_> = flags.iter().map(Autopilot::flag_name).collect();
+        let names: Vec<_> = flags.iter().map(C::flag_name).collect();
         if names.is_empty() {
             Span::raw("")
         } else {
@@ -151,7 +149,7 @@ fn foot_line<'a>(instance: &Instance, picture: &Picture) -> Line<'a> {
 }
 
 /// The newest events, the newest last.
-fn draw_events(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+fn draw_events<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let room = usize::from(area.height);
     let skipped = picture.events.len().saturating_sub(room);
     let lines: Vec<_> = picture

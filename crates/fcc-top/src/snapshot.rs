@@ -1,17 +1,36 @@
-//! One moment of a flight, for other tools to read.
+//! One moment of a loop, for other tools to read.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Controller, Flags, State};
-use fcc_live::{RecorderState, Status};
-use fcc_telemetry::FlightRecord;
-use fcc_telemetry::units::{M_FT, MPS_KT};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fcc_core::framework::{Flags, RecordOf};
+use fcc_live::{RecorderState, Status, WatchError, WatcherOf};
 use serde::Serialize;
+use serde_json::{Map, Value};
 
 use super::picture::Picture;
+use super::watched::Watched;
 
-/// One moment of a flight. What has not been measured or told is null.
+/// A status comes each second.
+const PATIENCE: Duration = Duration::from_millis(1_500);
+
+/// One moment of a loop, once there is a record and a status, or soon after.
+///
+/// # Errors
+/// When shared memory fails.
+pub fn snapshot<C: Watched>(mut watcher: WatcherOf<C>) -> Result<Snapshot, WatchError> {
+    let mut picture = Picture::new(&watcher);
+    let deadline = Instant::now() + PATIENCE;
+    while !picture.is_whole() && Instant::now() < deadline {
+        picture.update(&mut watcher)?;
+        thread::sleep(Duration::from_millis(5));
+    }
+    Ok(Snapshot::of(&picture))
+}
+
+/// One moment of a loop. What has not been measured or told is null.
 #[derive(Serialize)]
-pub(super) struct Snapshot {
+pub struct Snapshot {
     software: String,
     aircraft: String,
     process_id: u32,
@@ -36,35 +55,8 @@ struct Tick {
     records_dropped: u64,
     page_faults: u64,
     early_wake_us: f64,
-    actual: Values,
-    setpoints: Option<Values>,
-    guidance: Option<Guidance>,
-    outputs: Option<Outputs>,
-}
-
-/// The mode that is flown, and how far it has come.
-#[derive(Serialize)]
-struct Guidance {
-    mode: &'static str,
-    item: u32,
-    elapsed_s: f64,
-}
-
-#[derive(Serialize)]
-struct Values {
-    heading_deg: Option<f64>,
-    altitude_ft: Option<f64>,
-    airspeed_kt: Option<f64>,
-    bank_deg: Option<f64>,
-    pitch_deg: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct Outputs {
-    throttle: f64,
-    elevator: f64,
-    aileron: f64,
-    rudder: f64,
+    #[serde(flatten)]
+    values: Map<String, Value>,
 }
 
 #[derive(Serialize)]
@@ -92,7 +84,8 @@ struct Happened {
 }
 
 impl Snapshot {
-    pub(super) fn of(picture: &Picture) -> Self {
+    /// What a picture shows.
+    pub fn of<C: Watched>(picture: &Picture<C>) -> Self {
         let info = &picture.info;
         Self {
             software: info.software.to_string(),
@@ -105,7 +98,7 @@ impl Snapshot {
             tick: picture
                 .record
                 .as_ref()
-                .map(|record| tick(record, picture.seconds(record.tick.woke.as_nanos()))),
+                .map(|record| tick::<C>(record, picture.seconds(record.tick.woke.as_nanos()))),
             run: picture.status.as_ref().map(run),
             events: picture
                 .events
@@ -120,8 +113,8 @@ impl Snapshot {
     }
 }
 
-fn tick(record: &FlightRecord, time_s: f64) -> Tick {
-    let names = |flags: Flags| flags.iter().map(Autopilot::flag_name).collect();
+fn tick<C: Watched>(record: &RecordOf<C>, time_s: f64) -> Tick {
+    let names = |flags: Flags| flags.iter().map(C::flag_name).collect();
     Tick {
         number: record.tick.number,
         time_s,
@@ -133,48 +126,7 @@ fn tick(record: &FlightRecord, time_s: f64) -> Tick {
         records_dropped: record.records_dropped,
         page_faults: record.page_faults,
         early_wake_us: record.early_wake_ns as f64 * 1e-3,
-        actual: actual(record),
-        setpoints: (record.state == State::Engaged).then(|| setpoints(record)),
-        guidance: (record.state == State::Engaged).then(|| guidance(record)),
-        outputs: record.sent.then_some(Outputs {
-            throttle: record.outputs.throttle,
-            elevator: record.outputs.elevator,
-            aileron: record.outputs.aileron,
-            rudder: record.outputs.rudder,
-        }),
-    }
-}
-
-fn actual(record: &FlightRecord) -> Values {
-    let m = &record.measurements;
-    let attitude = (!m.attitude.is_never()).then_some(m.attitude.value);
-    Values {
-        heading_deg: (!m.heading_rad.is_never())
-            .then(|| m.heading_rad.value.to_degrees().rem_euclid(360.0)),
-        altitude_ft: (!m.altitude_m.is_never()).then_some(m.altitude_m.value * M_FT),
-        airspeed_kt: (!m.airspeed_mps.is_never()).then_some(m.airspeed_mps.value * MPS_KT),
-        bank_deg: attitude.map(|attitude| attitude.roll_rad.to_degrees()),
-        pitch_deg: attitude.map(|attitude| attitude.pitch_rad.to_degrees()),
-    }
-}
-
-fn setpoints(record: &FlightRecord) -> Values {
-    let aims = &record.setpoints;
-    Values {
-        heading_deg: Some(aims.heading_rad.to_degrees().rem_euclid(360.0)),
-        altitude_ft: Some(aims.altitude_m * M_FT),
-        airspeed_kt: Some(aims.airspeed_mps * MPS_KT),
-        bank_deg: Some(aims.roll_rad.to_degrees()),
-        pitch_deg: Some(aims.pitch_rad.to_degrees()),
-    }
-}
-
-fn guidance(record: &FlightRecord) -> Guidance {
-    let progress = record.setpoints.guidance;
-    Guidance {
-        mode: progress.mode.name(),
-        item: progress.item,
-        elapsed_s: progress.elapsed_s,
+        values: C::values(record),
     }
 }
 

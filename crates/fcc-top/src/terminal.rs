@@ -1,6 +1,7 @@
 //! The terminal: keys, redrawing, and leaving it as it was.
 
-use std::io;
+use std::fmt;
+use std::io::{self, IsTerminal as _};
 use std::mem::ManuallyDrop;
 use std::os::fd::AsFd;
 use std::sync::Arc;
@@ -8,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_live::Watcher;
+use fcc_live::{WatchError, WatcherOf};
 use fcc_telemetry::Instance;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -20,6 +21,7 @@ use signal_hook::low_level;
 
 use super::picture::Picture;
 use super::screen;
+use super::watched::Watched;
 
 /// Time between pictures: often enough for an attitude, seldom enough for a
 /// small board and a slow line.
@@ -29,8 +31,42 @@ const SILENCE: Duration = Duration::from_secs(1);
 /// How long a signal waits for a picture that the terminal does not take.
 const HELD: Duration = Duration::from_secs(1);
 
-/// Shows a flight until somebody presses `q`.
-pub(super) fn watch(instance: &Instance, watcher: Watcher) -> io::Result<()> {
+/// Why a loop cannot be shown.
+#[derive(Debug)]
+pub enum TopError {
+    /// There is none to watch.
+    Watch(WatchError),
+    /// This is no terminal.
+    NoTerminal,
+    /// The terminal failed.
+    Terminal(io::Error),
+}
+
+impl fmt::Display for TopError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Watch(error) => error.fmt(f),
+            Self::NoTerminal => f.write_str("top needs a terminal: run it in one, or use --json"),
+            Self::Terminal(error) => write!(f, "the terminal: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for TopError {}
+
+/// Shows the loop of an instance until somebody presses `q`.
+///
+/// # Errors
+/// When there is no such loop or no terminal.
+pub fn top<C: Watched>(instance: &Instance) -> Result<(), TopError> {
+    let watcher = WatcherOf::<C>::open(instance).map_err(TopError::Watch)?;
+    if !io::stdout().is_terminal() || !io::stdin().is_terminal() {
+        return Err(TopError::NoTerminal);
+    }
+    watch(instance, watcher).map_err(TopError::Terminal)
+}
+
+fn watch<C: Watched>(instance: &Instance, watcher: WatcherOf<C>) -> io::Result<()> {
     let told_to_end = end_by_signals()?;
     // From here on a panic restores the terminal before it is printed.
     let terminal = ratatui::try_init().inspect_err(|_| {
@@ -51,7 +87,7 @@ fn end_by_signals() -> io::Result<Arc<AtomicBool>> {
     let flag = Arc::clone(&told_to_end);
     let mut signals = Signals::new([SIGTERM, SIGINT, SIGHUP])?;
     thread::Builder::new()
-        .name("fccd-signals".to_owned())
+        .name("top-signals".to_owned())
         .spawn(move || {
             if let Some(signal) = signals.forever().next() {
                 flag.store(true, Ordering::Relaxed);
@@ -63,10 +99,10 @@ fn end_by_signals() -> io::Result<Arc<AtomicBool>> {
     Ok(told_to_end)
 }
 
-fn show(
+fn show<C: Watched>(
     terminal: &mut DefaultTerminal,
     instance: &Instance,
-    watcher: Watcher,
+    watcher: WatcherOf<C>,
     told_to_end: &AtomicBool,
 ) -> io::Result<()> {
     let mut picture = Picture::new(&watcher);
@@ -77,7 +113,7 @@ fn show(
         match watcher.as_mut().map(|watcher| picture.update(watcher)) {
             Some(Ok(true)) => heard = Instant::now(),
             Some(Ok(false)) if heard.elapsed() < SILENCE => {}
-            Some(Ok(false)) if watcher.as_ref().is_some_and(Watcher::is_alive) => {
+            Some(Ok(false)) if watcher.as_ref().is_some_and(WatcherOf::is_alive) => {
                 heard = Instant::now();
             }
             Some(Ok(false) | Err(_)) => {
@@ -88,7 +124,7 @@ fn show(
             // Perhaps it is started again.
             None if heard.elapsed() >= SILENCE => {
                 heard = Instant::now();
-                if let Ok(found) = Watcher::open(instance) {
+                if let Ok(found) = WatcherOf::open(instance) {
                     picture = Picture::new(&found);
                     watcher = Some(found);
                 }

@@ -10,10 +10,11 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
 use super::picture::Picture;
+use super::watched::Watched;
 
 /// Draws the figures of the whole run and, below them, how many ticks woke how
 /// late: both scales logarithmic, or the few late ones would not show.
-pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
+pub(super) fn draw<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(status) = &picture.status else {
         frame.render_widget(Paragraph::new("each second; not yet"), area);
         return;
@@ -24,7 +25,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture) {
     draw_histogram(frame, histogram, &status.lateness_counts);
 }
 
-fn lines(status: &Status, picture: &Picture) -> Vec<Line<'static>> {
+fn lines<C: Watched>(status: &Status, picture: &Picture<C>) -> Vec<Line<'static>> {
     let figure = |name: &'static str, ns: u64| {
         [
             format!("{name:<6}").dim(),

@@ -1,10 +1,11 @@
 //! How well the timed pattern was flown, by what was measured.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::State;
+use fcc_core::framework::{RecordOf, State};
 
 use fcc_telemetry::units::{M_FT, MPS_KT};
-use fcc_telemetry::{FlightLog, FlightRecord, FlightScore, Sample};
+use fcc_telemetry::{FlightLog, FlightScore, Sample};
 
 /// Scores every engagement of a flight through the timed pattern.
 ///
@@ -31,7 +32,7 @@ impl Scoring {
         }
     }
 
-    pub(super) fn take(&mut self, record: &FlightRecord, time_s: f64) {
+    pub(super) fn take(&mut self, record: &RecordOf<Autopilot>, time_s: f64) {
         let engaged = record.state == State::Engaged;
         if engaged && !self.engaged {
             self.free = false;
@@ -45,7 +46,7 @@ impl Scoring {
     }
 
     /// A command to the autopilot ends the pattern.
-    pub(super) fn ordered(&mut self) {
+    pub(super) fn command_received(&mut self) {
         if self.engaged {
             self.free = true;
         }
@@ -64,15 +65,16 @@ impl Scoring {
     }
 
     /// The legs of all engagements, and why one could not be scored.
-    pub(super) fn finish(mut self) -> (FlightScore, Option<String>) {
-        if self.engaged {
-            self.close();
+    pub(super) fn result(&self) -> (FlightScore, Option<String>) {
+        let mut all = self.clone();
+        if all.engaged {
+            all.close();
         }
-        (self.legs, self.failed)
+        (all.legs, all.failed)
     }
 }
 
-fn captured(record: &FlightRecord, time_s: f64) -> Sample {
+fn captured(record: &RecordOf<Autopilot>, time_s: f64) -> Sample {
     Sample {
         heading_deg: record.setpoints.heading_rad.to_degrees(),
         altitude_ft: record.setpoints.altitude_m * M_FT,

@@ -3,16 +3,16 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::super::Report;
-use super::super::states::Phase;
-use super::super::track::TrackPoint;
-use super::Figure;
-use super::axis::Axis;
-use super::canvas::{
-    ACTUAL, Area, Drawn, FAINT, LABEL_PX, OTHER, PlotError, SMALL_PX, TEXT, WIDTH_PX, draw, pen,
-    px, text,
+use super::track::TrackPoint;
+use crate::RunReport;
+use crate::events::Weight;
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{
+    ACTUAL, Area, Drawn, FAINT, LABEL_PX, OTHER, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
 };
-use super::panel::{Frame, Panel};
+use crate::plot::panel::{Frame, Panel};
+use crate::plot::{Figure, PlotError};
+use crate::states::Phase;
 
 const LEFT_PX: f64 = 60.0;
 const TOP_PX: f64 = 24.0;
@@ -24,18 +24,21 @@ const LEAST_HEIGHT_PX: f64 = 160.0;
 const LEAST_SPAN_M: f64 = 100.0;
 
 /// The ground track; none where there is no position.
-pub(super) fn figure(report: &Report) -> Result<Option<Figure>, PlotError> {
-    if report.track.is_empty() {
+pub(super) fn figure(
+    report: &RunReport,
+    track: &[TrackPoint],
+) -> Result<Option<Figure>, PlotError> {
+    if track.is_empty() {
         return Ok(None);
     }
-    let map = Map::of(&report.track);
+    let map = Map::of(track);
     let svg = draw(
         TOP_PX + map.height_px + X_WORDS_PX,
         "Ground track",
-        |area| map.paint(area, report),
+        |area| map.paint(area, report, track),
     )?;
     Ok(Some(Figure {
-        title: "Ground track",
+        title: "Ground track".to_owned(),
         caption: "Over the ground, north up, from the first measured position; numbers are \
                   the changes of state in the table of events."
             .to_owned(),
@@ -80,7 +83,7 @@ impl Map {
         }
     }
 
-    fn paint(&self, area: &Area<'_>, report: &Report) -> Drawn {
+    fn paint(&self, area: &Area<'_>, report: &RunReport, track: &[TrackPoint]) -> Drawn {
         let span_m = self.east_m.1 - self.east_m.0;
         let (unit_m, unit) = if span_m > 3_000.0 {
             (1_000.0, "km")
@@ -103,7 +106,7 @@ impl Map {
         let mut panel = Panel::new(area, frame, x, y)?;
         panel.axes(true)?;
         let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
-        for (phase, places) in stretches(report) {
+        for (phase, places) in stretches(report, track) {
             let style = if phase == Phase::Engaged {
                 pen(ACTUAL, 1.4)
             } else {
@@ -111,7 +114,7 @@ impl Map {
             };
             panel.polyline(smooth(&panel, places.iter().map(at)), style)?;
         }
-        let ends = [report.track.first(), report.track.last()];
+        let ends = [track.first(), track.last()];
         for (place, filled) in ends.into_iter().flatten().zip([false, true]) {
             let style = if filled {
                 ACTUAL.filled()
@@ -121,7 +124,7 @@ impl Map {
             panel.dot(at(place), 3.5, style)?;
         }
         legend(area)?;
-        number_states(area, report, &panel, at)
+        number_states(area, report, track, &panel, at)
     }
 }
 
@@ -147,11 +150,11 @@ fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f
 }
 
 /// The track in pieces of one state each, which touch.
-fn stretches(report: &Report) -> Vec<(Phase, Vec<TrackPoint>)> {
+fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackPoint>)> {
     let mut spans = report.states.iter().peekable();
     let mut pieces: Vec<(Phase, Vec<TrackPoint>)> = Vec::new();
     let mut phase = Phase::Standby;
-    for place in &report.track {
+    for place in track {
         while let Some(span) = spans.next_if(|span| span.from_s <= place.time_s) {
             phase = span.phase;
         }
@@ -171,16 +174,16 @@ fn stretches(report: &Report) -> Vec<(Phase, Vec<TrackPoint>)> {
 /// Numbers of the events that changed the state, where they happened.
 fn number_states(
     area: &Area<'_>,
-    report: &Report,
+    report: &RunReport,
+    track: &[TrackPoint],
     panel: &Panel<'_>,
     at: impl Fn(&TrackPoint) -> (f64, f64),
 ) -> Drawn {
-    use super::super::events::Weight;
     let style = text(SMALL_PX, FAINT, HPos::Left, VPos::Bottom);
     let mut taken: Vec<(f64, f64)> = Vec::new();
     for event in report.events.iter().filter(|e| e.weight == Weight::State) {
-        let after = report.track.partition_point(|p| p.time_s < event.time_s);
-        let Some(place) = report.track.get(after).or(report.track.last()) else {
+        let after = track.partition_point(|p| p.time_s < event.time_s);
+        let Some(place) = track.get(after).or(track.last()) else {
             continue;
         };
         let (x, y) = panel.on_sheet(at(place));

@@ -1,17 +1,17 @@
-//! What is known of a flight.
+//! What is known of a loop.
 
 use std::collections::VecDeque;
 
-use fcc_core::framework::StageTimes;
-use fcc_live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, Watcher};
-use fcc_telemetry::FlightRecord;
+use fcc_core::framework::{RecordOf, StageTimes};
+use fcc_live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, WatcherOf};
 
-/// What is known of a flight, from its live telemetry.
-#[derive(Clone, Debug)]
-pub(super) struct Picture {
+use super::watched::Watched;
+
+/// What is known of a loop, from its live telemetry.
+pub struct Picture<C: Watched> {
     pub(super) info: Info,
     /// The newest.
-    pub(super) record: Option<FlightRecord>,
+    pub(super) record: Option<RecordOf<C>>,
     pub(super) status: Option<Status>,
     /// The oldest first.
     pub(super) events: VecDeque<Event>,
@@ -20,16 +20,17 @@ pub(super) struct Picture {
     /// When the present state began, on the loop's clock; none if that was
     /// before anything seen here.
     pub(super) state_since_ns: Option<i64>,
-    /// Whether the daemon is gone.
+    /// Whether the loop's program is gone.
     pub(super) ended: bool,
 }
 
-impl Picture {
-    pub(super) fn new(watcher: &Watcher) -> Self {
+impl<C: Watched> Picture<C> {
+    pub(super) fn new(watcher: &WatcherOf<C>) -> Self {
         Self::of(watcher.info())
     }
 
-    pub(super) fn of(info: &Info) -> Self {
+    /// Nothing but who publishes.
+    pub fn of(info: &Info) -> Self {
         Self {
             info: *info,
             record: None,
@@ -42,7 +43,7 @@ impl Picture {
     }
 
     /// Takes all that has come since; gives whether anything has.
-    pub(super) fn update(&mut self, watcher: &mut Watcher) -> Result<bool, WatchError> {
+    pub(super) fn update(&mut self, watcher: &mut WatcherOf<C>) -> Result<bool, WatchError> {
         let mut new = false;
         while let Some(record) = watcher.next_record()? {
             self.record(&record);
@@ -64,12 +65,13 @@ impl Picture {
         self.record.is_some() && self.status.is_some()
     }
 
-    /// Seconds since the daemon began to publish.
+    /// Seconds since the program began to publish.
     pub(super) fn seconds(&self, time_ns: i64) -> f64 {
         time_ns.saturating_sub(self.info.started_ns) as f64 * 1e-9
     }
 
-    pub(super) fn record(&mut self, record: &FlightRecord) {
+    /// Takes the newest record.
+    pub fn record(&mut self, record: &RecordOf<C>) {
         let (longest, now) = (&mut self.longest, &record.stages);
         for (longest, now) in [
             (&mut longest.sensors_ns, now.sensors_ns),
@@ -84,7 +86,8 @@ impl Picture {
         self.record = Some(*record);
     }
 
-    pub(super) fn event(&mut self, event: Event) {
+    /// Takes what happened.
+    pub fn event(&mut self, event: Event) {
         if event.code == EventCode::StateChanged as u32 {
             self.state_since_ns = Some(event.time_ns);
         }

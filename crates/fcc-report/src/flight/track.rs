@@ -66,12 +66,16 @@ impl Track {
             .is_none_or(|last| last.distance_m(place) >= self.apart_m)
     }
 
-    /// In ascending time, from the first position to the last.
-    pub(super) fn into_places(mut self) -> Vec<TrackPoint> {
+    /// Adds the last position.
+    pub(super) fn finish(&mut self) {
         if self.places.last() != self.last.as_ref() {
             self.places.extend(self.last);
         }
-        self.places
+    }
+
+    /// In ascending time.
+    pub(super) fn places(&self) -> &[TrackPoint] {
+        &self.places
     }
 }
 
@@ -141,7 +145,8 @@ mod tests {
         let mut track = Track::default();
         track.push(0.0, &at(45.0, 179.999));
         track.push(1.0, &at(45.01, -179.991));
-        let places = track.into_places();
+        track.finish();
+        let places = track.places();
         assert!((places[1].north_m - 1_111.32).abs() < 0.2, "{places:?}");
         assert!((places[1].east_m - 788.47).abs() < 0.2, "{places:?}");
     }
@@ -153,7 +158,8 @@ mod tests {
             track.push(f64::from(n), &at(0.0, f64::from(n) * 1e-5));
         }
         assert!(track.places.len() < MOST_POINTS);
-        let places = track.into_places();
+        track.finish();
+        let places = track.places();
         assert_eq!(places.first().unwrap().time_s, 0.0);
         assert_eq!(places.last().unwrap().time_s, 99_999.0);
     }
