@@ -65,5 +65,5 @@ pub use link::{SwitchHandle, TruthHandle};
 pub use sensing::{Channels, LONGEST_DELAY_MS, SensorConfig};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
-pub use truth::{NUMBERS as TRUTH_NUMBERS, Truth};
+pub use truth::Truth;
 pub use turbulence::Severity;

@@ -11,7 +11,7 @@ mod words;
 pub use columns::{Column, columns};
 pub use layout::{layout_table, words_of};
 pub use row::{Row, header};
-pub use words::{Words, words};
+pub use words::{Words, words, write_words};
 
 /// The lines of a doc comment as one: its first paragraph, without the marks of
 /// links and code.
