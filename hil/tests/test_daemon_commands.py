@@ -127,7 +127,7 @@ def test_fly_as_json(fccd: Path) -> None:
     assert set(leg) == LEG
     assert report["flight"]["worst"] == leg
     assert leg["heading_settle_s"] is not None
-    assert report["ending"] == "told to stop"
+    assert report["ending"] == "stop requested"
 
 
 def test_fly_says_how_it_goes_each_second_and_is_quiet_if_asked(fccd: Path) -> None:

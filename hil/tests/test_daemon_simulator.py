@@ -167,7 +167,7 @@ def test_a_killed_simulator_ends_the_program_where_that_is_wanted(
         simulator.kill()
         ending = daemon.end()
     assert ending.exit_code == FAILSAFE
-    assert ending.report["ending"] == "failsafe was over"
+    assert ending.report["ending"] == "failsafe ended"
     assert ending.states[-1] == "failsafe -> stopped"
 
 

@@ -166,7 +166,7 @@ def test_a_disk_that_is_full_ends_the_recording_and_not_the_flight(
     assert ending.exit_code == NOT_RECORDED
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     recording = ending.report["recording"]
-    assert "all before is safe" in recording["stopped"]
+    assert "all earlier ones are recorded" in recording["stopped"]
     (name,) = recording["files"]
     seen = in_sequence(Path(name))
     ticks = [message.content.tick.number for message in seen if message.topic == RECORD]

@@ -226,7 +226,7 @@ def test_any_bytes_are_no_recording_and_no_crash(head: bytes, tail: bytes) -> No
         file.write(content)
         file.flush()
         for read in (fcc.Recording, fcc.report, fcc.replay, fcc.recover):
-            with pytest.raises(fcc.RecordingError, match="is no recording of fccd"):
+            with pytest.raises(fcc.RecordingError, match="not a recording of fccd"):
                 read(file.name)
 
 

@@ -115,3 +115,20 @@ def test_a_file_that_is_cut_off_is_read_to_its_cut_and_made_whole(
     assert fcc.recover(cut)["was_whole"] is False
     assert fcc.Recording(cut).is_whole
     assert len(fcc.Recording(cut)) == len(found)
+
+
+def test_a_damaged_byte_is_located_and_the_rest_is_read(recording: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / "damaged.mcap"
+    content = bytearray(recording.read_bytes())
+    middle = len(content) // 2
+    content[middle] ^= 0x40
+    damaged.write_bytes(content)
+    found = fcc.Recording(damaged)
+    (damage,) = found.damages
+    assert damage["from_byte"] <= middle < damage["to_byte"]
+    ticks = found.records["tick"]
+    missing = np.arange(damage["first_tick"], damage["last_tick"] + 1)
+    assert len(missing) == damage["ticks"] > 0
+    assert not np.isin(missing, ticks).any()
+    assert len(found) + len(missing) == len(fcc.Recording(recording))
+    assert not fcc.Recording(recording).damages

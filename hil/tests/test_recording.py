@@ -194,7 +194,7 @@ def test_a_full_disk_ends_the_recording_and_not_the_flight(
         assert flown >= 100 * 40
         recording = outcome["recording"]
         assert "recording stopped" in " ".join(event["text"] for event in outcome["events"])
-        assert "all before is safe" in recording["stopped"]
+        assert "all earlier ones are recorded" in recording["stopped"]
         assert 0 < recording["ticks"] < flown
         path = only_recording(folder)
         numbers = ticks(in_sequence(path))

@@ -1,4 +1,4 @@
-//! What people type.
+//! The command line.
 
 use std::path::PathBuf;
 
@@ -15,21 +15,21 @@ use crate::exit::EXIT_CODES;
 #[derive(Parser, Debug)]
 #[command(name = "fccd", version, after_help = EXIT_CODES)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Action,
 }
 
-/// What `fccd` can do.
+/// The commands of `fccd`.
 #[derive(Subcommand, Debug)]
 pub enum Action {
     /// Fly the built-in aircraft through the timed pattern
     Fly(FlyArgs),
-    /// Fly the aircraft of a configuration file until told to stop
+    /// Fly the aircraft of a configuration file until stopped
     Run(RunArgs),
     /// List recordings
     List(ListArgs),
-    /// Make a whole recording of one that was cut off
+    /// Recover a recording that is unfinished or damaged
     Recover(RecoverArgs),
     /// Measure how well the loop keeps time: the experiment of the thesis
     Timing(TimingArgs),
@@ -38,12 +38,12 @@ pub enum Action {
     /// Watch a flight on this machine, live
     #[cfg(feature = "live")]
     Top(TopArgs),
-    /// Give a daemon on this machine a command
+    /// Send a command to a daemon on this machine
     #[cfg(feature = "live")]
     Command(CommandArgs),
     /// Check a configuration file
     Check(CheckArgs),
-    /// Say what this machine offers a real-time loop, and what it lacks
+    /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
@@ -53,13 +53,13 @@ pub enum Action {
     ReleaseHelper,
     /// Print a completion script for a shell
     Completions {
-        /// Which shell
+        /// The shell
         shell: Shell,
     },
-    /// Write manual pages into a folder; for who makes a package
+    /// Write manual pages into a folder, for packages
     #[command(hide = true)]
     Man {
-        /// Where to
+        /// The folder
         folder: PathBuf,
     },
 }
@@ -67,24 +67,24 @@ pub enum Action {
 /// `fccd fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
-    /// Configuration file with a [built-in] section; without it, all is as in
-    /// config/built-in.toml
+    /// Configuration file with a [built-in] section [default: as
+    /// config/built-in.toml]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How long to fly after engaging [default: the hold and 8 legs]
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
-    // TOML has no larger numbers: a recording could not say what was flown.
+    // TOML has no larger numbers: the recording could not contain it.
     #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Strength of the gusts
     #[arg(long, value_parser = gusts())]
     pub gusts: Option<GustsChoice>,
-    /// What watchers call this flight, instead of what the configuration says
+    /// Name of this flight for watchers [default: as configured]
     #[arg(long, value_name = "NAME")]
     pub instance: Option<Instance>,
-    /// As fast as the machine can, instead of in real time
+    /// Fly in lockstep: as fast as the machine can, not in real time
     #[arg(long)]
     pub lockstep: bool,
     /// Where to record
@@ -93,7 +93,7 @@ pub struct FlyArgs {
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
-    /// No status lines
+    /// Print no status lines
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -107,13 +107,13 @@ pub struct RunArgs {
     /// Where to record
     #[command(flatten)]
     pub recording: RecordingArgs,
-    /// What watchers call this daemon, instead of what the configuration says
+    /// Name of this daemon for watchers [default: as configured]
     #[arg(long, value_name = "NAME")]
     pub instance: Option<Instance>,
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
-    /// No status lines
+    /// Print no status lines
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -121,8 +121,7 @@ pub struct RunArgs {
 /// Where a flight is recorded.
 #[derive(Args, Debug)]
 pub struct RecordingArgs {
-    /// Folder that the recording goes to [default: recordings, or as
-    /// configured]
+    /// Folder of the recordings [default: recordings, or as configured]
     #[arg(long, value_name = "DIR")]
     pub recordings: Option<PathBuf>,
     /// Do not record
@@ -136,7 +135,8 @@ pub struct ListArgs {
     /// Folder of recordings
     #[arg(value_name = "DIR", default_value = "recordings")]
     pub folder: PathBuf,
-    /// Look at the two ends of each file only: damage between them is not seen
+    /// Read only the beginning and the end of each file: damage between is not
+    /// detected
     #[arg(long)]
     pub quick: bool,
     /// Print the list as JSON
@@ -147,7 +147,7 @@ pub struct ListArgs {
 /// `fccd recover`.
 #[derive(Args, Debug)]
 pub struct RecoverArgs {
-    /// Recording; if it is cut off, a whole one takes its place
+    /// The recording; a finished one replaces it
     pub file: PathBuf,
     /// Print the result as JSON
     #[arg(long)]
@@ -157,7 +157,7 @@ pub struct RecoverArgs {
 /// `fccd timing`.
 #[derive(Args, Debug)]
 pub struct TimingArgs {
-    /// Ticks a second; may be given several times
+    /// Ticks per second; may be given several times
     #[arg(long = "rate", value_name = "HZ", default_values_t = [40.0, 50.0, 100.0],
           value_parser = rate_hz, allow_negative_numbers = true)]
     pub rates: Vec<f64>,
@@ -165,7 +165,7 @@ pub struct TimingArgs {
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive_seconds,
           allow_negative_numbers = true)]
     pub seconds: f64,
-    /// Which timer wakes the loop: timerfd, posix or nanosleep
+    /// The timer that wakes the loop: timerfd, posix or nanosleep
     #[arg(long, value_name = "TIMER", default_value_t = TimerKind::Timerfd)]
     pub timer: TimerKind,
     /// `SCHED_FIFO` priority of the loop's thread, 0 for the ordinary scheduler
@@ -174,8 +174,8 @@ pub struct TimingArgs {
     /// The CPU that the loop's thread is bound to
     #[arg(long, value_name = "auto|N")]
     pub cpu: Option<CpuChoice>,
-    /// Whether to wake a margin before each deadline and spin the rest of the
-    /// time; auto: if a real-time priority is granted
+    /// Wake a margin before each deadline and spin until it; auto: if a
+    /// real-time priority is granted
     #[arg(long, value_name = "auto|on|off", value_enum, default_value_t = EarlyWakeArg::Auto,
           default_missing_value = "on", num_args = 0..=1)]
     pub early_wake: EarlyWakeArg,
@@ -219,11 +219,11 @@ pub struct ReplayArgs {
     /// The recording; all its parts, oldest first, if it has several
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Show where this configuration would have commanded otherwise, instead
-    /// of comparing with the recorded one
+    /// Show how this configuration would have commanded, instead of comparing
+    /// with the recorded one
     #[arg(long, value_name = "OTHER")]
     pub config: Option<PathBuf>,
-    /// Write both flights, tick by tick, into a file of comma-separated values
+    /// Write both flights, tick by tick, into a CSV file
     #[arg(long, value_name = "OUT", requires = "config")]
     pub csv: Option<PathBuf>,
     /// Print the result as JSON
@@ -235,7 +235,7 @@ pub struct ReplayArgs {
 #[cfg(feature = "live")]
 #[derive(Args, Debug)]
 pub struct TopArgs {
-    /// Which daemon: the name that it was given by --instance, or in its configuration
+    /// The daemon's name, as given by --instance or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default())]
     pub instance: Instance,
     /// Print one snapshot as JSON and end
@@ -247,10 +247,10 @@ pub struct TopArgs {
 #[cfg(feature = "live")]
 #[derive(Args, Debug)]
 pub struct CommandArgs {
-    /// What to do
+    /// The command
     #[command(subcommand)]
     pub what: CommandChoice,
-    /// Which daemon: the name that it was given by --instance, or in its configuration
+    /// The daemon's name, as given by --instance or in its configuration
     #[arg(long, value_name = "NAME", default_value_t = Instance::default(), global = true)]
     pub instance: Instance,
     /// Print the result as JSON
@@ -258,17 +258,17 @@ pub struct CommandArgs {
     pub json: bool,
 }
 
-/// What may be ordered.
+/// Commands to a flight.
 #[cfg(feature = "live")]
 #[derive(Subcommand, Debug)]
 pub enum CommandChoice {
-    /// Take over as things are
+    /// Take control with the present state as set points
     Engage,
-    /// Give the controls back
+    /// Release the controls
     Disengage,
-    /// Give the controls back and end the daemon
+    /// Release the controls and end the daemon
     Stop,
-    /// Fly by other set points; those that are not given stay
+    /// Fly to other set points; those not given keep their value
     Set(SetArgs),
 }
 
@@ -277,7 +277,7 @@ pub enum CommandChoice {
 #[derive(Args, Debug)]
 #[group(required = true, multiple = true)]
 pub struct SetArgs {
-    /// Magnetic heading, -360 to 360; turned to the shorter way
+    /// Magnetic heading, -360 to 360; turns the shorter way
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
     /// Barometric altitude
@@ -301,12 +301,11 @@ pub struct CheckArgs {
 /// `fccd doctor`.
 #[derive(Args, Debug)]
 pub struct DoctorArgs {
-    /// Configuration of the loop that is to run here; without one, that of
-    /// `fccd fly`
+    /// Configuration of the loop [default: that of `fccd fly`]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// Folder that the machine's files are under: the disk of another one, with
-    /// its /proc and /sys copied
+    /// Root folder of the files to read: the disk of another machine, with its
+    /// /proc and /sys copied
     #[arg(long, value_name = "DIR", default_value = "/")]
     pub root: PathBuf,
     /// Print the findings as JSON
@@ -319,7 +318,7 @@ pub struct DoctorArgs {
 pub struct ReportArgs {
     /// The recording
     pub file: PathBuf,
-    /// Write a page with all tables and plots, complete in one file
+    /// Write a page with all tables and plots in one file
     #[arg(long, value_name = "OUT.html")]
     pub html: Option<PathBuf>,
     /// Also write each plot as an SVG file, for papers
@@ -338,7 +337,7 @@ fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
         GustsChoice::ALL
             .into_iter()
             .find_map(|(name, choice)| (name == given).then_some(choice))
-            .ok_or("no such strength")
+            .ok_or("unknown strength")
     })
 }
 

@@ -1,4 +1,4 @@
-//! Exit codes, each with one meaning.
+//! Exit codes.
 
 use std::process::ExitCode;
 
@@ -8,24 +8,24 @@ use fcc_flight::flight::Conclusion;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u8)]
 pub enum Exit {
-    /// All went as it should.
+    /// Success.
     Success = 0,
     /// The operating system, the network or a part of the program failed.
     Failure = 1,
     /// The command line or the configuration is wrong.
     Usage = 2,
-    /// The flight fell into failsafe.
+    /// The flight was in failsafe.
     Failsafe = 3,
-    /// A real-time wish was refused and `realtime.strict` is set.
+    /// A real-time request was denied and `realtime.strict` is set.
     RealtimeDenied = 4,
-    /// Control may still be held by this program's overrides.
+    /// The controls may not have been released.
     NotReleased = 5,
     /// A part of the loop panicked; the controls were released.
     Panicked = 6,
     /// A recording flown again gave other outputs.
     Differs = 7,
-    /// A recording could not be flown again, or not to its end; nothing that
-    /// was differs.
+    /// A recording could not be flown again to its end; the rest does not
+    /// differ.
     NotReplayed = 8,
     /// The loop hung; its watchdog released the controls and ended the program.
     Hung = 9,
@@ -33,33 +33,33 @@ pub enum Exit {
     MachineLacks = 10,
     /// The daemon refused a command.
     Refused = 11,
-    /// Another program has what is asked for: the simulator, or the local port.
+    /// Another program uses the simulator or the local port.
     Taken = 12,
-    /// A recording is damaged or cut off: what is said is of the rest of it.
+    /// A recording is damaged or unfinished: the result is of the rest.
     Incomplete = 13,
-    /// The flight went as it should, but was not recorded, or not as a whole.
+    /// The flight succeeded, but was not recorded completely.
     NotRecorded = 14,
 }
 
 /// For `--help`.
 pub const EXIT_CODES: &str = "\
 Exit codes:
-  0  all went as it should
+  0  success
   1  the operating system, the network or a part of the program failed
   2  the command line or the configuration is wrong
   3  the flight fell into failsafe
-  4  a real-time wish was refused and realtime.strict is set
-  5  control may not have been released
+  4  a real-time request was denied and realtime.strict is set
+  5  the controls may not have been released
   6  a part of the loop panicked; the controls were released
   7  a recording flown again gave other outputs
-  8  a recording could not be flown again to its end; nothing else differs
+  8  a recording could not be flown again to its end; the rest does not differ
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
  11  the daemon refused the command
- 12  another program has the simulator or the local port
- 13  a recording is damaged or cut off: the result is of the rest (report,
+ 12  another program uses the simulator or the local port
+ 13  a recording is damaged or unfinished: the result is of the rest (report,
      replay), or a part of it is lost (list, recover)
- 14  the flight went as it should, but was not recorded, or not as a whole";
+ 14  the flight succeeded, but was not recorded completely";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

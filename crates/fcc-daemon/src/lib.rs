@@ -1,4 +1,4 @@
-//! `fccd`, the flight control computer's daemon: commands for people.
+//! `fccd`, the flight control computer's daemon: its command line.
 //!
 //! | module | what it does |
 //! |---|---|
@@ -7,7 +7,7 @@
 //! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
 //! | `output` | prints, and never panics where that fails |
 //!
-//! What they do, a flight is put together and flown by, is in [`fcc_flight`].
+//! Assembling and running a flight is in [`fcc_flight`].
 
 pub mod cli;
 pub mod commands;

@@ -1,10 +1,9 @@
-//! What the program prints: results on standard output, messages for people on
-//! standard error.
+//! Prints results on standard output and messages on standard error.
 //!
-//! Everything that is printed goes through here, for `print!` and `eprint!`
-//! panic when the output cannot be written: a pipe whose reader has left, a
-//! full disk, a terminal that is gone. Here a result that cannot be printed is
-//! an exit code, and a message that cannot be printed is dropped.
+//! Everything is printed through here, because `print!` and `eprint!` panic
+//! when the output cannot be written: a pipe whose reader has left, a full
+//! disk, a closed terminal. Here a result that cannot be printed gives an exit
+//! code, and a message that cannot be printed is dropped.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -17,14 +16,14 @@ use serde::Serialize;
 
 use crate::exit::Exit;
 
-/// Prints a result. Gives `exit`, or a failure where that was a success and the
-/// result could not be printed. A reader that has left (`| head -1`) has all
-/// that it wanted.
+/// Prints a result. Returns `exit`, or a failure if that was a success and the
+/// result could not be printed. A reader that has left (`| head -1`) is no
+/// failure.
 pub(crate) fn result(text: impl Display, exit: Exit) -> Exit {
     bytes(format!("{text}\n").as_bytes(), exit)
 }
 
-/// Prints a result for other tools to read, in the same way.
+/// Prints a result as JSON.
 pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
     match serde_json::to_string_pretty(value) {
         Ok(text) => result(text, exit),
@@ -32,7 +31,7 @@ pub(crate) fn json<T: Serialize>(value: &T, exit: Exit) -> Exit {
     }
 }
 
-/// Prints a result as it is, in the same way.
+/// Prints a result as bytes.
 pub(crate) fn bytes(bytes: &[u8], exit: Exit) -> Exit {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
@@ -49,7 +48,7 @@ fn not_printed(error: &dyn Display, exit: Exit) -> Exit {
     }
 }
 
-/// Prints a message for people.
+/// Prints a message.
 pub(crate) fn message(text: impl Display) {
     let line = format!("{text}\n");
     match background().as_mut() {
@@ -59,59 +58,59 @@ pub(crate) fn message(text: impl Display) {
 }
 
 fn write(line: &str) {
-    // Nobody is left who could be told.
+    // A failure to print a message cannot be reported.
     let _ = io::stderr().write_all(line.as_bytes());
 }
 
-/// Messages that may wait while the terminal does not take them: some minutes
-/// of status.
+/// Messages that may wait while the terminal is blocked: some minutes of
+/// status.
 const WAITING: usize = 256;
-/// How long the end of a flight waits until they are printed.
+/// How long the end of a flight waits for printing.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-static BACKGROUND: Mutex<Option<Lines>> = Mutex::new(None);
+static BACKGROUND: Mutex<Option<Queue>> = Mutex::new(None);
 
-fn background() -> MutexGuard<'static, Option<Lines>> {
+fn background() -> MutexGuard<'static, Option<Queue>> {
     BACKGROUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on a thread of its own prints messages, so that a terminal that is
-/// held keeps nobody waiting: what finds no room is left out, and that is
-/// printed where there is room again. Until what this gives is dropped.
+/// Until the returned value is dropped, messages are printed by a separate
+/// thread, so that a blocked terminal does not delay the caller. Messages that
+/// do not fit into the queue are dropped, and their number is printed later.
 pub(crate) fn in_background() -> Option<Background> {
     let (to, from) = sync_channel::<String>(WAITING);
-    // Without a thread, whoever prints waits for the terminal.
+    // Without the thread, printing waits for the terminal.
     let printer = thread::Builder::new()
         .name("fccd-printer".to_owned())
-        // Where memory is locked, all of a stack is in memory.
+        // With locked memory, all of a stack is resident.
         .stack_size(256 << 10)
         .spawn(move || from.iter().for_each(|line| write(&line)))
         .ok()?;
-    *background() = Some(Lines { to, left_out: 0 });
+    *background() = Some(Queue { to, dropped: 0 });
     Some(Background { printer })
 }
 
-/// Messages on their way to the thread that prints them.
-struct Lines {
+/// The queue of messages for the thread that prints them.
+struct Queue {
     to: SyncSender<String>,
-    left_out: u64,
+    dropped: u64,
 }
 
-impl Lines {
+impl Queue {
     fn give(&mut self, line: String) {
-        if self.left_out > 0 {
+        if self.dropped > 0 {
             let gap = format!(
-                "{} lines are left out here: the terminal did not take them\n",
-                self.left_out
+                "{} lines were dropped here: the terminal was blocked\n",
+                self.dropped
             );
             if self.to.try_send(gap).is_err() {
-                self.left_out += 1;
+                self.dropped += 1;
                 return;
             }
-            self.left_out = 0;
+            self.dropped = 0;
         }
         if self.to.try_send(line).is_err() {
-            self.left_out += 1;
+            self.dropped += 1;
         }
     }
 }
@@ -122,9 +121,9 @@ pub(crate) struct Background {
 }
 
 impl Drop for Background {
-    /// Waits for a while until all are printed.
+    /// Waits for a limited time until all are printed.
     fn drop(&mut self) {
-        // With its last sender the thread ends.
+        // The thread ends with its last sender.
         *background() = None;
         let begun = Instant::now();
         while !self.printer.is_finished() && begun.elapsed() < PATIENCE {
@@ -138,9 +137,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_that_find_no_room_are_counted_where_they_are_missing() {
+    fn dropped_lines_are_counted_where_they_are_missing() {
         let (to, from) = sync_channel(2);
-        let mut lines = Lines { to, left_out: 0 };
+        let mut lines = Queue { to, dropped: 0 };
         for line in ["a", "b", "c", "d"] {
             lines.give(line.to_owned());
         }
@@ -150,10 +149,7 @@ mod tests {
         let printed: Vec<String> = from.try_iter().collect();
         assert_eq!(
             printed,
-            [
-                "2 lines are left out here: the terminal did not take them\n",
-                "e"
-            ]
+            ["2 lines were dropped here: the terminal was blocked\n", "e"]
         );
     }
 }

@@ -1,10 +1,10 @@
 //! Watches a flight and prints a line each second:
 //!
 //! ```text
-//! cargo run -p fcc-telemetry --example watch -- fccd [SECONDS]
+//! cargo run -p fcc-live --features flight --example watch -- fccd [SECONDS]
 //! ```
 
-#![expect(clippy::print_stdout, reason = "all that it does is to print")]
+#![expect(clippy::print_stdout, reason = "a program that prints")]
 
 use std::error::Error;
 use std::thread::sleep;
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut seen, mut gaps, mut last) = (0_u64, 0_u64, None);
     while began.elapsed().as_secs_f64() < seconds && watcher.is_alive() {
         let line = Instant::now() + Duration::from_secs(1);
-        // Ten times a second is often enough to miss nothing.
+        // Ten times a second suffices to miss no record.
         while Instant::now() < line && began.elapsed().as_secs_f64() < seconds {
             while let Some(record) = watcher.next_record()? {
                 let tick = record.tick;

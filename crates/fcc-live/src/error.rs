@@ -1,9 +1,9 @@
-//! Why nothing can be published or watched.
+//! Why publishing or watching failed.
 
 use super::MAX_WATCHERS;
 use fcc_telemetry::Instance;
 
-/// Why nothing can be published. The flight goes on without.
+/// Why nothing can be published. The flight continues without.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum PublishError {
@@ -13,13 +13,14 @@ pub enum PublishError {
          instance under [telemetry]"
     )]
     NameTaken(Instance),
-    /// Watchers of a daemon of another version still hold its services.
+    /// Programs that watched a daemon of another version still have its
+    /// services open.
     #[error(
-        "programs that watched another version of '{0}' still hold its services: end them, or \
+        "programs that watched another version of '{0}' still have its services open: end them, or \
          give this daemon another name with --instance NAME"
     )]
     HeldByOthers(Instance),
-    /// The system's shared memory is not to be had.
+    /// The system's shared memory is not available.
     #[error("no shared memory: {0}")]
     NoSharedMemory(String),
 }
@@ -34,24 +35,25 @@ pub enum WatchError {
          give another's name with --instance"
     )]
     NotRunning(Instance),
-    /// This user has no daemon of this name, but others have daemons, or had.
+    /// This user has no daemon of this name, but other users have or had
+    /// daemons.
     #[error(
         "no fccd named '{instance}' runs here for this user. A daemon of another user can be \
          watched by that user alone: sudo -u {user} fccd top --instance {instance}"
     )]
     PerhapsAnothers {
-        /// The daemon.
+        /// The daemon's name.
         instance: Instance,
         /// The other user; the first of several.
         user: String,
     },
-    /// The daemon is of a version with another layout.
+    /// The daemon publishes in another layout.
     #[error(
         "fccd '{instance}' is version {software} and publishes in layout {layout}; this program \
          reads layout {own}: use the fccd that belongs to the daemon"
     )]
     OtherLayout {
-        /// The daemon.
+        /// The daemon's name.
         instance: Instance,
         /// Its version.
         software: String,
@@ -60,24 +62,22 @@ pub enum WatchError {
         /// This program's.
         own: u32,
     },
-    /// As many programs watch as may.
-    #[error(
-        "{MAX_WATCHERS} programs watch fccd '{0}', and there is room for no more: end one of them"
-    )]
+    /// The maximum number of programs is watching.
+    #[error("{MAX_WATCHERS} programs watch fccd '{0}', which is the maximum: end one of them")]
     TooMany(Instance),
     /// The daemon belongs to another user.
     #[error("fccd '{0}' belongs to another user: only the daemon's own user may watch it")]
     NotPermitted(Instance),
-    /// The daemon that was watched is gone.
-    #[error("fccd '{0}' has ended: it publishes no more")]
+    /// The daemon has ended.
+    #[error("fccd '{0}' has ended")]
     Ended(Instance),
-    /// What lies in shared memory is no record.
+    /// The data in shared memory is not a record.
     #[error(
-        "fccd '{0}' publishes what is no record: another program writes to its services, or this \
+        "fccd '{0}' publishes invalid records: another program writes to its services, or this \
          one was built from other sources"
     )]
     Damaged(Instance),
-    /// The system's shared memory is not to be had.
+    /// The system's shared memory is not available.
     #[error("no shared memory: {0}")]
     NoSharedMemory(String),
 }

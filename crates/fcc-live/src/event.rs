@@ -1,71 +1,70 @@
-//! What happened once, in numbers and in words.
+//! Events in shared memory, as numbers and as text.
 
 use fcc_core::framework::{self, EventKind, LoopCommand, StateCode};
 
 use super::Text;
 
-/// What happened once, in numbers for programs and in words for people.
+/// An event, as numbers for programs and as text for users.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]
 pub struct Event {
     /// The tick it happened in.
     pub tick: u64,
-    /// That tick's wake-up, ns on the loop's clock; the smallest number there
-    /// is before the first tick.
+    /// That tick's wake-up, ns on the loop's clock; the smallest number before
+    /// the first tick.
     pub time_ns: i64,
-    /// What it was: see [`EventCode`].
+    /// The kind of event: see [`EventCode`].
     pub code: u32,
-    /// Which sensor or actuator, the first being 0.
+    /// The index of the sensor or actuator, from 0.
     pub index: u32,
-    /// What the code says they are.
+    /// Their meaning depends on the code.
     pub values: [u64; 3],
-    /// In words.
+    /// As text.
     pub text: Text<208>,
 }
 
-/// What happened; in brackets what [`Event::values`] are.
+/// The kind of event; in brackets the meaning of [`Event::values`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(u32)]
 pub enum EventCode {
-    /// Something that the loop itself does not know.
+    /// Not an event of the loop.
     Remark = 0,
     /// The loop's state changed (phase before, phase now, faults that led to
     /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
     StateChanged = 1,
     /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
     Ordered = 2,
-    /// Somebody wanted to engage and may not (what blocks it).
+    /// Engaging was refused (the engage inhibits).
     EngageRefused = 3,
-    /// A sensor goes wrong.
+    /// A sensor failed.
     SensorFault = 4,
     /// A sensor works again.
     SensorRecovered = 5,
-    /// An actuator goes wrong.
+    /// An actuator failed.
     ActuatorFault = 6,
     /// An actuator works again.
     ActuatorRecovered = 7,
-    /// Records are lost that nobody fetched in time (count, first and last
-    /// tick).
+    /// Records were lost because they were not fetched in time (count, first
+    /// and last tick).
     RecordsDropped = 8,
-    /// Events are lost that nobody fetched in time (count, first and last
-    /// tick).
+    /// Events were lost because they were not fetched in time (count, first and
+    /// last tick).
     EventsDropped = 9,
-    /// Records did not make it into the recording (count, first and last tick).
+    /// Records are not in the recording (count, first and last tick).
     NotRecorded = 10,
-    /// The actuators were told to give control back (1 if all of them did).
+    /// The actuators were released (1 if all succeeded).
     Released = 11,
     /// A part of the loop panicked.
     Panicked = 12,
     /// The timer failed.
     TimerFailed = 13,
-    /// Ticks begin to overrun (how long it took, its budget, the stage that
-    /// took longest); the index is the stage whose budget it was. Stages: 0 the
-    /// timer, 1 sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6
-    /// the whole tick.
+    /// Ticks begin to overrun (duration, budget, the stage that took longest);
+    /// the index is the stage whose budget was exceeded. Stages: 0 the timer, 1
+    /// sensors, 2 estimate, 3 guide, 4 control, 5 actuators, 6 the whole tick.
     Overrun = 14,
     /// No tick has overrun for a second (count, first and last tick).
     OverrunsOver = 15,
-    /// The loop hung (how long without progress).
+    /// The loop hung (time without progress).
     Hung = 16,
     /// Readings are taken from another sensor than before (which, one bit each;
     /// the sensor before); the index is the sensor now.
@@ -73,7 +72,7 @@ pub enum EventCode {
 }
 
 impl Event {
-    /// An event of a flight; `text` tells it in words.
+    /// From an event of the loop and its text.
     pub fn new<O: Copy>(event: &framework::Event<O>, text: &str) -> Self {
         let (code, index, values) = numbers(event);
         Self {
@@ -86,7 +85,7 @@ impl Event {
         }
     }
 
-    /// Something that the loop itself does not know, said at one of its ticks.
+    /// A remark at one of the loop's ticks: not an event of the loop.
     pub fn remark(tick: u64, time_ns: i64, text: &str) -> Self {
         Self {
             tick,
@@ -158,7 +157,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             let values = [change.readings.bits().into(), change.from.into(), 0];
             (EventCode::SourceChanged, change.to.into(), values)
         }
-        // One that this version has no number for still has its words.
+        // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),
     }
 }

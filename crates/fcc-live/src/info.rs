@@ -1,20 +1,20 @@
-//! Who publishes, and in which layout.
+//! The publishing daemon and its layouts.
 
 use nix::sys::time::TimeValLike;
 use nix::time::{ClockId, clock_gettime};
 
 use super::{Event, LAYOUT, Status, Text};
 
-/// Who publishes, in which layout, and under which conditions.
+/// The publishing daemon, its layouts and its conditions.
 ///
-/// This layout is for all time: it is what a program of any version reads first
-/// to know whether it understands the rest.
+/// This layout never changes: a program of any version reads it first to know
+/// whether it can read the rest.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(C)]
 pub struct Info {
     /// The version of all other layouts: [`LAYOUT`].
     pub layout: u32,
-    /// Size of a record, which the plant's types say.
+    /// Size of a record, which depends on the plant.
     pub record_bytes: u32,
     /// Size of an event.
     pub event_bytes: u32,
@@ -26,31 +26,31 @@ pub struct Info {
     pub priority: i32,
     /// 1 if all of the daemon's memory is locked, else 0.
     pub memory_locked: u32,
-    /// How many real-time wishes the kernel refused.
+    /// How many real-time requests the kernel denied.
     pub requests_denied: u32,
-    /// When the daemon began to publish, ns since 1970, UTC.
+    /// When publishing began, ns since 1970, UTC.
     pub started_unix_ns: i64,
-    /// The same instant on the loop's clock, ns: the difference turns the times
-    /// of records into times of day.
+    /// The same instant on the loop's clock, ns: the difference converts the
+    /// times of records to wall-clock time.
     pub started_ns: i64,
-    /// Ticks a second, nominal.
+    /// Nominal ticks per second.
     pub rate_hz: f64,
     /// Version of the daemon.
     pub software: Text<32>,
     /// The commit it was built from; empty if unknown.
     pub commit: Text<48>,
-    /// What wakes the loop: `timerfd`, `posix`, `nanosleep`.
+    /// The loop's timer: `timerfd`, `posix`, `nanosleep`.
     pub timer: Text<16>,
-    /// Scheduling of the loop's thread: `SCHED_FIFO`, `SCHED_OTHER`.
+    /// Scheduling policy of the loop's thread: `SCHED_FIFO`, `SCHED_OTHER`.
     pub policy: Text<16>,
-    /// What is flown, in words.
+    /// The name of the aircraft.
     pub aircraft: Text<64>,
-    /// The refused wishes, in words.
+    /// The denied requests, as text.
     pub refusals: Text<280>,
 }
 
 impl Default for Info {
-    /// The layout of this version; all else unknown.
+    /// The layout of this version; everything else unknown.
     fn default() -> Self {
         Self {
             layout: LAYOUT,
@@ -75,7 +75,7 @@ impl Default for Info {
 }
 
 impl Info {
-    /// This process as it begins to publish: process, time and layout.
+    /// This process at the start of publishing: process, time and layout.
     pub fn of_this_process() -> Self {
         let now_ns = |clock| clock_gettime(clock).map_or(0, |now| now.num_nanoseconds());
         Self {
@@ -86,8 +86,8 @@ impl Info {
         }
     }
 
-    /// Whether events and status are laid out as this program knows them, and
-    /// records by the same rules.
+    /// Whether this program has the same layouts of events and status, and the
+    /// same rules for records.
     pub fn is_understood(&self) -> bool {
         let own = Self::default();
         (self.layout, self.event_bytes, self.status_bytes)

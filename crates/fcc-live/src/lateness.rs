@@ -1,10 +1,10 @@
-//! How late the loop woke, counted.
+//! Counts lateness.
 
 use fcc_core::framework::Tick;
 use hdrhistogram::Histogram;
 
 /// Upper bounds of the bins of [`LatenessCounts`], ns: half decades from 100 ns
-/// on. One more bin counts what lies above.
+/// on. One more bin counts what is above.
 pub const LATENESS_BOUNDS_NS: [u64; 13] = [
     100,
     316,
@@ -21,11 +21,11 @@ pub const LATENESS_BOUNDS_NS: [u64; 13] = [
     100_000_000,
 ];
 
-/// How many ticks woke how late: bin `n` counts those above bound `n - 1` and
-/// up to bound `n` of [`LATENESS_BOUNDS_NS`].
+/// Ticks by lateness: bin `n` counts those above bound `n - 1` and up to bound
+/// `n` of [`LATENESS_BOUNDS_NS`].
 pub type LatenessCounts = [u64; LATENESS_BOUNDS_NS.len() + 1];
 
-/// How late the loop woke since it started.
+/// Lateness since the start of the loop.
 pub(super) struct Lateness {
     quantiles: Option<Histogram<u64>>,
     pub(super) counts: LatenessCounts,
@@ -37,7 +37,8 @@ pub(super) struct Lateness {
 impl Lateness {
     pub(super) fn new() -> Self {
         Self {
-            // Three figures of anything up to a minute; fixed bounds cannot fail.
+            // Three significant digits up to a minute; fixed bounds cannot
+            // fail.
             quantiles: Histogram::new_with_bounds(1, 60_000_000_000, 3).ok(),
             counts: LatenessCounts::default(),
             ticks: 0,
@@ -60,7 +61,7 @@ impl Lateness {
         }
     }
 
-    /// Lateness that this share of the ticks stayed within, ns.
+    /// The lateness that this share of the ticks did not exceed, ns.
     pub(super) fn quantile_ns(&self, share: f64) -> u64 {
         self.quantiles.as_ref().map_or(0, |quantiles| {
             quantiles.value_at_quantile(share).min(self.max_ns)

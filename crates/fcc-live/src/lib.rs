@@ -1,13 +1,11 @@
-//! What happens, live: each record and event in shared memory, for whoever
-//! watches.
+//! Live telemetry: each record and event in shared memory, for other programs.
 //!
-//! The daemon hands what its loop tells to a [`Publisher`], which never waits;
-//! a thread of its own, `fcc-live`, puts it into shared memory by iceoryx2. The
-//! loop's thread does not know that this exists: a watcher that joins, leaves,
-//! hangs or is killed costs it nothing.
+//! The daemon passes the loop's messages to a [`Publisher`], which never waits;
+//! its thread, `fcc-live`, puts them into shared memory with iceoryx2. Watchers
+//! that join, leave, hang or are killed have no effect on the loop's thread.
 //!
-//! Whoever watches opens a [`Watcher`]; programs in other languages read the
-//! same services by the layouts in `docs/telemetry.md`:
+//! A program opens a [`Watcher`]; programs in other languages read the same
+//! services by the layouts in `docs/telemetry.md`:
 //!
 //! | service | what | history |
 //! |---|---|---|
@@ -16,11 +14,11 @@
 //! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
 //! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
 //!
-//! Commands come in the other way: a [`Commander`] asks by the service
-//! `fcc/INSTANCE/command/v2`, and learns what became of it.
+//! Commands are sent the other way: a [`Commander`] uses the service
+//! `fcc/INSTANCE/command/v2` and receives the result.
 //!
 //! The layout of `info` never changes, so that a reader of another version can
-//! say what it found. Everything else bears a version: [`LAYOUT`].
+//! report what it found. Everything else has a version: [`LAYOUT`].
 
 mod command;
 mod error;
@@ -38,8 +36,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    Asked, COMMANDS_VERSION, CommandError, Commander, FlightCommand, NewSetpoints, OutsideLimits,
-    Quantity, Unflyable, Verdict,
+    COMMANDS_VERSION, CommandError, Commander, FlightCommand, InvalidCommand, NewSetpoints,
+    OutsideLimits, PendingCommand, Quantity, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
@@ -55,6 +53,6 @@ pub use text::Text;
 pub use watcher::Watcher;
 pub use watcher::WatcherOf;
 
-/// The version of all layouts but [`Info`]'s. Whoever changes one of them,
-/// a field's meaning included, counts this up.
+/// The version of all layouts except [`Info`]'s. Increase it with every change
+/// of one of them, or of a field's meaning.
 pub const LAYOUT: u32 = 2;

@@ -2,11 +2,11 @@
 //! for the names in `/dev/shm`.
 //!
 //! By default iceoryx2 puts the files of all users into one folder, which then
-//! belongs to whoever came first, and gives the shared memory of two services
-//! of one name the same name. Here each user has a folder that nobody else can
-//! open. It is in `/dev/shm` and not in `/tmp`, so that it goes when the shared
-//! memory goes (a reboot, the `RemoveIPC` of systemd-logind) and no cleaner of
-//! old files takes it from a daemon that flies for weeks.
+//! belongs to the user who came first, and gives the shared memory of two
+//! services of one name the same name. Here each user has a folder that no
+//! other user can open. It is in `/dev/shm` and not in `/tmp`: it is removed
+//! together with the shared memory (a reboot, `RemoveIPC` of systemd-logind),
+//! and no cleaner of old files removes it while a daemon runs for weeks.
 
 use std::fs::{self, DirBuilder, Metadata, Permissions};
 use std::io::ErrorKind;
@@ -19,11 +19,11 @@ use nix::unistd::{Uid, User, geteuid};
 
 use super::space::SHARED_MEMORY;
 
-/// Begins the name of a user's folder; the user's number follows.
+/// The beginning of the name of a user's folder; the user's number follows.
 const FOLDER: &str = "fccd-";
 const OWNER_ONLY: u32 = 0o700;
 
-/// Where a user's shared memory is.
+/// The folder and the file names of a user's shared memory.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Place {
     /// The user.
@@ -33,7 +33,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// That of the user who runs this program.
+    /// For the user who runs this program.
     pub(super) fn of_this_user() -> Self {
         Self {
             user: geteuid(),
@@ -41,7 +41,7 @@ impl Place {
         }
     }
 
-    /// What iceoryx2 needs to know.
+    /// The configuration of iceoryx2.
     fn config(&self) -> Result<Config, String> {
         let mut config = Config::default();
         let root = self.folder();
@@ -57,26 +57,26 @@ impl Place {
         self.root.join(format!("{FOLDER}{}", self.user))
     }
 
-    /// Begins the names of the user's files beside the folder.
+    /// The beginning of the names of the user's files beside the folder.
     fn prefix(&self) -> String {
         format!("{FOLDER}{}_", self.user)
     }
 
-    /// Makes the folder if there is none, and sees to it that it is the user's
-    /// alone.
+    /// Creates the folder if it is missing, and makes it accessible to the user
+    /// only.
     ///
     /// # Errors
-    /// Why it cannot be used, in words.
+    /// Why it cannot be used, as text.
     pub(super) fn prepare(&self) -> Result<Config, String> {
         let folder = self.folder();
         let made = DirBuilder::new().mode(OWNER_ONLY).create(&folder);
         match made {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                return Err(format!("{} cannot be made: {error}", folder.display()));
+                return Err(format!("{} cannot be created: {error}", folder.display()));
             }
             _ => {}
         }
-        // Not through a link that somebody else has put there.
+        // Not through a link that another user has placed there.
         let found = fs::symlink_metadata(&folder)
             .map_err(|error| format!("{}: {error}", folder.display()))?;
         self.check(&folder, &found)?;
@@ -105,7 +105,7 @@ impl Place {
     }
 
     /// Explains a failure by the first of this user's files that belongs to
-    /// somebody else; none if all are the user's own.
+    /// another user; none if all are the user's own.
     pub(super) fn foreign_file(&self) -> Option<String> {
         let beside = entries(&self.root).filter(|path| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -123,8 +123,8 @@ impl Place {
             })
     }
 
-    /// Users other than this one who have a folder here, in words: theirs may be
-    /// the daemon that is looked for.
+    /// The other users who have a folder here, as text: the daemon may be
+    /// theirs.
     pub(super) fn other_users(&self) -> Vec<String> {
         let mut users: Vec<_> = entries(&self.root)
             .filter_map(|path| {
@@ -145,7 +145,7 @@ fn entries(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
     found.flatten().map(|entry| entry.path())
 }
 
-/// What `sudo -u` takes.
+/// The user's name as `sudo -u` takes it.
 fn login(user: Uid) -> String {
     match User::from_uid(user) {
         Ok(Some(found)) => found.name,
@@ -183,12 +183,12 @@ mod tests {
         let [ours, theirs] = [&ours, &theirs].map(|place| place.config().unwrap().global);
         assert_ne!(ours.root_path(), theirs.root_path());
         assert_ne!(ours.prefix, theirs.prefix);
-        // Neither is the other's beginning: a user 1 has nothing of a user 11.
+        // Neither is a prefix of the other: user 1 has no file of user 11.
         assert!(ours.prefix.as_bytes().ends_with(b"_"));
     }
 
     #[test]
-    fn the_folder_is_the_users_alone_and_stays_so() {
+    fn the_folder_is_accessible_to_its_user_only() {
         let root = tempfile::tempdir().unwrap();
         let ours = place(root.path(), geteuid());
         ours.prepare().unwrap();
@@ -199,9 +199,9 @@ mod tests {
     }
 
     #[test]
-    fn what_belongs_to_another_is_named_with_both() {
+    fn a_foreign_file_is_reported_with_both_users() {
         let root = tempfile::tempdir().unwrap();
-        // As seen by another user, what is made here is a stranger's.
+        // For another user, the folder created here belongs to a stranger.
         let theirs = place(root.path(), stranger());
         fs::create_dir(theirs.folder()).unwrap();
         let words = theirs.prepare().unwrap_err();
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn others_are_known_by_their_folders() {
+    fn other_users_are_found_by_their_folders() {
         let root = tempfile::tempdir().unwrap();
         let ours = place(root.path(), geteuid());
         ours.prepare().unwrap();

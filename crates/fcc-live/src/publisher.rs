@@ -1,4 +1,4 @@
-//! The daemon's end: takes what is to be published, and never waits.
+//! The daemon's side: takes messages to publish, without waiting.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -9,21 +9,17 @@ use std::time::Duration;
 use fcc_core::framework::RecordOf;
 use rtrb::{Producer, RingBuffer};
 
-use super::command::{Asked, CommandServer, Ends, Verdict};
+use super::command::{CommandServer, Ends, PendingCommand, Verdict};
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use fcc_telemetry::{Instance, Telemetry};
 
-/// What waits to be published: two seconds of records at 1 kHz. When a watcher
-/// joins or leaves, the publishing thread may be held up for one.
-const WAITING: usize = 2_048;
-
-/// How long publishing may take to start, and to end. Neither a flight nor its
-/// end waits longer.
+/// How long the start and the end of publishing may take. A flight waits no
+/// longer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// What goes to the publishing thread: plain data of a fixed size, which could
-/// as well go to another process.
+/// Input of the publishing thread: plain data of a fixed size, which another
+/// process could take as well.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 #[expect(
@@ -31,28 +27,28 @@ const PATIENCE: Duration = Duration::from_secs(2);
     reason = "nearly all are records, and the ring's slots have their size"
 )]
 pub(super) enum Item<C: Telemetry> {
-    /// Each tick.
+    /// A tick.
     Record(RecordOf<C>),
-    /// What happened once.
+    /// An event.
     Event(Event),
-    /// Who publishes; once, and again if it changes.
+    /// The publishing daemon; again if it changes.
     Info(Info),
-    /// How recording goes.
+    /// The state of recording.
     Recorder(RecorderStatus),
 }
 
-/// Publishes a flight to whoever watches.
+/// Publishes a flight.
 #[cfg(feature = "flight")]
 pub type Publisher = PublisherOf<fcc_core::flight::Autopilot>;
 
-/// Publishes what happens to whoever watches.
+/// Publishes the messages of a loop.
 ///
-/// Everything handed over goes to a thread of its own by a ring; where that is
-/// full, it is left out and counted. Dropping a publisher ends the services.
+/// Messages go through a ring to a separate thread. If the ring is full, they
+/// are dropped and counted. Dropping a publisher ends the services.
 #[derive(Debug)]
 pub struct PublisherOf<C: Telemetry> {
     ring: Producer<Item<C>>,
-    /// Records for which there was no room, for the next status.
+    /// Dropped records, for the next status.
     left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
     words: Receiver<String>,
@@ -61,30 +57,36 @@ pub struct PublisherOf<C: Telemetry> {
 }
 
 impl<C: Telemetry> PublisherOf<C> {
-    /// Starts to publish as `instance`, and takes no commands.
+    /// Starts to publish as `instance`, without commands. Up to `waiting` records
+    /// wait to be published: two seconds of them are enough, because a watcher
+    /// that joins or leaves may delay the publishing thread by one.
     ///
     /// # Errors
-    /// When there is no shared memory to be had, or the name is taken. Whoever
-    /// flies goes on without.
-    pub fn start(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, false)
+    /// When no shared memory is available, or the name is taken. The flight
+    /// continues without.
+    pub fn start(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, false)
     }
 
-    /// Starts to publish as `instance`, and to take commands: who flies looks
-    /// for them by [`next_command`](Self::next_command) and answers each.
+    /// Starts to publish as `instance`, and to receive commands: poll
+    /// [`next_command`](Self::next_command) and answer each.
     ///
     /// # Errors
     /// As [`start`](Self::start).
-    pub fn start_with_commands(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, true)
+    pub fn start_with_commands(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, true)
     }
 
-    fn start_thread(instance: &Instance, takes_orders: bool) -> Result<Self, PublishError> {
-        let (ring, items) = RingBuffer::new(WAITING);
+    fn start_thread(
+        instance: &Instance,
+        waiting: usize,
+        takes_commands: bool,
+    ) -> Result<Self, PublishError> {
+        let (ring, items) = RingBuffer::new(waiting.max(1));
         let (started, start) = mpsc::sync_channel::<Started>(1);
-        // More than the thread will ever have to say unheard.
+        // More than the thread ever reports between two polls.
         let (say, words) = mpsc::sync_channel(16);
-        let (commands, rings) = takes_orders.then(CommandServer::rings).unzip();
+        let (commands, rings) = takes_commands.then(CommandServer::rings).unzip();
         let owned = instance.clone();
         let left_out = Arc::new(AtomicU64::new(0));
         let seen = Arc::clone(&left_out);
@@ -104,12 +106,12 @@ impl<C: Telemetry> PublisherOf<C> {
             }),
             Ok(Err(error)) => Err(error),
             Err(RecvTimeoutError::Timeout) => Err(PublishError::NoSharedMemory(
-                "it does not answer: end all programs of this user that fly or watch, then remove \
-                 what they left, /dev/shm/fccd-*"
+                "it does not respond: end all programs of this user that fly or watch, then remove \
+                 their files, /dev/shm/fccd-*"
                     .to_owned(),
             )),
             Err(RecvTimeoutError::Disconnected) => Err(PublishError::NoSharedMemory(
-                "iceoryx2 failed: its words are above".to_owned(),
+                "iceoryx2 failed: see its message above".to_owned(),
             )),
         }
     }
@@ -119,12 +121,13 @@ impl<C: Telemetry> PublisherOf<C> {
         self.put(Item::Record(*record));
     }
 
-    /// Publishes what happened once.
+    /// Publishes an event.
     pub fn event(&mut self, event: Event) {
         self.put(Item::Event(event));
     }
 
-    /// Publishes who publishes; before this nobody can watch.
+    /// Publishes information about the daemon; before this, no program can
+    /// watch.
     pub fn describe(&mut self, info: Info) {
         let record_bytes = size_of::<C::Words>() as u32;
         self.put(Item::Info(Info {
@@ -133,40 +136,40 @@ impl<C: Telemetry> PublisherOf<C> {
         }));
     }
 
-    /// Tells how recording goes: it is in the next status.
+    /// Sets the state of recording, for the next status.
     pub fn recorder(&mut self, status: RecorderStatus) {
         self.put(Item::Recorder(status));
     }
 
-    /// The next command from another program, if there is one. Each wants its
+    /// The next command from another program, if there is one. Give each an
     /// [`answer`](Self::answer).
-    pub fn next_command(&mut self) -> Option<Asked> {
+    pub fn next_command(&mut self) -> Option<PendingCommand> {
         self.commands.as_ref()?.commands.try_recv().ok()
     }
 
-    /// Says what became of a command.
+    /// Answers a command.
     pub fn answer(&mut self, id: u64, verdict: Verdict) {
         if let Some(ends) = &self.commands {
-            // As many answers as commands have room; a thread that is gone has
-            // nobody to tell.
+            // There is room for the answers to all queued commands. If the
+            // thread has ended, no program waits.
             let _ = ends.verdicts.try_send((id, verdict));
         }
     }
 
-    /// Wakes the publishing thread: what was handed over is published now and
-    /// not within the next 20 ms.
+    /// Wakes the publishing thread: messages are published now and not within
+    /// the next 20 ms.
     pub fn flush(&self) {
         self.thread.thread().unpark();
     }
 
-    /// Trouble, or the end of it, in words; none if there is nothing new.
+    /// A new failure, or its end, as text; none if there is nothing new.
     pub fn poll(&mut self) -> Option<String> {
         if let Ok(words) = self.words.try_recv() {
             return Some(words);
         }
         if self.ring.is_abandoned() && !self.over {
             self.over = true;
-            return Some("live telemetry has failed: nobody can watch from here on".to_owned());
+            return Some("live telemetry has failed: no program can watch any more".to_owned());
         }
         None
     }
@@ -181,7 +184,8 @@ impl<C: Telemetry> PublisherOf<C> {
 
 impl<C: Telemetry> Drop for PublisherOf<C> {
     fn drop(&mut self) {
-        // The thread sees the ring abandoned; what is in it is still published.
+        // The thread finds the ring abandoned; what is in it is still
+        // published.
         let (ring, _) = RingBuffer::new(1);
         drop(std::mem::replace(&mut self.ring, ring));
         self.flush();

@@ -1,4 +1,4 @@
-//! What lies in shared memory, and what other programs know it by.
+//! Types in shared memory, and their names for other programs.
 
 #![expect(unsafe_code, reason = "iceoryx2 asks for a promise about layouts")]
 

@@ -1,4 +1,4 @@
-//! The services, as both ends open them.
+//! The services, for both sides.
 
 use std::fmt::Debug;
 
@@ -15,32 +15,33 @@ use super::place::Place;
 use super::{LAYOUT, PublishError, WatchError};
 use fcc_telemetry::Instance;
 
-/// Programs that may watch one daemon at the same time. One more is told that
-/// there is no room; the others and the daemon do not notice it. The room of
-/// one that was killed is free again within a second.
+/// The number of programs that may watch one daemon at the same time. One more
+/// is refused, without effect on the others and the daemon. The place of a
+/// killed program is free again within a second.
 pub const MAX_WATCHERS: usize = 64;
 
-/// Records that wait for a watcher: one second at 1 kHz. Who looks less often
-/// finds the newest; the gap shows in the ticks' numbers.
+/// Records queued for a watcher: one second at 1 kHz. A slower watcher gets the
+/// newest; it finds the gap from the ticks' numbers.
 pub const RECORD_BUFFER: usize = 1_024;
 
-/// Events of the past that a watcher finds when it comes, and how many wait.
+/// Past events that a new watcher receives, and the length of its queue.
 pub const EVENT_HISTORY: usize = 64;
 
-/// Processes that may hold a service open: the watchers, the daemon, and some
-/// that were killed and not cleaned up yet, or only look whether there is room.
+/// Processes that may have a service open: the watchers, the daemon, and some
+/// that were killed and not cleaned up yet, or only check whether there is
+/// room.
 const MAX_NODES: usize = MAX_WATCHERS + 32;
 
 /// Samples that a watcher may hold at once.
 const BORROWED: usize = 2;
 
-/// Shared memory between processes. Both ends may move between threads, as a
-/// Python program's objects do; the same services as those of iceoryx2's
+/// Shared memory between processes. Both sides may move between threads, as a
+/// Python program's objects do; compatible with the services of iceoryx2's
 /// single-threaded kind.
 pub(super) type Ipc = ipc_threadsafe::Service;
 /// A service of plain data.
 pub(super) type Service<T> = PortFactory<Ipc, T, ()>;
-/// An end of a service that writes.
+/// The writing side of a service.
 pub(super) type Out<T> = Publisher<Ipc, T, ()>;
 /// A process' access to all services.
 pub(super) type Access = Node<Ipc>;
@@ -54,7 +55,7 @@ pub(super) struct Topic {
     history: usize,
 }
 
-/// Who publishes.
+/// Information about the daemon.
 pub(super) const INFO: Topic = Topic {
     name: "info",
     versioned: false,
@@ -68,14 +69,14 @@ pub(super) const RECORD: Topic = Topic {
     buffer: RECORD_BUFFER,
     history: 1,
 };
-/// What happened once.
+/// Events.
 pub(super) const EVENT: Topic = Topic {
     name: "event",
     versioned: true,
     buffer: EVENT_HISTORY,
     history: EVENT_HISTORY,
 };
-/// How the run stands.
+/// The status of the run.
 pub(super) const STATUS: Topic = Topic {
     name: "status",
     versioned: true,
@@ -90,25 +91,25 @@ impl Topic {
         } else {
             format!("fcc/{instance}/{}", self.name)
         };
-        // An instance's name has no letter that a service's may not have.
+        // Every valid instance name is a valid part of a service name.
         ServiceName::new(&name).ok()
     }
 
-    /// All samples that can be in use at once. Whoever is slow holds the newest
-    /// ones, as everyone does, and those it has borrowed: far less than the
-    /// product of watchers and buffer that is reserved by default.
+    /// All samples that can be in use at once. Slow watchers share the newest
+    /// ones, and each has those it has borrowed: far less than the product of
+    /// watchers and buffer that is reserved by default.
     const fn samples(self) -> usize {
         self.buffer + self.history + MAX_WATCHERS * BORROWED + 16
     }
 
-    /// Opens the writing end, and makes the service if there is none.
+    /// Opens the writing side, and creates the service if it does not exist.
     pub(super) fn publish<T: Debug + ZeroCopySend + 'static>(
         self,
         access: &Access,
         instance: &Instance,
     ) -> Result<(Service<T>, Out<T>), PublishError> {
         let name = self.service_name(instance).ok_or_else(|| {
-            PublishError::NoSharedMemory(format!("'{instance}' cannot name a service"))
+            PublishError::NoSharedMemory(format!("'{instance}' is not a valid service name"))
         })?;
         let service = access
             .service_builder(&name)
@@ -119,7 +120,8 @@ impl Topic {
             .subscriber_max_buffer_size(self.buffer)
             .subscriber_max_borrowed_samples(BORROWED)
             .history_size(self.history)
-            // The oldest makes room: nobody waits for a watcher that hangs.
+            // The oldest is overwritten: nothing waits for a watcher that
+            // hangs.
             .enable_safe_overflow(true)
             .open_or_create()
             .map_err(|error| refused(error, instance))?;
@@ -138,7 +140,7 @@ impl Topic {
         Ok((service, publisher))
     }
 
-    /// Opens the reading end; never makes a service.
+    /// Opens the reading side; never creates a service.
     pub(super) fn watch<T: Debug + ZeroCopySend + 'static>(
         self,
         access: &Access,
@@ -184,27 +186,27 @@ fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> Pub
     }
 }
 
-/// A failure of iceoryx2 in words: files of another user among this one's, which
-/// it calls an internal error, or else what it says itself.
+/// A failure of iceoryx2 as text: either it is caused by another user's files,
+/// which iceoryx2 reports as an internal error, or iceoryx2's own error.
 pub(super) fn explained(error: &impl Debug) -> String {
     let foreign = Place::of_this_user().foreign_file();
     foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}"))
 }
 
 /// This process' access to the services of all daemons of its user. Cleans up
-/// after processes that were killed.
+/// after killed processes.
 ///
 /// # Errors
-/// Why there is no shared memory, in words.
+/// Why there is no shared memory, as text.
 pub(super) fn access() -> Result<Access, String> {
     let config = Place::of_this_user().prepare()?;
     let access = NodeBuilder::new()
         .config(&config)
-        // The daemon and its commands have ways of their own with signals.
+        // The daemon and its commands handle signals themselves.
         .signal_handling_mode(SignalHandlingMode::Disabled)
         .create::<Ipc>()
         .map_err(|error| explained(&error))?;
-    // Whatever the global configuration says of cleaning up.
+    // Whatever the global configuration of iceoryx2 says about cleaning up.
     access.try_cleanup_dead_nodes();
     Ok(access)
 }

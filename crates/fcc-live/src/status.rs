@@ -1,8 +1,8 @@
-//! How a run stands, each second.
+//! The status of a run, each second.
 
 use super::{LatenessCounts, Text};
 
-/// How a run stands: published each second.
+/// The status of a run, published each second.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 #[repr(C)]
 pub struct Status {
@@ -10,19 +10,19 @@ pub struct Status {
     pub time_ns: i64,
     /// Ticks since the loop's start.
     pub ticks: u64,
-    /// Periods that passed unserved since the loop's start.
+    /// Missed periods since the loop's start.
     pub missed: u64,
-    /// Lateness that half of all ticks stayed within, ns.
+    /// Lateness that half of all ticks did not exceed, ns.
     pub lateness_p50_ns: u64,
-    /// Lateness that 99 % stayed within, ns.
+    /// Lateness that 99 % did not exceed, ns.
     pub lateness_p99_ns: u64,
-    /// Lateness that 99.9 % stayed within, ns.
+    /// Lateness that 99.9 % did not exceed, ns.
     pub lateness_p99_9_ns: u64,
-    /// The latest wake-up, ns.
+    /// The greatest lateness, ns.
     pub lateness_max_ns: u64,
-    /// How many ticks woke how late.
+    /// Ticks by lateness.
     pub lateness_counts: LatenessCounts,
-    /// Records that were not published: the telemetry thread was held up, or
+    /// Records that were not published: the telemetry thread was delayed, or
     /// shared memory was full.
     pub not_published: u64,
     /// CPU time that the telemetry thread has used, ns.
@@ -33,7 +33,7 @@ pub struct Status {
     pub recorder_state: u32,
     /// Records in the file.
     pub recorded: u64,
-    /// Records that did not make it into the file.
+    /// Records that are not in the file.
     pub not_recorded: u64,
     /// Size of the file.
     pub recording_bytes: u64,
@@ -45,24 +45,24 @@ pub struct Status {
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[repr(u32)]
 pub enum RecorderState {
-    /// Nothing was asked of it.
+    /// Recording is off.
     #[default]
     Off = 0,
-    /// It writes.
+    /// Writing.
     Recording = 1,
-    /// It cannot write: the disk is full, or the folder read-only.
+    /// Cannot write: the disk is full, or the folder is read-only.
     Stopped = 2,
 }
 
-/// What is known of the recorder.
+/// The recorder's state and figures.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 #[repr(C)]
 pub struct RecorderStatus {
-    /// What it is doing.
+    /// Its state.
     pub state: RecorderState,
     /// Records in the file.
     pub recorded: u64,
-    /// Records that did not make it into the file.
+    /// Records that are not in the file.
     pub not_recorded: u64,
     /// Size of the file.
     pub bytes: u64,
@@ -71,7 +71,7 @@ pub struct RecorderStatus {
 }
 
 impl Status {
-    /// What the recorder is doing; off where the number means nothing.
+    /// The recorder's state; off if the number is unknown.
     pub fn recorder(&self) -> RecorderState {
         match self.recorder_state {
             1 => RecorderState::Recording,

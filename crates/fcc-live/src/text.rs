@@ -1,15 +1,14 @@
-//! Words of a fixed size.
+//! Text of a fixed size.
 
 use std::fmt;
 
-/// Words of at most `N` bytes of UTF-8, the rest filled with zeros: text that
-/// shared memory can hold.
+/// At most `N` bytes of UTF-8, padded with zeros: text in shared memory.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct Text<const N: usize>([u8; N]);
 
 impl<const N: usize> Text<N> {
-    /// As much of the words as there is room for.
+    /// As much of the text as fits.
     pub fn new(words: &str) -> Self {
         let room = words
             .char_indices()
@@ -24,8 +23,8 @@ impl<const N: usize> Text<N> {
         Self(bytes)
     }
 
-    /// The words. What another program wrote there may be anything: they end at
-    /// the first byte that is zero or no UTF-8.
+    /// The text. Another program may have written anything: it ends at the
+    /// first byte that is zero or invalid UTF-8.
     pub fn as_str(&self) -> &str {
         let words = self.0.split(|byte| *byte == 0).next().unwrap_or_default();
         match std::str::from_utf8(words) {
@@ -63,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_letter_is_cut_in_two() {
+    fn no_character_is_cut_in_two() {
         // "µ" takes two bytes.
         assert_eq!(Text::<4>::new("10 µs").as_str(), "10 ");
         assert_eq!(Text::<5>::new("10 µs").as_str(), "10 µ");
@@ -81,7 +80,7 @@ mod tests {
         }
 
         #[test]
-        fn words_come_back(words in "[^\0]{0,8}") {
+        fn text_is_read_back(words in "[^\0]{0,8}") {
             let text = Text::<32>::new(&words);
             prop_assert_eq!(text.as_str(), words);
         }

@@ -1,4 +1,4 @@
-//! The thread that publishes.
+//! The publishing thread.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
@@ -27,19 +27,19 @@ pub(super) const NAME: &str = "fcc-live";
 pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
     4 << 20
 } else {
-    1 << 20
+    512 << 10
 };
 
-/// How long it sleeps if nobody wakes it.
+/// How long it sleeps unless woken.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
-/// How often a status is published and killed watchers are cleaned up after.
+/// Interval of the status and of cleaning up after killed watchers.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
 
 /// Whether publishing began.
 pub(super) type Started = Result<(), PublishError>;
 
-/// Publishes what comes by the ring, until nobody can put anything there, and
-/// takes commands if there are rings for them.
+/// Publishes what comes through the ring until the ring is abandoned, and
+/// receives commands if there are rings for them.
 pub(super) fn publish<C: Telemetry>(
     instance: &Instance,
     commands: Option<Rings>,
@@ -51,7 +51,7 @@ pub(super) fn publish<C: Telemetry>(
     let mut thread = match Publishing::<C>::open(instance, commands) {
         Ok(thread) => thread,
         Err(error) => {
-            // The daemon waits for this; if it has given up, nobody does.
+            // The daemon waits for this, unless it has given up.
             let _ = started.send(Err(error));
             return;
         }
@@ -61,31 +61,31 @@ pub(super) fn publish<C: Telemetry>(
     }
     let mut next_status = Instant::now();
     loop {
-        // In this order: what was put there last is published, too.
+        // In this order: the last messages in the ring are published, too.
         let over = items.is_abandoned();
         if let Some(words) = thread.look_for_room() {
-            // Nobody listens to a daemon that says so much.
+            // Full only if the daemon does not read its messages.
             let _ = say.try_send(words);
         }
         while let Ok(item) = items.pop() {
             thread.take(&item);
         }
         if next_status <= Instant::now() || over {
-            // From now on: after a stall there is nothing to make up for.
+            // From now on: missed intervals are not made up for after a stall.
             next_status = Instant::now() + STATUS_EVERY;
-            thread.tell_status(left_out.load(Ordering::Relaxed));
+            thread.publish_status(left_out.load(Ordering::Relaxed));
         }
         if over {
             thread.close();
             return;
         }
-        thread.greet();
+        thread.connect_watchers();
         thread.take_commands();
         std::thread::park_timeout(LOOK_EVERY);
     }
 }
 
-/// Waits for a thread's end, but not for ever.
+/// Waits for a thread to end, for a limited time.
 pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
     let deadline = Instant::now() + at_most;
     while !thread.is_finished() && Instant::now() < deadline {
@@ -105,7 +105,7 @@ struct Publishing<C: Telemetry> {
     time_ns: i64,
     not_published: u64,
     paused: bool,
-    // Last: it cleans up after the others.
+    // Dropped last: it cleans up after the others.
     access: Access,
 }
 
@@ -115,7 +115,8 @@ impl<C: Telemetry> Publishing<C> {
             return Err(PublishError::NoSharedMemory(words));
         }
         let access = services::access().map_err(PublishError::NoSharedMemory)?;
-        // First of all, as its layout never changes: a name that is taken shows.
+        // First, because its layout never changes: a name that is taken is
+        // found here.
         let (_, infos) = INFO.publish(&access, instance)?;
         let (service, records) = RECORD.publish(&access, instance)?;
         let (_, events) = EVENT.publish(&access, instance)?;
@@ -139,27 +140,29 @@ impl<C: Telemetry> Publishing<C> {
         })
     }
 
-    /// Takes and answers commands; they wait while shared memory is nearly full.
+    /// Receives and answers commands; they wait while shared memory is nearly
+    /// full.
     fn take_commands(&mut self) {
         if let Some(desk) = self.desk.as_mut().filter(|_| !self.paused) {
             desk.serve();
         }
     }
 
-    /// Nothing comes any more: nor will answers.
+    /// No more commands or answers will come.
     fn close(&mut self) {
         if let Some(desk) = self.desk.take() {
             desk.close();
         }
     }
 
-    /// Pauses while shared memory is nearly full; gives words when that changes.
+    /// Pauses while shared memory is nearly full; returns a text when that
+    /// changes.
     fn look_for_room(&mut self) -> Option<String> {
         let too_little = space::too_little(space::LEAST_BYTES);
         let was_paused = std::mem::replace(&mut self.paused, too_little.is_some());
         match too_little {
-            Some(words) if !was_paused => Some(format!("live telemetry pauses: {words}")),
-            None if was_paused => Some("live telemetry goes on: there is room again".to_owned()),
+            Some(words) if !was_paused => Some(format!("live telemetry is paused: {words}")),
+            None if was_paused => Some("live telemetry continues: there is space again".to_owned()),
             _ => None,
         }
     }
@@ -180,7 +183,7 @@ impl<C: Telemetry> Publishing<C> {
             }
             Item::Event(event) => {
                 if !self.paused {
-                    // Nobody to tell that something could not be told.
+                    // A failure to publish cannot be reported to watchers.
                     let _ = self.events.send_copy(*event);
                 }
             }
@@ -193,8 +196,8 @@ impl<C: Telemetry> Publishing<C> {
         }
     }
 
-    /// Connects who has come since, and lets it have what it missed.
-    fn greet(&self) {
+    /// Connects new watchers, and sends them the history.
+    fn connect_watchers(&self) {
         if !self.paused {
             let _ = self.infos.update_connections();
             let _ = self.records.update_connections();
@@ -203,11 +206,11 @@ impl<C: Telemetry> Publishing<C> {
         }
     }
 
-    fn tell_status(&mut self, left_out: u64) {
+    fn publish_status(&mut self, left_out: u64) {
         if self.paused {
             return;
         }
-        // Who was killed still takes up room.
+        // A killed watcher still occupies a place.
         self.access.try_cleanup_dead_nodes();
         let status = Status {
             time_ns: self.time_ns,

@@ -1,4 +1,4 @@
-//! The reading end.
+//! The reading side.
 
 use std::time::{Duration, Instant};
 
@@ -13,8 +13,8 @@ use super::space;
 use super::{Event, Info, LAYOUT, Status, WatchError};
 use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
 
-/// How long a daemon may take to say who it is: long after one on a busy
-/// machine has. One that is gone is noticed at once.
+/// How long a daemon may take to publish its information: long enough for a
+/// busy machine. A daemon that has ended is noticed at once.
 const PATIENCE: Duration = Duration::from_secs(5);
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
@@ -48,17 +48,17 @@ pub struct WatcherOf<C: Telemetry> {
     events: In<Event>,
     statuses: In<Status>,
     service: Service<Published<C>>,
-    // Last: it cleans up after the others.
+    // Dropped last: it cleans up after the others.
     access: Access,
 }
 
 impl<C: Telemetry> WatcherOf<C> {
-    /// Begins to watch. The newest record, the newest status and up to 64
-    /// events of the past are there at once.
+    /// Starts to watch. The newest record, the newest status and up to 64 past
+    /// events are available at once.
     ///
     /// # Errors
-    /// When no daemon of this name runs here, when it is of a version with
-    /// another layout, and when there is no room for another watcher.
+    /// When no daemon of this name runs here, it publishes in another layout,
+    /// or the maximum number of programs is watching.
     pub fn open(instance: &Instance) -> Result<Self, WatchError> {
         if let Some(words) = space::too_little(space::WATCHER_BYTES) {
             return Err(WatchError::NoSharedMemory(words));
@@ -78,16 +78,15 @@ impl<C: Telemetry> WatcherOf<C> {
         })
     }
 
-    /// Who publishes.
+    /// The daemon.
     pub const fn info(&self) -> &Info {
         &self.info
     }
 
-    /// The newest record that was not given yet; those before it are passed
-    /// over.
+    /// The newest record not returned yet; earlier ones are skipped.
     ///
     /// # Errors
-    /// When what is there is no record, or shared memory fails.
+    /// When it is not a valid record, or shared memory fails.
     pub fn latest(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
         let mut newest = None;
         while let Some(found) = next(&self.records)? {
@@ -96,11 +95,12 @@ impl<C: Telemetry> WatcherOf<C> {
         newest.map(|found| self.record(&found)).transpose()
     }
 
-    /// The next record; none if there is none yet. Whoever looks less often
-    /// than each second at 1 kHz misses records: their ticks' numbers tell.
+    /// The next record; none if there is none yet. A watcher that polls less
+    /// often than each second at 1 kHz misses records: the ticks' numbers show
+    /// it.
     ///
     /// # Errors
-    /// When what is there is no record, or shared memory fails.
+    /// When it is not a valid record, or shared memory fails.
     pub fn next_record(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
         next(&self.records)?
             .map(|found| self.record(&found))
@@ -115,7 +115,7 @@ impl<C: Telemetry> WatcherOf<C> {
         next(&self.events)
     }
 
-    /// The newest status that was not given yet.
+    /// The newest status not returned yet.
     ///
     /// # Errors
     /// When shared memory fails.
@@ -127,8 +127,8 @@ impl<C: Telemetry> WatcherOf<C> {
         Ok(newest)
     }
 
-    /// Whether the daemon still publishes. Worth asking when nothing has come
-    /// for a while: it looks at the processes.
+    /// Whether the daemon still publishes. It checks processes: call it only
+    /// when no data has come for a while.
     pub fn is_alive(&self) -> bool {
         publishes(&self.access, &self.service)
     }
@@ -142,12 +142,12 @@ impl<C: Telemetry> WatcherOf<C> {
 }
 
 fn publishes<T: std::fmt::Debug + ZeroCopySend>(access: &Access, service: &Service<T>) -> bool {
-    // One that was killed is still in the list until somebody cleans up.
+    // A killed one stays in the list until it is cleaned up.
     access.try_cleanup_dead_nodes();
     service.dynamic_config().number_of_publishers() > 0
 }
 
-/// Whether this program understands what the daemon publishes.
+/// Whether this program can read what the daemon publishes.
 pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
     if info.is_understood() {
         return Ok(());
@@ -160,7 +160,7 @@ pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), Watch
     })
 }
 
-/// What a daemon says of itself.
+/// A daemon's information about itself.
 pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
     find_info(access, instance).map_err(|error| match error {
         WatchError::NotRunning(instance) => {
@@ -185,7 +185,7 @@ fn find_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
         if let Some(info) = newest {
             return Ok(info);
         }
-        // Another watcher may hold the service open when the daemon is gone.
+        // Another watcher may have the service open after the daemon has ended.
         if Instant::now() > deadline || service.dynamic_config().number_of_publishers() == 0 {
             return Err(WatchError::NotRunning(instance.clone()));
         }

@@ -1,21 +1,21 @@
-//! Commands between two programs on one machine: who gives them, and who flies.
+//! Commands between two programs on one machine.
 #![cfg(test)]
 
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
 use fcc_live::{
-    Asked, CommandError, Commander, FlightCommand, Info, NewSetpoints, Publisher, Text, Verdict,
-    WatchError,
+    CommandError, Commander, FlightCommand, Info, NewSetpoints, PendingCommand, Publisher, Text,
+    Verdict, WatchError,
 };
 use fcc_telemetry::Instance;
 
-/// Long after a healthy machine would have answered.
+/// Long after a healthy machine has answered.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A name that no other test and no daemon has.
+/// A name that no other test and no daemon uses.
 fn instance(test: &str) -> Instance {
-    format!("order-{}-{test}", std::process::id())
+    format!("command-{}-{test}", std::process::id())
         .parse()
         .unwrap()
 }
@@ -29,10 +29,10 @@ fn describe(mut publisher: Publisher) -> Publisher {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    describe(Publisher::start_with_commands(instance).unwrap())
+    describe(Publisher::start_with_commands(instance, 2_048).unwrap())
 }
 
-fn next(publisher: &mut Publisher) -> Asked {
+fn next(publisher: &mut Publisher) -> PendingCommand {
     let deadline = Instant::now() + PATIENCE;
     loop {
         publisher.flush();
@@ -51,10 +51,10 @@ const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
 });
 
 #[test]
-fn an_order_arrives_and_its_answer_goes_back() {
+fn a_command_arrives_and_its_answer_returns() {
     let instance = instance("answer");
     let mut publisher = started(&instance);
-    let told = thread::scope(|scope| {
+    let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
             let mut commander = Commander::open(&instance).unwrap();
             let first = commander.command(HEADING);
@@ -69,15 +69,15 @@ fn an_order_arrives_and_its_answer_goes_back() {
         publisher.flush();
         giver.join().unwrap()
     });
-    assert_eq!(told.0, Ok(77));
-    assert_eq!(told.1, Err(CommandError::Refused("too slow".to_owned())));
+    assert_eq!(result.0, Ok(77));
+    assert_eq!(result.1, Err(CommandError::Refused("too slow".to_owned())));
 }
 
 #[test]
-fn who_waits_when_the_flight_ends_is_told() {
+fn a_program_that_waits_is_answered_when_the_flight_ends() {
     let instance = instance("end");
     let mut publisher = started(&instance);
-    let told = thread::scope(|scope| {
+    let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
             Commander::open(&instance)
                 .unwrap()
@@ -87,18 +87,18 @@ fn who_waits_when_the_flight_ends_is_told() {
         drop(publisher);
         giver.join().unwrap()
     });
-    // Said by the daemon, or seen by its absence.
+    // Answered by the daemon, or detected by its absence.
     assert!(
         matches!(
-            &told,
-            Err(CommandError::Refused(words)) if words == "the flight is over"
-        ) || told == Err(CommandError::Unreachable(WatchError::NotRunning(instance))),
-        "{told:?}"
+            &result,
+            Err(CommandError::Refused(words)) if words == "the flight has ended"
+        ) || result == Err(CommandError::Unreachable(WatchError::NotRunning(instance))),
+        "{result:?}"
     );
 }
 
 #[test]
-fn what_cannot_be_flown_does_not_leave_the_program() {
+fn an_invalid_command_is_not_sent() {
     let instance = instance("nonsense");
     let mut publisher = started(&instance);
     let mut commander = Commander::open(&instance).unwrap();
@@ -115,25 +115,25 @@ fn what_cannot_be_flown_does_not_leave_the_program() {
 }
 
 #[test]
-fn a_daemon_that_takes_none_is_told_from_none_at_all() {
+fn a_daemon_without_commands_is_distinguished_from_none() {
     let instance = instance("none");
     assert_eq!(
         Commander::open(&instance).unwrap_err(),
         CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
     );
-    let _publisher = describe(Publisher::start(&instance).unwrap());
+    let _publisher = describe(Publisher::start(&instance, 2_048).unwrap());
     let words = Commander::open(&instance).unwrap_err().to_string();
     assert!(
-        words.contains("version 1.2.3, takes no commands"),
+        words.contains("version 1.2.3, accepts no commands"),
         "{words}"
     );
     assert!(words.contains("commands = false"), "{words}");
 }
 
 #[test]
-fn a_daemon_with_another_layout_is_refused_in_words() {
+fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start_with_commands(&instance).unwrap();
+    let mut publisher = Publisher::start_with_commands(&instance, 2_048).unwrap();
     publisher.describe(Info {
         layout: u32::MAX,
         software: Text::new("9.0.0"),

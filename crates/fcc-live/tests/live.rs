@@ -1,4 +1,4 @@
-//! A publisher and its watchers, as two programs on one machine see them.
+//! A publisher and its watchers, as two programs on one machine.
 #![cfg(test)]
 
 use std::thread::sleep;
@@ -11,10 +11,10 @@ use fcc_live::{
 };
 use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
 
-/// Long after a healthy machine would have answered.
+/// Long after a healthy machine has answered.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A name that no other test and no daemon has.
+/// A name that no other test and no daemon uses.
 fn instance(test: &str) -> Instance {
     format!("test-{}-{test}", std::process::id())
         .parse()
@@ -22,7 +22,7 @@ fn instance(test: &str) -> Instance {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    let mut publisher = Publisher::start(instance).unwrap();
+    let mut publisher = Publisher::start(instance, 2_048).unwrap();
     publisher.describe(Info {
         software: Text::new("1.2.3"),
         rate_hz: 40.0,
@@ -49,7 +49,7 @@ fn wait_for<T>(what: &str, mut look: impl FnMut() -> Option<T>) -> T {
         if let Some(found) = look() {
             return found;
         }
-        assert!(Instant::now() < deadline, "never came: {what}");
+        assert!(Instant::now() < deadline, "not received: {what}");
         sleep(Duration::from_millis(2));
     }
 }
@@ -73,7 +73,7 @@ fn each_record_arrives_once_and_in_order() {
 }
 
 #[test]
-fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
+fn a_late_watcher_gets_the_newest_record_the_status_and_past_events() {
     let instance = instance("late");
     let mut publisher = started(&instance);
     let event = FlightEvent {
@@ -95,7 +95,7 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
         publisher.record(&record(number));
     }
     publisher.flush();
-    // The status that knows all of it has been published.
+    // The status after all of these were published.
     let mut first = Watcher::open(&instance).unwrap();
     wait_for("a status of ten ticks", || {
         first
@@ -117,10 +117,10 @@ fn who_comes_late_finds_the_newest_record_the_status_and_the_events_before() {
     assert_eq!(status.recording.as_str(), "flight.mcap");
 }
 
-/// Each record is published or counted, also where they come faster than
-/// anybody can publish them.
+/// Each record is published or counted, even if they come faster than they can
+/// be published.
 #[test]
-fn what_is_not_published_is_counted() {
+fn dropped_records_are_counted() {
     let instance = instance("flood");
     let mut publisher = started(&instance);
     let mut watcher = Watcher::open(&instance).unwrap();
@@ -128,7 +128,7 @@ fn what_is_not_published_is_counted() {
     for number in 0..given {
         publisher.record(&record(number));
     }
-    // Its ring holds 2,048, and its thread looks every 20 ms.
+    // Its ring has room for 2,048, and its thread polls every 20 ms.
     let status = wait_for("a status of all records", || {
         watcher
             .latest_status()
@@ -146,7 +146,7 @@ fn a_watcher_notices_the_end_and_the_next_flight() {
     assert!(watcher.is_alive());
     drop(publisher);
     wait_for("the end", || (!watcher.is_alive()).then_some(()));
-    // The first watcher still holds the services open.
+    // The first watcher still has the services open.
     assert_eq!(
         Watcher::open(&instance).unwrap_err(),
         WatchError::NotRunning(instance.clone())
@@ -156,16 +156,16 @@ fn a_watcher_notices_the_end_and_the_next_flight() {
 }
 
 #[test]
-fn without_a_daemon_it_says_what_to_do() {
+fn without_a_daemon_the_error_says_what_to_do() {
     let words = Watcher::open(&instance("nobody")).unwrap_err().to_string();
     assert!(words.contains("no fccd named 'test-"), "{words}");
     assert!(words.contains("fccd fly --instance test-"), "{words}");
 }
 
 #[test]
-fn a_daemon_with_another_layout_is_refused_in_words() {
+fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start(&instance).unwrap();
+    let mut publisher = Publisher::start(&instance, 2_048).unwrap();
     publisher.describe(Info {
         layout: LAYOUT + 1,
         software: Text::new("9.0.0"),
@@ -186,13 +186,13 @@ fn a_name_is_taken_once() {
     let instance = instance("taken");
     let _first = started(&instance);
     assert_eq!(
-        Publisher::start(&instance).unwrap_err(),
+        Publisher::start(&instance, 2_048).unwrap_err(),
         PublishError::NameTaken(instance)
     );
 }
 
 #[test]
-fn one_watcher_too_many_is_told_so_and_harms_nobody() {
+fn one_watcher_too_many_is_refused_without_effect_on_others() {
     let instance = instance("many");
     let mut publisher = started(&instance);
     let mut watchers: Vec<Watcher> = (0..MAX_WATCHERS)
@@ -212,18 +212,18 @@ fn one_watcher_too_many_is_told_so_and_harms_nobody() {
             assert_eq!(found.tick.number, number);
         }
     }
-    // Room for one is room for another.
+    // The freed place is available to another.
     watchers.pop();
     wait_for("room", || Watcher::open(&instance).ok());
 }
 
 #[test]
-fn a_watcher_that_never_looks_holds_nobody_up() {
+fn a_watcher_that_never_reads_delays_nothing() {
     let instance = instance("hang");
     let mut publisher = started(&instance);
     let mut hung = Watcher::open(&instance).unwrap();
     let mut watcher = Watcher::open(&instance).unwrap();
-    // Three times what waits for a watcher.
+    // Three times a watcher's queue.
     for number in 0..3_072 {
         publisher.record(&record(number));
         if number % 256 == 255 {
@@ -236,13 +236,13 @@ fn a_watcher_that_never_looks_holds_nobody_up() {
             });
         }
     }
-    // The oldest made room for the newest.
+    // The oldest were overwritten by the newest.
     let found = wait_for("a record", || hung.next_record().unwrap());
     assert_eq!(found.tick.number, 3_072 - 1_024);
 }
 
 #[test]
-fn the_process_keeps_its_own_way_with_signals() {
+fn the_signal_handlers_of_the_process_are_unchanged() {
     let caught = || {
         let status = std::fs::read_to_string("/proc/self/status").unwrap();
         let line = status

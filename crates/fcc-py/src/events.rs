@@ -1,7 +1,7 @@
 //! Something that happened once.
 
 use fcc_core::framework::{Controller, EventKind, EventOf, Time};
-use fcc_telemetry::event_words;
+use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
 
 /// Something that happened once: the number of its tick, when that tick woke
@@ -43,7 +43,7 @@ impl PyEvent {
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(&event.kind),
-            text: event_words::<C>(event, sensors, actuators),
+            text: describe_event::<C>(event, sensors, actuators),
         }
     }
 }

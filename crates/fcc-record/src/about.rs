@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-/// What is known of a flight before it begins; every file of its recording
-/// starts with this.
+/// What is known of a flight before it begins. Every file of its recording
+/// starts with it.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct About {
-    /// Which program recorded: `fccd 0.1.0`.
+    /// The recording program: `fccd 0.1.0`.
     pub software: String,
     /// The commit that it was built from, or `unknown`.
     pub git_hash: String,
@@ -17,27 +17,27 @@ pub struct About {
     pub host: String,
     /// Its kernel: `Linux 6.18.44 #1 SMP PREEMPT_RT aarch64`.
     pub kernel: String,
-    /// What flies.
+    /// The aircraft.
     pub aircraft: String,
-    /// Nominal ticks a second.
+    /// Nominal ticks per second.
     pub rate_hz: f64,
-    /// Which timer woke the loop.
+    /// The timer that woke the loop.
     pub timer: String,
-    /// Names of the sensors, by their place in the loop.
+    /// Names of the sensors, by their index in the loop.
     pub sensors: Vec<String>,
-    /// Names of the actuators, by their place in the loop.
+    /// Names of the actuators, by their index in the loop.
     pub actuators: Vec<String>,
     /// What the kernel granted the loop's thread.
     pub realtime: Realtime,
     /// Wall clock at the start, ns since 1970 in UTC.
     pub started_unix_ns: u64,
-    /// What to add to a time of the loop to get ns since 1970 in UTC, by the
+    /// Added to a time of the loop's clock, gives ns since 1970 in UTC, by the
     /// wall clock at the start.
     pub clock_offset_ns: i64,
     /// The configuration file, exactly as given; none if there was none.
     pub config_as_given: Option<String>,
-    /// The whole configuration, defaults and command line included, as TOML:
-    /// what a replay flies by.
+    /// The whole configuration, defaults and command line included, as TOML. A
+    /// replay uses it.
     pub config: String,
     /// The same, key by key.
     pub parameters: BTreeMap<String, String>,
@@ -54,17 +54,17 @@ pub struct Realtime {
     pub priority: i32,
     /// The CPU that the thread was bound to, if it was.
     pub cpu: Option<usize>,
-    /// Why this CPU, or why none, if one was asked for.
+    /// Why this CPU was chosen, or why none, if one was requested.
     pub cpu_because: String,
     /// Whether the process' memory was locked.
     pub memory_locked: bool,
     /// Whether the stack was in memory before the first tick.
     pub stack_prefaulted: bool,
-    /// How late the kernel could make a sleep of the thread, if known.
+    /// The timer slack of the thread, if known, ns.
     pub timer_slack_ns: Option<u64>,
-    /// How long CPUs could take to wake, if that was granted, µs.
+    /// The longest wake-up latency of the CPUs, if a limit was granted, µs.
     pub cpu_dma_latency_us: Option<u32>,
-    /// The wishes that were refused, in words.
+    /// The requests that were denied, as text.
     pub refused: Vec<String>,
 }
 
@@ -75,7 +75,7 @@ pub(super) const PARAMETERS: &str = "fcc.parameters";
 pub(super) const CONFIG: &str = "config.toml";
 pub(super) const CONFIG_AS_GIVEN: &str = "config-as-given.toml";
 
-/// What parts of a list are kept apart by: no name has one.
+/// Separates the entries of a list: no name contains it.
 const SEPARATOR: &str = "\n";
 
 type Fields = BTreeMap<String, String>;
@@ -97,7 +97,7 @@ impl About {
         super::utc::timestamp(self.started_unix_ns)
     }
 
-    /// The metadata records that say this; attachments carry the rest.
+    /// The metadata records with these fields; attachments carry the rest.
     pub(super) fn to_metadata(&self) -> [(&'static str, Fields); 3] {
         let recording = [
             ("format", "1".to_owned()),
@@ -140,7 +140,7 @@ impl About {
         ]
     }
 
-    /// Takes a metadata record; whether it was one of these.
+    /// Takes a metadata record; true if it was one of these.
     pub(super) fn take_metadata(&mut self, name: &str, fields: Fields) -> bool {
         let text = |key: &str| fields.get(key).cloned().unwrap_or_default();
         let list = |key: &str| {
@@ -199,12 +199,12 @@ pub(super) fn fields<const N: usize>(pairs: [(&str, String); N]) -> Fields {
         .collect()
 }
 
-/// A number, or nothing where it is not known.
+/// A number, or nothing if it is not known.
 fn known(number: Option<impl ToString>) -> String {
     number.map_or_else(String::new, |number| number.to_string())
 }
 
-/// A field as a number; 0 where it is missing or none.
+/// A field as a number; 0 if it is missing or not a number.
 pub(super) fn number<T: std::str::FromStr + Default>(fields: &Fields, key: &str) -> T {
     fields
         .get(key)

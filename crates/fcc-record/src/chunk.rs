@@ -1,4 +1,4 @@
-//! What is in a chunk of MCAP.
+//! The content of an MCAP chunk.
 
 use std::io::{self, Read};
 
@@ -6,18 +6,17 @@ use mcap::records::ChunkHeader;
 
 use super::framing::MAX_RECORD_BYTES;
 
-/// Looking back further than this is more than our chunks are long; the memory
-/// for it is bounded by this and not by what a file claims.
+/// Larger than any chunk of ours. It bounds the decompression memory, whatever
+/// the file claims.
 const MAX_WINDOW_LOG2: u32 = 24;
 
-/// Puts the records of a chunk into `records`, if its length and its checksum
-/// hold.
+/// Decompresses a chunk into `records` and verifies its length and checksum.
 pub(super) fn open(header: &ChunkHeader, data: &[u8], records: &mut Vec<u8>) -> Result<(), String> {
     let length = header.uncompressed_size;
     if length > MAX_RECORD_BYTES {
         return Err(format!("a chunk claims {length} bytes"));
     }
-    // One byte more shows that there is more.
+    // One byte more detects data beyond the claimed length.
     let limit = length + 1;
     let unpacked = match header.compression.as_str() {
         "" => data.take(limit).read_to_end(records),
@@ -25,17 +24,17 @@ pub(super) fn open(header: &ChunkHeader, data: &[u8], records: &mut Vec<u8>) -> 
         "zstd" => zstd(data).and_then(|from| from.take(limit).read_to_end(records)),
         other => {
             return Err(format!(
-                "a chunk is compressed by {other}, which is not known"
+                "a chunk is compressed by {other}, which is not supported"
             ));
         }
     };
-    unpacked.map_err(|error| format!("a chunk cannot be unpacked: {error}"))?;
+    unpacked.map_err(|error| format!("a chunk cannot be decompressed: {error}"))?;
     if records.len() as u64 != length {
-        return Err("a chunk is not as long as it claims".to_owned());
+        return Err("a chunk's length does not match its content".to_owned());
     }
     let sum = header.uncompressed_crc;
     if sum != 0 && crc32fast::hash(records) != sum {
-        return Err("a chunk's checksum does not hold".to_owned());
+        return Err("a chunk's checksum does not match".to_owned());
     }
     Ok(())
 }

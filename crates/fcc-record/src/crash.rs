@@ -1,4 +1,4 @@
-//! What a program that was killed left behind.
+//! Repairs the recording of a program that was killed.
 
 use std::path::Path;
 use std::time::Duration;
@@ -7,15 +7,15 @@ use super::reader::Recording;
 use super::recover::{RecoverError, Recovered, recover_within};
 use super::{disk, folder};
 
-/// A start must not wait for long: a recording that takes longer is left to
-/// `fccd recover`. An hour at 100 Hz takes a few seconds.
+/// A start must not wait for long: a longer recording is left to `fccd
+/// recover`. An hour at 100 Hz takes a few seconds.
 const LIMIT: Duration = Duration::from_secs(5);
 
-/// Repairs the newest recording in a folder if it was cut off and nobody is
-/// writing it. None if there is nothing to repair; takes 5 s at most.
+/// Repairs the newest recording in a folder if it is unfinished and not being
+/// written. `None` if there is nothing to repair. Takes at most 5 s.
 ///
 /// # Errors
-/// When it is cut and could not be repaired; it is as it was then.
+/// When it is unfinished and cannot be repaired. The file is then unchanged.
 pub fn repair_last(folder: &Path) -> Result<Option<Recovered>, RecoverError> {
     // No folder, no recordings.
     let Some(last) = folder::recordings(folder)

@@ -1,5 +1,5 @@
-//! What is damaged inside a recording, and what of the flight is missing for
-//! it.
+//! Damage inside a recording, and the part of the flight that is missing
+//! because of it.
 
 use std::fmt;
 
@@ -10,28 +10,28 @@ use super::end::End;
 use super::items::Remark;
 use super::raw::DamagedBytes;
 
-/// Bytes of a recording that are not what was written, and what of the flight
-/// is missing for it.
+/// Bytes of a recording that are not what was written, and the part of the
+/// flight that is missing because of it.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Damage {
-    /// Where it begins in the file.
+    /// Offset of the first damaged byte.
     pub from_byte: u64,
-    /// Where reading went on.
+    /// Offset at which reading continued.
     pub to_byte: u64,
-    /// What is wrong there, in words.
+    /// What is wrong, as text.
     pub why: String,
-    /// How many ticks are missing; none if that is not known.
+    /// The number of missing ticks, if known.
     pub ticks: Option<u64>,
-    /// The first tick that is missing; none if no tick is known to be.
+    /// The first missing tick, if known.
     pub first_tick: Option<u64>,
-    /// The last tick that is missing; none if no tick is known to be.
+    /// The last missing tick, if known.
     pub last_tick: Option<u64>,
-    /// From the tick before to the tick after, s; none if one is not known.
+    /// Time from the tick before to the tick after, s, if both are known.
     pub span_s: Option<f64>,
-    /// Whether records or events may have been there, and not only an index or
-    /// what is said of the flight as a whole.
+    /// Whether records or events may have been lost, and not only an index or
+    /// metadata.
     pub messages: bool,
-    /// The tick before it, and when that was, on the loop's clock.
+    /// The tick before it and its wake-up time, on the loop's clock.
     #[serde(skip)]
     pub after: Option<(u64, Time)>,
 }
@@ -51,7 +51,7 @@ impl Damage {
         }
     }
 
-    /// More damage, with no tick between them.
+    /// Adds damage with no tick between.
     pub(super) fn join(&mut self, more: &DamagedBytes) {
         self.from_byte = self.from_byte.min(more.bytes.start);
         self.to_byte = self.to_byte.max(more.bytes.end);
@@ -59,8 +59,8 @@ impl Damage {
         self.ticks = self.ticks.filter(|_| !self.messages);
     }
 
-    /// Says which ticks are missing between two that are not; `end` says which
-    /// were the first and the last of all, if that is known.
+    /// Finds which ticks are missing between two that were read. `end` gives
+    /// the first and the last tick of the flight, if known.
     pub(super) fn locate(&mut self, before: Option<&Tick>, next: Option<&Tick>, end: Option<&End>) {
         self.after = before.map(|tick| (tick.number, tick.woke));
         let first = match before {
@@ -85,8 +85,8 @@ impl Damage {
 }
 
 impl Damage {
-    /// The gap as an event of the loop; none where nothing of the flight is
-    /// missing. Where no tick is, it is at the tick behind.
+    /// The gap as an event of the loop; none if nothing of the flight is
+    /// missing. If no tick precedes it, it is at the tick that follows.
     pub fn event<C>(&self) -> Option<Event<C>> {
         if !self.messages {
             return None;
@@ -107,7 +107,7 @@ impl Damage {
 }
 
 impl Damage {
-    /// The [event](Self::event) in words.
+    /// The text of the [event](Self::event).
     pub(super) fn event_text(&self) -> String {
         match self.event::<()>().map(|event| event.kind) {
             Some(EventKind::NotRecorded { count, first, last }) => {
@@ -117,7 +117,7 @@ impl Damage {
         }
     }
 
-    /// In words, in its place among what was recorded.
+    /// As a remark, at its place in the recording.
     pub fn remark(&self) -> Remark {
         Remark {
             time: self.after.map_or(Time::NEVER, |(_, time)| time),

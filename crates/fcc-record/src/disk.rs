@@ -1,4 +1,4 @@
-//! Where recordings are written: a file system, or a test's idea of a bad one.
+//! Where recordings are written: a file system, or a failing disk in a test.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -6,26 +6,26 @@ use std::path::Path;
 
 /// Where recordings are written.
 pub trait Disk: Send {
-    /// Makes a file that does not exist yet.
+    /// Creates a file that does not exist yet.
     ///
     /// # Errors
-    /// [`io::ErrorKind::AlreadyExists`] if it does; else what the system says.
+    /// [`io::ErrorKind::AlreadyExists`] if it exists; otherwise the system's
+    /// error.
     fn create(&mut self, path: &Path) -> io::Result<Box<dyn DiskFile>>;
 }
 
 /// A file being written.
 pub trait DiskFile: Write {
-    /// Waits until everything written is safe from a loss of power.
+    /// Waits until everything written survives a loss of power.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// Cuts the file off after so many bytes; what is written next follows
-    /// there.
+    /// Truncates the file to a length; the next write continues there.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn cut_to(&mut self, bytes: u64) -> io::Result<()>;
 }
 
@@ -40,24 +40,24 @@ impl Disk for FileSystem {
             .filter(|folder| !folder.as_os_str().is_empty());
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|error| match error.kind() {
-                // It is not this file that exists.
+                // The file exists and is another one.
                 io::ErrorKind::AlreadyExists => io::ErrorKind::NotADirectory.into(),
                 _ => error,
             })?;
         }
-        // Readable, for the lock: it tells others that this one is being
-        // written. A file system without locks does without.
+        // Readable, for the lock that shows others that it is being written.
+        // Not every file system has locks.
         let file = OpenOptions::new()
             .read(true)
             .append(true)
             .create_new(true)
             .open(path)?;
         let _ = file.try_lock();
-        // Until its folder is synced, a loss of power takes the file's name.
+        // Until its folder is synced, a loss of power removes the file's name.
         match sync_folder_of(path) {
             Ok(()) => Ok(Box::new(file)),
             Err(error) => {
-                // It would be in the way of the next attempt.
+                // It would block the next attempt.
                 let _ = fs::remove_file(path);
                 Err(error)
             }
@@ -75,8 +75,8 @@ impl DiskFile for File {
     }
 }
 
-/// Waits until the name of a file is safe from a loss of power. A file system
-/// that knows no such thing does without.
+/// Waits until the name of a file survives a loss of power. Not every file
+/// system supports this.
 pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     let folder = path
         .parent()
@@ -87,16 +87,27 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Keeps others from writing a file until what comes back is dropped; none if
-/// somebody does. A file system without locks does without.
+/// Opens a file to read it. A FIFO or a device is refused: opening one may block
+/// without end.
+pub(super) fn open(path: &Path) -> io::Result<File> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is not a regular file: give a recording, a file that ends in .mcap",
+        ));
+    }
+    File::open(path)
+}
+
+/// Locks a file against other writers until the returned value is dropped; none
+/// if it is locked already. Not every file system has locks.
 pub(super) fn lock(path: &Path) -> io::Result<Option<File>> {
-    let file = File::open(path)?;
+    let file = open(path)?;
     let is_taken = matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock));
     Ok((!is_taken).then_some(file))
 }
 
-/// Whether somebody is writing a file right now.
+/// Whether a program is writing the file now.
 pub fn is_being_written(path: &Path) -> bool {
-    File::open(path)
-        .is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
+    open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(fs::TryLockError::WouldBlock)))
 }

@@ -1,4 +1,4 @@
-//! The account of a flight at the end of its recording.
+//! Statistics of a flight at the end of its recording.
 
 use std::collections::BTreeMap;
 
@@ -6,11 +6,11 @@ use fcc_core::framework::{EventKind, Message, Record, State};
 
 use super::about::{fields, number};
 
-/// The account of a flight at the end of its recording, or of what a file
-/// holds of it.
+/// Statistics of a flight at the end of its recording, or of the part that a
+/// file contains.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct End {
-    /// Why it ended, in words.
+    /// Why it ended, as text.
     pub ending: String,
     /// Records in the file.
     pub ticks: u64,
@@ -18,19 +18,19 @@ pub struct End {
     pub first_tick: u64,
     /// Number of its last tick.
     pub last_tick: u64,
-    /// Ticks that passed unserved between the first and the last.
+    /// Missed periods between the first and the last tick.
     pub missed: u64,
     /// Time from the first wake-up to the last, ns.
     pub duration_ns: u64,
-    /// How late the loop woke at worst, ns.
+    /// The greatest lateness of a wake-up, ns.
     pub worst_lateness_ns: u64,
-    /// The loop's state in words, at the last tick.
+    /// The loop's state at the last tick, as text.
     pub state: String,
-    /// Records and events that came to the recorder and not into the file.
+    /// Records and events that reached the recorder and not the file.
     pub not_recorded: u64,
 }
 
-/// Name of the metadata record that says this.
+/// Name of the metadata record with these fields.
 pub(super) const END: &str = "fcc.end";
 
 impl End {
@@ -48,23 +48,23 @@ impl End {
         ])
     }
 
-    pub(super) fn from_fields(said: &BTreeMap<String, String>) -> Self {
-        let text = |key: &str| said.get(key).cloned().unwrap_or_default();
+    pub(super) fn from_fields(fields_read: &BTreeMap<String, String>) -> Self {
+        let text = |key: &str| fields_read.get(key).cloned().unwrap_or_default();
         Self {
             ending: text("ending"),
-            ticks: number(said, "ticks"),
-            first_tick: number(said, "first_tick"),
-            last_tick: number(said, "last_tick"),
-            missed: number(said, "missed"),
-            duration_ns: number(said, "duration_ns"),
-            worst_lateness_ns: number(said, "worst_lateness_ns"),
+            ticks: number(fields_read, "ticks"),
+            first_tick: number(fields_read, "first_tick"),
+            last_tick: number(fields_read, "last_tick"),
+            missed: number(fields_read, "missed"),
+            duration_ns: number(fields_read, "duration_ns"),
+            worst_lateness_ns: number(fields_read, "worst_lateness_ns"),
             state: text("state"),
-            not_recorded: number(said, "not_recorded"),
+            not_recorded: number(fields_read, "not_recorded"),
         }
     }
 }
 
-/// Keeps the account while messages go by.
+/// Collects the statistics from the messages.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RunStatistics {
     end: End,
@@ -107,7 +107,7 @@ impl RunStatistics {
         self.end.ticks
     }
 
-    /// The account so far.
+    /// The statistics so far.
     pub(super) fn end(&self, ending: &str) -> End {
         End {
             ending: ending.to_owned(),

@@ -19,18 +19,18 @@ use super::schema::{self, OWN_TOPICS, Topic, topics};
 use super::settings::Compression;
 use super::wire::log::Level;
 use crate::recorded::{Recorded, Views};
-use fcc_telemetry::event_words;
+use fcc_telemetry::describe_event;
 use fcc_telemetry::schema::protobuf::encode;
 
-/// What a chunk holds at most before it is compressed: what a reader needs in
-/// memory at once.
+/// The largest size of a chunk before compression: the memory a reader needs at
+/// once.
 const CHUNK_BYTES: u64 = 1 << 20;
 
 /// One file of a recording while it is written.
 ///
-/// What is given to it gathers in memory until [`commit`](Self::commit) writes
-/// it as one whole chunk and syncs it: at any moment the file on the disk ends
-/// where a record ends.
+/// Messages are kept in memory until [`commit`](Self::commit) writes them as
+/// one chunk and syncs it: at any time the file on the disk ends at the end of
+/// a record.
 pub(super) struct RecordingFile<C: Recorded> {
     path: PathBuf,
     writer: mcap::Writer<NoSeek<Outlet>>,
@@ -44,18 +44,18 @@ pub(super) struct RecordingFile<C: Recorded> {
     views: C::Views,
     run_statistics: RunStatistics,
     names: Names,
-    /// A message's bytes, kept for the next.
+    /// The buffer of a message, reused.
     bytes: Vec<u8>,
 }
 
-/// What sensors and actuators are called, for the words of events.
+/// Names of the sensors and actuators, for the text of events.
 struct Names {
     sensors: Vec<String>,
     actuators: Vec<String>,
 }
 
 impl<C: Recorded> RecordingFile<C> {
-    /// Begins a file with all that is known of the flight, and syncs that.
+    /// Begins a file with what is known of the flight, and syncs it.
     pub(super) fn begin(
         disk: &mut dyn Disk,
         path: &Path,
@@ -66,7 +66,7 @@ impl<C: Recorded> RecordingFile<C> {
         let begun = Self::write_beginning(&outlet, about, compression).map_err(to_io);
         let (writer, channels) = begun.inspect_err(|_| {
             outlet.abandon();
-            // Nobody needs a file that says nothing.
+            // A file with no content is of no use.
             let _ = fs::remove_file(path);
         })?;
         Ok(Self {
@@ -153,7 +153,7 @@ impl<C: Recorded> RecordingFile<C> {
 
     fn event(&mut self, event: &EventOf<C>) -> Result<(), McapError> {
         let log_ns = self.log_time(event.time.as_nanos());
-        let text = self.words(event);
+        let text = describe_event::<C>(event, &self.names.sensors, &self.names.actuators);
         self.bytes.clear();
         schema::encode_event(event, &text, &mut self.bytes);
         self.write_bytes(Topic::Event as usize, log_ns)?;
@@ -161,7 +161,7 @@ impl<C: Recorded> RecordingFile<C> {
         self.write(Topic::Log as usize, log_ns, &line)
     }
 
-    /// Takes words that are not an event of the loop.
+    /// Takes text that is not an event of the loop.
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
         let log_ns = self.last_log_ns;
         let line = foxglove::line(foxglove::REMARK, text, Level::Info, log_ns);
@@ -194,8 +194,8 @@ impl<C: Recorded> RecordingFile<C> {
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
 
-    /// Wall clock at the start plus the loop's time since; never backwards, as
-    /// readers search by it.
+    /// Wall clock at the start plus the loop's time since. It never goes
+    /// backwards, because readers search by it.
     fn log_time(&mut self, loop_ns: i64) -> u64 {
         let unix_ns = if loop_ns == i64::MIN {
             0
@@ -207,11 +207,7 @@ impl<C: Recorded> RecordingFile<C> {
         self.last_log_ns
     }
 
-    fn words(&self, event: &EventOf<C>) -> String {
-        event_words::<C>(event, &self.names.sensors, &self.names.actuators)
-    }
-
-    /// Writes what has gathered and waits until it is safe from a loss of
+    /// Writes the buffered messages and waits until they survive a loss of
     /// power.
     pub(super) fn commit(&mut self) -> io::Result<()> {
         self.writer.flush().map_err(to_io)?;
@@ -220,7 +216,7 @@ impl<C: Recorded> RecordingFile<C> {
         Ok(())
     }
 
-    /// Ends the file as it should end: with the account and an index.
+    /// Finishes the file: statistics and index.
     pub(super) fn finish(mut self, ending: &str) -> io::Result<()> {
         let finished = self
             .write_end(ending)
@@ -241,7 +237,8 @@ impl<C: Recorded> RecordingFile<C> {
         Ok(())
     }
 
-    /// Leaves the file as it was when last synced: cut, with nothing torn.
+    /// Leaves the file as it was when last synced: unfinished, with no partial
+    /// record.
     pub(super) fn abandon(self) {
         self.outlet.abandon();
     }
@@ -250,17 +247,17 @@ impl<C: Recorded> RecordingFile<C> {
         &self.path
     }
 
-    /// Bytes that are safe on the disk.
+    /// Bytes synced to the disk.
     pub(super) fn bytes(&self) -> u64 {
         self.outlet.synced_bytes()
     }
 
-    /// Bytes that have gathered since, before they are compressed.
+    /// Bytes buffered since, before compression.
     pub(super) const fn gathered_bytes(&self) -> u64 {
         self.gathered_bytes
     }
 
-    /// How much of a flight the file covers, ns.
+    /// Duration of the flight in the file, ns.
     pub(super) fn span_ns(&self) -> u64 {
         self.first_log_ns
             .map_or(0, |first| self.last_log_ns.saturating_sub(first))
@@ -272,16 +269,16 @@ impl<C: Recorded> RecordingFile<C> {
     }
 }
 
-/// How every file is written.
+/// The options for every file.
 pub(super) fn options(compression: Compression) -> WriteOptions {
     WriteOptions::new()
         .profile(schema::PROFILE)
         .compression(compression.to_mcap())
-        // The default is a thread per core, beside a flight.
+        // The default is one thread per core, which would disturb the flight.
         .compression_threads(0)
         .chunk_size(Some(CHUNK_BYTES))
-        // A chunk is put together in memory and appended whole: a file that
-        // is cut off ends with a whole chunk, at an ordinary end of file.
+        // A chunk is assembled in memory and appended as a whole: an unfinished
+        // file ends at the end of a chunk.
         .disable_seeking(true)
 }
 

@@ -1,11 +1,11 @@
-//! The folder that recordings go to, and how it is kept from filling a disk.
+//! The folder of the recordings, and how its size is limited.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use super::{disk, name};
 
-/// The recordings in a folder, the oldest first.
+/// The recordings in a folder, oldest first.
 ///
 /// # Errors
 /// When the folder cannot be read.
@@ -18,8 +18,8 @@ pub(super) fn recordings(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Deletes the oldest recordings until those in the folder take at most
-/// `keep_bytes`; what is being written stays. Gives what was deleted.
+/// Deletes the oldest recordings until the folder's recordings take at most
+/// `keep_bytes`. Recordings being written are kept. Returns the deleted ones.
 pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
     let sizes: Vec<(PathBuf, u64)> = recordings(folder)
         .unwrap_or_default()
@@ -43,8 +43,8 @@ pub(super) fn keep_below(folder: &Path, keep_bytes: u64) -> Vec<PathBuf> {
     deleted
 }
 
-/// Deletes the oldest recording that is not being written and not among
-/// `kept`; none if there is none to delete.
+/// Deletes the oldest recording that is not being written and not in `kept`;
+/// returns it, if there was one.
 pub(super) fn delete_oldest(folder: &Path, kept: &[PathBuf]) -> Option<PathBuf> {
     recordings(folder)
         .ok()?

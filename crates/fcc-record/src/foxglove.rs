@@ -1,4 +1,4 @@
-//! The log of a recording, as Foxglove shows it.
+//! The log of a recording, as Foxglove displays it.
 
 use fcc_core::framework::{Event, EventKind, State};
 use prost_types::Timestamp;
@@ -13,9 +13,9 @@ pub(super) fn timestamp(unix_ns: u64) -> Timestamp {
     }
 }
 
-/// Who speaks in a line of the log that tells of an event of the loop.
+/// The source of a log line about an event of the loop.
 pub(super) const EVENT: &str = "fccd";
-/// Who speaks in one that tells of anything else.
+/// The source of any other log line.
 pub(super) const REMARK: &str = "fccd.remark";
 
 /// A line of the log.
@@ -28,7 +28,7 @@ pub(super) fn line(name: &str, text: String, level: log::Level, unix_ns: u64) ->
     }
 }
 
-/// How bad an event is.
+/// The severity of an event.
 pub(super) fn level<O>(event: &Event<O>) -> log::Level {
     match event.kind {
         EventKind::StateChanged {

@@ -1,5 +1,4 @@
-//! Where the records of a file begin, when a damaged one does not say where it
-//! ends.
+//! Finds where the next record of a file begins after a damaged one.
 
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
@@ -11,7 +10,7 @@ use super::parse::is_chunk_of;
 /// Opcode and length.
 pub(super) const HEAD_BYTES: usize = 1 + 8;
 
-/// No record of ours is longer: a chunk is 1 MiB, a configuration less.
+/// No record of ours is longer: a chunk has 1 MiB, a configuration less.
 pub(super) const MAX_RECORD_BYTES: u64 = 16 << 20;
 
 /// The footer: its opcode and length, two offsets and a checksum.
@@ -20,21 +19,21 @@ pub(super) const FOOTER_BYTES: u64 = HEAD_BYTES as u64 + 8 + 8 + 4;
 /// The magic number that begins and ends a file.
 pub(super) const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
 
-/// As much of a record is looked at to know it by its beginning.
+/// Bytes that suffice to identify a record by its beginning.
 const SIGNATURE_BYTES: usize = 256;
 
-/// As much is searched at once.
+/// Bytes searched at once.
 const BLOCK_BYTES: usize = 256 << 10;
 
-/// The opcode and length that bytes begin with.
+/// The opcode and the length at the beginning of `bytes`.
 pub(super) fn head(bytes: &[u8]) -> Option<(u8, u64)> {
     let ([opcode, length @ ..], _) = bytes.split_first_chunk::<HEAD_BYTES>()?;
     Some((*opcode, u64::from_le_bytes(*length)))
 }
 
-/// Whether a record at `position` of a file of `file_bytes` is known by its
-/// beginning: its lengths agree with one another, which happens by chance in
-/// one of some billion places.
+/// Whether a record at `position` of a file of `file_bytes` is identified by
+/// its beginning: its lengths are consistent, which random bytes are once in
+/// some billion positions.
 fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
     let Some((opcode, length)) = head(bytes) else {
         return false;
@@ -71,14 +70,14 @@ fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
     }
 }
 
-/// Whether a record that is known by its beginning is at `position`.
+/// Whether a record can be identified at `position`.
 pub(super) fn is_at(file: &mut File, position: u64, file_bytes: u64) -> io::Result<bool> {
     let mut bytes = Vec::new();
     read_at(file, position, SIGNATURE_BYTES, &mut bytes)?;
     Ok(is_known(&bytes, position, file_bytes))
 }
 
-/// The first record from `start` on that is known by its beginning.
+/// The first record from `start` on that can be identified.
 pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<Option<u64>> {
     let mut bytes = Vec::new();
     let mut at = start;
@@ -99,7 +98,7 @@ pub(super) fn find(file: &mut File, start: u64, file_bytes: u64) -> io::Result<O
     Ok(None)
 }
 
-/// What is at `position`, up to `length` bytes of it.
+/// Reads up to `length` bytes at `position`.
 fn read_at(file: &mut File, position: u64, length: usize, into: &mut Vec<u8>) -> io::Result<()> {
     into.clear();
     file.seek(SeekFrom::Start(position))?;

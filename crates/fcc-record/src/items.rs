@@ -1,4 +1,4 @@
-//! What is in a recording, read one by one: memory does not grow with the file.
+//! Reads a recording item by item: memory does not grow with the file.
 
 use std::collections::VecDeque;
 
@@ -10,27 +10,27 @@ use prost::Message as _;
 use super::damage::Damage;
 use super::end::End;
 use super::foxglove::REMARK;
-use super::raw::{DamagedBytes, Found, RawReader};
+use super::raw::{DamagedBytes, Next, RawReader};
 use super::schema::{self, Topic};
 use super::wire;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
 
-/// A record or an event of a loop, of which plant ever: what is declared of its
-/// values says how it is read.
+/// A record or an event of a loop, for any plant: the declared schema
+/// determines how it is read.
 pub trait RecordedMessage: Sized {
     /// The record in a message.
     ///
     /// # Errors
-    /// When the bytes are none.
+    /// When the bytes are not a record.
     fn record(bytes: &[u8]) -> Result<Self, DecodeError>;
 
     /// The event in a message.
     ///
     /// # Errors
-    /// When the bytes are none.
+    /// When the bytes are not an event.
     fn event(bytes: &[u8]) -> Result<Self, DecodeError>;
 
-    /// The tick that it is all of; none for an event.
+    /// Its tick; none for an event.
     fn tick(&self) -> Option<&Tick>;
 }
 
@@ -53,48 +53,48 @@ impl<M: Schema, E: Schema, S: Schema, O: Schema, R: Schema> RecordedMessage
     }
 }
 
-/// What every loop tells of itself, whatever its plant: ticks, states, events.
+/// What every loop records, whatever its plant: ticks, states, events.
 pub(super) type AnyMessage = Message<(), (), (), (), ()>;
 
-/// One thing in a recording.
+/// One item of a recording.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Item<M> {
     /// A record or an event of the loop.
     Message(M),
-    /// Words that are no event of the loop.
+    /// Text that is not an event of the loop.
     Remark(Remark),
-    /// What is here is damaged, and what was here is missing.
+    /// Damage; the items that were here are missing.
     Damage(Damage),
 }
 
-/// Words that are no event of the loop: of the recorder, or of who watches over
-/// the connection to a simulator.
+/// Text that is not an event of the loop: from the recorder, or about the
+/// connection to a simulator.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Remark {
-    /// On the loop's clock: when the last message before it was logged.
+    /// On the loop's clock: the log time of the message before it.
     pub time: Time,
-    /// For people.
+    /// For users.
     pub text: String,
 }
 
-/// So many items are held back at most until it is known which ticks are
-/// missing before them.
-const MOST_HELD_BACK: usize = 1_024;
+/// The most items that are held back until it is known which ticks are missing
+/// before them.
+const MAX_HELD_BACK: usize = 1_024;
 
-/// The records, events and remarks of a recording. What is damaged is passed
-/// over, and said in its place.
+/// The records, events and remarks of a recording. Damage is skipped, and
+/// reported in its place.
 pub struct Items<M> {
     raw: RawReader,
     channels: Channels,
     clock_offset_ns: i64,
-    /// What the file says of itself.
+    /// The statistics in the file.
     end: Option<End>,
     last_tick: Option<Tick>,
-    /// Damage behind which no tick was found yet.
+    /// Damage after which no tick was read yet.
     damage: Option<Damage>,
-    /// What was read behind it.
+    /// Items read after it.
     held_back: VecDeque<Item<M>>,
-    over: bool,
+    finished: bool,
     cut: Option<String>,
 }
 
@@ -108,13 +108,13 @@ impl<M: RecordedMessage> Items<M> {
             last_tick: None,
             damage: None,
             held_back: VecDeque::new(),
-            over: false,
+            finished: false,
             cut: None,
         }
     }
 
-    /// Where and why reading ended before the recording did; none while there
-    /// is more to read, and after a file that ends as it should.
+    /// Where and why reading ended before the end of the recording; none while
+    /// there is more to read, and for a finished file.
     pub fn cut(&self) -> Option<&str> {
         self.cut.as_deref()
     }
@@ -132,22 +132,22 @@ impl<M: RecordedMessage> Items<M> {
                     self.cut = Some(cut.to_string());
                     return None;
                 }
-                Ok(Found::End) => return None,
-                Ok(Found::Damage(damaged)) => return Some(Err(damaged)),
-                Ok(Found::Record(Some(Ok(item)))) => return Some(Ok(item)),
-                Ok(Found::Record(Some(Err(why)))) => {
+                Ok(Next::End) => return None,
+                Ok(Next::Damage(damaged)) => return Some(Err(damaged)),
+                Ok(Next::Record(Some(Ok(item)))) => return Some(Ok(item)),
+                Ok(Next::Record(Some(Err(why)))) => {
                     return Some(Err(DamagedBytes {
                         bytes: self.raw.last_bytes(),
                         why,
                         messages: true,
                     }));
                 }
-                Ok(Found::Record(None)) => {}
+                Ok(Next::Record(None)) => {}
             }
         }
     }
 
-    /// Takes what was read next; gives it back if nothing is to come before it.
+    /// Takes an item; returns it if nothing has to come before it.
     fn take(&mut self, read: Option<Result<Item<M>, DamagedBytes>>) -> Option<Item<M>> {
         match read {
             Some(Ok(item)) => {
@@ -155,7 +155,7 @@ impl<M: RecordedMessage> Items<M> {
                     Item::Message(message) => message.tick().copied(),
                     _ => None,
                 };
-                if tick.is_some() || self.held_back.len() >= MOST_HELD_BACK {
+                if tick.is_some() || self.held_back.len() >= MAX_HELD_BACK {
                     self.locate_damage(tick.as_ref());
                 }
                 self.last_tick = tick.or(self.last_tick);
@@ -169,7 +169,7 @@ impl<M: RecordedMessage> Items<M> {
                 None => self.damage = Some(Damage::of(damaged)),
             },
             None => {
-                self.over = true;
+                self.finished = true;
                 self.locate_damage(None);
             }
         }
@@ -178,8 +178,11 @@ impl<M: RecordedMessage> Items<M> {
 
     fn locate_damage(&mut self, next: Option<&Tick>) {
         if let Some(mut damage) = self.damage.take() {
-            // What the file says of its end says nothing of the middle.
-            let end = self.end.as_ref().filter(|_| next.is_some() || self.over);
+            // The statistics of the end do not apply to a gap in the middle.
+            let end = self
+                .end
+                .as_ref()
+                .filter(|_| next.is_some() || self.finished);
             damage.locate(self.last_tick.as_ref(), next, end);
             self.held_back.push_front(Item::Damage(damage));
         }
@@ -196,7 +199,7 @@ impl<M: RecordedMessage> Iterator for Items<M> {
             {
                 return Some(item);
             }
-            if self.over {
+            if self.finished {
                 return None;
             }
             let read = self.read();
@@ -226,7 +229,7 @@ impl<M: RecordedMessage> Messages<M> {
         self.items.cut()
     }
 
-    /// What was passed over so far.
+    /// Damage found so far.
     pub fn damages(&self) -> &[Damage] {
         &self.damages
     }
@@ -256,7 +259,7 @@ impl<M: RecordedMessage> Iterator for Messages<M> {
     }
 }
 
-/// Which channels of a file carry what.
+/// The channels of a file, by content.
 #[derive(Default)]
 pub(super) struct Channels {
     record: Option<u16>,
@@ -265,7 +268,7 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    /// What a record of MCAP holds, if it is something of ours.
+    /// The item in an MCAP record, if there is one.
     pub(super) fn item<M: RecordedMessage>(
         &mut self,
         record: &Record<'_>,
@@ -289,13 +292,13 @@ impl Channels {
                 if id == self.record {
                     Some(
                         M::record(data)
-                            .map_err(|error| refused("a record", error))
+                            .map_err(|error| decode_failure("a record", error))
                             .map(Item::Message),
                     )
                 } else if id == self.event {
                     Some(
                         M::event(data)
-                            .map_err(|error| refused("an event", error))
+                            .map_err(|error| decode_failure("an event", error))
                             .map(Item::Message),
                     )
                 } else if id == self.log {
@@ -309,15 +312,16 @@ impl Channels {
     }
 }
 
-fn refused(what: &str, error: DecodeError) -> String {
+fn decode_failure(what: &str, error: DecodeError) -> String {
     match error {
-        DecodeError::Unknown(unknown) => format!("{what} cannot be understood: {unknown}"),
+        DecodeError::Unknown(unknown) => format!("{what} cannot be decoded: {unknown}"),
         damaged => format!("{what} is damaged: {damaged}"),
     }
 }
 
-/// The remark in a line of the log; none where it tells of an event, which is
-/// there beside it. Words are no part of a flight: damage to them ends nothing.
+/// The remark in a log line; none if the line describes an event, which is
+/// recorded separately. Damage to a remark is ignored: it is not part of the
+/// flight.
 fn remark(header: &MessageHeader, data: &[u8], clock_offset_ns: i64) -> Option<Remark> {
     let line = wire::Log::decode(data).ok()?;
     (line.name == REMARK).then(|| {

@@ -1,36 +1,36 @@
-//! A flight in a file: the recorder that writes it, and the reader.
+//! Recordings: writes, lists, recovers and reads them.
 //!
 //! A recording is an [MCAP](https://mcap.dev) file with protobuf messages of
-//! the schemas in `proto/`: one message per tick, one per event, and beside
-//! them the well-known messages that let Foxglove and `PlotJuggler` show a
-//! flight with no set-up. It begins with all that is known of the flight
-//! ([`About`], the configuration) and ends with an account of it ([`End`]).
+//! the schemas in `proto/`: one message per tick, one per event, and the
+//! well-known messages that Foxglove and `PlotJuggler` display without
+//! configuration. It begins with what is known of the flight ([`About`], the
+//! configuration) and ends with its statistics ([`End`]).
 //!
 //! ```text
-//! who flies ─► Recorder ─► channel ─► its own thread ─► Disk
-//!              never waits            one flush and sync a second
+//! the flight ─► Recorder ─► channel ─► its own thread ─► Disk
+//!                 never waits            flush and sync every 0.7 s
 //! ```
 //!
-//! What a file promises:
+//! Guarantees:
 //!
-//! - Every number decodes to the very bits that were recorded.
-//! - A killed process or a lost power supply costs at most the last second:
-//!   before one is over, what has gathered is written as whole chunks and
-//!   synced.
-//!   An ordinary sequential reader reads such a file up to its cut;
-//!   [`recover`] makes it a finished file.
-//! - What is damaged inside a file is noticed by its checksums. Readers pass
-//!   over it, say which bytes and which ticks that is ([`Damage`]), and go on
-//!   behind it.
-//! - What the disk is too slow for is dropped, counted, and told in the file
-//!   as [`NotRecorded`](fcc_core::framework::EventKind::NotRecorded) with its
-//!   span. A disk that is full stops the recording and not the flight; it is
-//!   tried again every ten seconds, and the gap stands in the file that follows.
-//! - Messages are in order of their log time, which is the wall clock at the
-//!   start plus the loop's monotonic time since: it never jumps. What to add
-//!   to a time of the loop to get there is the clock offset in [`About`].
+//! - Every number decodes to the bits that were recorded.
+//! - A killed process or a loss of power costs at most the last second: every
+//!   0.7 s the buffered messages are written as whole chunks and synced. An
+//!   ordinary sequential reader reads such a file up to its end; [`recover`]
+//!   finishes it.
+//! - Damage inside a file is detected by checksums. Readers report the bytes
+//!   and ticks ([`Damage`]) and continue after it.
+//! - Messages for which the disk is too slow are dropped, counted, and reported
+//!   in the file as
+//!   [`NotRecorded`](fcc_core::framework::EventKind::NotRecorded) with the
+//!   first and last tick. A full disk stops the recording and not the flight;
+//!   recording is tried again every ten seconds, and the next file reports the
+//!   gap.
+//! - Messages are in order of their log time: the wall clock at the start plus
+//!   the loop's monotonic time since, which never jumps. The difference between
+//!   the two is the clock offset in [`About`].
 //!
-//! What compression costs was measured: see [`Compression`].
+//! The measured cost of compression: see [`Compression`].
 
 mod about;
 mod chunk;
@@ -79,6 +79,6 @@ pub use recorder::RecorderOf;
 pub use recover::{RecoverError, Recovered, recover};
 pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};
-pub use status::{News, RecorderStatus};
+pub use status::{Notice, RecorderStatus};
 #[cfg(feature = "flight")]
 pub use views::FoxgloveViews;

@@ -1,4 +1,4 @@
-//! The recordings in a folder, at a glance.
+//! Lists the recordings in a folder.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -9,50 +9,50 @@ use super::damage::Damage;
 use super::reader::{OpenError, Recording, Verified};
 use super::{disk, name, utc};
 
-/// One recording at a glance.
+/// Properties of one recording.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Entry {
     /// The file.
     pub path: PathBuf,
     /// When the flight began, in UTC: `2026-11-20T04:21:33Z`.
     pub started: String,
-    /// Which part of the flight's recording this is, from 1.
+    /// The part number, from 1.
     pub part: u32,
-    /// What flew.
+    /// The aircraft.
     pub aircraft: String,
-    /// From the first tick in the file to the last.
+    /// From the first tick in the file to the last, s.
     pub duration_s: f64,
     /// Records in the file.
     pub ticks: u64,
-    /// How late the loop woke at worst.
+    /// The greatest lateness of a wake-up, µs.
     pub worst_lateness_us: f64,
     /// The loop's state at the last tick in the file.
     pub state: String,
     /// Why the flight, or the file, ended.
     pub ending: String,
-    /// Records and events that came to the recorder and not into the file.
+    /// Records and events that reached the recorder and not the file.
     pub not_recorded: u64,
-    /// Whether the file is whole.
+    /// Whether the file is finished and undamaged.
     pub file: Wholeness,
-    /// What is damaged in it.
+    /// The damage in it.
     pub damages: Vec<Damage>,
 }
 
-/// Whether a file is whole.
+/// Whether a file is finished and undamaged.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Wholeness {
-    /// It ends as it should.
+    /// Finished and undamaged.
     Whole,
-    /// Something in it is damaged: `fccd recover` makes the rest whole.
+    /// Something in it is damaged: `fccd recover` saves the rest.
     Damaged,
-    /// It was cut off: `fccd recover` makes it whole.
+    /// Unfinished: `fccd recover` finishes it.
     Cut,
-    /// Not yet: it is being written.
+    /// It is being written.
     BeingWritten,
 }
 
-/// The files in a folder that end like recordings, the oldest first.
+/// The recordings in a folder, oldest first.
 ///
 /// # Errors
 /// When the folder cannot be read.
@@ -65,30 +65,30 @@ pub fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// One recording at a glance, read through and verified.
+/// Reads and verifies the whole file.
 ///
 /// # Errors
-/// When the file cannot be read or is something else.
+/// When the file cannot be read or is not a recording.
 pub fn entry(path: &Path) -> Result<Entry, OpenError> {
     let recording = Recording::open(path)?;
     let verified = recording.verify()?;
     Ok(describe(&recording, verified))
 }
 
-/// As [`entry`], but a file that ends as it should is read at its two ends
-/// only: damage before its end is not seen.
+/// As [`entry`], but of a finished file only the beginning and the end are
+/// read: damage between is not detected.
 ///
 /// # Errors
-/// When the file cannot be read or is something else.
+/// When the file cannot be read or is not a recording.
 pub fn glance(path: &Path) -> Result<Entry, OpenError> {
     let recording = Recording::open(path)?;
     match recording.end() {
         Some(end) => {
-            let believed = Verified {
+            let unverified = Verified {
                 account: end.clone(),
                 ..Verified::default()
             };
-            Ok(describe(&recording, believed))
+            Ok(describe(&recording, unverified))
         }
         None => entry(path),
     }

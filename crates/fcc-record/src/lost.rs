@@ -1,8 +1,8 @@
-//! What did not get into a file: how many messages, and of which ticks.
+//! Messages that are not in a file: how many, and of which ticks.
 
 use fcc_core::framework::{Event, EventKind, Message, Time};
 
-/// Messages that are missing between two that are not.
+/// Messages missing between two that were recorded.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub(super) struct Lost {
     pub(super) count: u64,
@@ -11,8 +11,8 @@ pub(super) struct Lost {
 }
 
 impl Lost {
-    /// The gap that a message tells of, if it is one that does.
-    pub(super) fn told_by<M, E, S, O, R>(message: &Message<M, E, S, O, R>) -> Option<Self> {
+    /// The gap that a message reports, if it reports one.
+    pub(super) fn reported_by<M, E, S, O, R>(message: &Message<M, E, S, O, R>) -> Option<Self> {
         match message {
             Message::Event(event) => match event.kind {
                 EventKind::NotRecorded { count, first, last } => Some(Self { count, first, last }),
@@ -26,7 +26,7 @@ impl Lost {
         self.count == 0
     }
 
-    /// One message more.
+    /// Adds a message.
     pub(super) fn widen<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) {
         let (tick, _) = place(message);
         self.join(Self {
@@ -36,7 +36,7 @@ impl Lost {
         });
     }
 
-    /// A later gap, with nothing between that was kept.
+    /// Adds a later gap, with no recorded message between.
     pub(super) fn join(&mut self, later: Self) {
         if self.is_none() {
             *self = later;
@@ -46,7 +46,7 @@ impl Lost {
         }
     }
 
-    /// The gap as an event, at the message that ends it.
+    /// The gap as an event, at the message after it.
     pub(super) fn event<M, E, S, O, R>(
         &self,
         next: Option<&Message<M, E, S, O, R>>,
@@ -63,13 +63,13 @@ impl Lost {
         })
     }
 
-    /// For people.
-    pub(super) fn words(&self) -> String {
+    /// For users.
+    pub(super) fn description(&self) -> String {
         if self.is_none() {
             "nothing is lost".to_owned()
         } else {
             format!(
-                "{} messages of ticks {} to {} are lost, all before is safe",
+                "{} messages of ticks {} to {} are lost, all earlier ones are recorded",
                 self.count, self.first, self.last
             )
         }

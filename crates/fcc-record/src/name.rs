@@ -1,14 +1,14 @@
-//! What recordings are called.
+//! File names of recordings.
 
 use std::path::{Path, PathBuf};
 
 use super::utc;
 
-/// How the names of recordings end.
+/// The file extension of recordings.
 pub(crate) const EXTENSION: &str = "mcap";
 
-/// `2026-11-20T04-21-33.512Z-built-in-01.mcap`: when the flight began, what
-/// flew, and which part of the recording it is. Names sort by date.
+/// `2026-11-20T04-21-33.512Z-built-in-01.mcap`: start of the flight, aircraft
+/// and part number. Names sort by date.
 pub(super) fn file_name(started_unix_ns: u64, aircraft: &str, part: u32) -> String {
     let aircraft: String = aircraft
         .chars()
@@ -18,7 +18,7 @@ pub(super) fn file_name(started_unix_ns: u64, aircraft: &str, part: u32) -> Stri
     format!("{stamp}-{aircraft}-{part:02}.{EXTENSION}")
 }
 
-/// Whether a file has the name of a recording: nothing else is ever deleted or
+/// Whether a file has the name of a recording. No other file is deleted or
 /// repaired.
 pub(super) fn is_recording(path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
@@ -36,13 +36,13 @@ pub(super) fn is_recording(path: &Path) -> bool {
             })
 }
 
-/// Where a file is put together that will replace `path`.
+/// The temporary file that will replace `path`.
 pub(super) fn unfinished(path: &Path) -> PathBuf {
     with_ending(path, ".unfinished")
 }
 
-/// Where a file is kept that was damaged, once it is replaced: where none is
-/// kept yet.
+/// The name under which a damaged file is kept after it is replaced: the first
+/// that is free.
 pub(super) fn damaged(path: &Path) -> PathBuf {
     let first = with_ending(path, ".damaged");
     let more = (2..1_000).map(|number| with_ending(path, &format!(".damaged-{number}")));
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_name_says_when_and_what_and_is_known_again() {
+    fn a_file_name_contains_start_and_aircraft_and_is_recognised() {
         let name = file_name(1_795_148_493_512_000_000, "X-Plane: c172/2", 3);
         assert_eq!(name, "2026-11-20T04-21-33.512Z-X-Plane--c172-2-03.mcap");
         assert!(is_recording(Path::new(&name)));

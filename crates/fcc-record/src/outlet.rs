@@ -1,6 +1,6 @@
-//! From the writer of MCAP to the disk: in one write for each commit, so that
-//! a file never ends inside a record, and cut back to the last commit when the
-//! disk fails.
+//! Between the MCAP writer and the disk: one write per commit, so that a file
+//! always ends at the end of a record. When the disk fails, the file is
+//! truncated to the last commit.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -9,8 +9,7 @@ use std::rc::Rc;
 
 use super::disk::DiskFile;
 
-/// The way to the disk; shared with the writer of MCAP, which keeps what it
-/// writes to.
+/// The output; shared with the MCAP writer, which owns its sink.
 #[derive(Clone)]
 pub(super) struct Outlet(Rc<RefCell<OutletState>>);
 
@@ -33,7 +32,7 @@ impl Outlet {
         })))
     }
 
-    /// Passes on what waits, and waits until it is safe.
+    /// Writes the buffered bytes and syncs.
     pub(super) fn sync(&self) -> io::Result<()> {
         let state = &mut *self.0.borrow_mut();
         state.pass_on()?;
@@ -42,16 +41,16 @@ impl Outlet {
         Ok(())
     }
 
-    /// Bytes that are safe.
+    /// Bytes synced.
     pub(super) fn synced_bytes(&self) -> u64 {
         self.0.borrow().synced
     }
 
-    /// Cuts off what is not known to be whole, and writes no more.
+    /// Truncates to the last commit, and writes no more.
     pub(super) fn abandon(&self) {
         let state = &mut *self.0.borrow_mut();
         if !mem::replace(&mut state.abandoned, true) {
-            // On a disk that failed, this may fail too; readers cope.
+            // On a failed disk this may fail too. Readers handle that.
             let _ = state.file.cut_to(state.synced);
             let _ = state.file.sync();
         }
@@ -76,7 +75,7 @@ impl Write for Outlet {
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        // Passed on when it is synced: a flush alone makes nothing safe.
+        // Written at the next sync: a flush alone guarantees nothing.
         Ok(())
     }
 }

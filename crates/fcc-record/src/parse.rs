@@ -1,5 +1,5 @@
-//! One record of MCAP from its bytes, of which nothing is believed: no length
-//! that it claims is taken before so many bytes are there.
+//! Parses one MCAP record from untrusted bytes: no length is used before that
+//! many bytes are there.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,20 +9,21 @@ use mcap::records::{
     Metadata, MetadataIndex, Record, SchemaHeader, op,
 };
 
-/// A record without its opcode and length. Kinds that no reader here asks for
-/// come as unknown.
+/// Parses a record without its opcode and length. Kinds that no reader here
+/// uses are returned as unknown.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// What is wrong with it, as text.
 pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str> {
     record(opcode, &mut Fields(body)).ok_or("a record is shorter than it claims")
 }
 
-/// As [`parse`], of a record outside of the chunks, where no checksum holds it
-/// together: its lengths must add up to its own, and its kind be one of those.
+/// As [`parse`], for a record outside of the chunks, which no checksum
+/// protects: its lengths must add up to its own, and its kind must be allowed
+/// there.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// What is wrong with it, as text.
 pub(super) fn parse_outside(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'static str> {
     let fields = &mut Fields(body);
     let record = match opcode {
@@ -33,17 +34,17 @@ pub(super) fn parse_outside(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'sta
         op::DATA_END => fields
             .u32()
             .map(|data_section_crc| Record::DataEnd(DataEnd { data_section_crc })),
-        _ => return Err("a record of a kind that does not belong here"),
+        _ => return Err("a record of a kind that is not allowed here"),
     };
     let record = record.ok_or("a record is shorter than it claims")?;
     if !fields.0.is_empty() {
-        return Err("a record is longer than what is in it");
+        return Err("a record is longer than its content");
     }
     match &record {
         Record::Attachment { crc, .. } if *crc != 0 => {
             let (covered, _) = body.split_at(body.len().saturating_sub(4));
             if crc32fast::hash(covered) != *crc {
-                return Err("an attachment's checksum does not hold");
+                return Err("an attachment's checksum does not match");
             }
         }
         _ => {}
@@ -51,7 +52,7 @@ pub(super) fn parse_outside(opcode: u8, body: &[u8]) -> Result<Record<'_>, &'sta
     Ok(record)
 }
 
-/// Its lengths alone: nobody here asks for more.
+/// Only its lengths; nothing else is used.
 fn message_index<'a>(fields: &mut Fields<'a>) -> Option<Record<'a>> {
     fields.u16()?;
     let length = fields.u32()?;
@@ -62,8 +63,8 @@ fn message_index<'a>(fields: &mut Fields<'a>) -> Option<Record<'a>> {
     })
 }
 
-/// Whether the beginning of a chunk says that it is `length` bytes long, and
-/// compressed in a way that is known.
+/// Whether the beginning of a chunk gives a total of `length` bytes and a
+/// supported compression.
 pub(super) fn is_chunk_of(beginning: &[u8], length: u64) -> bool {
     let fields = &mut Fields(beginning);
     chunk_header(fields).is_some_and(|header| {
@@ -150,7 +151,7 @@ fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
             message_end_time: fields.u64()?,
             chunk_start_offset: fields.u64()?,
             chunk_length: fields.u64()?,
-            // Nobody here asks for the rest.
+            // The rest is not used.
             message_index_offsets: BTreeMap::new(),
             message_index_length: 0,
             compression: String::new(),
@@ -169,8 +170,8 @@ fn record<'a>(opcode: u8, fields: &mut Fields<'a>) -> Option<Record<'a>> {
     })
 }
 
-/// What is left of a record: little-endian numbers, and strings and maps after
-/// their lengths in bytes.
+/// The unread part of a record: little-endian numbers, and strings and maps
+/// preceded by their length in bytes.
 struct Fields<'a>(&'a [u8]);
 
 impl<'a> Fields<'a> {

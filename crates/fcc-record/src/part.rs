@@ -1,5 +1,5 @@
-//! A part of a recording that is being written: its file, and what of it a
-//! disk that fails would lose.
+//! A part of a recording being written: its file, and what a failing disk would
+//! lose of it.
 
 use std::fs;
 use std::io;
@@ -11,31 +11,32 @@ use super::file::RecordingFile;
 use super::lost::Lost;
 use crate::recorded::Recorded;
 
-/// A part of a recording that is being written.
+/// A part of a recording being written.
 pub(super) struct Part<C: Recorded> {
     file: RecordingFile<C>,
-    /// Records that are committed.
+    /// Records committed.
     committed_ticks: u64,
-    /// Messages given to the file since.
+    /// Messages not committed yet.
     uncommitted: Lost,
-    /// Gaps told in the file since: the messages in them are lost already.
+    /// Gaps reported in the file and not committed yet: the messages in them
+    /// are already lost.
     gaps: Lost,
-    /// Remarks made in the file since.
+    /// Remarks not committed yet.
     remarks: Vec<String>,
 }
 
-/// What is left of a part when the disk has failed.
+/// The rest of a part after the disk failed.
 pub(super) struct Abandoned {
     pub(super) path: PathBuf,
-    /// Whether there is a record in it; else the file is gone.
+    /// Whether it contains a record; otherwise the file is deleted.
     pub(super) kept: bool,
     pub(super) ticks: u64,
     pub(super) bytes: u64,
-    /// Gaps that were told in it, and are not.
+    /// Gaps whose report is lost.
     pub(super) gaps: Lost,
-    /// Messages that were given to it, and are lost.
+    /// Messages that are lost.
     pub(super) lost: Lost,
-    /// Remarks that were made in it, and are not.
+    /// Remarks that are lost.
     pub(super) remarks: Vec<String>,
 }
 
@@ -52,20 +53,20 @@ impl<C: Recorded> Part<C> {
 
     /// Takes a record or an event.
     pub(super) fn take(&mut self, message: &MessageOf<C>) -> io::Result<()> {
-        match Lost::told_by(message) {
+        match Lost::reported_by(message) {
             Some(gap) => self.gaps.join(gap),
             None => self.uncommitted.widen(message),
         }
         self.file.take(message)
     }
 
-    /// Takes words that are not an event of the loop.
+    /// Takes text that is not an event of the loop.
     pub(super) fn remark(&mut self, text: String) -> io::Result<()> {
         self.remarks.push(text.clone());
         self.file.remark(text)
     }
 
-    /// Writes what has gathered and waits until it is safe from a loss of
+    /// Writes the buffered messages and waits until they survive a loss of
     /// power.
     pub(super) fn commit(&mut self) -> io::Result<()> {
         self.file.commit()?;
@@ -76,13 +77,13 @@ impl<C: Recorded> Part<C> {
         Ok(())
     }
 
-    /// Ends the file as it should end.
+    /// Finishes the file.
     pub(super) fn finish(self, ending: &str) -> io::Result<()> {
         self.file.finish(ending)
     }
 
-    /// Leaves the file as it was when last committed, or deletes one without a
-    /// record: nobody needs a file that says nothing.
+    /// Leaves the file as it was when last committed, or deletes it if it
+    /// contains no record.
     pub(super) fn abandon(self) -> Abandoned {
         let kept = self.committed_ticks > 0;
         let path = self.file.path().to_owned();
@@ -106,27 +107,27 @@ impl<C: Recorded> Part<C> {
         self.file.path()
     }
 
-    /// Records that are safe on the disk.
+    /// Records synced to the disk.
     pub(super) fn ticks(&self) -> u64 {
         self.committed_ticks
     }
 
-    /// Bytes that are safe on the disk.
+    /// Bytes synced to the disk.
     pub(super) fn bytes(&self) -> u64 {
         self.file.bytes()
     }
 
-    /// Bytes that have gathered since, before they are compressed.
+    /// Bytes buffered since, before compression.
     pub(super) fn gathered_bytes(&self) -> u64 {
         self.file.gathered_bytes()
     }
 
-    /// How much of a flight the file covers, ns.
+    /// Duration of the flight in the file, ns.
     pub(super) fn span_ns(&self) -> u64 {
         self.file.span_ns()
     }
 
-    /// What was lost before, and what of it is told in the file.
+    /// Gaps reported in the file and not committed yet.
     pub(super) fn gaps(&self) -> Lost {
         self.gaps
     }

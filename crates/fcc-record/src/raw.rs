@@ -1,12 +1,11 @@
-//! MCAP records one after the other, from a file of which nothing is believed:
-//! no length it claims is allocated before it is known to be there, and nothing
-//! of a chunk is handed on before its checksum holds. What is damaged is
-//! reported and passed over: reading goes on at the next record that is known
-//! by its beginning.
+//! Reads the MCAP records of an untrusted file in sequence: no length is
+//! allocated before that many bytes are known to be there, and nothing of a
+//! chunk is returned before its checksum matches. Damage is reported and
+//! skipped: reading continues at the next record that can be identified.
 //!
-//! The `mcap` crate's own reader (0.26) panics on some lengths that no writer
-//! writes, and allocates what a file claims: it is used for files of our own
-//! making only, in tests.
+//! The `mcap` crate's own reader (0.26) panics on some invalid lengths and
+//! allocates what a file claims: it is used in tests only, for files of our
+//! own.
 
 use std::cell::OnceCell;
 use std::fs::File;
@@ -21,33 +20,32 @@ use super::framing::{self, FOOTER_BYTES, HEAD_BYTES, MAGIC_BYTES, MAX_RECORD_BYT
 use super::parse::{parse, parse_outside};
 use super::summary::{self, Summary};
 
-/// Where and why there is no more to read in a file that did not say it was
-/// over.
+/// Where and why reading ended before the end of the recording.
 #[derive(thiserror::Error, Debug)]
 pub(super) enum Cut {
-    /// The file ends here: whoever wrote it got no further.
+    /// The file ends here, unfinished.
     #[error("cut off after {0} bytes")]
     Off(u64),
-    /// It does not begin like one of ours.
-    #[error("it is no MCAP file")]
+    /// It does not begin like a recording.
+    #[error("not an MCAP file")]
     NotMcap,
-    /// The system could not read what is here.
+    /// The system could not read the next bytes.
     #[error("unreadable after {after} bytes: {source}")]
     Unreadable {
-        /// What was read.
+        /// Bytes read before.
         after: u64,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// What comes next in a file.
-pub(super) enum Found<T> {
+/// The next thing in a file.
+pub(super) enum Next<T> {
     /// A record.
     Record(T),
-    /// Bytes that are not what was written; what follows them comes next.
+    /// Damaged bytes; reading continues after them.
     Damage(DamagedBytes),
-    /// Nothing: the file says that it is over.
+    /// The end of a finished file.
     End,
 }
 
@@ -56,32 +54,31 @@ pub(super) enum Found<T> {
 pub(super) struct DamagedBytes {
     /// From the first to the one after the last.
     pub(super) bytes: Range<u64>,
-    /// What is wrong with them.
+    /// What is wrong with them, as text.
     pub(super) why: String,
-    /// Whether there may have been messages in them, and not only an index or
-    /// what is said of the flight as a whole.
+    /// Whether messages may have been in them, and not only an index or
+    /// metadata.
     pub(super) messages: bool,
 }
 
-/// Reads the records of a file one after the other, with those of its chunks,
-/// from the header to the end of the data. Indexes are verified and passed
-/// over.
+/// Reads the records of a file and of its chunks in sequence, from the header
+/// to the end of the data. Indexes are verified and skipped.
 pub(super) struct RawReader {
     file: BufReader<File>,
-    /// How long the file was at first: what is appended later is left.
+    /// Length of the file when opened: what is appended later is ignored.
     length: u64,
     position: u64,
-    /// The record at hand, without its opcode and length.
+    /// The current record, without its opcode and length.
     body: Vec<u8>,
-    /// The chunk at hand, where it is in the file, and how far it is read.
+    /// The current chunk, its place in the file, and the read position in it.
     chunk: Vec<u8>,
     chunk_bytes: Range<u64>,
     chunk_position: usize,
-    /// Over all that was read; none once something was passed over.
+    /// Of all bytes read; none after damage was skipped.
     checksum: Option<crc32fast::Hasher>,
-    /// What the index says, once it was looked for.
+    /// The content of the index, once it was read.
     summary: OnceCell<Option<Summary>>,
-    over: bool,
+    finished: bool,
 }
 
 impl RawReader {
@@ -96,33 +93,34 @@ impl RawReader {
             chunk_position: 0,
             checksum: Some(crc32fast::Hasher::new()),
             summary: OnceCell::new(),
-            over: false,
+            finished: false,
         })
     }
 
-    /// Bytes read so far, for who shows progress.
+    /// Bytes read so far, to show progress.
     pub(super) const fn bytes_read(&self) -> u64 {
         self.position
     }
 
-    /// Where in the file the last record was, or the chunk that it was in.
+    /// The place of the last record in the file, or of the chunk that contains
+    /// it.
     pub(super) fn last_bytes(&self) -> Range<u64> {
         self.chunk_bytes.clone()
     }
 
-    /// Hands the next record to `take`.
+    /// Passes the next record to `take`.
     ///
     /// # Errors
-    /// Where the file is cut; there is no use in going on then.
-    pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Found<T>, Cut> {
+    /// Where the file is cut off; nothing can be read after that.
+    pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Next<T>, Cut> {
         if self.position == 0
             && let Some(damage) = self.read_magic()?
         {
-            return Ok(Found::Damage(damage));
+            return Ok(Next::Damage(damage));
         }
         loop {
-            if self.over {
-                return Ok(Found::End);
+            if self.finished {
+                return Ok(Next::End);
             }
             if self.chunk_position < self.chunk.len() {
                 let parsed = framed(&self.chunk, self.chunk_position)
@@ -132,11 +130,11 @@ impl RawReader {
                         parse(opcode, body)
                     });
                 match parsed {
-                    Ok(record) => return Ok(Found::Record(take(record))),
+                    Ok(record) => return Ok(Next::Record(take(record))),
                     Err(why) => {
-                        // Where its next record begins is not known.
+                        // Where the next record begins is not known.
                         self.chunk_position = self.chunk.len();
-                        return Ok(Found::Damage(DamagedBytes {
+                        return Ok(Next::Damage(DamagedBytes {
                             bytes: self.chunk_bytes.clone(),
                             why: why.to_owned(),
                             messages: true,
@@ -148,11 +146,11 @@ impl RawReader {
             let checksum_before = self.checksum.clone();
             let opcode = match self.read_record()? {
                 Ok(opcode) => opcode,
-                Err(why) => return self.pass_over(start, why),
+                Err(why) => return self.skip(start, why),
             };
             if opcode == op::FOOTER {
-                self.over = true;
-                return Ok(Found::End);
+                self.finished = true;
+                return Ok(Next::End);
             }
             self.chunk_bytes = start..self.position;
             let damage = match parse_outside(opcode, &self.body) {
@@ -168,13 +166,13 @@ impl RawReader {
                     let computed = checksum_before.map(crc32fast::Hasher::finalize);
                     self.end_of_data(start, computed, end.data_section_crc)?
                 }
-                // An index of what is in the chunk before it.
+                // An index of the chunk before it.
                 Ok(Record::Unknown { .. }) => None,
-                Ok(record) => return Ok(Found::Record(take(record))),
-                Err(why) => return self.pass_over(start, why),
+                Ok(record) => return Ok(Next::Record(take(record))),
+                Err(why) => return self.skip(start, why),
             };
             if let Some(damage) = damage {
-                return Ok(Found::Damage(damage));
+                return Ok(Next::Damage(damage));
             }
         }
     }
@@ -187,23 +185,23 @@ impl RawReader {
         if self.body == mcap::MAGIC {
             return Ok(None);
         }
-        // It may be one of ours, if what comes next is right.
+        // It may still be a recording, if a header follows.
         let next = self
             .file
             .fill_buf()
             .map(framing::head)
             .map_err(|source| Cut::Unreadable { after: 0, source })?;
         match next {
-            Some((op::HEADER, length)) if length < MOST_HEADER_BYTES => Ok(Some(DamagedBytes {
+            Some((op::HEADER, length)) if length < MAX_HEADER_BYTES => Ok(Some(DamagedBytes {
                 bytes: 0..MAGIC_BYTES,
-                why: "the magic number is another".to_owned(),
+                why: "the magic number is wrong".to_owned(),
                 messages: false,
             })),
             _ => Err(Cut::NotMcap),
         }
     }
 
-    /// Reads the next record of the file; gives its opcode, or what is wrong
+    /// Reads the next record of the file; returns its opcode, or what is wrong
     /// with its length.
     fn read_record(&mut self) -> Result<Result<u8, &'static str>, Cut> {
         if self.left() < HEAD_BYTES as u64 {
@@ -232,7 +230,7 @@ impl RawReader {
         self.length.saturating_sub(self.position)
     }
 
-    /// Reads so many bytes, which the file has.
+    /// Reads `length` bytes, which the file has.
     fn read_body(&mut self, length: u64) -> Result<(), Cut> {
         self.body.resize(length as usize, 0);
         match self.file.read_exact(&mut self.body) {
@@ -247,7 +245,7 @@ impl RawReader {
         }
     }
 
-    /// A chunk whose length is right, and what is in it is not.
+    /// A chunk with a correct length and damaged content.
     fn damaged_chunk(&mut self, why: String) -> Result<DamagedBytes, Cut> {
         self.checksum = None;
         self.repeat_declarations();
@@ -259,10 +257,10 @@ impl RawReader {
         })
     }
 
-    /// Goes on after a record at `start` that does not say where it ends.
-    fn pass_over<T>(&mut self, start: u64, why: &str) -> Result<Found<T>, Cut> {
+    /// Continues after a record at `start` whose end is not known.
+    fn skip<T>(&mut self, start: u64, why: &str) -> Result<Next<T>, Cut> {
         self.checksum = None;
-        // Where it says that it ends, if a record is there.
+        // Its claimed end, if a record is there.
         let claimed = self.position;
         let next = self
             .seek_next(start, claimed)
@@ -279,7 +277,7 @@ impl RawReader {
             self.repeat_declarations();
         }
         self.seek()?;
-        Ok(Found::Damage(DamagedBytes {
+        Ok(Next::Damage(DamagedBytes {
             bytes,
             why: why.to_owned(),
             messages,
@@ -301,8 +299,8 @@ impl RawReader {
             .map_err(|error| self.unreadable(error))
     }
 
-    /// What the index says; none where that is damaged or missing. Leaves the
-    /// file at another place.
+    /// The content of the index; none if it is damaged or missing. Moves the
+    /// file's position.
     fn summary(&mut self) -> Option<&mut Summary> {
         let (file, length) = (&mut self.file, self.length);
         self.summary.get_or_init(|| {
@@ -313,8 +311,8 @@ impl RawReader {
         self.summary.get_mut()?.as_mut()
     }
 
-    /// Hands out, once, what the index repeats of the topics: the chunk that said it
-    /// may be the damaged one.
+    /// Returns, once, the index's copy of the declared topics: the chunk that
+    /// declared them may be damaged.
     fn repeat_declarations(&mut self) {
         let summary = self.summary();
         let declarations = summary.map(|summary| mem::take(&mut summary.declarations));
@@ -322,7 +320,7 @@ impl RawReader {
         self.chunk_position = 0;
     }
 
-    /// Verifies what follows the data: the index, which ends the file.
+    /// Verifies the index, which follows the data.
     fn end_of_data(
         &mut self,
         start: u64,
@@ -333,13 +331,13 @@ impl RawReader {
         let file = self.file.get_mut();
         let why = match summary::read_footer(file, self.length) {
             Some(at) if at.start != 0 && at.start != index.start => {
-                Some("the footer does not say where the index is")
+                Some("the footer does not point to the index")
             }
             Some(at) => summary::read(file, &at).err(),
             None if summary::has_end(file, self.length) => Some("the footer is damaged"),
             None => return Err(Cut::Off(self.length)),
         };
-        self.over = true;
+        self.finished = true;
         self.position = self.length;
         let damaged = |bytes, why: &str| DamagedBytes {
             bytes,
@@ -351,8 +349,8 @@ impl RawReader {
         }
         let differs = checksum != 0 && computed.is_some_and(|computed| computed != checksum);
         Ok(differs.then(|| {
-            let why = "somewhere between the chunks, something is not what was written: the \
-                       checksum of the data does not hold";
+            let why = "something between the chunks is damaged: the checksum of the data \
+                       does not match";
             damaged(0..start, why)
         }))
     }
@@ -365,13 +363,13 @@ impl RawReader {
     }
 }
 
-/// A profile and the name of a program.
-const MOST_HEADER_BYTES: u64 = 1_024;
+/// Longer than a profile and the name of a program.
+const MAX_HEADER_BYTES: u64 = 1_024;
 
-/// Either the file was cut off, or a length is damaged.
+/// Either the file was cut off, or the length is damaged.
 const TOO_LONG: &str = "a record claims more bytes than there are";
 
-/// The record at a place in a chunk: opcode, body, and where it ends.
+/// The record at `position` of a chunk: opcode, body, and where it ends.
 fn framed(chunk: &[u8], position: usize) -> Option<(u8, &[u8], usize)> {
     let bytes = chunk.get(position..)?;
     let (opcode, length) = framing::head(bytes)?;

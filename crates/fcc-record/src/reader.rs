@@ -1,6 +1,5 @@
-//! Reads recordings back.
+//! Reads recordings.
 
-use std::fs::File;
 use std::io::{self, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -8,13 +7,14 @@ use mcap::records::Record;
 
 use super::about::About;
 use super::damage::Damage;
+use super::disk;
 use super::end::{End, RunStatistics};
 use super::items::{AnyMessage, Items, Messages, RecordedMessage};
-use super::raw::{Found, RawReader};
+use super::raw::{Next, RawReader};
 use super::schema;
 use super::summary;
 
-/// A recording, opened: what is known of the flight, and its messages.
+/// An opened recording: what is known of the flight, and its messages.
 ///
 /// ```no_run
 /// use fcc_core::framework::Message;
@@ -50,50 +50,51 @@ pub struct Recording {
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum OpenError {
-    /// The system refused.
+    /// The system's error.
     #[error("{path}: cannot be read: {source}")]
     Io {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// The file is something else, or cut before it said what it is.
-    #[error("{path}: is no recording of fccd: {why}")]
+    /// The file is not a recording, or was cut off before it could be
+    /// identified.
+    #[error("{path}: not a recording of fccd: {why}")]
     NotARecording {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// What is wrong with it, as text.
         why: String,
     },
 }
 
-/// What is in a file, once it was read through.
+/// What reading a whole file found.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Verified {
-    /// The account of what can be read.
+    /// Statistics of what can be read.
     pub account: End,
-    /// What is damaged.
+    /// The damage.
     pub damages: Vec<Damage>,
     /// Where and why the file ends before the recording did.
     pub cut: Option<String>,
 }
 
-/// Ticks read between two looks at the clock.
+/// Ticks read between two checks of the clock.
 const CHECK_EVERY: u64 = 1_024;
 
 impl Recording {
-    /// Opens a recording, whole or cut.
+    /// Opens a recording, finished or not.
     ///
     /// # Errors
-    /// When it cannot be read or is something else.
+    /// When it cannot be read or is not a recording.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, OpenError> {
         let path = path.as_ref().to_owned();
         let refused = |source| OpenError::Io {
             path: path.clone(),
             source,
         };
-        let mut file = File::open(&path).map_err(refused)?;
+        let mut file = disk::open(&path).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
         let index = summary::read_footer(&mut file, bytes);
         let end = index.as_ref().and_then(|at| {
@@ -115,30 +116,29 @@ impl Recording {
         })
     }
 
-    /// What is known of the flight: the machine, the loop, the configuration.
+    /// What is known of the flight: machine, loop, configuration.
     pub const fn about(&self) -> &About {
         &self.about
     }
 
-    /// Whether the file ends as it should. If not, the recorder was killed, the
-    /// power was lost or the disk was full: see [`recover`](super::recover).
-    /// Whether it is damaged before its end is known once it was read through:
-    /// see [`verify`](Self::verify).
+    /// Whether the file is finished. If not, the recorder was killed, the power
+    /// was lost or the disk was full: see [`recover`](super::recover). Damage
+    /// before the end is found by [`verify`](Self::verify).
     pub const fn is_whole(&self) -> bool {
         self.whole
     }
 
-    /// The account at the end of the file; none where it is cut or damaged. See
-    /// [`account`](Self::account).
+    /// The statistics at the end of the file; none if it is unfinished or
+    /// damaged there. See [`account`](Self::account).
     pub const fn end(&self) -> Option<&End> {
         self.end.as_ref()
     }
 
-    /// The account of what the file holds: its own, or counted from its
-    /// messages where it is cut.
+    /// The statistics at the end of the file, or counted from its messages if
+    /// it is unfinished.
     ///
     /// # Errors
-    /// When the file cannot be read any more.
+    /// When the file can no longer be read.
     pub fn account(&self) -> Result<End, OpenError> {
         match &self.end {
             Some(end) => Ok(end.clone()),
@@ -146,22 +146,22 @@ impl Recording {
         }
     }
 
-    /// Reads all of the file, and says what in it is damaged.
+    /// Reads the whole file and reports its damage.
     ///
     /// # Errors
-    /// When the file cannot be read any more.
+    /// When the file can no longer be read.
     pub fn verify(&self) -> Result<Verified, OpenError> {
         self.verify_while(|_| true).map(Option::unwrap_or_default)
     }
 
-    /// As [`verify`](Self::verify), unless `go_on`, told how many bytes are
-    /// read, says no: then there is nothing to say.
+    /// As [`verify`](Self::verify). `go_on` is called with the number of bytes
+    /// read; if it returns false, the result is none.
     pub(super) fn verify_while(
         &self,
         mut go_on: impl FnMut(u64) -> bool,
     ) -> Result<Option<Verified>, OpenError> {
         match &self.end {
-            // Without damage there is no need to understand every message.
+            // Without damage there is no need to decode every message.
             Some(end) if self.is_undamaged(&mut go_on)? => Ok(Some(Verified {
                 account: end.clone(),
                 ..Verified::default()
@@ -170,15 +170,15 @@ impl Recording {
         }
     }
 
-    /// Whether every checksum holds, up to an end that is as it should be.
+    /// Whether every checksum matches and the file is finished.
     fn is_undamaged(&self, go_on: &mut impl FnMut(u64) -> bool) -> Result<bool, OpenError> {
         let mut raw = self.raw()?;
         let mut records = 0_u64;
         loop {
             match raw.next(|_| ()) {
-                Ok(Found::Record(())) => records += 1,
-                Ok(Found::End) => return Ok(true),
-                Ok(Found::Damage(_)) | Err(_) => return Ok(false),
+                Ok(Next::Record(())) => records += 1,
+                Ok(Next::End) => return Ok(true),
+                Ok(Next::Damage(_)) | Err(_) => return Ok(false),
             }
             if records.is_multiple_of(CHECK_EVERY) && !go_on(raw.bytes_read()) {
                 return Ok(false);
@@ -186,7 +186,7 @@ impl Recording {
         }
     }
 
-    /// Reads message by message.
+    /// Decodes every message.
     fn count(&self, mut go_on: impl FnMut(u64) -> bool) -> Result<Option<Verified>, OpenError> {
         let mut run_statistics = RunStatistics::default();
         let mut messages = self.messages::<AnyMessage>()?;
@@ -208,37 +208,35 @@ impl Recording {
         }))
     }
 
-    /// Where the file is.
+    /// The path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// How long the file is; with [`Messages::bytes_read`] for who shows
-    /// progress.
+    /// The length of the file; with [`Messages::bytes_read`], to show progress.
     pub const fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Records and events from the first, in the order of their log time.
+    /// Records and events from the first, in order of log time.
     ///
     /// # Errors
-    /// When the file cannot be opened any more.
+    /// When the file can no longer be opened.
     pub fn messages<M: RecordedMessage>(&self) -> Result<Messages<M>, OpenError> {
         self.items().map(Messages::new)
     }
 
-    /// Records, events and remarks from the first, in the order of their log
-    /// time.
+    /// Records, events and remarks from the first, in order of log time.
     ///
     /// # Errors
-    /// When the file cannot be opened any more.
+    /// When the file can no longer be opened.
     pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
         self.raw()
             .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
     }
 
     fn raw(&self) -> Result<RawReader, OpenError> {
-        File::open(&self.path)
+        disk::open(&self.path)
             .and_then(RawReader::new)
             .map_err(|source| OpenError::Io {
                 path: self.path.clone(),
@@ -247,20 +245,20 @@ impl Recording {
     }
 }
 
-/// Which program wrote a file.
-enum Written {
-    /// This one.
-    Now,
-    /// A version of it with an earlier format, by its name.
-    Before(String),
-    /// Another.
-    ByOthers,
+/// The program that wrote a file.
+enum Writer {
+    /// This one, in the present format.
+    Present,
+    /// A version of this one with an earlier format: its name.
+    Earlier(String),
+    /// Another program.
+    Other,
 }
 
-/// Reads what stands before the first message.
+/// Reads what precedes the first message.
 fn read_about(mut raw: RawReader) -> Result<About, String> {
-    enum Said {
-        Profile(Written),
+    enum Content {
+        Profile(Writer),
         Flight(bool),
         Other,
         Messages,
@@ -268,38 +266,40 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
     let mut about = About::default();
     let (mut is_ours, mut known) = (false, false);
     loop {
-        let said = raw.next(|record| match record {
-            Record::Header(header) => Said::Profile(match header.profile.as_str() {
-                schema::PROFILE => Written::Now,
-                schema::FIRST_PROFILE => Written::Before(header.library),
-                _ => Written::ByOthers,
+        let content = raw.next(|record| match record {
+            Record::Header(header) => Content::Profile(match header.profile.as_str() {
+                schema::PROFILE => Writer::Present,
+                schema::FIRST_PROFILE => Writer::Earlier(header.library),
+                _ => Writer::Other,
             }),
             Record::Metadata(metadata) => {
-                Said::Flight(about.take_metadata(&metadata.name, metadata.metadata))
+                Content::Flight(about.take_metadata(&metadata.name, metadata.metadata))
             }
             Record::Attachment { header, data, .. } => {
                 about.take_attachment(&header.name, &data);
-                Said::Other
+                Content::Other
             }
-            Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => Said::Messages,
-            _ => Said::Other,
+            Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => {
+                Content::Messages
+            }
+            _ => Content::Other,
         });
-        match said.map_err(|cut| cut.to_string())? {
-            Found::Record(Said::Profile(Written::Before(library))) => {
+        match content.map_err(|cut| cut.to_string())? {
+            Next::Record(Content::Profile(Writer::Earlier(library))) => {
                 return Err(format!(
-                    "{library} wrote it, in a format before {}: read it with that version, or \
+                    "{library} wrote it, in a format older than {}: read it with that version, or \
                      with Foxglove or any other program that reads MCAP",
                     schema::PROFILE
                 ));
             }
-            Found::Record(Said::Profile(written)) => is_ours = matches!(written, Written::Now),
-            Found::Record(Said::Flight(taken)) => known |= taken,
-            Found::Record(Said::Other) | Found::Damage(_) => {}
-            // Either may be what is damaged.
-            Found::Record(Said::Messages) if is_ours || known => return Ok(about),
-            Found::End if known => return Ok(about),
-            Found::End if is_ours => return Err("it does not say what flew".to_owned()),
-            Found::Record(Said::Messages) | Found::End => {
+            Next::Record(Content::Profile(written)) => is_ours = matches!(written, Writer::Present),
+            Next::Record(Content::Flight(taken)) => known |= taken,
+            Next::Record(Content::Other) | Next::Damage(_) => {}
+            // Either of the two may be damaged.
+            Next::Record(Content::Messages) if is_ours || known => return Ok(about),
+            Next::End if known => return Ok(about),
+            Next::End if is_ours => return Err("it contains no metadata of a flight".to_owned()),
+            Next::Record(Content::Messages) | Next::End => {
                 return Err("another program wrote it".to_owned());
             }
         }

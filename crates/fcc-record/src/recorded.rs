@@ -1,4 +1,4 @@
-//! What a recording has beside records and events.
+//! What a recording contains besides records and events.
 
 use std::borrow::Cow;
 
@@ -7,25 +7,26 @@ use fcc_telemetry::Telemetry;
 
 /// A controller whose loop can be recorded.
 pub trait Recorded: Telemetry {
-    /// What its recordings have beside records and events; `()` for nothing.
+    /// What its recordings contain besides records and events; `()` for
+    /// nothing.
     type Views: Views<Self>;
 }
 
-/// What a recording has beside records and events: messages of well-known types
-/// that other programs can show.
+/// What a recording contains besides records and events: messages of well-known
+/// types that other programs can display.
 pub trait Views<C: Controller + ?Sized>: Default + Send {
-    /// Each topic, its message's type, and that type's `FileDescriptorSet`.
+    /// For each topic: its name, the type of its messages, and that type's
+    /// `FileDescriptorSet`.
     const TOPICS: &'static [(&'static str, &'static str, &'static [u8])];
 
-    /// Takes the next record; `unix_ns` is its time of day.
+    /// Takes the next record; `unix_ns` is its wall-clock time.
     fn take(&mut self, record: &RecordOf<C>, unix_ns: u64);
 
-    /// Appends the message that one of the topics has for that record; whether
-    /// it has one.
+    /// Appends the message of a topic for that record; false if there is none.
     fn append(&mut self, topic: usize, into: &mut Vec<u8>) -> bool;
 }
 
-/// Nothing beside records and events.
+/// Nothing besides records and events.
 impl<C: Controller> Views<C> for () {
     const TOPICS: &'static [(&'static str, &'static str, &'static [u8])] = &[];
 
@@ -36,5 +37,5 @@ impl<C: Controller> Views<C> for () {
     }
 }
 
-/// A topic, its message's type, and that type's description.
+/// A topic's name, the type of its messages, and that type's description.
 pub(crate) type TopicOf = (&'static str, String, Cow<'static, [u8]>);

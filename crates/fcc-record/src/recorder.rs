@@ -1,4 +1,4 @@
-//! The recorder as who flies sees it: give it messages, never wait.
+//! The recorder: takes messages without waiting.
 
 use std::io;
 use std::panic::{self, AssertUnwindSafe};
@@ -12,15 +12,15 @@ use super::about::About;
 use super::disk::{Disk, FileSystem};
 use super::lost::Lost;
 use super::settings::{RecorderSettings, RecordingPace};
-use super::status::{Board, News, RecorderStatus};
+use super::status::{Board, Notice, RecorderStatus};
 use super::writing::{Feed, Writing};
 use crate::recorded::Recorded;
 
 /// The name of a recorder's thread.
 const THREAD_NAME: &str = "fcc-recorder";
 
-/// How long the end of a flight waits for what is still on its way to the
-/// disk: a disk that hangs must not keep a program from ending.
+/// How long the end of a flight waits for the disk: a disk that hangs must not
+/// keep the program from ending.
 const PATIENCE: Duration = Duration::from_secs(10);
 const POLL: Duration = Duration::from_millis(2);
 
@@ -28,18 +28,18 @@ const POLL: Duration = Duration::from_millis(2);
 #[cfg(feature = "flight")]
 pub type Recorder = RecorderOf<fcc_core::flight::Autopilot>;
 
-/// Writes the recording of a loop in a thread of its own.
+/// Writes the recording of a loop in its own thread.
 ///
 /// [`take`](Self::take) and [`remark`](Self::remark) never wait in real time:
-/// what the disk is too slow for is dropped, and the gap is recorded. Whatever
-/// goes wrong with the disk is [news](Self::news), and never an error of the
-/// flight.
+/// messages for which the disk is too slow are dropped, and the gap is
+/// recorded. Disk failures are [notices](Self::notice), and never an error of
+/// the flight.
 pub struct RecorderOf<C: Recorded> {
     feed: SyncSender<Feed<MessageOf<C>>>,
     pace: RecordingPace,
     lost: Lost,
     board: Board,
-    news: Receiver<News>,
+    notices: Receiver<Notice>,
     thread: JoinHandle<()>,
 }
 
@@ -47,13 +47,13 @@ impl<C: Recorded> RecorderOf<C> {
     /// Begins a recording in a folder of the file system.
     ///
     /// # Errors
-    /// When there is no thread to be had. A folder that cannot be written to
-    /// is no error: that is told as [news](Self::news).
+    /// When no thread can be started. A folder that cannot be written to is a
+    /// [notice](Self::notice) and not an error.
     pub fn start(about: About, settings: RecorderSettings) -> io::Result<Self> {
         Self::start_on(Box::new(FileSystem), about, settings)
     }
 
-    /// As [`start`](Self::start), on a disk of another kind.
+    /// As [`start`](Self::start), on another kind of disk.
     ///
     /// # Errors
     /// As [`start`](Self::start).
@@ -63,7 +63,7 @@ impl<C: Recorded> RecorderOf<C> {
         settings: RecorderSettings,
     ) -> io::Result<Self> {
         let (feed, fed) = mpsc::sync_channel(settings.capacity.max(1));
-        let (tell, news) = mpsc::channel();
+        let (tell, notices) = mpsc::channel();
         let board = Board::default();
         let pace = settings.pace;
         let on_the_thread = board.clone();
@@ -83,7 +83,7 @@ impl<C: Recorded> RecorderOf<C> {
             pace,
             lost: Lost::default(),
             board,
-            news,
+            notices,
             thread,
         })
     }
@@ -91,47 +91,46 @@ impl<C: Recorded> RecorderOf<C> {
     /// Records a message. In real time it never waits; in lockstep it waits for
     /// the disk.
     pub fn take(&mut self, message: &MessageOf<C>) {
-        if !self.report_gap(message) || !self.send(Feed::Message(*message)) {
+        if !self.report_gap(message) || !self.send(Feed::Message(Box::new(*message))) {
             self.lose(message);
         }
     }
 
-    /// Records words that are not an event of the loop.
+    /// Records text that is not an event of the loop.
     pub fn remark(&self, text: String) {
-        // Words are no part of the flight: lost, they leave no gap.
+        // Remarks are not part of the flight: if lost, they leave no gap.
         self.send(Feed::Remark(text));
     }
 
-    /// What there is to say about the recording: where it goes, what was
-    /// deleted for it, why it stopped. None if there is nothing new.
-    pub fn news(&self) -> Option<News> {
-        self.news.try_recv().ok()
+    /// The next notice about the recording: its file, what was deleted for it,
+    /// why it stopped. None if there is none.
+    pub fn notice(&self) -> Option<Notice> {
+        self.notices.try_recv().ok()
     }
 
-    /// How it does.
+    /// The status.
     pub fn status(&self) -> RecorderStatus {
         self.board.read()
     }
 
-    /// Ends the recording; `ending` says in words why the flight ended. Waits
-    /// for the disk, 10 s at most, and gives the last word on the recording and
-    /// the news nobody asked for.
-    pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<News>) {
+    /// Ends the recording; `ending` is the reason, as text. Waits for the disk,
+    /// at most 10 s, and returns the final status and the notices not taken
+    /// yet.
+    pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<Notice>) {
         let began = Instant::now();
-        let last = (!self.lost.is_none()).then(|| Feed::Message(self.lost.event(None)));
+        let last = (!self.lost.is_none()).then(|| Feed::Message(Box::new(self.lost.event(None))));
         for feed in last.into_iter().chain([Feed::End(ending.to_owned())]) {
             self.send_patiently(feed, began);
         }
         while !self.thread.is_finished() && began.elapsed() < PATIENCE {
             thread::sleep(POLL);
         }
-        let trouble = (!self.thread.is_finished()).then(|| News {
-            text: "the recording's end is not on the disk after 10 s: it does not answer"
-                .to_owned(),
+        let trouble = (!self.thread.is_finished()).then(|| Notice {
+            text: "the recording is not finished after 10 s: the disk does not respond".to_owned(),
             is_trouble: true,
         });
-        let news = self.news.try_iter().chain(trouble).collect();
-        (self.board.read(), news)
+        let notices = self.notices.try_iter().chain(trouble).collect();
+        (self.board.read(), notices)
     }
 
     fn send(&self, feed: Feed<MessageOf<C>>) -> bool {
@@ -151,13 +150,13 @@ impl<C: Recorded> RecorderOf<C> {
         }
     }
 
-    /// Tells of a gap before the message that ends it; whether there is none
-    /// left to tell.
+    /// Reports a gap before the message after it; true if no gap is left to
+    /// report.
     fn report_gap(&mut self, next: &MessageOf<C>) -> bool {
         if self.lost.is_none() {
             return true;
         }
-        let told = self.send(Feed::Message(self.lost.event(Some(next))));
+        let told = self.send(Feed::Message(Box::new(self.lost.event(Some(next)))));
         if told {
             self.lost = Lost::default();
         }
@@ -170,16 +169,16 @@ impl<C: Recorded> RecorderOf<C> {
     }
 }
 
-/// Says that the recorder itself is at fault, and that there is none any more.
-fn give_up(board: &Board, say: &Sender<News>) {
-    let words = "the recorder panicked; `fccd recover` saves what is there";
+/// Reports that the recorder itself failed and has ended.
+fn give_up(board: &Board, say: &Sender<Notice>) {
+    let text = "the recorder panicked; `fccd recover` saves what is there";
     board.update(|status| {
         status.file = None;
-        status.stopped = Some(words.to_owned());
+        status.stopped = Some(text.to_owned());
     });
-    // Whoever flies may be gone already.
-    let _ = say.send(News {
-        text: format!("recording stopped: {words}"),
+    // The flight may have ended already.
+    let _ = say.send(Notice {
+        text: format!("recording stopped: {text}"),
         is_trouble: true,
     });
 }

@@ -1,4 +1,4 @@
-//! Makes a finished file of one that was cut off or damaged.
+//! Finishes a file that is unfinished or damaged.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -19,66 +19,65 @@ use super::file::options;
 use super::foxglove;
 use super::items::{AnyMessage, Channels, Item};
 use super::name::{damaged, unfinished};
-use super::raw::{Cut, Found, RawReader};
+use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};
 use super::schema::encode_event;
 use super::settings::Compression;
 use super::wire::log::Level;
 
-/// What came of recovering a file.
+/// The result of recovering a file.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Recovered {
     /// The file, under its own name.
     pub path: PathBuf,
-    /// Whether it was whole already; then nothing was done.
+    /// Whether it was already finished and undamaged; then nothing was done.
     pub was_whole: bool,
     /// Records in it.
     pub ticks: u64,
-    /// Where and why it was cut; none if it ended as it should.
+    /// Where and why it was cut off; none if it was finished.
     pub cut: Option<String>,
-    /// What was damaged in it, and what is missing for it.
+    /// The damage in it, and what is missing because of it.
     pub damages: Vec<Damage>,
-    /// Where the file as it was is kept, if it was damaged; none if all that
-    /// was in it is in the recovered one.
+    /// The path of the original file, kept if it was damaged; none if the
+    /// recovered one contains all of it.
     pub kept: Option<PathBuf>,
 }
 
-/// Why a file could not be recovered; it is as it was.
+/// Why a file could not be recovered. The file is then unchanged.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum RecoverError {
-    /// It cannot be read, or is no recording.
+    /// It cannot be read, or is not a recording.
     #[error(transparent)]
     Open(#[from] OpenError),
-    /// Somebody is writing or recovering it.
-    #[error("{0}: is being written right now: end that flight first, or wait for who recovers it")]
+    /// A program is writing or recovering it.
+    #[error("{0}: is being written or recovered by another program: wait until it has ended")]
     BeingWritten(PathBuf),
     /// The finished file could not be written.
-    #[error("{path}: cannot be written: {source}. The recording is as it was")]
+    #[error("{path}: cannot be written: {source}. The recording is unchanged")]
     Write {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// It takes longer than it may.
-    #[error("{0}: is too long to be recovered now: run `fccd recover` on it")]
+    /// It takes longer than permitted.
+    #[error("{0}: takes too long to recover during a start: run `fccd recover` on it")]
     TooLong(PathBuf),
 }
 
-/// Makes a finished file of one that was cut off or damaged: all of its
-/// messages that can be read, and the account and index that it lacks. Where
-/// ticks are missing, the finished file has an event that says which.
-/// `progress` is told how many of its bytes are read.
+/// Finishes a file that is unfinished or damaged: it then contains all messages
+/// that can be read, the statistics and the index. An event reports missing
+/// ticks. `progress` is called with the number of bytes read.
 ///
-/// The finished file is put together beside the cut one and takes its place in
-/// one step once it is safe on the disk: at no moment is there less than
-/// before. A file that is damaged is kept beside it, as [`kept`](Recovered::kept)
-/// says. A whole file is left alone, and so is one that the system cannot read
-/// to its end.
+/// The finished file is written beside the original and replaces it in one step
+/// after it is synced: at no time is there less data than before. A damaged
+/// original is kept, see [`kept`](Recovered::kept). A file that is already
+/// finished and undamaged is unchanged, and so is one that the system cannot
+/// read to its end.
 ///
 /// # Errors
-/// When it cannot be read or written; it is as it was then.
+/// When it cannot be read or written. The file is then unchanged.
 pub fn recover(
     path: impl AsRef<Path>,
     progress: impl FnMut(u64),
@@ -86,7 +85,7 @@ pub fn recover(
     attempt(path.as_ref(), None, progress)
 }
 
-/// As [`recover`], but gives up after a while.
+/// As [`recover`], with a time limit.
 pub(super) fn recover_within(path: &Path, limit: Duration) -> Result<Recovered, RecoverError> {
     attempt(path, Some(Instant::now() + limit), |_| {})
 }
@@ -100,9 +99,10 @@ fn attempt(
         path: path.to_owned(),
         source,
     };
-    // Nobody else may recover it meanwhile: two would write one file beside it.
+    // No other program may recover it meanwhile: both would write the same
+    // temporary file.
     let lock = disk::lock(path).map_err(unread)?;
-    // By its name, as another may just have recovered it.
+    // Checked by name: another program may just have recovered it.
     let recording = Recording::open(path)?;
     if lock.is_none() && !recording.is_whole() {
         return Err(RecoverError::BeingWritten(path.to_owned()));
@@ -164,12 +164,13 @@ fn attempt(
     result
 }
 
-/// Puts a finished file in the place of another; gives where that one is kept,
-/// if it is to be.
+/// Replaces a file; returns the path under which the original is kept, if it
+/// is.
 fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBuf>> {
     let kept = keep.then(|| damaged(path));
     if let Some(kept) = &kept {
-        // Without links it is away for a moment, and never gone.
+        // Without hard links the name is missing for a moment; the data never
+        // is.
         fs::hard_link(path, kept).or_else(|_| fs::rename(path, kept))?;
     }
     fs::rename(finished, path)?;
@@ -177,36 +178,37 @@ fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBu
     Ok(kept)
 }
 
-/// What came of writing the finished file.
+/// The result of writing the finished file.
 enum Rewritten {
     Whole { ticks: u64 },
     Unreadable(io::Error),
     TooLong,
 }
 
-/// Writes a finished file with all records that can be read, `damages` being
-/// what cannot, unless `go_on`, told how many bytes are read, says no.
+/// Writes a finished file with all records that can be read; `damages` are the
+/// gaps. `go_on` is called with the number of bytes read and stops the work by
+/// returning false.
 fn rewrite(
     from: &Path,
     to: &Path,
     damages: &[Damage],
     mut go_on: impl FnMut(u64) -> bool,
 ) -> io::Result<Rewritten> {
-    let mut raw = RawReader::new(File::open(from)?)?;
+    let mut raw = RawReader::new(disk::open(from)?)?;
     let mut copy = Copy::begin(File::create(to)?).map_err(to_io)?;
     let mut damages = damages.iter().peekable();
     let ending = loop {
         let damaged_at = match raw.next(|record| copy.take(&record)) {
-            Ok(Found::Record(taken)) => {
+            Ok(Next::Record(taken)) => {
                 let understood = taken.map_err(to_io)?;
                 (!understood).then(|| raw.last_bytes().start)
             }
-            Ok(Found::Damage(damaged)) => Some(damaged.bytes.start),
-            Ok(Found::End) => break "not known: the recording was damaged".to_owned(),
+            Ok(Next::Damage(damaged)) => Some(damaged.bytes.start),
+            Ok(Next::End) => break "not known: the recording was damaged".to_owned(),
             Err(Cut::Unreadable { source, .. }) => return Ok(Rewritten::Unreadable(source)),
             Err(cut) => break format!("not known: the recording was {cut}"),
         };
-        // Some damages are put together.
+        // Several damages may be joined.
         if let Some(at) = damaged_at
             && let Some(damage) = damages.next_if(|damage| damage.from_byte <= at)
         {
@@ -221,18 +223,18 @@ fn rewrite(
     Ok(Rewritten::Whole { ticks })
 }
 
-/// Records copied between two looks at the clock.
+/// Records copied between two checks of the clock.
 const CHECK_EVERY: u64 = 1_024;
 
 type Output = NoSeek<BufWriter<File>>;
 
-/// The finished file while it is put together.
+/// The finished file while it is written.
 struct Copy {
     writer: mcap::Writer<Output>,
     channels: Channels,
     run_statistics: RunStatistics,
     records: u64,
-    /// Why the recording ended, if it says so.
+    /// Why the recording ended, if known.
     ending: Option<String>,
     last: MessageHeader,
 }
@@ -255,7 +257,8 @@ impl Copy {
         })
     }
 
-    /// Copies a record, unless it is a message that cannot be understood.
+    /// Copies a record, unless it is a message that cannot be decoded; true if
+    /// copied.
     fn take(&mut self, record: &Record<'_>) -> Result<bool, McapError> {
         self.records += 1;
         match self.channels.item::<AnyMessage>(record, 0) {
@@ -268,7 +271,7 @@ impl Copy {
 
     fn copy(&mut self, record: &Record<'_>) -> Result<(), McapError> {
         match record {
-            // It is written anew, of what is there.
+            // Written anew, from the messages that are there.
             Record::Metadata(metadata) if metadata.name == END => {
                 self.ending = Some(End::from_fields(&metadata.metadata).ending);
                 Ok(())
@@ -303,8 +306,7 @@ impl Copy {
         }
     }
 
-    /// Says where something is missing: as an event, for programs, and as a
-    /// line of the log, for people.
+    /// Reports a gap: as an event, and as a line of the log.
     fn gap(&mut self, damage: &Damage) -> Result<(), McapError> {
         if let Some(event) = damage.event::<()>() {
             self.run_statistics.take(&AnyMessage::Event(event));

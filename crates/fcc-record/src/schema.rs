@@ -6,33 +6,33 @@ use fcc_core::framework::{Event, EventOf, RecordOf};
 use crate::recorded::{Recorded, TopicOf, Views};
 use fcc_telemetry::schema::protobuf::{Extra, File, append_text, describe, encode};
 
-/// What says in a file that it is one of ours, in this format.
+/// Identifies a file as a recording in this format.
 pub(super) const PROFILE: &str = "fcc.v2";
 
-/// What the first format was known by: records were laid out another way.
+/// Identifies the first format, which had other messages.
 pub(super) const FIRST_PROFILE: &str = "fcc";
 
 /// How messages and their schemas are encoded.
 pub(super) const ENCODING: &str = "protobuf";
 
-/// What the messages of a loop are called together.
+/// The package of a loop's messages.
 pub const PACKAGE: &str = "fcc.v2";
 
-/// An event in words, in its message.
+/// The text of an event, in its message.
 pub(super) const TEXT: Extra = Extra {
     structure: "Event",
     name: "text",
     number: 3,
-    meaning: "What happened, in words for people.",
+    meaning: "What happened, as text.",
 };
 
-/// Appends an event and its words for people as a message.
+/// Appends an event with its text for users as a message.
 pub(super) fn encode_event<O: Schema>(event: &Event<O>, text: &str, into: &mut Vec<u8>) {
     encode(event, into);
     append_text(TEXT.number, text, into);
 }
 
-/// The topics of every recording; what its plant adds comes after them.
+/// The topics of every recording; those of its plant follow.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Topic {
     Record,
@@ -40,7 +40,7 @@ pub(super) enum Topic {
     Log,
 }
 
-/// How many they are.
+/// Their number.
 pub(super) const OWN_TOPICS: usize = 3;
 
 impl Topic {

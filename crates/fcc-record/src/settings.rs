@@ -1,36 +1,35 @@
-//! How and where a recorder writes.
+//! Where and how a recorder writes.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// How and where a recorder writes.
+/// Where and how a recorder writes.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct RecorderSettings {
-    /// Where recordings go; made if it is missing.
+    /// The folder of the recordings; created if it is missing.
     pub folder: PathBuf,
-    /// A file that has grown to this size is finished and another begun; none
-    /// for no limit.
+    /// A file that reaches this size is finished and the next begun; none for
+    /// no limit.
     pub max_file_bytes: Option<u64>,
-    /// A file that covers this much of a flight is finished and another begun;
-    /// none for no limit.
+    /// A file that covers this duration is finished and the next begun; none
+    /// for no limit.
     pub max_file_age: Option<Duration>,
-    /// Keep the folder's recordings below this: the oldest are deleted, when a
-    /// file is begun, as it grows, and when the disk is full. None never
-    /// deletes.
+    /// Keep the folder's recordings below this size: the oldest are deleted
+    /// when a file is begun, while it grows, and when the disk is full. None
+    /// never deletes.
     pub keep_total_bytes: Option<u64>,
     /// How chunks are compressed.
     pub compression: Compression,
-    /// What happens to what the disk is too slow for.
+    /// What happens when the disk is too slow.
     pub pace: RecordingPace,
-    /// How many messages may wait for the disk.
+    /// The number of messages that may wait for the disk.
     pub capacity: usize,
-    /// How long after a disk has failed a new file is tried, again and again
-    /// until the flight ends.
+    /// Time between attempts to begin a new file after the disk failed.
     pub retry_every: Duration,
 }
 
 impl RecorderSettings {
-    /// Records into a folder, without any limit, in real time.
+    /// Records into a folder, without limits, in real time.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self {
             folder: folder.into(),
@@ -48,25 +47,24 @@ impl RecorderSettings {
 /// 8 s at 1 kHz, 200 s at 40 Hz, and 4 MiB.
 const DEFAULT_CAPACITY: usize = 8_192;
 
-/// Soon enough for a disk that somebody makes room on, seldom enough for one
-/// that stays full.
+/// Soon enough after room is made on a disk, seldom enough for one that stays
+/// full.
 const DEFAULT_RETRY_EVERY: Duration = Duration::from_secs(10);
 
-/// What happens to what the disk is too slow for.
+/// What happens when the disk is too slow.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum RecordingPace {
-    /// It is dropped and counted: nobody ever waits for a disk.
+    /// Messages are dropped and counted: the flight never waits for a disk.
     RealTime,
-    /// Who records waits: for flights in lockstep, which have no real time.
+    /// The flight waits for the disk: for lockstep, which has no real time.
     Lockstep,
 }
 
 /// How the chunks of a recording are compressed.
 ///
-/// Measured with the built-in aircraft and its sensors' noise, which is most
-/// of what there is to compress; CPU is that of the recorder's thread, in
-/// percent of one core of a 2.x GHz server (a Raspberry Pi 3's is some eight
-/// times slower):
+/// Measured with the built-in aircraft and its sensors' noise, which is most of
+/// the data; CPU is that of the recorder's thread, in percent of one core of a
+/// 2.x GHz server (a Raspberry Pi 3's is some eight times slower):
 ///
 /// | | bytes per tick, 40 Hz | 1 kHz | CPU, 40 Hz | 1 kHz |
 /// |---|---|---|---|---|
@@ -74,8 +72,8 @@ pub enum RecordingPace {
 /// | lz4 | 520 | 370 | 0.17 % | 0.39 % |
 /// | zstd | 460 | 310 | 0.23 % | 0.67 % |
 ///
-/// Encoding alone is what "none" costs. The default is zstd: its price is
-/// small beside the fifth of a disk that it saves.
+/// "None" is the cost of encoding alone. The default is zstd: it costs little
+/// and saves a fifth of the disk.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub enum Compression {
     /// Not at all.

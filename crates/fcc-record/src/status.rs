@@ -1,37 +1,37 @@
-//! How a recorder does, for whoever looks.
+//! The status of a recorder.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How a recorder does.
+/// The status of a recorder.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct RecorderStatus {
-    /// The file being written; none while nothing is.
+    /// The file being written, if any.
     pub file: Option<PathBuf>,
     /// Every file of this recording, in order.
     pub files: Vec<PathBuf>,
-    /// Records written, whether synced already or not.
+    /// Records written, whether synced or not.
     pub ticks: u64,
-    /// Bytes that are safe on the disk, all files together.
+    /// Bytes synced to the disk, all files together.
     pub bytes: u64,
-    /// Records and events that were dropped: the disk was too slow or full.
+    /// Records and events that were dropped because the disk was too slow or
+    /// full.
     pub not_recorded: u64,
-    /// Why nothing is recorded, and what is lost by it; none while the disk
-    /// takes what it is given.
+    /// Why nothing is recorded, and what is lost; none while recording works.
     pub stopped: Option<String>,
 }
 
-/// Something to say about a recording.
+/// A message about a recording.
 #[derive(Clone, PartialEq, Eq, Debug)]
-pub struct News {
-    /// In words for people.
+pub struct Notice {
+    /// As text, for users.
     pub text: String,
     /// Whether something went wrong: a part of the flight is not recorded, or
-    /// not as it should be.
+    /// the file is not finished.
     pub is_trouble: bool,
 }
 
-/// Where a recorder's thread leaves its status. Only ever locked for a copy,
+/// The status shared by the recorder and its thread. Locked only to copy it,
 /// and never by the loop's thread.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Board(Arc<Mutex<RecorderStatus>>);

@@ -1,4 +1,4 @@
-//! The end of a whole file: its footer, and what its index leads to.
+//! The end of a finished file: its footer and its index.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -10,26 +10,26 @@ use super::end::{END, End};
 use super::framing::{FOOTER_BYTES, HEAD_BYTES, MAGIC_BYTES, head};
 use super::parse::parse;
 
-/// No summary of ours is longer: an hour's is 400 kB.
+/// Longer than any index of ours: an hour's has 400 kB.
 const MAX_SUMMARY_BYTES: u64 = 64 << 20;
-/// Nor an account.
+/// Longer than any statistics.
 const MAX_METADATA_BYTES: u64 = 1 << 20;
-/// The checksum at the footer's end, which is of all before it.
+/// The footer's checksum, of all bytes before it.
 const CHECKSUM_BYTES: u64 = 4;
 
-/// What the index of a file says.
+/// The content of a file's index.
 #[derive(Debug, Default)]
 pub(super) struct Summary {
     /// Where the chunks are.
     chunks: Vec<Range<u64>>,
-    /// The records that declare schemas and channels, one after the other.
+    /// The records that declare schemas and channels, in sequence.
     pub(super) declarations: Vec<u8>,
-    /// Where the account of the flight is.
+    /// Where the statistics of the flight are.
     end: Option<Range<u64>>,
 }
 
 impl Summary {
-    /// Whether any of these bytes are of a chunk.
+    /// Whether a chunk overlaps these bytes.
     pub(super) fn has_chunk_in(&self, bytes: &Range<u64>) -> bool {
         self.chunks
             .iter()
@@ -37,7 +37,7 @@ impl Summary {
     }
 }
 
-/// Where the index of a whole file is; none if the file is cut.
+/// Where the index of a finished file is; none if the file is unfinished.
 pub(super) fn read_footer(file: &mut File, bytes: u64) -> Option<Range<u64>> {
     let footer_at = bytes.checked_sub(FOOTER_BYTES + MAGIC_BYTES)?;
     let tail = read_at(file, footer_at, FOOTER_BYTES + MAGIC_BYTES)?;
@@ -53,7 +53,7 @@ pub(super) fn read_footer(file: &mut File, bytes: u64) -> Option<Range<u64>> {
 
 const FOOTER_HEAD: (u8, u64) = (op::FOOTER, FOOTER_BYTES - HEAD_BYTES as u64);
 
-/// Whether there is at least a part of what ends a file.
+/// Whether the file ends with at least a part of a footer.
 pub(super) fn has_end(file: &mut File, bytes: u64) -> bool {
     let length = FOOTER_BYTES + MAGIC_BYTES;
     bytes
@@ -62,17 +62,17 @@ pub(super) fn has_end(file: &mut File, bytes: u64) -> bool {
         .is_some_and(|tail| tail.ends_with(mcap::MAGIC) || head(&tail) == Some(FOOTER_HEAD))
 }
 
-/// What the index of a whole file says.
+/// The content of a finished file's index.
 ///
 /// # Errors
-/// What is wrong with it, in words.
+/// What is wrong with it, as text.
 pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'static str> {
     let length = index.end.checked_sub(index.start).unwrap_or(u64::MAX);
     if index.start == 0 {
         return Ok(Summary::default());
     }
     if length > MAX_SUMMARY_BYTES {
-        return Err("the index is longer than any is");
+        return Err("the index is too long");
     }
     let bytes = read_at(file, index.start, length + FOOTER_BYTES).ok_or("it cannot be read")?;
     let (covered, checksum) = bytes
@@ -80,7 +80,7 @@ pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'sta
         .ok_or("the index is too short")?;
     let checksum = u32::from_le_bytes(*checksum);
     if checksum != 0 && crc32fast::hash(covered) != checksum {
-        return Err("the index's checksum does not hold");
+        return Err("the index's checksum does not match");
     }
     let mut summary = Summary::default();
     let mut rest = bytes.get(..length as usize).unwrap_or_default();
@@ -105,7 +105,7 @@ pub(super) fn read(file: &mut File, index: &Range<u64>) -> Result<Summary, &'sta
     Ok(summary)
 }
 
-/// The account that an index points to.
+/// The statistics that an index points to.
 pub(super) fn read_end(file: &mut File, summary: &Summary) -> Option<End> {
     let at = summary.end.clone()?;
     let length = at.end - at.start;
@@ -120,8 +120,8 @@ pub(super) fn read_end(file: &mut File, summary: &Summary) -> Option<End> {
     }
 }
 
-/// The record that bytes begin with, if it can be understood, and what follows
-/// it.
+/// The record at the beginning of `bytes`, if it can be parsed, and the bytes
+/// after it.
 fn split_record(bytes: &[u8]) -> Option<(Option<Record<'_>>, &[u8])> {
     let (opcode, length) = head(bytes)?;
     let rest = bytes.get(HEAD_BYTES..)?;

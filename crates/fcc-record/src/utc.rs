@@ -1,9 +1,9 @@
-//! Dates of instants, in UTC.
+//! Dates in UTC.
 
 /// Nanoseconds in a second.
 pub(crate) const SECOND_NS: u64 = 1_000_000_000;
 
-/// Date and time of day of an instant in UTC, on the Gregorian calendar.
+/// Date and time of day in UTC, in the Gregorian calendar.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 struct Date {
     year: u64,
@@ -51,7 +51,8 @@ pub(crate) fn timestamp(unix_ns: u64) -> String {
     )
 }
 
-/// `2026-11-20T04-21-33.512Z`: sorts by date, and every file system takes it.
+/// `2026-11-20T04-21-33.512Z`: sorts by date, and is valid in every file
+/// system.
 pub(super) fn file_stamp(unix_ns: u64) -> String {
     let d = date(unix_ns);
     format!(

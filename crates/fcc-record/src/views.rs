@@ -1,7 +1,7 @@
-//! What of a flight goes into Foxglove's well-known messages.
+//! A flight in Foxglove's well-known messages.
 //!
-//! Its 3D view has x east, y north, z up, and bodies with x forward, y left,
-//! z up. The attitude there is the estimated one, its heading magnetic.
+//! Its 3D view has x east, y north, z up, and bodies with x forward, y left, z
+//! up. The attitude is the estimated one, its heading magnetic.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,18 +15,18 @@ use super::wire::{FrameTransform, LocationFix, Quaternion, Vector3};
 use crate::recorded::{Recorded, Views};
 use fcc_telemetry::FlightRecord;
 
-/// The frame that attitude is given in.
+/// The frame of reference of the attitude.
 const LOCAL_FRAME: &str = "local";
-/// The aircraft's own frame.
+/// The aircraft's body frame.
 const BODY_FRAME: &str = "body";
-/// No more of these a second: eyes need no more, and disks like less.
+/// Shortest interval between two messages, ns: 50 a second suffice for the eye.
 const MIN_SPACING_NS: i64 = 20_000_000;
 
 /// Attitude and position of an aircraft, for Foxglove's panels and maps.
 #[derive(Debug, Default)]
 pub struct FoxgloveViews {
-    attitude: Thinned,
-    position: Thinned,
+    attitude: RateLimit,
+    position: RateLimit,
     transform: Option<FrameTransform>,
     location: Option<LocationFix>,
 }
@@ -55,7 +55,7 @@ impl Views<Autopilot> for FoxgloveViews {
     }
 
     fn append(&mut self, topic: usize, into: &mut Vec<u8>) -> bool {
-        // A vector has room for any message.
+        // Encoding into a vector cannot fail.
         match topic {
             0 => self
                 .transform
@@ -69,20 +69,20 @@ impl Views<Autopilot> for FoxgloveViews {
     }
 }
 
-/// Lets readings through that are new, at most 50 a second.
+/// Passes new readings, at most 50 a second.
 #[derive(Debug)]
-struct Thinned {
+struct RateLimit {
     last_ns: i64,
 }
 
-impl Default for Thinned {
+impl Default for RateLimit {
     fn default() -> Self {
         Self { last_ns: i64::MIN }
     }
 }
 
-impl Thinned {
-    fn lets_through<T>(&mut self, reading: &Reading<T>) -> bool {
+impl RateLimit {
+    fn passes<T>(&mut self, reading: &Reading<T>) -> bool {
         let taken_ns = reading.taken.as_nanos();
         let passes = !reading.is_never() && taken_ns.saturating_sub(self.last_ns) >= MIN_SPACING_NS;
         if passes {
@@ -92,10 +92,10 @@ impl Thinned {
     }
 }
 
-/// The position of a record, if it has a new one; stamped with `unix_ns`.
-fn location(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Option<LocationFix> {
+/// The position of a record, if it is new; stamped with `unix_ns`.
+fn location(record: &FlightRecord, limit: &mut RateLimit, unix_ns: u64) -> Option<LocationFix> {
     let reading = &record.measurements.position;
-    thinned.lets_through(reading).then(|| {
+    limit.passes(reading).then(|| {
         let Position {
             latitude_rad,
             longitude_rad,
@@ -111,11 +111,11 @@ fn location(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Optio
     })
 }
 
-/// How the aircraft lies in the local frame, if a record has a new attitude;
-/// stamped with `unix_ns`. It stays where it is: places are on the map.
-fn transform(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Option<FrameTransform> {
+/// The aircraft's attitude in the local frame, if it is new; stamped with
+/// `unix_ns`. The translation is zero: the map shows the position.
+fn transform(record: &FlightRecord, limit: &mut RateLimit, unix_ns: u64) -> Option<FrameTransform> {
     let measured = &record.measurements;
-    if measured.heading_rad.is_never() || !thinned.lets_through(&measured.attitude) {
+    if measured.heading_rad.is_never() || !limit.passes(&measured.attitude) {
         return None;
     }
     let estimate = &record.estimate;
@@ -132,8 +132,8 @@ fn transform(record: &FlightRecord, thinned: &mut Thinned, unix_ns: u64) -> Opti
     })
 }
 
-/// Yaw, then pitch, then roll, about axes that point left and up: there the
-/// nose goes up by a negative pitch, and east is a yaw of zero.
+/// Yaw, pitch and roll about axes that point left and up: there a nose-up pitch
+/// is negative, and east is a yaw of zero.
 fn orientation(attitude: Attitude, heading_rad: f64) -> Quaternion {
     let (sin_yaw, cos_yaw) = ((FRAC_PI_2 - heading_rad) / 2.0).sin_cos();
     let (sin_pitch, cos_pitch) = (-attitude.pitch_rad / 2.0).sin_cos();
@@ -181,7 +181,7 @@ mod tests {
         axes(&orientation(attitude, heading_deg.to_radians()))
     }
 
-    /// What a hand holding a model sees; x east, y north, z up.
+    /// As seen on a model held by hand; x east, y north, z up.
     #[test]
     fn the_model_points_where_the_aircraft_does() {
         let (forward, left, up) = (0, 1, 2);
@@ -190,8 +190,8 @@ mod tests {
             (pointing(0.0, 0.0, 0.0), forward, [0.0, 1.0, 0.0]),
             (pointing(0.0, 0.0, 0.0), left, [-1.0, 0.0, 0.0]),
             (pointing(90.0, 0.0, 0.0), forward, [0.0, 0.0, 1.0]),
-            // Northbound with the right wing straight down: the left one is up,
-            // and the roof points east.
+            // Northbound, right wing straight down: the left one is up, and the
+            // roof points east.
             (pointing(0.0, 90.0, 0.0), left, [0.0, 0.0, 1.0]),
             (pointing(0.0, 90.0, 0.0), up, [1.0, 0.0, 0.0]),
         ];

@@ -1,7 +1,7 @@
-//! What is generated from the declarations and committed: the `.proto` of a
+//! Files generated from the declarations and committed: the `.proto` of a
 //! recording and the table of a record in shared memory.
 //!
-//! `FCC_UPDATE=1 cargo test -p fcc-record --test declared` writes both anew.
+//! `FCC_UPDATE=1 cargo test -p fcc-record --all-features --test declared` writes both again.
 #![cfg(test)]
 
 use std::collections::BTreeMap;
@@ -25,15 +25,16 @@ fn path(file: &str) -> PathBuf {
         .join(file)
 }
 
-/// The committed `.proto`, compiled by another program than wrote it.
+/// The committed `.proto`, compiled by another program than the one that wrote
+/// it.
 fn committed() -> FileDescriptorProto {
     let root = path("proto");
     let compiled = protox::compile(["fcc/v2/flight.proto"], [root]).unwrap();
     compiled.file.into_iter().next_back().unwrap()
 }
 
-/// What was declared once keeps its number for ever: no field of the committed
-/// messages has another, and a number that is free now is marked so.
+/// A field keeps its number: no field of the committed messages may get
+/// another, and a number that is no longer used is reserved.
 fn with_reserved(committed: &FileDescriptorProto) -> File {
     let mut file = messages::<Autopilot>();
     for old in &committed.message_type {
@@ -54,7 +55,9 @@ fn with_reserved(committed: &FileDescriptorProto) -> File {
                         "{name}: {number} was {was}: give {now} a new number"
                     );
                 }
-                (Some(now), None) => panic!("{name}: {number} is used up: give {now} a new one"),
+                (Some(now), None) => {
+                    panic!("{name}: {number} was used before: give {now} a new one")
+                }
                 (None, was) => {
                     let moved = was.and_then(|was| numbers.iter().find(|(_, now)| **now == was));
                     assert_eq!(moved, None, "{name}: was {number}, and keeps it");
@@ -66,7 +69,7 @@ fn with_reserved(committed: &FileDescriptorProto) -> File {
     file
 }
 
-/// The numbers of a message: of a field with its name, and of what is gone.
+/// The numbers of a message: with the field's name, or none if it was removed.
 fn numbers_of(of: &DescriptorProto) -> BTreeMap<i32, Option<String>> {
     let gone = of
         .reserved_range
@@ -84,12 +87,12 @@ fn update() -> bool {
 }
 
 #[test]
-fn no_number_was_moved_or_used_again() {
+fn no_number_was_changed_or_used_again() {
     let _ = with_reserved(&committed());
 }
 
 #[test]
-fn the_proto_is_what_is_declared() {
+fn the_proto_matches_the_declarations() {
     let declared = if path(PROTO).exists() {
         text(&with_reserved(&committed()), PACKAGE)
     } else {
@@ -102,12 +105,12 @@ fn the_proto_is_what_is_declared() {
     let found = fs::read_to_string(path(PROTO)).unwrap();
     assert!(
         found == declared,
-        "{PROTO} is not what is declared: see the head of this test"
+        "{PROTO} does not match the declarations: see the head of this test"
     );
 }
 
 #[test]
-fn the_table_of_a_record_is_what_is_declared() {
+fn the_table_of_a_record_matches_the_declarations() {
     let document = fs::read_to_string(path(DOCUMENT)).unwrap();
     let (before, rest) = document.split_once(RECORD).unwrap();
     let (_, after) = rest.split_once("end |\n").unwrap();
@@ -121,6 +124,6 @@ fn the_table_of_a_record_is_what_is_declared() {
     let found = fs::read_to_string(path(DOCUMENT)).unwrap();
     assert!(
         found == declared,
-        "{DOCUMENT} is not what is declared: see the head of this test"
+        "{DOCUMENT} does not match the declarations: see the head of this test"
     );
 }

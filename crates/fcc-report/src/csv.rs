@@ -12,7 +12,7 @@ use fcc_core::framework::{Controller, EventOf, Message, MessageOf, RecordOf, Tim
 
 use super::origin::Origin;
 use fcc_record::Remark;
-use fcc_telemetry::event_words;
+use fcc_telemetry::describe_event;
 use fcc_telemetry::schema::{Row, header};
 
 /// Writes the messages of a flight into two CSV files.
@@ -96,7 +96,7 @@ impl<C: Controller> CsvFolder<C> {
         self.events.write_record([
             event.tick.to_string(),
             instant(event.time),
-            event_words::<C>(event, &self.origin.sensors, &self.origin.actuators),
+            describe_event::<C>(event, &self.origin.sensors, &self.origin.actuators),
         ])?;
         Ok(())
     }

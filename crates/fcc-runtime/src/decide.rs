@@ -30,7 +30,7 @@ impl<C: Controller> Machine<C> {
             self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
         } else if command == StateRequest::Stop {
-            self.stop_for(Ending::StopOrder, tick);
+            self.stop_for(Ending::StopCommand, tick);
         }
         if edge == Some(SwitchEdge::Off) {
             self.apply_input(Input::SwitchedOff, tick);
@@ -81,8 +81,8 @@ impl<C: Controller> Machine<C> {
     /// Leaves failsafe: its time is over, or there are no safe outputs to send.
     pub(crate) fn end_failsafe(&mut self, tick: &Tick) {
         match self.after_failsafe {
-            AfterFailsafe::Standby => self.apply_input(Input::FailsafeOver, tick),
-            AfterFailsafe::Stop => self.stop_for(Ending::FailsafeOver, tick),
+            AfterFailsafe::Standby => self.apply_input(Input::FailsafeEnded, tick),
+            AfterFailsafe::Stop => self.stop_for(Ending::FailsafeEnded, tick),
         }
     }
 

@@ -49,13 +49,13 @@ pub struct LoopReport {
 #[non_exhaustive]
 pub enum Ending {
     /// [`LoopCommand::Stop`](crate::LoopCommand::Stop) came.
-    StopOrder,
+    StopCommand,
     /// The stop flag was set: [`StopHandle`](crate::StopHandle).
     StopFlag,
     /// The engage switch went off, and that is configured to end the loop.
     SwitchedOff,
     /// Failsafe was over, and that is configured to end the loop.
-    FailsafeOver,
+    FailsafeEnded,
     /// A part panicked, with this message.
     Panicked(String),
     /// The timer failed.
@@ -72,10 +72,10 @@ pub enum Ending {
 impl fmt::Display for Ending {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::StopOrder => f.write_str("stopped by command"),
-            Self::StopFlag => f.write_str("told to stop"),
+            Self::StopCommand => f.write_str("stopped by command"),
+            Self::StopFlag => f.write_str("stop requested"),
             Self::SwitchedOff => f.write_str("switched off"),
-            Self::FailsafeOver => f.write_str("failsafe was over"),
+            Self::FailsafeEnded => f.write_str("failsafe ended"),
             Self::Panicked(message) => write!(f, "a part panicked: {message}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),

@@ -28,7 +28,7 @@ fn an_order_to_stop() {
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(bench.events(), [change(Engaged, Stopped), RELEASED]);
     let report = released(bench);
-    assert!(matches!(report.ending, Ending::StopOrder));
+    assert!(matches!(report.ending, Ending::StopCommand));
     assert_eq!(report.ticks, 2);
 }
 
@@ -75,7 +75,7 @@ fn the_end_of_failsafe() {
     bench.tick(|s| s.faults = Flags::bit(0));
     bench.tick(|_| {});
     let report = released(bench);
-    assert!(matches!(report.ending, Ending::FailsafeOver));
+    assert!(matches!(report.ending, Ending::FailsafeEnded));
     assert_eq!(report.last_failsafe, Some(Cause::Faults(Flags::bit(0))));
 }
 

@@ -51,7 +51,7 @@ fn orders_in_and_records_out() {
     link.commands.send(LoopCommand::Stop).unwrap();
     wait_for(&mut link, State::Stopped);
     let report = handle.join();
-    assert!(matches!(report.ending, Ending::StopOrder));
+    assert!(matches!(report.ending, Ending::StopCommand));
     assert!(report.released);
     assert!(report.granted.is_some());
     assert_eq!(report.timer, "timerfd");

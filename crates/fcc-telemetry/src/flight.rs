@@ -1,4 +1,4 @@
-//! Scores a flight while it goes by.
+//! Scores a flight while it is flown.
 
 use fcc_core::flight::guidance::TimedPatternConfig;
 
@@ -6,16 +6,17 @@ use super::score::{FlightScore, Leg, LegScore, ROUNDING_S, Sample, ScoreError, s
 use super::units::M_FT;
 
 /// Scores a flight through the timed pattern, from engagement on. It keeps the
-/// samples of one leg and the figures of those before, however long the flight.
+/// samples of one leg and the scores of the legs before: its size does not grow
+/// with the flight.
 #[derive(Clone, Debug)]
 pub struct FlightLog {
     pattern: TimedPatternConfig,
     captured: Option<Sample>,
-    /// Between samples, as at the beginning.
+    /// The interval between samples, from the first two.
     step_s: f64,
-    /// Samples of the leg being flown.
+    /// Samples of the present leg.
     leg: Vec<Sample>,
-    /// Whole legs before it, or why one of them has no figures.
+    /// Scores of the complete legs, or why one of them has no score.
     flown: Result<Vec<LegScore>, ScoreError>,
 }
 
@@ -31,7 +32,7 @@ impl FlightLog {
         }
     }
 
-    /// Takes a sample while engaged; the first is what was captured.
+    /// Takes a sample while engaged; the first gives the captured set points.
     pub fn push(&mut self, sample: Sample) {
         let captured = *self.captured.get_or_insert(sample);
         if self.step_s == 0.0 {
@@ -53,12 +54,12 @@ impl FlightLog {
         }
     }
 
-    /// Forgets the flight: the next sample begins another.
+    /// Resets: the next sample begins another flight.
     pub fn clear(&mut self) {
         *self = Self::new(self.pattern);
     }
 
-    /// The score over all whole legs flown.
+    /// The score over all complete legs.
     ///
     /// # Errors
     /// When samples are missing from a leg.
@@ -66,7 +67,7 @@ impl FlightLog {
         let mut legs = self.flown.clone()?;
         if let (Some(captured), Some(last)) = (self.captured, self.leg.last()) {
             let leg = leg(&self.pattern, &captured, legs.len());
-            // One sample's time may be missing at the end of the last leg.
+            // The last leg may end up to one sample early.
             let flown_s = last.time_s + self.step_s - leg.start_s;
             if flown_s >= self.pattern.leg_s * (1.0 - 1e-3) {
                 legs.extend(score(&self.leg, &[leg])?.legs);
@@ -76,7 +77,7 @@ impl FlightLog {
     }
 }
 
-/// A leg, the first being 0, around what was captured.
+/// Leg `number`, from 0, relative to the captured set points.
 fn leg(pattern: &TimedPatternConfig, captured: &Sample, number: usize) -> Leg {
     let climb_ft = |leg: usize| {
         if leg % 2 == 1 {
@@ -104,7 +105,7 @@ mod tests {
 
     /// A flight that jumps to each set point after a known time.
     #[test]
-    fn scores_whole_legs_against_what_was_captured() {
+    fn scores_complete_legs_against_the_captured_set_points() {
         let mut log = FlightLog::new(TimedPatternConfig::default());
         for n in 0..(40 * 65) {
             let time_s = f64::from(n) * 0.025;
@@ -123,7 +124,7 @@ mod tests {
         }
         let score = log.score().unwrap();
         let settled: Vec<_> = score.legs.iter().map(|leg| leg.heading_settle_s).collect();
-        assert_eq!(settled.len(), 2, "the third leg is not whole");
+        assert_eq!(settled.len(), 2, "the third leg is not complete");
         assert!((settled[0].unwrap() - 4.0).abs() < 1e-9);
         assert!((settled[1].unwrap() - 3.0).abs() < 1e-9);
         let worst = score.worst.unwrap();
@@ -132,14 +133,14 @@ mod tests {
     }
 
     #[test]
-    fn no_whole_leg_no_score() {
+    fn without_a_complete_leg_there_is_no_score() {
         let log = FlightLog::new(TimedPatternConfig::default());
         assert_eq!(log.score().unwrap().worst, None);
     }
 
-    /// A leg of which nothing was seen has no figures, and the flight no score.
+    /// A leg without samples has no score, and the flight has none.
     #[test]
-    fn a_hole_in_a_flight_is_said() {
+    fn a_gap_in_a_flight_is_an_error() {
         let mut log = FlightLog::new(TimedPatternConfig::default());
         for time_s in [0.0, 0.025, 1e9] {
             log.push(Sample {

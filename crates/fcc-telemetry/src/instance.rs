@@ -1,10 +1,10 @@
-//! What a daemon is called by those who watch.
+//! The name of a daemon on its machine.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// What a daemon is called by those who watch: letters, digits, `-`, `_` and
-/// `.`, at most 32 of them. Two daemons on one machine need two names.
+/// The name of a daemon on its machine: 1 to 32 letters, digits, `-`, `_` and
+/// `.`. Two daemons on one machine need two names.
 ///
 /// ```
 /// use fcc_telemetry::Instance;
@@ -18,13 +18,13 @@ use std::str::FromStr;
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Instance(String);
 
-/// Longest name: it has to fit into a service's.
+/// The longest name: it must fit into the name of a service.
 const MAX_LETTERS: usize = 32;
 
-/// A name that no daemon can have.
+/// An invalid name.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[error(
-    "'{0}' is no name for an instance: choose 1 to {MAX_LETTERS} letters, digits, '-', '_' or '.'"
+    "'{0}' is not a valid instance name: choose 1 to {MAX_LETTERS} letters, digits, '-', '_' or '.'"
 )]
 pub struct InstanceError(String);
 

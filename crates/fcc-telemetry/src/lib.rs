@@ -1,12 +1,11 @@
-//! What happened in a flight: its records and events, what is generated from
-//! their declaration, how well the loop kept time, and the score.
+//! Records and events of a flight, what is generated from their declaration,
+//! timing statistics, and the score.
 //!
-//! What is done with them is in crates above, none of which needs another's
-//! libraries: `fcc-record` writes and reads files, `fcc-live` shares memory with
-//! whoever watches, `fcc-report` makes tables and plots.
+//! The crates above use them independently of one another: `fcc-record` writes
+//! and reads files, `fcc-live` shares memory with other programs, `fcc-report`
+//! makes tables and plots.
 //!
-//! Everything here runs outside the loop's thread, on the records that the
-//! loop left behind.
+//! All of it runs outside the loop's thread.
 
 #[cfg(feature = "flight")]
 mod flight;
@@ -22,7 +21,7 @@ pub mod units;
 #[cfg(feature = "flight")]
 pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};
-pub use message::event_words;
+pub use message::describe_event;
 #[cfg(feature = "flight")]
 pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
 #[cfg(feature = "flight")]

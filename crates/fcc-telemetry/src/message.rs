@@ -1,4 +1,4 @@
-//! What a loop tells of itself, in words; and what a flight's loop tells.
+//! Text for events, and the types of a flight's messages.
 
 use fcc_core::framework::{Controller, EventKind, EventOf, Readings, SourceChange};
 
@@ -12,14 +12,15 @@ mod of_flights {
 
     use crate::schema::{Words, words};
     use crate::telemetry::Telemetry;
+    use crate::units::{AVIATION, Shown};
 
     /// The record of one tick of a flight.
     pub type FlightRecord = RecordOf<Autopilot>;
 
-    /// The words of a flight's record, as they lie in shared memory and in arrays.
+    /// The words of a flight's record, as in shared memory and arrays.
     pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
 
-    /// Something that happened in a flight.
+    /// An event of a flight.
     pub type FlightEvent = EventOf<Autopilot>;
 
     /// A record or an event of a flight.
@@ -27,11 +28,12 @@ mod of_flights {
 
     impl Telemetry for Autopilot {
         type Words = FlightWords;
+        const UNITS: &'static [Shown] = AVIATION;
     }
 }
 
-/// An event in words, with the names of the parts it speaks of.
-pub fn event_words<C: Controller>(
+/// An event as text, with the names of its sensors and actuators.
+pub fn describe_event<C: Controller>(
     event: &EventOf<C>,
     sensors: &[String],
     actuators: &[String],

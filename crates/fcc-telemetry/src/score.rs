@@ -1,14 +1,14 @@
-//! How well a flight kept to its legs.
+//! How closely a flight followed its legs.
 //!
-//! Angles are compared the short way round. A sample that lies on the border
-//! of two legs counts to the one that begins there.
+//! Angles are compared the shorter way. A sample on the border of two legs
+//! counts for the later one.
 
 use serde::Serialize;
 
 use crate::FlightRecord;
 use crate::units::{G_MPS2, M_FT, MPS_KT};
 
-/// What was flown at one instant, in the units of the score.
+/// The state at one instant, in the units of the score.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Sample {
     /// On any clock, ascending.
@@ -24,7 +24,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// What was measured in a tick.
+    /// From the measurements of a tick.
     pub fn measured(record: &FlightRecord, time_s: f64) -> Self {
         let measured = &record.measurements;
         Self {
@@ -37,8 +37,8 @@ impl Sample {
     }
 }
 
-/// One stretch of a flight with constant set points, and those it comes from;
-/// it covers `start_s <= time < end_s`.
+/// A stretch of a flight with constant set points, with those before it. It
+/// covers `start_s <= time < end_s`.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Leg {
     /// On the samples' clock.
@@ -57,37 +57,37 @@ pub struct Leg {
     pub airspeed_kt: f64,
 }
 
-/// The figures of one leg, or the worst of each over all legs.
+/// The score of one leg, or the worst of each value over all legs.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct LegScore {
-    /// Time from the leg's start after which the heading stays within 2° to
-    /// the leg's end; none if it does not.
+    /// Time after the leg's start from which the heading stays within 2° until
+    /// its end; none if it does not.
     pub heading_settle_s: Option<f64>,
-    /// How far the heading goes past its set point in the turn's direction.
+    /// How far the heading passes its set point in the direction of the turn.
     pub heading_overshoot_deg: f64,
     /// Root mean square of the heading error in the last 3 s.
     pub heading_rms_deg: f64,
-    /// The same as for the heading, within 10 ft.
+    /// As for the heading, within 10 ft.
     pub altitude_settle_s: Option<f64>,
-    /// How far the altitude goes past its set point in the climb's direction.
+    /// How far the altitude passes its set point in the direction of the climb.
     pub altitude_overshoot_ft: f64,
     /// Root mean square of the altitude error in the last 8 s.
     pub altitude_rms_ft: f64,
-    /// How far the altitude falls below the lower of the two that the leg
-    /// joins: in a level turn, the height it loses.
+    /// How far the altitude falls below the lower of the leg's two set points:
+    /// in a level turn, the height lost.
     pub turn_loss_ft: f64,
-    /// Largest airspeed error either way.
+    /// Largest airspeed error, absolute.
     pub airspeed_error_kt: f64,
-    /// Largest lateral acceleration either way.
+    /// Largest lateral acceleration, absolute.
     pub lateral_acceleration_g: f64,
 }
 
-/// A flight's figures.
+/// A flight's score.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct FlightScore {
-    /// By leg, in the order flown.
+    /// By leg, in order.
     pub legs: Vec<LegScore>,
-    /// The worst of each figure; none where there is no whole leg.
+    /// The worst of each value; none without a complete leg.
     pub worst: Option<LegScore>,
 }
 
@@ -98,9 +98,9 @@ pub enum ScoreError {
     /// A leg has no samples, or none near its end.
     #[error("the leg from {start_s:.1} s to {end_s:.1} s was not flown to its end: fly longer")]
     NotFlown {
-        /// When the leg was to begin.
+        /// The leg's start.
         start_s: f64,
-        /// When it was to end.
+        /// The leg's end.
         end_s: f64,
     },
 }
@@ -109,7 +109,7 @@ const HEADING_BAND_DEG: f64 = 2.0;
 const ALTITUDE_BAND_FT: f64 = 10.0;
 const HEADING_WINDOW_S: f64 = 3.0;
 const ALTITUDE_WINDOW_S: f64 = 8.0;
-/// Sums of ticks end this close to a leg's border.
+/// Rounding of sums of periods: a leg's end is met within this.
 pub(crate) const ROUNDING_S: f64 = 1e-6;
 
 /// Scores a flight: samples in ascending time, one score per leg.
@@ -124,18 +124,18 @@ pub fn score(samples: &[Sample], legs: &[Leg]) -> Result<FlightScore, ScoreError
     Ok(FlightScore::of(legs))
 }
 
-/// What a flight is scored by.
+/// What a score is computed from.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScoredBy {
-    /// How the simulated aircraft truly flew.
+    /// The true state of the simulated aircraft.
     Truth,
-    /// What its sensors measured.
+    /// The measurements of its sensors.
     Measurement,
 }
 
 impl FlightScore {
-    /// Of legs that are scored already.
+    /// From the scores of legs.
     pub fn of(legs: Vec<LegScore>) -> Self {
         let worst = legs.iter().copied().reduce(LegScore::worst);
         Self { legs, worst }
@@ -200,7 +200,7 @@ fn score_leg(samples: &[Sample], leg: &Leg) -> Result<LegScore, ScoreError> {
     })
 }
 
-/// When the error comes to stay within the band, from the leg's start.
+/// Time after the leg's start from which the error stays within the band.
 fn settle(errors: &[(f64, f64)], band: f64, leg: &Leg) -> Option<f64> {
     let settled = errors
         .iter()
@@ -235,7 +235,7 @@ fn rms_at_end(errors: &[(f64, f64)], window_s: f64, leg: &Leg) -> Option<f64> {
     (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
-/// The same angle in -180..180.
+/// The angle in -180..180.
 fn wrap_degrees(angle: f64) -> f64 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
 }

@@ -6,9 +6,10 @@ use fcc_core::framework::schema::{Schema, Unknown};
 use fcc_core::framework::{Controller, RecordOf};
 
 use crate::schema::Words;
+use crate::units::{self, Shown};
 
-/// A controller whose loop can be recorded and watched: what is declared of its
-/// types is enough, but for the size of its record.
+/// A controller whose loop can be recorded and watched. The declarations of its
+/// types suffice, except for the size of its record.
 ///
 /// ```
 /// use fcc_core::framework::{Controller, RecordOf};
@@ -38,8 +39,11 @@ use crate::schema::Words;
 /// }
 /// ```
 pub trait Telemetry: Controller + 'static {
-    /// The words of its record, as they lie in shared memory.
+    /// The words of its record in shared memory.
     type Words: RecordWords<RecordOf<Self>>;
+
+    /// The units in which people read its values: [`units::SI`] or others.
+    const UNITS: &'static [Shown] = units::SI;
 }
 
 mod sealed {
@@ -47,7 +51,7 @@ mod sealed {
     impl<T, const N: usize> Sealed for crate::schema::Words<T, N> {}
 }
 
-/// A record as the words of its memory: only ever [`Words`].
+/// A record as 64-bit words: implemented by [`Words`] only.
 pub trait RecordWords<T>: sealed::Sealed + Copy + Debug + Send + 'static {
     /// The words of a record.
     fn of_record(record: &T) -> Self;
@@ -55,7 +59,7 @@ pub trait RecordWords<T>: sealed::Sealed + Copy + Debug + Send + 'static {
     /// The record in these words.
     ///
     /// # Errors
-    /// When a value is none of those that are declared.
+    /// When a value is not one of those declared.
     fn record(&self) -> Result<T, Unknown>;
 }
 

@@ -1,22 +1,22 @@
-//! How well the loop kept time, as other tools read it.
+//! Timing of the loop, in a form that other tools read.
 
 use std::fmt;
 
 use fcc_timer::TimingSummary;
 use serde::Serialize;
 
-/// How well the loop kept time.
+/// Timing of the loop.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct TimingReport {
-    /// Nominal.
+    /// Nominal rate.
     pub rate_hz: f64,
     /// Which timer: `timerfd`, `posix`, `nanosleep`.
     pub timer: String,
-    /// Ticks served.
+    /// Ticks completed.
     pub ticks: u64,
-    /// Periods that passed unserved.
+    /// Missed periods.
     pub missed: u64,
-    /// First tick to last; for people, who compare it with the thesis'.
+    /// First tick to last, as text for comparison with the thesis.
     #[serde(skip)]
     pub runtime_s: f64,
     /// Time between wake-ups.
@@ -25,18 +25,16 @@ pub struct TimingReport {
     pub lateness_us: Lateness,
     /// What the kernel granted the loop's thread.
     pub realtime: Realtime,
-    /// CPU time of the loop's thread over the runtime; none where nobody
-    /// measured it.
+    /// CPU time of the loop's thread over the runtime, if measured.
     pub cpu_percent: Option<f64>,
-    /// Page faults of the loop's thread while it ran; none where nobody
-    /// counted them.
+    /// Page faults of the loop's thread while it ran, if counted.
     pub page_faults: Option<u64>,
-    /// How early the timer woke; none where it did not wake early.
+    /// How early the timer woke; none if it did not wake early.
     pub early_wake: Option<EarlyWake>,
 }
 
 impl TimingReport {
-    /// What a loop's statistics say of it.
+    /// From the statistics of a loop.
     pub fn new(timer: &str, summary: &TimingSummary, realtime: Realtime) -> Self {
         Self {
             rate_hz: summary.rate_hz,
@@ -76,7 +74,7 @@ impl TimingReport {
         self
     }
 
-    /// Adds the time that the loop's thread spun towards its deadlines, s.
+    /// Adds the time that the loop's thread spun until its deadlines, s.
     #[must_use]
     pub fn with_spin_time(mut self, spun_s: f64) -> Self {
         let percent = self.percent_of_runtime(spun_s);
@@ -95,14 +93,14 @@ impl TimingReport {
     }
 }
 
-/// How long before its deadlines a timer woke.
+/// How long before its deadlines the timer woke.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct EarlyWake {
     /// In the last tick.
     pub last_us: f64,
     /// At most.
     pub max_us: f64,
-    /// Share of a core that was spent spinning; none where nobody measured it.
+    /// Share of a core spent spinning, if measured.
     pub spin_percent: Option<f64>,
 }
 
@@ -117,7 +115,7 @@ pub struct Period {
     pub min: f64,
     /// Largest.
     pub max: f64,
-    /// Largest less smallest.
+    /// Largest minus smallest.
     pub range: f64,
     /// Share of periods within ±2 % of nominal, 0..=1.
     pub within_2_percent: f64,
@@ -139,32 +137,32 @@ pub struct Lateness {
 /// What the kernel granted the loop's thread.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Realtime {
-    /// `SCHED_FIFO` or `SCHED_OTHER`; empty if nobody knows.
+    /// `SCHED_FIFO` or `SCHED_OTHER`; empty if not known.
     pub policy: String,
     /// 0 for `SCHED_OTHER`.
     pub priority: i32,
     /// The CPU that the thread is bound to; none if it may run on several.
     pub cpu: Option<usize>,
-    /// Why this CPU, or why none, if one was asked for.
+    /// Why this CPU was chosen, or why none, if one was requested.
     pub cpu_because: String,
     /// Whether the process' memory is locked.
     pub memory_locked: bool,
     /// Whether the stack was in memory before the first tick.
     pub stack_prefaulted: bool,
-    /// How late the kernel may make a sleep of the thread, if known.
+    /// Timer slack of the thread, if known.
     pub timer_slack_ns: Option<u64>,
-    /// How long CPUs may take to wake, if that was granted.
+    /// Longest wake-up latency of the CPUs, if a limit was granted.
     pub cpu_dma_latency_us: Option<u32>,
-    /// Wishes that were not granted.
+    /// Requests that were denied.
     pub refused: Vec<DeniedRequest>,
 }
 
-/// A wish that was not granted.
+/// A request that was denied.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
 pub struct DeniedRequest {
-    /// What was asked for.
+    /// What was requested.
     pub request: String,
-    /// Why it was refused.
+    /// Why it was denied.
     pub reason: String,
     /// What would help.
     pub remedy: String,

@@ -1,5 +1,5 @@
-//! Two implementations of the score, written apart, agree to the last digits:
-//! this one and the one in `hil/`, whose result is in the fixture.
+//! Two independent implementations of the score agree to the last digits: this
+//! one and the one in `hil/`, whose result is in the fixture.
 #![cfg(test)]
 
 use fcc_telemetry::{Leg, Sample, score};

@@ -47,7 +47,7 @@ impl ServoBoard {
 
 impl Actuator<Surfaces> for ServoBoard {
     fn apply(&mut self, _: &Tick, surfaces: &Surfaces) -> Result<(), ActuatorFault> {
-        // Before it is sent: what may have arrived has to be given back.
+        // Set before sending: a message that may have arrived must be released.
         self.is_held = true;
         self.send(true, surfaces)
     }

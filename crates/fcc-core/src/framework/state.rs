@@ -9,7 +9,7 @@ use super::Flags;
 /// The complete transition table: rows are states, columns inputs, `·` means no
 /// change.
 ///
-/// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeOver` | Stop |
+/// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeEnded` | Stop |
 /// |---|---|---|---|---|---|---|
 /// | **Standby** | Engaged | · | · | · | · | Stopped |
 /// | **Engaged** | · | Standby | Standby, or Stopped if configured | Failsafe | · | Stopped |
@@ -78,7 +78,7 @@ pub enum Input {
     /// It is unsafe to stay engaged.
     Fault(Cause),
     /// Failsafe has lasted as long as configured.
-    FailsafeOver,
+    FailsafeEnded,
     /// End the loop: requested, a signal, or a panic.
     Stop,
 }
@@ -109,7 +109,7 @@ impl State {
             (Self::Stopped, _) | (_, Input::Stop) => Self::Stopped,
             (Self::Standby | Self::Failsafe(_), Input::Engage) => Self::Engaged,
             (Self::Engaged | Self::Failsafe(_), Input::Disengage)
-            | (Self::Failsafe(_), Input::FailsafeOver) => Self::Standby,
+            | (Self::Failsafe(_), Input::FailsafeEnded) => Self::Standby,
             (Self::Engaged | Self::Failsafe(_), Input::SwitchedOff) => match switch_off {
                 SwitchOff::Standby => Self::Standby,
                 SwitchOff::Stop => Self::Stopped,
@@ -146,7 +146,7 @@ mod tests {
         Input::Disengage,
         Input::SwitchedOff,
         Input::Fault(Cause::InvalidOutput),
-        Input::FailsafeOver,
+        Input::FailsafeEnded,
         Input::Stop,
     ];
 

@@ -14,7 +14,7 @@ struct Checked {
     file: String,
     ok: bool,
     problems: Vec<Problem>,
-    /// What is left to a default and worth to be known.
+    /// Notes, for example on a default that matters.
     remarks: Vec<String>,
 }
 
@@ -48,19 +48,20 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
     match checked {
         Ok(config) => {
             let aircraft = match config.aircraft() {
-                Aircraft::XPlane(_) => "X-Plane's aircraft",
-                Aircraft::BuiltIn(_) => "the built-in aircraft",
+                Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
+                Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",
+                None => "listed sensors and actuators, no simulator",
             };
-            let mut words = format!(
-                "{}: good: flies {aircraft} at {} Hz by {}",
+            let mut text = format!(
+                "{}: valid: flies {aircraft} at {} Hz by {}",
                 args.file.display(),
                 config.tick.rate_hz,
                 config.tick.timer
             );
             for remark in remarks {
-                let _ = write!(words, "\n{}: {remark}", args.file.display());
+                let _ = write!(text, "\n{}: {remark}", args.file.display());
             }
-            output::result(words, exit)
+            output::result(text, exit)
         }
         Err(error) => {
             output::message(error);

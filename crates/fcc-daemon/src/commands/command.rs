@@ -10,7 +10,7 @@ use crate::output;
 use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
-struct Told {
+struct Sent {
     instance: String,
     carried_out: bool,
     /// The tick that carried it out.
@@ -19,43 +19,44 @@ struct Told {
     why: Option<String>,
 }
 
-/// Gives a command, and says what became of it.
+/// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Exit {
     let command = FlightCommand::from(&args.what);
     if let Err(error) = command.check() {
         fail(&error.in_knots_degrees_feet());
         return Exit::Usage;
     }
-    let told = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
-    let exit = match &told {
+    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
+    let exit = match &result {
         Ok(_) => Exit::Success,
-        Err(CommandError::Refused(_) | CommandError::Unflyable(_)) => Exit::Refused,
+        Err(CommandError::Refused(_) | CommandError::InvalidCommand(_)) => Exit::Refused,
         Err(_) => Exit::Failure,
     };
-    // In the units that it was given in.
-    let told = told.map_err(|error| match error {
-        CommandError::Unflyable(why) => format!("refused: {}", why.in_knots_degrees_feet()),
+    // In the units of the command line.
+    let result = result.map_err(|error| match error {
+        CommandError::InvalidCommand(why) => format!("refused: {}", why.in_knots_degrees_feet()),
         other => other.to_string(),
     });
     if args.json {
-        let told = Told {
+        let result = Sent {
             instance: args.instance.to_string(),
-            carried_out: told.is_ok(),
-            tick: told.as_ref().ok().copied(),
-            why: told.err(),
+            carried_out: result.is_ok(),
+            tick: result.as_ref().ok().copied(),
+            why: result.err(),
         };
-        output::json(&told, exit);
+        output::json(&result, exit);
     } else {
-        match told {
+        match result {
             Ok(tick) => {
                 output::result(format!("carried out in tick {tick}"), exit);
             }
-            Err(words) => {
-                fail(&words);
+            Err(text) => {
+                fail(&text);
             }
         }
     }
-    // What was carried out stays so, even if that cannot be printed.
+    // A command that was carried out is a success, even if the result cannot be
+    // printed.
     exit
 }
 

@@ -1,4 +1,4 @@
-//! `fccd doctor`: what the machine offers and what it lacks.
+//! `fccd doctor`: whether the machine suits a real-time loop.
 
 use fcc_flight::config::{Config, RealtimeSection};
 use fcc_timer::RealtimeRequest;
@@ -8,7 +8,7 @@ use crate::doctor::Diagnosis;
 use crate::exit::Exit;
 use crate::output;
 
-/// Looks at the machine, for the loop that is configured.
+/// Checks the machine, for the configured loop.
 pub(super) fn doctor(args: &DoctorArgs) -> Exit {
     let configured = args.config.as_ref().map(|file| Config::load(file));
     let realtime = match configured.transpose() {

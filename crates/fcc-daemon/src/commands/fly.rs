@@ -17,9 +17,9 @@ use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
 };
 
-/// The legs that a flight has if nobody says how long it is to be.
+/// Legs flown by default.
 const DEFAULT_LEGS: f64 = 8.0;
-/// How long a flight without a pattern is if nobody says, s.
+/// Duration of a flight without a pattern by default, s.
 const DEFAULT_HOLD_S: f64 = 60.0;
 
 /// Flies the built-in aircraft.
@@ -46,7 +46,7 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
     conduct(&config, as_given, plan, args.quiet, args.json)
 }
 
-/// Flies a configuration and prints how it ended.
+/// Flies a configuration and prints the result.
 pub(super) fn conduct(
     config: &Config,
     as_given: Option<String>,
@@ -72,7 +72,7 @@ pub(super) fn conduct(
         observers.push(Box::new(StatusLine::default()));
     }
     observers.push(Box::new(Service::from_environment()));
-    // In lockstep there is no time to lose: every line is waited for.
+    // In lockstep printing may wait: there is no real time.
     let printer = (plan.pace == Pace::RealTime).then(output::in_background);
     let flown = fly_assembly(
         assembly,
@@ -97,8 +97,8 @@ pub(super) fn conduct(
 }
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
-    // Whoever does not read what follows may end the program without it: the
-    // controls are released, and the recording is on the disk.
+    // A reader that has left may end the program here: the controls are
+    // released, and the recording is on the disk.
     for signal in [SIGTERM, SIGINT] {
         let over = Arc::new(AtomicBool::new(true));
         let _ = signal_hook::flag::register_conditional_default(signal, over);
@@ -108,11 +108,11 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
     } else {
         output::result(outcome::text(outcome), outcome.conclusion.into());
     }
-    // A flight ends as it was flown, even if that cannot be printed.
+    // The exit code is the flight's, even if the result cannot be printed.
     outcome.conclusion.into()
 }
 
-/// What the command line says about recording goes before the file.
+/// The command line has priority over the file.
 pub(super) fn direct(config: &mut Config, args: &RecordingArgs) {
     if let Some(folder) = &args.recordings {
         config.recording.folder.clone_from(folder);
@@ -121,7 +121,7 @@ pub(super) fn direct(config: &mut Config, args: &RecordingArgs) {
     config.recording.enabled &= !args.no_recording;
 }
 
-/// The configuration, and the text of its file if there is one.
+/// The configuration, and the text of its file, if there is one.
 fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
     let (mut config, as_given) = match &args.config {
         Some(path) => Config::load_with_text(path)

@@ -1,5 +1,5 @@
-//! What the commands do: each prints its result on standard output, speaks to
-//! people on standard error, and ends with a code that means something.
+//! The commands: each prints its result on standard output and messages on
+//! standard error, and returns an exit code.
 
 mod check;
 #[cfg(feature = "live")]
@@ -29,11 +29,11 @@ use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
 
-/// Carries out what was typed.
+/// Runs the command of the command line.
 pub fn run() -> Exit {
     match Cli::try_parse() {
         Ok(cli) => carry_out(cli.command),
-        // Of what stands on the terminal: an error in what was typed.
+        // Only an error in the command line concerns the terminal.
         Err(error) if error.use_stderr() => {
             let _ = error.print();
             Exit::Usage
@@ -69,13 +69,13 @@ fn carry_out(command: Action) -> Exit {
 }
 
 fn completions(shell: Shell) -> Exit {
-    // Where it cannot write, `generate` panics.
+    // If it cannot write, `generate` panics.
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "fccd", &mut script);
     output::bytes(&script, Exit::Success)
 }
 
-/// Writes a manual page for the program and for each command.
+/// Writes manual pages for the program and each command.
 fn man(folder: &Path) -> Exit {
     let written =
         fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
@@ -85,7 +85,7 @@ fn man(folder: &Path) -> Exit {
     }
 }
 
-/// Says what went wrong.
+/// Prints an error.
 fn fail(message: &str) -> Exit {
     output::message(format!("fccd: {message}"));
     Exit::Failure

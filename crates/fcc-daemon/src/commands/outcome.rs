@@ -1,14 +1,14 @@
-//! How a flight ended, for people.
+//! The end of a flight as text.
 
 use std::fmt::Write as _;
 
 use fcc_flight::flight::{Outcome, Pace};
 use fcc_report::{flight_table, timing_table};
 
-/// Tables for people, and what became of the recording.
+/// Tables, and the state of the recording.
 pub(super) fn text(outcome: &Outcome) -> String {
     let mut text = String::new();
-    // In lockstep no time passes that could be kept.
+    // In lockstep there is no real time to keep.
     if outcome.pace == Pace::RealTime {
         text = timing_table(std::slice::from_ref(&outcome.timing));
         text.push_str("\n\n");

@@ -1,8 +1,9 @@
-//! A bar that fills while a file is read.
+//! Progress bars.
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar for so many bytes; nothing where standard error is no terminal.
+/// A progress bar for reading `bytes`; hidden if standard error is not a
+/// terminal.
 pub(super) fn bar(bytes: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(bytes).with_message(what.to_owned());
     if let Ok(style) =

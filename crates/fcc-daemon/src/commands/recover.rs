@@ -9,7 +9,7 @@ use crate::cli::RecoverArgs;
 use crate::exit::Exit;
 use crate::output;
 
-/// Makes a whole recording of one that was cut off or damaged.
+/// Recovers a recording that is unfinished or damaged.
 pub(super) fn recover(args: &RecoverArgs) -> Exit {
     let bytes = fs::metadata(&args.file).map_or(0, |metadata| metadata.len());
     let bar = progress::bar(bytes, "recovering");
@@ -27,14 +27,14 @@ pub(super) fn recover(args: &RecoverArgs) -> Exit {
     if args.json {
         return output::json(&recovered, exit);
     }
-    output::result(words(&recovered), exit)
+    output::result(description(&recovered), exit)
 }
 
-fn words(recovered: &Recovered) -> String {
+fn description(recovered: &Recovered) -> String {
     let file = recovered.path.display();
     let ticks = recovered.ticks;
     if recovered.was_whole {
-        return format!("{file}: is whole: {ticks} ticks");
+        return format!("{file}: is complete: {ticks} ticks");
     }
     let cut = recovered
         .cut
@@ -44,11 +44,11 @@ fn words(recovered: &Recovered) -> String {
         .damages
         .iter()
         .map(|damage| format!("{file}: was {damage}"));
-    let now = format!("{file}: what could be read is a whole recording now: {ticks} ticks");
+    let now = format!("{file}: is recovered: {ticks} ticks");
     let kept = recovered
         .kept
         .as_ref()
-        .map(|kept| format!("{}: the file as it was", kept.display()));
+        .map(|kept| format!("{}: the original file", kept.display()));
     let lines: Vec<String> = cut
         .into_iter()
         .chain(damages)

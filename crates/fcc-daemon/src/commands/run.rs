@@ -1,4 +1,4 @@
-//! `fccd run`: the aircraft of a configuration, until told to stop.
+//! `fccd run`: flies the aircraft of a configuration until stopped.
 
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
@@ -7,7 +7,7 @@ use crate::output;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Length, Pace, Plan};
 
-/// Flies a configuration until told to stop.
+/// Flies a configuration until stopped.
 pub(super) fn run(args: &RunArgs) -> Exit {
     match Config::load_with_text(&args.config) {
         Ok((mut config, text)) => {

@@ -1,7 +1,7 @@
 //! `fccd timing`: the experiment of the thesis (section 6.1).
 //!
 //! The whole loop runs, as it did there: at each rate the built-in aircraft is
-//! flown, and the times at which the loop woke are what is reported.
+//! flown, and the wake-up times are reported.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -44,7 +44,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
-    // What is measured is the loop, and nobody needs to watch it.
+    // The loop is measured without watchers.
     config.telemetry.enabled = false;
     config.realtime.priority = args.priority;
     config.realtime.cpu = args.cpu;
@@ -82,8 +82,8 @@ fn early_wake(args: &TimingArgs) -> EarlyWakeSection {
     }
 }
 
-/// A bar that fills while a measurement runs; nothing where standard error is
-/// no terminal.
+/// A progress bar for a measurement; hidden if standard error is not a
+/// terminal.
 struct Progress {
     bar: ProgressBar,
     ticker: thread::JoinHandle<()>,

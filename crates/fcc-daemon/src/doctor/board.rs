@@ -1,26 +1,26 @@
-//! Which board it is, and where its kernel's command line is kept.
+//! The board, and where its kernel's command line is configured.
 
 use super::machine::Machine;
 use super::{Finding, Grade};
 
-/// What is told about the board.
+/// The board.
 #[derive(Debug)]
 pub(super) struct Board {
-    /// `Raspberry Pi 4 Model B Rev 1.4`; empty if it does not say.
+    /// `Raspberry Pi 4 Model B Rev 1.4`; empty if unknown.
     pub(super) name: String,
-    /// The file that the kernel's command line is made from.
+    /// The file that gives the kernel's command line.
     command_line: &'static str,
-    /// How a word gets into that file.
+    /// How an option is added to that file.
     style: Style,
-    /// Whether a Raspberry Pi runs Debian and not its maker's Raspberry Pi OS.
+    /// Whether a Raspberry Pi runs Debian and not Raspberry Pi OS.
     is_plain_debian: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Style {
-    /// The file is the command line.
+    /// The file contains only the command line.
     Bare,
-    /// A variable holds it.
+    /// A variable contains it.
     Variable(&'static str),
 }
 
@@ -35,12 +35,12 @@ impl Board {
                 .collect::<Vec<_>>()
                 .join(" ")
         });
-        // Debian's own system for the board writes cmdline.txt anew from this.
+        // Debian's own system for the board generates cmdline.txt from this.
         let is_plain_debian = machine.exists("etc/default/raspi-firmware");
         let (command_line, style) = if name.contains("Raspberry Pi") && is_plain_debian {
             ("/etc/default/raspi-extra-cmdline", Style::Bare)
         } else if name.contains("Raspberry Pi") {
-            // Before Debian 12 it was in /boot itself.
+            // Before Debian 12 it was in /boot.
             let new = "boot/firmware/cmdline.txt";
             let old = !machine.exists(new) && machine.exists("boot/cmdline.txt");
             let file = if old {
@@ -65,7 +65,7 @@ impl Board {
         }
     }
 
-    /// Says what to add to the kernel's command line.
+    /// Adds the remedy: an option of the kernel's command line.
     pub(super) fn kernel_option(&self, finding: Finding, words: &str) -> Finding {
         let line = match self.style {
             Style::Bare => format!("at the end of its only line: {words}"),
@@ -83,7 +83,7 @@ impl Board {
     }
 }
 
-/// Something that the machine does not tell.
-pub(super) fn not_told(id: &'static str, name: &'static str, words: &str) -> Finding {
+/// A finding that the machine gives no information on.
+pub(super) fn not_known(id: &'static str, name: &'static str, words: &str) -> Finding {
     Finding::new(id, name, Grade::NotKnown, words)
 }

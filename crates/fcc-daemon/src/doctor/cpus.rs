@@ -1,18 +1,18 @@
-//! The CPUs: how fast they run, how deep they sleep, and what they share.
+//! The CPUs: speed, sleep states and shared cores.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::board::{Board, not_told};
+use super::board::{Board, not_known};
 use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
 use super::{CONFIGURATION, Finding, Grade};
 
 const FOLDER: &str = "sys/devices/system/cpu";
-/// Waking from a state takes this long at most, or it shows: half of what a
-/// wake-up takes anyhow.
+/// Longest wake-up from a sleep state that is acceptable, µs: half of what a
+/// wake-up takes anyway.
 const SLOW_TO_WAKE_US: u64 = 20;
 
-/// Whether the CPUs keep their speed.
+/// Whether the CPUs run at constant speed.
 pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "governor";
     const NAME: &str = "CPU speed";
@@ -23,7 +23,7 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
         }
     }
     if cpus_of.is_empty() {
-        return not_told(ID, NAME, "nothing here changes it");
+        return not_known(ID, NAME, "this machine does not change it");
     }
     let words: Vec<String> = cpus_of
         .iter()
@@ -34,14 +34,14 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
         return Finding::new(ID, NAME, Grade::Ok, found);
     }
     Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-        .because("a loop that sleeps most of the time finds its CPU slowed down")
+        .because("the CPU is slowed down while the loop sleeps")
         .remedy(
             "/etc/tmpfiles.d/fccd.conf",
             "w /sys/devices/system/cpu/cpufreq/policy*/scaling_governor - - - - performance",
         )
 }
 
-/// Whether a CPU is kept for the loop.
+/// Whether a CPU is reserved for the loop.
 pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
     const ID: &str = "isolated_cpus";
     const NAME: &str = "Isolated CPUs";
@@ -59,21 +59,21 @@ pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
             let found = format!("none of {several}");
             let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found);
             if cpus.online.first() == Some(&cpu) {
-                // It has to keep the kernel's time.
+                // It keeps the kernel's time.
                 finding.because(format!(
-                    "other programs run on CPU {cpu} too, where the loop is to run, and it cannot \
-                     be isolated: configured for another CPU, fccd doctor says how to isolate that"
+                    "other programs run on CPU {cpu} too, the loop's CPU, and it cannot \
+                     be isolated: configure another CPU, and fccd doctor shows how to isolate it"
                 ))
             } else {
-                let finding = finding.because("other programs run where the loop is to run");
+                let finding = finding.because("other programs run on the loop's CPU too");
                 board.kernel_option(finding, &isolating(cpu, &cpus.online))
             }
         }
-        _ => not_told(ID, NAME, "the kernel does not say"),
+        _ => not_known(ID, NAME, "not reported by the kernel"),
     }
 }
 
-/// What keeps threads, the kernel's own work and interrupts off a CPU.
+/// Keeps threads, the kernel's own work and interrupts off a CPU.
 fn isolating(cpu: usize, online: &BTreeSet<usize>) -> String {
     let others: BTreeSet<usize> = online.iter().copied().filter(|c| *c != cpu).collect();
     format!(
@@ -82,7 +82,7 @@ fn isolating(cpu: usize, online: &BTreeSet<usize>) -> String {
     )
 }
 
-/// A list of CPUs as the kernel takes it: `0-1,3`.
+/// A list of CPUs in the kernel's syntax: `0-1,3`.
 fn ranges(cpus: &BTreeSet<usize>) -> String {
     let mut ranges: Vec<(usize, usize)> = Vec::new();
     for cpu in cpus {
@@ -101,7 +101,7 @@ fn ranges(cpus: &BTreeSet<usize>) -> String {
     words.collect::<Vec<_>>().join(",")
 }
 
-/// How deep the CPUs sleep.
+/// The CPUs' sleep states.
 pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "idle_states";
     const NAME: &str = "CPU sleep";
@@ -130,7 +130,7 @@ pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
                 Grade::CouldBeBetter,
                 format!("{name}, {latency_us} µs to wake"),
             )
-            .because("a CPU that sleeps deeply wakes late; not to let it costs power")
+            .because("a CPU in a deep sleep state wakes late; preventing it costs power")
             .remedy(CONFIGURATION, "cpu_dma_latency_us = 0");
             if machine.exists("dev/cpu_dma_latency") {
                 finding.remedy(
@@ -151,11 +151,11 @@ pub(super) fn hyper_threads(machine: &Machine, board: &Board) -> Finding {
     match machine.text(&format!("{FOLDER}/smt/active")).as_deref() {
         Some("1") => board.kernel_option(
             Finding::new(ID, NAME, Grade::CouldBeBetter, "two CPUs to a core")
-                .because("what the other one does makes ticks longer by up to half"),
+                .because("work on the other one makes ticks up to half longer"),
             "nosmt",
         ),
         Some("0") | None => Finding::new(ID, NAME, Grade::Ok, "none"),
-        Some(other) => not_told(ID, NAME, other),
+        Some(other) => not_known(ID, NAME, other),
     }
 }
 

@@ -1,28 +1,28 @@
-//! What the machine lives in: power and heat, memory, and what is around it.
+//! Power, heat, memory, and virtual machines and containers.
 
-use super::board::{Board, not_told};
+use super::board::{Board, not_known};
 use super::machine::Machine;
 use super::rights::may_lock;
 use super::{Finding, Grade};
 
-/// Bits of the Raspberry Pi's `get_throttled` (its documentation of
-/// `vcgencmd`): what is, and 16 bits higher what has been since the start.
+/// Bits of the Raspberry Pi's `get_throttled` (documentation of `vcgencmd`):
+/// the present state, and 16 bits higher what occurred since the start.
 const PI_STATES: [(u32, &str); 4] = [
     (0, "undervoltage"),
     (1, "speed capped"),
     (2, "throttled"),
     (3, "soft temperature limit"),
 ];
-/// Sensors in the way of hot chips are limited from about here, °C.
+/// Chips begin to limit their speed at about this temperature, °C.
 const HOT_C: f64 = 80.0;
 
-/// Whether there is enough power.
+/// Whether the power supply suffices.
 pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "power";
     const NAME: &str = "Power";
     const SUPPLY: &str = "use the board's own power supply, and a short, thick cable";
-    // The folder of the firmware has another name on each board: `soc:firmware`
-    // on a Pi 4, with the address of the bus in it on a Pi 5.
+    // The name of the firmware's folder depends on the board: `soc:firmware` on
+    // a Pi 4, with the bus address on a Pi 5.
     let throttled = machine
         .entries("sys/bus/platform/drivers/raspberrypi-firmware", "soc")
         .into_iter()
@@ -45,14 +45,14 @@ pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
                 Grade::CouldBeBetter,
                 format!("since the start: {before}"),
             )
-            .because("the CPUs ran slower than they can")
+            .because("the CPUs ran slower than they could")
             .remedy("the board", SUPPLY),
             (now, _) => Finding::new(ID, NAME, Grade::Lacks, format!("now: {now}"))
-                .because("the CPUs run slower than they can")
+                .because("the CPUs run slower than they could")
                 .remedy("the board", SUPPLY),
         };
     }
-    // The same of newer kernels, as a sensor: 1 once the voltage was too low.
+    // On newer kernels a sensor: 1 once the voltage was too low.
     let alarm = machine
         .entries("sys/class/hwmon", "hwmon")
         .into_iter()
@@ -61,10 +61,10 @@ pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
     match alarm {
         Some(0) => Finding::new(ID, NAME, Grade::Ok, "enough"),
         Some(_) => Finding::new(ID, NAME, Grade::Lacks, "undervoltage")
-            .because("the CPUs run slower than they can")
+            .because("the CPUs run slower than they could")
             .remedy("the board", SUPPLY),
-        None if board.is_raspberry_pi() => not_told(ID, NAME, "the firmware does not say"),
-        None => not_told(ID, NAME, "no sensor tells"),
+        None if board.is_raspberry_pi() => not_known(ID, NAME, "not reported by the firmware"),
+        None => not_known(ID, NAME, "no sensor"),
     }
 }
 
@@ -88,7 +88,7 @@ pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
         })
         .fold(0, u64::saturating_add);
     let found = match (hottest_c, slowed) {
-        (None, 0) => return not_told(ID, NAME, "no sensor tells"),
+        (None, 0) => return not_known(ID, NAME, "no sensor"),
         (None, times) => format!("slowed down {times} times since the start"),
         (Some(degrees), 0) => format!("{degrees:.0} °C"),
         (Some(degrees), times) => {
@@ -104,12 +104,12 @@ pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
     }
 }
 
-/// Whether memory can be moved to a disk.
+/// Whether memory can be swapped to a disk.
 pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "swap";
     const NAME: &str = "Swap";
     let Some(swaps) = machine.text("proc/swaps") else {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     };
     let files: Vec<&str> = swaps
         .lines()
@@ -124,15 +124,15 @@ pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
         return Finding::new(ID, NAME, Grade::Ok, format!("{found}; locked memory stays"));
     }
     let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-        .because("memory that is not locked may be fetched from a disk, in milliseconds");
+        .because("reading memory that is not locked from a disk takes milliseconds");
     if board.is_raspberry_pi() {
         finding.remedy("shell", "systemctl disable --now dphys-swapfile")
     } else {
-        finding.remedy("shell, and take it out of /etc/fstab", "swapoff -a")
+        finding.remedy("shell, and remove it from /etc/fstab", "swapoff -a")
     }
 }
 
-/// Whether locked memory stays in its place.
+/// Whether locked memory keeps its physical addresses.
 pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "compaction";
     const NAME: &str = "Memory moves";
@@ -148,23 +148,23 @@ pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
     }
     if lines.is_empty() {
         return match (locked, balancing) {
-            (None, None) => not_told(ID, NAME, "the kernel does not say"),
+            (None, None) => not_known(ID, NAME, "not reported by the kernel"),
             _ => Finding::new(ID, NAME, Grade::Ok, "locked memory stays in its place"),
         };
     }
     let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, "allowed")
-        .because("the kernel may move locked memory too: a page fault each");
+        .because("the kernel may move locked memory, too, which costs a page fault each");
     lines
         .into_iter()
         .fold(finding, |finding, line| finding.remedy(FILE, line))
 }
 
-/// Whether the machine is one.
+/// Whether this is a virtual machine.
 pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "virtual_machine";
     const NAME: &str = "Virtual machine";
-    // As firmware of virtual machines names itself (systemd-detect-virt(1)
-    // lists more; the flag of the CPU is told by nearly all of them).
+    // Names that virtual machines' firmware uses (systemd-detect-virt(1) lists
+    // more); nearly all of them also set a flag of the CPU.
     const MAKERS: [&str; 9] = [
         "QEMU",
         "KVM",
@@ -191,8 +191,8 @@ pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
         (None, None) => return Finding::new(ID, NAME, Grade::Ok, "no"),
     };
     Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(
-        "the host takes its CPUs away for milliseconds, and nothing in here can prevent it: \
-         good for trying, not for flying",
+        "the host interrupts its CPUs for milliseconds, which cannot be prevented here: \
+         suitable for trials, not for flights",
     )
 }
 
@@ -221,7 +221,7 @@ pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
     match found {
         None => Finding::new(ID, NAME, Grade::Ok, "no"),
         Some(name) => Finding::new(ID, NAME, Grade::CouldBeBetter, name)
-            .because("what the kernel grants is for the host to say")
+            .because("the host determines what the kernel grants")
             .remedy(
                 "docker run",
                 "--cap-add sys_nice --cap-add ipc_lock --ulimit rtprio=90 --ulimit memlock=-1",
@@ -229,7 +229,7 @@ pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
     }
 }
 
-/// Whether the program may use all of its CPUs.
+/// Whether the program may use all CPUs without a limit.
 pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "cpu_quota";
     const NAME: &str = "CPU quota";
@@ -238,7 +238,7 @@ pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
         .lines()
         .find_map(|line| line.strip_prefix("0::"))
         .unwrap_or("/");
-    // A group is bound by those that it is in. No path leads out of the folder.
+    // The limits of the parent groups apply, too. `..` would leave the folder.
     let mut quota: Option<f64> = None;
     let is_plain = own.split('/').all(|part| part != "..");
     for group in std::path::Path::new(own).ancestors().filter(|_| is_plain) {
@@ -258,7 +258,7 @@ pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
     match quota {
         None => Finding::new(ID, NAME, Grade::Ok, "none"),
         Some(cpus) => Finding::new(ID, NAME, Grade::CouldBeBetter, format!("{cpus:.2} CPUs"))
-            .because("telemetry and recorder stand still when it is used up, until the next period")
+            .because("when it is used up, telemetry and recorder stop until the next period")
             .remedy("fccd.service, [Service]", "CPUQuota="),
     }
 }

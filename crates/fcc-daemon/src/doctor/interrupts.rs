@@ -1,38 +1,39 @@
-//! Which devices interrupt which CPU: a loop on that one is held up by each.
+//! Which devices interrupt which CPU: each interrupt delays a loop on that CPU.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use fcc_timer::realtime::cpus::{Cpus, DeviceInterrupt, parse_devices, parse_list};
 
-use super::board::not_told;
+use super::board::not_known;
 use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
 use super::{Finding, Grade};
 
-/// A device with less than this part of all interrupts is not worth a word.
+/// A device with less than one interrupt in this many is not mentioned.
 const WORTH_NAMING: u64 = 100;
-/// Devices that are named for each CPU.
-const MOST_NAMED: usize = 4;
-/// Read at each start of the machine; the numbers stay while its devices do.
+/// The most devices named for each CPU.
+const MAX_NAMED: usize = 4;
+/// Read at each start of the machine; interrupt numbers stay the same while its
+/// devices do.
 const AT_START: &str = "/etc/tmpfiles.d/fccd.conf";
 const BALANCER: &str = "etc/default/irqbalance";
 
-/// A device that interrupts often, and where.
+/// A device that interrupts often, and the CPUs that it interrupts.
 struct Busy {
     number: u32,
     name: String,
     count: u64,
 }
 
-/// Where the interrupts go.
+/// Which CPUs are interrupted.
 pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
     const ID: &str = "interrupts";
     const NAME: &str = "Interrupts";
     let cpus = &loop_cpu.cpus;
     let counts = &cpus.device_interrupts;
     if counts.is_empty() {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     }
     if counts.len() == 1 {
         return Finding::new(ID, NAME, Grade::Ok, "there is one CPU only");
@@ -42,14 +43,14 @@ pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
         return Finding::new(ID, NAME, Grade::Ok, "no device has interrupted yet");
     }
     let busy = busy_devices(machine, total);
-    let found = words(&busy, total);
+    let found = description(&busy, total);
     let Some(cpu) = loop_cpu.cpu else {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     };
     let on_it = busy.get(&cpu).map_or(&[][..], Vec::as_slice);
     if on_it.is_empty() {
         let finding = Finding::new(ID, NAME, Grade::Ok, found)
-            .because(format!("each holds a loop up; CPU {cpu} has none of them"));
+            .because(format!("each delays a loop; CPU {cpu} has none of them"));
         return loop_cpu.remedy(finding);
     }
     let others = || counts.iter().map(|(cpu, _)| *cpu).filter(|c| *c != cpu);
@@ -61,7 +62,7 @@ pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
         &ordinary
     });
     let mut finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(format!(
-        "each holds a loop up by some 10 µs: move those of CPU {cpu} away (a disk that refuses has \
+        "each delays a loop by some 10 µs: move those of CPU {cpu} away (a disk that refuses has \
          one for each CPU and keeps it)"
     ));
     for device in on_it {
@@ -80,8 +81,8 @@ pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
     loop_cpu.remedy(finding)
 }
 
-/// The CPU that devices interrupt least now, the last of several; not the first
-/// one, which keeps the kernel's time, if there is another.
+/// The CPU with the fewest interrupts of devices, the last of several; not the
+/// first CPU, which keeps the kernel's time, if there is another.
 pub(super) fn fewest_interrupts(machine: &Machine, cpus: &Cpus) -> Option<usize> {
     let busy = busy_devices(machine, total(cpus));
     let weight = |cpu: &usize| {
@@ -93,14 +94,13 @@ pub(super) fn fewest_interrupts(machine: &Machine, cpus: &Cpus) -> Option<usize>
     online.skip(others).rev().min_by_key(weight)
 }
 
-/// All interrupts of devices.
+/// The number of interrupts of all devices.
 fn total(cpus: &Cpus) -> u64 {
     let counts = cpus.device_interrupts.iter();
     counts.fold(0, |sum, (_, count)| sum.saturating_add(*count))
 }
 
-/// The devices that interrupt often, by the CPU on which they do now, the
-/// busiest first.
+/// The devices that interrupt often, by CPU, the most frequent first.
 fn busy_devices(machine: &Machine, total: u64) -> BTreeMap<usize, Vec<Busy>> {
     let text = machine.text("proc/interrupts").unwrap_or_default();
     let mut busy: BTreeMap<usize, Vec<Busy>> = BTreeMap::new();
@@ -112,7 +112,7 @@ fn busy_devices(machine: &Machine, total: u64) -> BTreeMap<usize, Vec<Busy>> {
         if all < total.div_ceil(WORTH_NAMING) {
             continue;
         }
-        for cpu in lands_on(machine, &device) {
+        for cpu in cpus_of(machine, &device) {
             busy.entry(cpu).or_default().push(Busy {
                 number: device.number,
                 name: device.name.clone(),
@@ -126,9 +126,9 @@ fn busy_devices(machine: &Machine, total: u64) -> BTreeMap<usize, Vec<Busy>> {
     busy
 }
 
-/// Where an interrupt comes now: as the kernel says (not every one does), or
-/// else where it came most often.
-fn lands_on(machine: &Machine, device: &DeviceInterrupt) -> Vec<usize> {
+/// The CPUs of an interrupt: as the kernel reports (not for every one), or else
+/// where it came most often.
+fn cpus_of(machine: &Machine, device: &DeviceInterrupt) -> Vec<usize> {
     let file = format!("proc/irq/{}/effective_affinity_list", device.number);
     let told = machine.text(&file).map(|text| parse_list(&text));
     match told {
@@ -141,25 +141,25 @@ fn lands_on(machine: &Machine, device: &DeviceInterrupt) -> Vec<usize> {
 }
 
 /// `CPU 0: eth0 98 %, mmc0 2 %; CPU 3: xhci_hcd 1 %`.
-fn words(busy: &BTreeMap<usize, Vec<Busy>>, total: u64) -> String {
+fn description(busy: &BTreeMap<usize, Vec<Busy>>, total: u64) -> String {
     let of_cpu = |(cpu, devices): (&usize, &Vec<Busy>)| {
         let mut names: Vec<String> = devices
             .iter()
-            .take(MOST_NAMED)
+            .take(MAX_NAMED)
             .map(|device| {
                 let percent = 100.0 * device.count as f64 / total as f64;
                 format!("{} {percent:.0} %", device.name)
             })
             .collect();
-        if devices.len() > MOST_NAMED {
-            names.push(format!("{} more", devices.len() - MOST_NAMED));
+        if devices.len() > MAX_NAMED {
+            names.push(format!("{} more", devices.len() - MAX_NAMED));
         }
         format!("CPU {cpu}: {}", names.join(", "))
     };
     busy.iter().map(of_cpu).collect::<Vec<_>>().join("; ")
 }
 
-/// As the kernel takes it: `0,1,3`.
+/// In the kernel's syntax: `0,1,3`.
 fn list(cpus: &[usize]) -> String {
     let numbers: Vec<String> = cpus.iter().map(ToString::to_string).collect();
     numbers.join(",")

@@ -1,13 +1,13 @@
-//! The kernel: how soon it lets a thread run, and what it times it with.
+//! The kernel: preemption, real-time share, timers and clock.
 
-use super::board::{Board, not_told};
+use super::board::{Board, not_known};
 use super::machine::Machine;
 use super::{Finding, Grade};
 
-/// Where a kernel with several ways of preemption tells which is in force.
+/// Where a kernel with several preemption modes shows the present one.
 const PREEMPTION_MODE: &str = "sys/kernel/debug/sched/preempt";
 
-/// Whether the kernel interrupts itself for a thread that is due.
+/// Whether the kernel is interrupted for a thread that is due.
 pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "preemption";
     const NAME: &str = "Preemption";
@@ -19,7 +19,7 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
     }
     if has("PREEMPT_DYNAMIC") {
         let mode = preemption_mode(machine);
-        let mode = mode.as_deref().unwrap_or("not told");
+        let mode = mode.as_deref().unwrap_or("unknown");
         let finding = Finding::new(
             ID,
             NAME,
@@ -28,13 +28,13 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
         );
         return match mode {
             "full" => with_rt_kernel(finding.because(WORST), board),
-            "not told" if machine.is_forbidden(PREEMPTION_MODE) => board.kernel_option(
-                finding.because("the mode is told to root only, in /sys/kernel/debug"),
+            "unknown" if machine.is_forbidden(PREEMPTION_MODE) => board.kernel_option(
+                finding.because("only root can read the mode, in /sys/kernel/debug"),
                 "preempt=full",
             ),
-            "not told" => board.kernel_option(
+            "unknown" => board.kernel_option(
                 finding
-                    .because("the mode is told in /sys/kernel/debug, where nothing is mounted")
+                    .because("the mode is in /sys/kernel/debug, which is not mounted")
                     .remedy("shell", "mount -t debugfs debugfs /sys/kernel/debug"),
                 "preempt=full",
             ),
@@ -49,7 +49,7 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
         return with_rt_kernel(finding.because(WORST), board);
     }
     if version.is_empty() {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     }
     with_rt_kernel(
         Finding::new(ID, NAME, Grade::CouldBeBetter, "none")
@@ -58,10 +58,10 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
     )
 }
 
-/// The mode of a kernel that has several: what is in force, or else what it was
-/// started with, unless that is not told.
+/// The present mode of a kernel that has several, or the mode it was started
+/// with, unless the present one is forbidden to read.
 fn preemption_mode(machine: &Machine) -> Option<String> {
-    // `none voluntary (full) lazy`: the mode in force is in brackets.
+    // `none voluntary (full) lazy`: the present mode is in brackets.
     let modes = machine.text(PREEMPTION_MODE).unwrap_or_default();
     let in_force = modes
         .split_once('(')
@@ -69,7 +69,7 @@ fn preemption_mode(machine: &Machine) -> Option<String> {
         .map(|(mode, _)| mode.to_owned());
     in_force.or_else(|| {
         let words = machine.text("proc/cmdline")?;
-        // Of several the last counts.
+        // The last of several counts.
         let mode = words
             .split_whitespace()
             .rev()
@@ -94,32 +94,32 @@ fn with_rt_kernel(finding: Finding, board: &Board) -> Finding {
     }
 }
 
-/// How much of each second real-time threads may run.
+/// The share of each second that real-time threads may use.
 pub(super) fn realtime_throttling(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "realtime_throttling";
     const NAME: &str = "Real-time share";
     const FILE: &str = "/etc/sysctl.d/fccd.conf";
     let setting = |name| machine.number::<i64>(&format!("proc/sys/kernel/{name}"));
     let Some(runtime_us) = setting("sched_rt_runtime_us") else {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     };
     let period_us = setting("sched_rt_period_us").unwrap_or(1_000_000).max(1);
     let share = 100.0 * runtime_us as f64 / period_us as f64;
     let found = format!("{share:.0} % of each {:.1} s", period_us as f64 * 1e-6);
     match runtime_us {
         ..0 => Finding::new(ID, NAME, Grade::Ok, "unlimited")
-            .because("a loop that hangs takes its CPU for good"),
+            .because("a loop that hangs occupies its CPU until it is killed"),
         0 => Finding::new(ID, NAME, Grade::Lacks, "none")
             .because("no real-time thread may run at all")
             .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
         _ if share < 50.0 => Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-            .because("real-time threads wait for the rest of it once they have used their share")
+            .because("real-time threads that have used their share wait until its end")
             .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
         _ => Finding::new(ID, NAME, Grade::Ok, found),
     }
 }
 
-/// Whether timers expire when they are due, or at the kernel's next tick.
+/// Whether timers expire when due, or at the kernel's next tick.
 pub(super) fn high_resolution_timers(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "high_resolution_timers";
     const NAME: &str = "Timers";
@@ -138,21 +138,26 @@ pub(super) fn high_resolution_timers(machine: &Machine, board: &Board) -> Findin
     match in_force.or_else(built_in) {
         Some(true) => Finding::new(ID, NAME, Grade::Ok, "high resolution"),
         Some(false) => board.kernel_option(
-            Finding::new(ID, NAME, Grade::Lacks, "as coarse as the kernel's tick")
-                .because("every wake-up waits for the next tick, 1 to 10 ms"),
+            Finding::new(
+                ID,
+                NAME,
+                Grade::Lacks,
+                "the resolution of the kernel's tick",
+            )
+            .because("every wake-up waits for the next tick, 1 to 10 ms"),
             "highres=on",
         ),
-        None => not_told(ID, NAME, "told to root only, in /proc/timer_list"),
+        None => not_known(ID, NAME, "only root can read it, in /proc/timer_list"),
     }
 }
 
-/// What the time is read from.
+/// The clock source.
 pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
     const ID: &str = "clock_source";
     const NAME: &str = "Clock";
     const FOLDER: &str = "sys/devices/system/clocksource/clocksource0";
     let Some(source) = machine.text(&format!("{FOLDER}/current_clocksource")) else {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     };
     match source.as_str() {
         "tsc"
@@ -168,7 +173,7 @@ pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
                 .text(&format!("{FOLDER}/available_clocksource"))
                 .unwrap_or_default();
             let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, source)
-                .because("each reading of it is a system call, some ten of them in a tick");
+                .because("each reading is a system call, some ten per tick");
             if others.split_whitespace().any(|other| other == "tsc") {
                 board.kernel_option(finding, "clocksource=tsc tsc=reliable")
             } else {
@@ -178,7 +183,7 @@ pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
     }
 }
 
-/// How late the kernel makes the sleeps of ordinary threads.
+/// The timer slack of ordinary threads.
 pub(super) fn timer_slack(machine: &Machine, _: &Board) -> Finding {
     const ID: &str = "timer_slack";
     const NAME: &str = "Timer slack";
@@ -189,6 +194,6 @@ pub(super) fn timer_slack(machine: &Machine, _: &Board) -> Finding {
             Grade::Ok,
             format!("{:.0} µs; fccd sets its own", slack_ns as f64 * 1e-3),
         ),
-        None => not_told(ID, NAME, "the kernel does not say; fccd sets its own"),
+        None => not_known(ID, NAME, "not reported by the kernel; fccd sets its own"),
     }
 }

@@ -1,29 +1,29 @@
-//! Which CPU the loop is on: the one answer that all findings are about.
+//! The loop's CPU, which all findings refer to.
 
 use fcc_timer::CpuRequest;
 use fcc_timer::realtime::cpus::{BestCpu, Cpus, parse_list};
 
-use super::board::not_told;
+use super::board::not_known;
 use super::interrupts::fewest_interrupts;
 use super::machine::Machine;
 use super::{CONFIGURATION, Finding, Grade};
 
-/// The CPUs of a machine, and which of them the loop is on.
+/// The CPUs of a machine, and the loop's CPU.
 #[derive(Debug)]
 pub(super) struct LoopCpu {
-    /// What is configured.
+    /// The configured CPU.
     request: Option<CpuRequest>,
-    /// What `cpu = "auto"` chooses here, or why it does not.
+    /// The choice of `cpu = "auto"` here, or why it makes none.
     best: Result<BestCpu, String>,
-    /// What the machine tells of its CPUs.
+    /// The machine's CPUs.
     pub(super) cpus: Cpus,
-    /// The CPU that remedies are about: where the loop is, or, where it is not
-    /// bound, the one that devices interrupt least.
+    /// The CPU for remedies: the loop's, or, if it is not bound, the one with
+    /// the fewest interrupts.
     pub(super) cpu: Option<usize>,
 }
 
 impl LoopCpu {
-    /// By the function that the loop itself chooses by.
+    /// Uses the same function as the loop.
     pub(super) fn of(machine: &Machine, request: Option<CpuRequest>) -> Self {
         let cpus = Cpus::read(machine.root());
         let allowed = machine.field("proc/self/status", "Cpus_allowed_list");
@@ -46,8 +46,8 @@ impl LoopCpu {
         }
     }
 
-    /// Says how to have the loop on [`cpu`](Self::cpu), unless that is
-    /// configured already.
+    /// Adds the remedy: put the loop on [`cpu`](Self::cpu), unless that is
+    /// configured.
     pub(super) fn remedy(&self, finding: Finding) -> Finding {
         let remedy = match (self.request, &self.best) {
             (Some(CpuRequest::Number(_)), _) | (Some(CpuRequest::Auto), Ok(_)) => None,
@@ -60,17 +60,17 @@ impl LoopCpu {
         }
     }
 
-    /// The finding itself.
+    /// The finding on the loop's CPU.
     pub(super) fn finding(&self) -> Finding {
         const ID: &str = "loop_cpu";
         const NAME: &str = "CPU of the loop";
         let online = &self.cpus.online;
         if online.is_empty() {
-            return not_told(ID, NAME, "the kernel does not say which CPUs there are");
+            return not_known(ID, NAME, "the kernel does not list the CPUs");
         }
         match (self.request, &self.best) {
             (Some(CpuRequest::Number(cpu)), _) if !online.contains(&cpu) => {
-                let found = format!("CPU {cpu}, as configured, and there is none");
+                let found = format!("CPU {cpu}, as configured, which does not exist");
                 let finding = Finding::new(ID, NAME, Grade::Lacks, found)
                     .because("the kernel refuses it: the loop would not be bound");
                 finding.remedy(CONFIGURATION, "cpu = \"auto\"")

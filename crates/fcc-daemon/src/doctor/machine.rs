@@ -1,15 +1,15 @@
-//! The files of a machine.
+//! Reads the files of a machine.
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// No file that is looked at is longer: `/proc/cpuinfo` of 256 CPUs fits.
-const MOST_BYTES: u64 = 1 << 20;
-/// Nor has a folder more entries.
-const MOST_ENTRIES: usize = 4_096;
+/// Longer than any file read: `/proc/cpuinfo` of 256 CPUs fits.
+const MAX_BYTES: u64 = 1 << 20;
+/// More than any folder's entries.
+const MAX_ENTRIES: usize = 4_096;
 
-/// A machine, by its files.
+/// A machine, as a folder with its files.
 #[derive(Debug)]
 pub(super) struct Machine {
     root: PathBuf,
@@ -26,16 +26,16 @@ impl Machine {
         &self.root
     }
 
-    /// What a file says, without white space around it; none if it is not
-    /// there, not to be read, or empty.
+    /// A file's text without surrounding white space; none if it is missing,
+    /// unreadable or empty.
     pub(super) fn text(&self, path: &str) -> Option<String> {
         let mut bytes = Vec::new();
         File::open(self.root.join(path))
             .ok()?
-            .take(MOST_BYTES)
+            .take(MAX_BYTES)
             .read_to_end(&mut bytes)
             .ok()?;
-        // The device tree ends its texts with a zero.
+        // Texts of the device tree end with a zero.
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_matches(|c: char| c.is_whitespace() || c == '\0');
         (!text.is_empty()).then(|| text.to_owned())
@@ -50,7 +50,7 @@ impl Machine {
         self.root.join(path).exists()
     }
 
-    /// Whether a file is there, or may be, for others than who asks.
+    /// Whether this user may not read a file that exists or may exist.
     pub(super) fn is_forbidden(&self, path: &str) -> bool {
         let opened = File::open(self.root.join(path));
         opened.is_err_and(|error| error.kind() == ErrorKind::PermissionDenied)
@@ -61,7 +61,7 @@ impl Machine {
         let mut names: Vec<String> = fs::read_dir(self.root.join(folder))
             .into_iter()
             .flatten()
-            .take(MOST_ENTRIES)
+            .take(MAX_ENTRIES)
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
             .filter(|name| name.starts_with(prefix))
             .collect();
@@ -78,7 +78,7 @@ impl Machine {
         field_of(&self.text(path)?, field).map(str::to_owned)
     }
 
-    /// As `uname -r -v` says.
+    /// As `uname -r -v` prints it.
     pub(super) fn kernel(&self) -> String {
         let part = |name| self.text(&format!("proc/sys/kernel/{name}"));
         [part("osrelease"), part("version")]

@@ -1,9 +1,9 @@
-//! What a machine offers a real-time loop, and what it lacks.
+//! Whether a machine suits a real-time loop.
 //!
 //! Each check reads a few files of `/proc`, `/sys` and `/etc` and gives one
-//! [`Finding`]: how good it is, what was found, and, where it could be better,
-//! the line to put and where. All files are read under a root folder, so that
-//! a test can be a Raspberry Pi, and a technician can look at the disk of one.
+//! [`Finding`]: a grade, what was found, and, if it could be better, the line
+//! to add and where. All files are read under a root folder, so that a test can
+//! model a Raspberry Pi, and the disk of another machine can be checked.
 //!
 //! | module | what it looks at |
 //! |---|---|
@@ -36,46 +36,46 @@ use board::Board;
 use loop_cpu::LoopCpu;
 use machine::Machine;
 
-/// Where what the loop asks for is said.
+/// Where the loop's requests are configured.
 const CONFIGURATION: &str = "fccd's configuration, [realtime]";
 
-/// How good something is for a real-time loop.
+/// How well something suits a real-time loop.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
-    /// As it should be.
+    /// Good.
     Ok,
     /// A loop runs, and would run better.
     CouldBeBetter,
-    /// A loop is refused what it asks for, or cannot keep time.
+    /// A loop is denied a request, or cannot keep time.
     Lacks,
-    /// The machine does not tell.
+    /// Not known.
     NotKnown,
 }
 
-/// What was found of one thing.
+/// The result of one check.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Finding {
-    /// What was looked at, for programs: `preemption`.
+    /// Identifies the check for programs: `preemption`.
     pub id: &'static str,
-    /// The same for people.
+    /// Its name for users.
     pub name: &'static str,
-    /// How good it is.
+    /// The grade.
     pub grade: Grade,
     /// What was found.
     pub found: String,
     /// Why it is not good; empty if it is.
     pub why: String,
-    /// What to put where; empty if there is nothing to do.
+    /// What to add where; empty if there is nothing to do.
     pub remedies: Vec<Remedy>,
 }
 
-/// A line that makes it better, and where it goes.
+/// A line that improves it, and where to add it.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Remedy {
     /// A file, or `shell` for a command.
     pub place: String,
-    /// What to put there.
+    /// The line.
     pub line: String,
 }
 
@@ -105,20 +105,20 @@ impl Finding {
     }
 }
 
-/// All that was found.
+/// All findings.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
 pub struct Diagnosis {
-    /// The board or machine, if it says.
+    /// The board or machine, if known.
     pub machine: String,
     /// Its kernel.
     pub kernel: String,
-    /// Each check, in the order of their weight.
+    /// The findings, the most important first.
     pub findings: Vec<Finding>,
 }
 
 impl Diagnosis {
-    /// Looks at the machine whose files are under `root`, for a loop that asks
-    /// this of it.
+    /// Checks the machine with its files under `root`, for a loop with these
+    /// requests.
     pub fn of(root: &Path, request: &RealtimeRequest) -> Self {
         let machine = Machine::under(root);
         let board = Board::of(&machine);
@@ -163,7 +163,7 @@ impl Diagnosis {
         findings.filter(|finding| finding.grade == grade).count()
     }
 
-    /// A table for people, and below it what to do.
+    /// A table, followed by what to do.
     pub fn to_text(&self) -> String {
         show::text(self)
     }

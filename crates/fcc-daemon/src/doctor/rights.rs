@@ -1,30 +1,30 @@
-//! What the program may ask of the kernel.
+//! The program's rights.
 
-use super::board::{Board, not_told};
+use super::board::{Board, not_known};
 use super::machine::Machine;
 use super::{Finding, Grade};
 
-/// The bits of a set of capabilities.
+/// Bits of the capabilities.
 const CAP_IPC_LOCK: u32 = 14;
 const CAP_SYS_NICE: u32 = 23;
-/// Where rights of a login are given.
+/// Configures the rights of a login.
 const LIMITS: &str = "/etc/security/limits.d/fccd.conf";
-/// Where those of the service are.
+/// Configures the rights of the service.
 const UNIT: &str = "fccd.service, [Service]";
 
-/// Whether the loop's thread may be real-time.
+/// Whether the loop's thread may have a real-time priority.
 pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Finding {
     const ID: &str = "realtime_priority";
     const NAME: &str = "Real-time right";
     let Some(priority) = priority else {
-        return Finding::new(ID, NAME, Grade::Ok, "not asked for: realtime.priority = 0");
+        return Finding::new(ID, NAME, Grade::Ok, "not requested: realtime.priority = 0");
     };
     if has_capability(machine, CAP_SYS_NICE) {
         return Finding::new(ID, NAME, Grade::Ok, "CAP_SYS_NICE");
     }
     let limit = limit(machine, "Max realtime priority");
     let Some(limit) = limit else {
-        return not_told(ID, NAME, "the kernel does not say");
+        return not_known(ID, NAME, "not reported by the kernel");
     };
     let found = match limit {
         Limit::Unlimited => "priorities up to 99".to_owned(),
@@ -36,7 +36,7 @@ pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Find
             .because("the loop would run under the ordinary scheduler, milliseconds late"),
         Limit::Number(most) if most < u64::from(priority) => {
             Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-                .because(format!("the loop asks for {priority} (realtime.priority)"))
+                .because(format!("the loop requests {priority} (realtime.priority)"))
         }
         _ => return Finding::new(ID, NAME, Grade::Ok, found),
     };
@@ -56,15 +56,17 @@ pub(super) fn locked_memory(machine: &Machine, _: &Board) -> Finding {
         Some(Limit::Unlimited) => Finding::new(ID, NAME, Grade::Ok, "unlimited"),
         Some(Limit::Number(bytes)) => {
             Finding::new(ID, NAME, Grade::Lacks, format!("{} KiB", bytes / 1024))
-                .because("fccd locks all or nothing: under a limit, allocations fail later")
+                .because(
+                    "fccd locks all of its memory or none: with a limit, allocations fail later",
+                )
                 .remedy(LIMITS, "fccd - memlock unlimited")
                 .remedy(UNIT, "LimitMEMLOCK=infinity")
         }
-        None => not_told(ID, NAME, "the kernel does not say"),
+        None => not_known(ID, NAME, "not reported by the kernel"),
     }
 }
 
-/// Whether memory may be locked, for checks that depend on it.
+/// Whether memory may be locked, for dependent checks.
 pub(super) fn may_lock(machine: &Machine) -> bool {
     has_capability(machine, CAP_IPC_LOCK)
         || limit(machine, "Max locked memory") == Some(Limit::Unlimited)
@@ -76,7 +78,7 @@ enum Limit {
     Number(u64),
 }
 
-/// The soft limit of this name.
+/// The soft limit with this name.
 fn limit(machine: &Machine, name: &str) -> Option<Limit> {
     let limits = machine.text("proc/self/limits")?;
     let soft = limits
@@ -91,8 +93,8 @@ fn limit(machine: &Machine, name: &str) -> Option<Limit> {
 }
 
 fn has_capability(machine: &Machine, bit: u32) -> bool {
-    // In a user namespace of its own a process has every capability, and none
-    // that counts here.
+    // In its own user namespace a process has every capability, without effect
+    // here.
     let whole_system = machine
         .text("proc/self/uid_map")
         .is_none_or(|map| map.split_whitespace().eq(["0", "0", "4294967295"]));

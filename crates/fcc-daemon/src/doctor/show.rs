@@ -1,10 +1,10 @@
-//! The findings for people.
+//! The findings as text.
 
 use std::fmt::Write as _;
 
 use super::{Diagnosis, Finding, Grade};
 
-/// The table, and below it what to do, the worst first.
+/// The table, followed by what to do, the worst first.
 pub(super) fn text(diagnosis: &Diagnosis) -> String {
     let mut text = String::new();
     for line in [&diagnosis.machine, &diagnosis.kernel] {

@@ -1,4 +1,4 @@
-//! What happens, as it happens, for who watches.
+//! Prints events as they happen.
 
 use fcc_flight::flight::{FlightTime, Observer, Report};
 use fcc_telemetry::FlightEvent;
@@ -9,18 +9,18 @@ use crate::output;
 pub(crate) struct Announcer;
 
 impl Observer for Announcer {
-    fn event(&mut self, _: &FlightEvent, words: &str, at: &FlightTime) {
-        announce(words, at);
+    fn event(&mut self, _: &FlightEvent, text: &str, at: &FlightTime) {
+        announce(text, at);
     }
 
     fn report(&mut self, report: &Report, at: &FlightTime) {
         match report {
-            Report::Remark(words) | Report::Mention(words) => announce(words, at),
+            Report::Remark(text) | Report::Mention(text) => announce(text, at),
             Report::Recording(_) => {}
         }
     }
 }
 
-fn announce(words: &str, at: &FlightTime) {
-    output::message(format!("{:8.2} s  {words}", at.time_s));
+fn announce(text: &str, at: &FlightTime) {
+    output::message(format!("{:8.2} s  {text}", at.time_s));
 }

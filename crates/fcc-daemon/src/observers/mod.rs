@@ -1,4 +1,4 @@
-//! Who observes a flight for the people and programs around the daemon.
+//! The daemon's own observers of a flight.
 
 mod announcer;
 mod service;
@@ -15,7 +15,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_observer_keeps_what_the_trait_promises() {
+    fn every_observer_conforms_to_the_trait() {
         observer_conforms(|| Box::new(Announcer));
         observer_conforms(|| Box::new(StatusLine::default()));
         observer_conforms(|| Box::new(Service::from_environment()));

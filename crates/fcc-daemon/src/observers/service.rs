@@ -1,10 +1,10 @@
-//! What systemd is told of a flight, if it started the daemon (`sd_notify(3)`).
+//! Notifies systemd of a flight's state, if systemd started the daemon
+//! (`sd_notify(3)`).
 //!
-//! The watchdog's sign comes from the loop's own progress: it is sent by who
-//! fetches the loop's records, and only when new ones have come. A loop that
-//! hangs falls silent here, and so does a daemon that no longer fetches. A
-//! thread passes it on, for systemd may be busy, and then telling it takes as
-//! long as that.
+//! The watchdog notification follows the loop's progress: it is sent by the
+//! thread that fetches the loop's records, and only when there are new ones. It
+//! stops if the loop hangs or the daemon no longer fetches. A separate thread
+//! sends it, because a busy systemd delays the sender.
 
 use std::sync::mpsc::{self, SyncSender};
 use std::thread;
@@ -16,25 +16,24 @@ use fcc_flight::flight::{Access, FlightTime, Observer};
 use fcc_telemetry::FlightRecord;
 use sd_notify::NotifyState;
 
-/// Signs per time-out of the watchdog: one may be late, or two.
-const SIGNS_PER_TIMEOUT: u32 = 4;
-/// What waits to be told; what finds no room is told next time.
+/// Watchdog notifications per time-out: one or two may be late.
+const ALIVE_PER_TIMEOUT: u32 = 4;
+/// Notifications that may be queued; one that does not fit is sent later.
 const WAITING: usize = 8;
-/// How long the end of a flight waits until systemd knows of it.
+/// How long the end of a flight waits for systemd.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Tells systemd how the flight goes; where nobody listens, nothing comes of
-/// it.
+/// Notifies systemd; does nothing if systemd did not start the daemon.
 pub(crate) struct Service {
-    teller: Option<Teller>,
-    sign_every: Option<Duration>,
-    signed: Option<Instant>,
-    /// What the newest record says, if it has not been looked at.
-    news: Option<Condition>,
-    told: Option<Condition>,
+    notifier: Option<Notifier>,
+    alive_every: Option<Duration>,
+    alive_sent: Option<Instant>,
+    /// From the newest record, if not sent yet.
+    newest: Option<Condition>,
+    sent: Option<Condition>,
 }
 
-/// What a status line is made of.
+/// The content of a status line.
 #[derive(Clone, Copy, PartialEq)]
 struct Condition {
     state: StateCode,
@@ -42,91 +41,91 @@ struct Condition {
 }
 
 impl Service {
-    /// Speaks with whoever the environment names.
+    /// Connects to the service manager that the environment names.
     pub(crate) fn from_environment() -> Self {
         Self {
-            teller: std::env::var_os("NOTIFY_SOCKET").and_then(|_| Teller::start()),
-            sign_every: sd_notify::watchdog_enabled().map(|within| within / SIGNS_PER_TIMEOUT),
-            signed: None,
-            news: None,
-            told: None,
+            notifier: std::env::var_os("NOTIFY_SOCKET").and_then(|_| Notifier::start()),
+            alive_every: sd_notify::watchdog_enabled().map(|within| within / ALIVE_PER_TIMEOUT),
+            alive_sent: None,
+            newest: None,
+            sent: None,
         }
     }
 }
 
 impl Observer for Service {
     fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
-        self.news = Some(Condition::of(record));
+        self.newest = Some(Condition::of(record));
     }
 
-    /// Passes on what is new: nothing if no tick came since the last time.
+    /// Sends what is new; nothing if no tick came since the last call.
     fn poll(&mut self, _: &mut Access<'_>) {
-        let (Some(now), Some(teller)) = (self.news.take(), &self.teller) else {
+        let (Some(now), Some(notifier)) = (self.newest.take(), &self.notifier) else {
             return;
         };
-        if self.told != Some(now) {
-            let words = now.words();
-            let news = match self.told {
-                None => News::Ready(words),
-                Some(_) => News::Status(words),
+        if self.sent != Some(now) {
+            let text = now.description();
+            let notification = match self.sent {
+                None => Notification::Ready(text),
+                Some(_) => Notification::Status(text),
             };
-            if teller.tell(news) {
-                self.told = Some(now);
+            if notifier.notify(notification) {
+                self.sent = Some(now);
             }
         }
-        if let Some(every) = self.sign_every
-            && self.signed.is_none_or(|at| at.elapsed() >= every)
-            && teller.tell(News::Alive)
+        if let Some(every) = self.alive_every
+            && self.alive_sent.is_none_or(|at| at.elapsed() >= every)
+            && notifier.notify(Notification::Alive)
         {
-            self.signed = Some(Instant::now());
+            self.alive_sent = Some(Instant::now());
         }
     }
 
-    /// The loop is over, and what is left may take its time.
+    /// The loop has ended: this may take time.
     fn stopping(&mut self) {
-        if let Some(teller) = self.teller.take() {
-            teller.tell(News::Stopping);
-            teller.end();
+        if let Some(notifier) = self.notifier.take() {
+            notifier.notify(Notification::Stopping);
+            notifier.end();
         }
     }
 }
 
-/// What there is to tell.
-enum News {
+/// A notification.
+enum Notification {
     Ready(String),
     Status(String),
     Alive,
     Stopping,
 }
 
-/// The thread that tells it.
-struct Teller {
-    news: SyncSender<News>,
+/// The thread that sends notifications.
+struct Notifier {
+    queue: SyncSender<Notification>,
     thread: thread::JoinHandle<()>,
 }
 
-impl Teller {
-    /// None where there is no thread to be had: systemd will say that it heard
-    /// nothing.
+impl Notifier {
+    /// `None` if no thread can be started; systemd then reports the missing
+    /// notification.
     fn start() -> Option<Self> {
-        let (news, heard) = mpsc::sync_channel(WAITING);
+        let (queue, queued) = mpsc::sync_channel(WAITING);
         let thread = thread::Builder::new()
             .name("fcc-notify".to_owned())
-            // Where memory is locked, all of a stack is in memory.
+            // With locked memory, all of a stack is resident.
             .stack_size(256 << 10)
-            .spawn(move || heard.iter().for_each(|news| send(&news)))
+            .spawn(move || queued.iter().for_each(|notification| send(&notification)))
             .ok()?;
-        Some(Self { news, thread })
+        Some(Self { queue, thread })
     }
 
-    /// Whether there was room for it.
-    fn tell(&self, news: News) -> bool {
-        self.news.try_send(news).is_ok()
+    /// Queues a notification; false if the queue is full.
+    fn notify(&self, notification: Notification) -> bool {
+        self.queue.try_send(notification).is_ok()
     }
 
-    /// Waits for a while until all is told.
+    /// Waits for a limited time until all are sent.
     fn end(self) {
-        drop(self.news);
+        drop(self.queue);
         let begun = Instant::now();
         while !self.thread.is_finished() && begun.elapsed() < PATIENCE {
             thread::sleep(Duration::from_millis(1));
@@ -142,28 +141,30 @@ impl Condition {
         }
     }
 
-    fn words(self) -> String {
-        let mut words = self.state.to_string();
+    fn description(self) -> String {
+        let mut text = self.state.to_string();
         let because = match self.state.state() {
             State::Failsafe(_) => self.state.flags(),
             State::Standby => self.engage_inhibits,
             State::Engaged | State::Stopped => Flags::NONE,
         };
         for (n, bit) in because.iter().enumerate() {
-            words.push_str(if n == 0 { ": " } else { ", " });
-            words.push_str(Autopilot::flag_name(bit));
+            text.push_str(if n == 0 { ": " } else { ", " });
+            text.push_str(Autopilot::flag_name(bit));
         }
-        words
+        text
     }
 }
 
-fn send(news: &News) {
-    // A manager that does not listen is no reason to stop flying.
-    let _ = match news {
-        News::Ready(words) => sd_notify::notify(&[NotifyState::Ready, NotifyState::Status(words)]),
-        News::Status(words) => sd_notify::notify(&[NotifyState::Status(words)]),
-        News::Alive => sd_notify::notify(&[NotifyState::Watchdog]),
-        News::Stopping => {
+fn send(notification: &Notification) {
+    // A failure to notify is no reason to stop flying.
+    let _ = match notification {
+        Notification::Ready(text) => {
+            sd_notify::notify(&[NotifyState::Ready, NotifyState::Status(text)])
+        }
+        Notification::Status(text) => sd_notify::notify(&[NotifyState::Status(text)]),
+        Notification::Alive => sd_notify::notify(&[NotifyState::Watchdog]),
+        Notification::Stopping => {
             sd_notify::notify(&[NotifyState::Stopping, NotifyState::Status("ending")])
         }
     };

@@ -1,4 +1,4 @@
-//! A line each second for who watches.
+//! A status line each second.
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Controller, State};
@@ -8,7 +8,7 @@ use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use crate::output;
 
-/// Prints a line each second of the loop's time, on standard error.
+/// Prints a line for each second of the loop's time, on standard error.
 #[derive(Default)]
 pub(crate) struct StatusLine {
     printed_s: Option<f64>,
@@ -22,7 +22,7 @@ impl Observer for StatusLine {
             .worst_us
             .max(record.tick.lateness().as_secs_f64() * 1e6);
         self.missed += record.tick.missed;
-        // A hair early, so that a sum of ticks does not skip a second.
+        // Slightly early, so that rounding of ticks does not skip a second.
         if self
             .printed_s
             .is_none_or(|last| at.time_s - last >= 1.0 - 1e-6)
@@ -47,7 +47,7 @@ impl StatusLine {
         let heading = compass(measured.heading_rad.value);
         let altitude = measured.altitude_m.value * M_FT;
         let airspeed = measured.airspeed_mps.value * MPS_KT;
-        // Plus zero, for a rounded -0 reads like a fault.
+        // Plus zero, because a rounded -0 looks like an error.
         let bank = measured.attitude.value.roll_rad.to_degrees().round() + 0.0;
         let aims = &record.setpoints;
         match record.state.state() {
@@ -80,7 +80,7 @@ impl StatusLine {
     }
 }
 
-/// As a compass card shows it: whole degrees, 0 to 359.
+/// Whole degrees, 0 to 359, as on a compass card.
 fn compass(heading_rad: f64) -> f64 {
     heading_rad.to_degrees().round().rem_euclid(360.0)
 }

@@ -1,12 +1,13 @@
-//! One daemon for one plant.
+//! Prevents two daemons from controlling one plant.
 //!
-//! Two that see the same engage switch would both take the controls and write
-//! over each other. The first holds a name that the kernel gives to one socket
-//! only (abstract, see unix(7)) and takes back when the process ends, however
-//! it does: no file is left behind by a daemon that was killed.
+//! Two daemons that read the same engage switch would both take control and
+//! overwrite each other's outputs. The first binds a socket name (abstract, see
+//! unix(7)) that the kernel gives to one socket only and frees when the process
+//! ends for any reason: a killed daemon leaves no file.
 //!
-//! The name is the plant's own, and not how a configuration finds it: who follows a beacon claims once the beacon has told the address,
-//! and takes no control before.
+//! The name is that of the plant, not of its configuration: a daemon that
+//! follows a beacon locks after it has received the address, and takes no
+//! control before.
 
 use std::io;
 use std::os::linux::net::SocketAddrExt;
@@ -15,17 +16,17 @@ use std::sync::Arc;
 
 use fcc_core::framework::{ControlAuthority, PlantId};
 
-/// The right to control a plant; given up when dropped.
+/// The right to control a plant; released when dropped.
 pub(super) struct InstanceLock {
     authority: Arc<dyn ControlAuthority>,
     claim: Claim,
 }
 
 enum Claim {
-    /// Nobody has told where there is a plant.
-    Nowhere,
-    /// Where the kernel has no such names, nobody is kept from flying.
-    Had {
+    /// No plant is known yet.
+    NoPlant,
+    /// If the kernel has no such names, two daemons are not prevented.
+    Locked {
         plant: PlantId,
         _name: Option<UnixDatagram>,
     },
@@ -34,32 +35,32 @@ enum Claim {
 }
 
 impl InstanceLock {
-    /// Claims what the connection leads to, if that is known yet. From here on
-    /// control is taken only of what was claimed.
+    /// Locks the connected plant, if it is known yet. Control is taken only of
+    /// a locked plant.
     pub(super) fn of(authority: Arc<dyn ControlAuthority>) -> Self {
         authority.require_permission();
         let mut this = Self {
             authority,
-            claim: Claim::Nowhere,
+            claim: Claim::NoPlant,
         };
         this.follow();
         this
     }
 
-    /// Claims the plant that was found since. It stays the same while its
-    /// controls are held, so none is given up that is still controlled.
+    /// Locks the plant that was found since. It does not change while its
+    /// controls are held, so that no plant under control is unlocked.
     pub(super) fn follow(&mut self) {
         let Some(plant) = self.authority.plant() else {
             return;
         };
-        if matches!(self.claim, Claim::Had { plant: of, .. } | Claim::Taken(of) if of == plant) {
+        if matches!(self.claim, Claim::Locked { plant: of, .. } | Claim::Taken(of) if of == plant) {
             return;
         }
         self.claim = match claim(&self.authority.unique(&plant)) {
             Err(error) if error.kind() == io::ErrorKind::AddrInUse => Claim::Taken(plant),
             claimed => {
                 self.authority.permit(&plant);
-                Claim::Had {
+                Claim::Locked {
                     plant,
                     _name: claimed.ok(),
                 }
@@ -71,12 +72,12 @@ impl InstanceLock {
     pub(super) const fn taken(&self) -> Option<PlantId> {
         match self.claim {
             Claim::Taken(plant) => Some(plant),
-            Claim::Nowhere | Claim::Had { .. } => None,
+            Claim::NoPlant | Claim::Locked { .. } => None,
         }
     }
 }
 
-/// `AddrInUse` if another daemon of this machine has it.
+/// `AddrInUse` if another daemon of this machine has locked it.
 fn claim(plant: &PlantId) -> io::Result<UnixDatagram> {
     UnixDatagram::bind_addr(&SocketAddr::from_abstract_name(format!("fccd/{plant}"))?)
 }
@@ -86,7 +87,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_plant_is_claimed_once_and_given_up() {
+    fn a_plant_is_locked_once_and_unlocked() {
         let [one, other] = ["one", "another"]
             .map(|which| PlantId::new(format_args!("{which} of a test")).unwrap());
         let first = claim(&one).unwrap();

@@ -26,7 +26,7 @@ use crate::output;
 use instance_lock::InstanceLock;
 use release_helper::ReleaseHelper;
 pub(crate) use release_helper::run_release_helper;
-use signals::Kept;
+use signals::BlockedSignals;
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it; a check is one refused
@@ -36,7 +36,7 @@ const CHECK_EVERY: Duration = Duration::from_secs(1);
 /// This process, as the host of one flight.
 pub(crate) struct Process<'a> {
     config: &'a Config,
-    held_signals: Option<Kept>,
+    blocked_signals: Option<BlockedSignals>,
     interrupted: Arc<AtomicBool>,
     plant: Option<Plant>,
 }
@@ -55,7 +55,7 @@ impl<'a> Process<'a> {
     pub(crate) fn new(config: &'a Config) -> Self {
         Self {
             config,
-            held_signals: None,
+            blocked_signals: None,
             interrupted: Arc::default(),
             plant: None,
         }
@@ -65,7 +65,8 @@ impl<'a> Process<'a> {
 impl Host for Process<'_> {
     fn prepare(&mut self, authority: Option<&Arc<dyn ControlAuthority>>) -> io::Result<()> {
         let lock = authority.map(|authority| InstanceLock::of(Arc::clone(authority)));
-        self.held_signals = Some(Kept::from_new_threads().map_err(|error| uncaught(&error))?);
+        self.blocked_signals =
+            Some(BlockedSignals::in_new_threads().map_err(|error| uncaught(&error))?);
         self.plant = authority.zip(lock).map(|(authority, lock)| Plant {
             authority: Arc::clone(authority),
             helper: lock
@@ -85,7 +86,7 @@ impl Host for Process<'_> {
     }
 
     fn started(&mut self) {
-        self.held_signals = None;
+        self.blocked_signals = None;
     }
 
     fn poll(&mut self) {

@@ -1,5 +1,5 @@
-//! The signals that end a flight: TERM, INT and, unless it was started to
-//! ignore that one, HUP.
+//! The signals that end a flight: TERM, INT and, unless it is ignored from the
+//! start, HUP.
 
 use std::fs;
 use std::io;
@@ -11,9 +11,9 @@ use nix::sys::signal::{SigSet, Signal};
 
 const ENDING: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
 
-/// The signals set the loop's stop flag, which is all that a signal may safely
-/// do; the loop releases the controls in its next tick. A second flag, returned,
-/// tells afterwards that it was a signal.
+/// The signals set the loop's stop flag, which is safe in a signal handler; the
+/// loop releases the controls in its next tick. The returned flag shows
+/// afterwards that it was a signal.
 pub(super) fn stop_by(stop: &StopHandle) -> io::Result<Arc<AtomicBool>> {
     let interrupted = Arc::new(AtomicBool::new(false));
     for signal in ENDING.into_iter().filter(|signal| !is_ignored(*signal)) {
@@ -21,16 +21,16 @@ pub(super) fn stop_by(stop: &StopHandle) -> io::Result<Arc<AtomicBool>> {
             signal_hook::flag::register(signal as i32, flag)?;
         }
     }
-    // A limit on the size of files must end the recording, not the flight: with
-    // this caught, the write that goes too far is an error like any other.
+    // A limit on file sizes must end the recording, not the flight: with this
+    // handler, the write beyond the limit fails with an error.
     signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())?;
     Ok(interrupted)
 }
 
-/// Whether this program was started to fly on when its terminal hangs up, as
-/// nohup(1) does.
+/// Whether this program was started to ignore a hang-up of its terminal, as by
+/// nohup(1).
 fn is_ignored(signal: Signal) -> bool {
-    // A mask in hexadecimal digits, proc(5).
+    // A hexadecimal mask, see proc(5).
     let ignored = fs::read_to_string("/proc/self/status")
         .ok()
         .and_then(|status| {
@@ -42,22 +42,22 @@ fn is_ignored(signal: Signal) -> bool {
     signal == Signal::SIGHUP && ignored.is_some_and(|mask| mask >> (signal as u32 - 1) & 1 == 1)
 }
 
-/// While this lives the signals wait, and a thread that starts leaves them to
-/// this one for good: the kernel hands a process' signal to any thread that
-/// takes it, and the loop's has better to do.
-pub(super) struct Kept(SigSet);
+/// Blocks the signals in threads started while this lives. The kernel delivers
+/// a signal to any thread that does not block it, and it must not be the
+/// loop's.
+pub(super) struct BlockedSignals(SigSet);
 
-impl Kept {
-    pub(super) fn from_new_threads() -> io::Result<Self> {
+impl BlockedSignals {
+    pub(super) fn in_new_threads() -> io::Result<Self> {
         let signals = SigSet::from_iter(ENDING);
         signals.thread_block()?;
         Ok(Self(signals))
     }
 }
 
-impl Drop for Kept {
+impl Drop for BlockedSignals {
     fn drop(&mut self) {
-        // Cannot fail with a set that was just blocked.
+        // Cannot fail for a set that was blocked before.
         let _ = self.0.thread_unblock();
     }
 }

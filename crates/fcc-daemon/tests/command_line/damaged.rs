@@ -1,5 +1,4 @@
-//! What each command says of a recording that is damaged inside, and its exit
-//! code.
+//! Commands on a damaged recording: output and exit codes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,10 +6,10 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// The exit code for it, as `fccd --help` has it.
+/// The exit code, as in `fccd --help`.
 const INCOMPLETE: Option<i32> = Some(13);
-/// Kinds of records (MCAP's specification), and the length of what a file
-/// begins and ends with.
+/// Kinds of records (MCAP specification), and the length of the magic number at
+/// both ends of a file.
 const CHUNK: u8 = 6;
 const CHUNK_INDEX: u8 = 8;
 const MAGIC_BYTES: usize = 8;
@@ -48,7 +47,7 @@ fn recorded(folder: &Path) -> PathBuf {
     files.next().unwrap().unwrap().path()
 }
 
-/// Where the records of a kind are, and how long.
+/// Offset and length of all records of a kind.
 fn records(bytes: &[u8], opcode: u8) -> Vec<(usize, usize)> {
     let mut at = MAGIC_BYTES;
     let mut found = Vec::new();
@@ -63,7 +62,7 @@ fn records(bytes: &[u8], opcode: u8) -> Vec<(usize, usize)> {
 }
 
 #[test]
-fn every_command_says_what_is_damaged_and_goes_on_behind_it() {
+fn every_command_reports_damage_and_continues_after_it() {
     let folder = tempfile::tempdir().unwrap();
     let file = recorded(folder.path());
     let ticks = json(&fccd(&["list", text(folder.path()), "--json"]))[0]["ticks"].clone();
@@ -127,15 +126,15 @@ fn every_command_says_what_is_damaged_and_goes_on_behind_it() {
     assert_eq!(output.status.code(), Some(0));
     assert_eq!(json(&output)[0]["file"], "whole");
     assert_eq!(json(&output)[0]["not_recorded"], missing);
-    // It still says what is missing, and replays up to there.
+    // It still reports what is missing, and is replayed up to there.
     let output = fccd(&["replay", text(&file), "--json"]);
     assert_eq!(output.status.code(), NOT_REPLAYED);
     assert_eq!(json(&output)["last_tick"], first - 1);
 }
 
-/// The index of a chunk is no part of a flight.
+/// The index of a chunk contains nothing of the flight.
 #[test]
-fn a_damaged_index_costs_nothing_of_the_flight() {
+fn a_damaged_index_loses_nothing_of_the_flight() {
     let folder = tempfile::tempdir().unwrap();
     let file = recorded(folder.path());
     let ticks = json(&fccd(&["list", text(folder.path()), "--json"]))[0]["ticks"].clone();
@@ -152,4 +151,26 @@ fn a_damaged_index_costs_nothing_of_the_flight() {
     let recovered = json(&fccd(&["recover", text(&file), "--json"]));
     assert_eq!(recovered["ticks"], ticks);
     assert_eq!(recovered["damages"][0]["ticks"], 0);
+}
+
+/// Opening a FIFO would wait for somebody to write into it.
+#[test]
+fn a_fifo_and_a_device_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let fifo = folder.path().join("flight.mcap");
+    nix::unistd::mkfifo(&fifo, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    for command in ["report", "recover", "replay"] {
+        for file in [text(&fifo), "/dev/zero"] {
+            let output = fccd(&[command, file]);
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(!output.status.success(), "{command} {file}");
+            assert!(
+                said.contains(file) && said.contains("not a regular file"),
+                "{said}"
+            );
+        }
+    }
+    let output = fccd(&["list", text(folder.path())]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("not a regular file"), "{said}");
 }

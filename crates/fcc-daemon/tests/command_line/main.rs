@@ -1,5 +1,5 @@
-//! The program as a shell sees it: what it prints, where that fails, and how it
-//! ends.
+//! The program as a shell uses it: what it prints, what happens when printing
+//! fails, and how it ends.
 #![cfg(test)]
 #![cfg(test)]
 
@@ -11,17 +11,17 @@ mod top;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Long after a healthy machine would have answered.
+/// Long after a healthy machine has answered.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The program with these arguments, in a folder of its own.
+/// The program with these arguments, in a folder.
 fn fccd(folder: &std::path::Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fccd"));
     command.current_dir(folder).args(arguments);
     command
 }
 
-/// Flies for a moment, recorded in `recordings`.
+/// Flies briefly, recorded in `recordings`.
 fn fly(folder: &std::path::Path) {
     let flown = fccd(folder, &["fly", "--lockstep", "--seconds", "2", "--quiet"])
         .output()
@@ -29,7 +29,7 @@ fn fly(folder: &std::path::Path) {
     assert!(flown.status.success(), "{flown:?}");
 }
 
-/// A flight that goes on until this is dropped.
+/// A flight that continues until this is dropped.
 struct Flight(Child);
 
 impl Flight {
@@ -46,7 +46,7 @@ impl Flight {
         let begun = Instant::now();
         let snapshot = ["top", "--json", "--instance", instance];
         while !fccd(folder, &snapshot).output().unwrap().status.success() {
-            assert!(begun.elapsed() < PATIENCE, "nobody flies");
+            assert!(begun.elapsed() < PATIENCE, "no flight was published");
         }
         flight
     }

@@ -23,7 +23,7 @@ fn left() -> Stdio {
 }
 
 #[test]
-fn a_reader_that_leaves_has_all_that_it_wanted() {
+fn a_reader_that_leaves_is_no_failure() {
     let folder = tempfile::tempdir().unwrap();
     fly(folder.path());
     for words in [
@@ -75,7 +75,7 @@ fn a_result_that_cannot_be_printed_is_a_failure() {
 }
 
 #[test]
-fn what_was_found_is_still_the_exit_code() {
+fn the_exit_code_is_that_of_the_findings() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("wrong.toml"), "[lop]\n").unwrap();
     for words in [
@@ -92,7 +92,7 @@ fn what_was_found_is_still_the_exit_code() {
 }
 
 #[test]
-fn a_flight_ends_as_it_was_flown() {
+fn a_flight_ends_with_its_own_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     for json in [&["--json"][..], &[]] {
         for output in [full, left] {

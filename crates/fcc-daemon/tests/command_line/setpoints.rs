@@ -1,4 +1,5 @@
-//! `fccd command`: what cannot be flown is refused in the units it was given in.
+//! `fccd command`: set points out of range are refused, in the units of the
+//! command line.
 
 use super::{Flight, fccd};
 
@@ -15,7 +16,7 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
         let said = String::from_utf8(ended.stderr).unwrap();
         (ended.status.code(), said.trim_end().to_owned())
     };
-    // The envelope's 65 and 135 kt, less its margin of 8 kt.
+    // The envelope's 65 and 135 kt, minus its margin of 8 kt.
     assert_eq!(
         command(&["--airspeed-kt", "300", "--altitude-ft", "3200"]),
         (

@@ -1,4 +1,4 @@
-//! `fccd top` on a terminal that is gone, or held.
+//! `fccd top` on a terminal that is closed or blocked.
 
 use std::fs::File;
 use std::os::unix::fs::OpenOptionsExt;
@@ -15,7 +15,7 @@ use nix::unistd::Pid;
 
 use super::{Flight, PATIENCE, fccd};
 
-/// A terminal, from both ends.
+/// A terminal: both sides.
 struct Terminal {
     ours: PtyMaster,
     theirs: File,
@@ -37,11 +37,11 @@ fn ends(child: &mut Child) -> Option<i32> {
     panic!("it does not end");
 }
 
-/// A flight, `fccd top` on a terminal of its own that has drawn something, and
-/// our end of that terminal.
+/// A flight, `fccd top` on its own terminal, which has drawn something, and our
+/// side of that terminal.
 fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal) {
     let flight = Flight::start(folder, instance);
-    // Closed in every program that is started here, or it would hold its own
+    // Closed in every program started here: otherwise each would keep its own
     // terminal open.
     let ours = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).unwrap();
     grantpt(&ours).unwrap();
@@ -78,16 +78,16 @@ fn it_ends_with_its_terminal() {
 }
 
 #[test]
-fn a_signal_ends_it_in_good_order() {
+fn a_signal_ends_it_and_restores_the_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let (_flight, mut top, _terminal) = watched(folder.path(), "top-ends");
     kill(id(&top), Signal::SIGTERM).unwrap();
     assert_eq!(ends(&mut top), Some(0));
 }
 
-/// It waits for the terminal to take its picture, and cannot end in good order.
+/// It waits for the terminal, and cannot restore it.
 #[test]
-fn a_signal_ends_it_on_a_terminal_that_is_held() {
+fn a_signal_ends_it_on_a_blocked_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let (_flight, mut top, terminal) = watched(folder.path(), "top-held");
     tcflow(&terminal.theirs, FlowArg::TCOOFF).unwrap();

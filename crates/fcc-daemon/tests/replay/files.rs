@@ -40,12 +40,12 @@ fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<
     for message in messages {
         recorder.take(message);
     }
-    let (status, _) = recorder.finish("told to stop");
+    let (status, _) = recorder.finish("stop requested");
     assert_eq!((status.not_recorded, status.stopped), (0, None));
     status.files
 }
 
-/// 25 s, with commands, and told to stop at the end.
+/// 25 s, with commands, and stopped at the end.
 fn flight() -> Vec<FlightMessage> {
     let happenings = Happenings {
         commands: vec![
@@ -123,7 +123,11 @@ fn parts_that_do_not_begin_or_go_on_with_the_loop_are_not_replayed() {
 
     let output = fccd_replay(&[PathBuf::from("Cargo.toml")], &[]);
     assert_eq!(code(&output), Some(8));
-    assert!(said(&output).contains("no recording"), "{}", said(&output));
+    assert!(
+        said(&output).contains("not a recording"),
+        "{}",
+        said(&output)
+    );
 }
 
 #[test]
@@ -188,9 +192,9 @@ fn another_configuration_is_compared_and_written_out() {
     let told = json(&output);
     let quantities = told["deviation"]["quantities"].as_array().unwrap();
     let of = |name: &str| quantities.iter().find(|q| q["name"] == name).unwrap();
-    assert!(of("aileron")["rms"].as_f64().unwrap() > 0.1);
+    assert!(of("commanded aileron")["rms"].as_f64().unwrap() > 0.1);
     // The gain of the roll rate is none of the elevator's business.
-    assert_eq!(of("elevator")["differing"], 0);
+    assert_eq!(of("commanded elevator")["differing"], 0);
     assert!(told["remarks"][0].as_str().unwrap().contains("40 Hz"));
 
     // The same figure from the table that was written.
@@ -198,7 +202,10 @@ fn another_configuration_is_compared_and_written_out() {
     let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
     let column = |name: &str| header.iter().position(|cell| *cell == name).unwrap();
-    let (was, is) = (column("aileron recorded (%)"), column("aileron other (%)"));
+    let (was, is) = (
+        column("commanded aileron recorded (%)"),
+        column("commanded aileron other (%)"),
+    );
     let squares: Vec<f64> = lines
         .filter(|cells| !cells[was].is_empty())
         .map(|cells| {
@@ -207,7 +214,7 @@ fn another_configuration_is_compared_and_written_out() {
         })
         .collect();
     let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    assert!((rms - of("aileron")["rms"].as_f64().unwrap()).abs() < 1e-9);
+    assert!((rms - of("commanded aileron")["rms"].as_f64().unwrap()).abs() < 1e-9);
     assert_eq!(rows.lines().count(), 1_001);
 
     let output = fccd_replay(&parts, &more(false));

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use fcc_record::Recording;
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_telemetry::FlightMessage;
 
 use super::flown::{Plan, REMARK};
 use super::sound;
@@ -38,7 +38,7 @@ fn a_file_becomes_tables_a_page_and_json() {
         "2026-11-20 04:21:33 UTC",
         "SCHED_FIFO 80 was refused",
         "0123456789ab",
-        "told to stop",
+        "stop requested",
         "40 Hz thesis",
         "32.593 ms",
         "Every tick that was served from 1 to 1800 is in the file.",
@@ -105,7 +105,7 @@ fn the_csv_is_the_recording() {
         .messages::<FlightMessage>()
         .unwrap()
         .collect();
-    let records: Vec<&FlightRecord> = messages
+    let records: Vec<_> = messages
         .iter()
         .filter_map(|message| match message {
             FlightMessage::Tick(record) => Some(record),

@@ -78,7 +78,7 @@ impl Plan {
         let mut recorder = Recorder::start(about(self.rate_hz), settings).unwrap();
         self.fly(|message| recorder.take(message));
         recorder.remark(REMARK.to_owned());
-        let (status, _) = recorder.finish("told to stop");
+        let (status, _) = recorder.finish("stop requested");
         status.files[0].clone()
     }
 }

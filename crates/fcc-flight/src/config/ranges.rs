@@ -5,9 +5,8 @@
 
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
-use super::devices::MOST_ENTRIES;
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection};
+use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -123,9 +122,6 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.seed", 0.0, 9.3e18),
 ];
 
-/// Of `SCHED_FIFO` (sched(7)).
-const HIGHEST_PRIORITY: u8 = 99;
-
 /// Smallest and largest value of a numeric key.
 pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
     RANGES
@@ -160,8 +156,7 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             format!("is too large: choose 0 to {}", i64::MAX),
         ),
     }
-    relations(config, &mut report);
-    lists(config, &mut report);
+    relations::check(config, &mut report);
     if let Some(section) = &config.x_plane {
         x_plane("x-plane", section, &mut problems, places);
     }
@@ -170,121 +165,18 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             x_plane(&format!("sensor[{at}]"), section, &mut problems, places);
         }
     }
-    if config.x_plane.is_none() && config.built_in.is_none() {
+    let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
+    if !has_simulator && !config.is_without_simulator() {
         problems.push(Problem {
             line: None,
             key: None,
             message: "has neither [x-plane] nor [built-in]: add the section of the aircraft that \
-                      is to be flown"
+                      is to be flown, or list sensors and actuators that need none"
                 .to_owned(),
         });
     }
     problems.sort_by_key(|problem| problem.line);
     problems
-}
-
-/// Constraints between values.
-fn relations(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let early = &config.tick.early_wake;
-    if early.min_us > early.max_us {
-        report(
-            "loop.early_wake.min_us",
-            format!(
-                "is {}: choose no more than max_us, {}",
-                early.min_us, early.max_us
-            ),
-        );
-    }
-    if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
-        report(
-            "realtime.priority",
-            format!(
-                "is {HIGHEST_PRIORITY}: choose at most {}, or the watchdog cannot have a higher \
-                 one and a loop that spins keeps it away",
-                HIGHEST_PRIORITY - 1
-            ),
-        );
-    }
-    let envelope = &config.autopilot.envelope;
-    if envelope.min_airspeed_kt >= envelope.max_airspeed_kt {
-        report(
-            "autopilot.envelope.min_airspeed_kt",
-            format!(
-                "is {}: choose less than max_airspeed_kt, {}",
-                envelope.min_airspeed_kt, envelope.max_airspeed_kt
-            ),
-        );
-    }
-    let budget = &config.budget;
-    let stages = [
-        ("budget.sensors_us", budget.sensors_us),
-        ("budget.estimate_us", budget.estimate_us),
-        ("budget.guide_us", budget.guide_us),
-        ("budget.control_us", budget.control_us),
-        ("budget.actuators_us", budget.actuators_us),
-    ];
-    // The rate itself may be out of range here.
-    let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
-    if let Some(tick_us) = budget.tick_us
-        && f64::from(tick_us) > period_us
-    {
-        report(
-            "budget.tick_us",
-            format!(
-                "is {tick_us}: choose no more than the period, {period_us}: a tick that takes \
-                 longer has missed the next"
-            ),
-        );
-    }
-    for (key, stage_us) in stages {
-        if let (Some(stage_us), Some(tick_us)) = (stage_us, budget.tick_us)
-            && stage_us > tick_us
-        {
-            report(
-                key,
-                format!("is {stage_us}: choose no more than tick_us, {tick_us}"),
-            );
-        }
-    }
-    if config.x_plane.is_some() && config.built_in.is_some() {
-        report(
-            "built-in",
-            "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
-                .to_owned(),
-        );
-    }
-}
-
-/// Constraints on the lists of sensors and actuators.
-fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let actuators = config.actuator.as_deref().unwrap_or_default();
-    let simulators = |list: &str, are: Vec<bool>| {
-        let at = are
-            .iter()
-            .enumerate()
-            .filter(|(_, is)| **is)
-            .map(|(at, _)| at);
-        at.skip(1)
-            .map(|at| format!("{list}[{at}].kind"))
-            .collect::<Vec<_>>()
-    };
-    let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
-    let twice = simulators("sensor", sensors.collect());
-    let moved = simulators("actuator", vec![true; actuators.len()]);
-    for key in twice.iter().chain(&moved) {
-        report(key, "is the simulator a second time: keep one".to_owned());
-    }
-    for (list, length) in [
-        ("sensor", config.sensor.len()),
-        ("actuator", actuators.len()),
-    ] {
-        if length > MOST_ENTRIES {
-            report(
-                list,
-                format!("has {length} entries: keep at most {MOST_ENTRIES}"),
-            );
-        }
-    }
 }
 
 /// Errors found by the adapter itself, other than those of ranges.

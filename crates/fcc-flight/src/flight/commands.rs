@@ -6,9 +6,9 @@ use std::ops::RangeInclusive;
 
 use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::{EventKind, LoopCommand, State};
-use fcc_live::{Asked, FlightCommand, Verdict};
+use fcc_live::{FlightCommand, PendingCommand, Verdict};
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightEvent, FlightRecord, event_words};
+use fcc_telemetry::{FlightEvent, FlightRecord, describe_event};
 
 /// Commands that were sent and whose outcome is not known yet, oldest first.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Commands {
 
 #[derive(Debug)]
 struct Waiting {
-    asked: Asked,
+    asked: PendingCommand,
     /// The number of its parts that the loop has not read yet.
     unread: VecDeque<LoopCommand<AutopilotCommand>>,
     /// The tick that read the last of it.
@@ -41,7 +41,7 @@ impl Commands {
     /// Sends a command to the loop; returns the verdict if it is known at once.
     pub(super) fn send(
         &mut self,
-        asked: Asked,
+        asked: PendingCommand,
         to: &mut CommandSender<AutopilotCommand>,
     ) -> Option<(u64, Verdict)> {
         if let Err(outside) = asked.command.check_airspeed(&self.airspeeds_mps) {
@@ -82,7 +82,7 @@ impl Commands {
                 for waiting in self.waiting.iter_mut().filter(|w| {
                     w.read_in == Some(event.tick) && w.asked.command == FlightCommand::Engage
                 }) {
-                    waiting.refusal = Some(event_words::<Autopilot>(event, &[], &[]));
+                    waiting.refusal = Some(describe_event::<Autopilot>(event, &[], &[]));
                 }
             }
             _ => {}
@@ -137,7 +137,7 @@ mod tests {
 
     fn waiting(commands: &mut Commands, id: u64, command: FlightCommand) {
         commands.waiting.push_back(Waiting {
-            asked: Asked { id, command },
+            asked: PendingCommand { id, command },
             unread: command.for_the_loop().into(),
             read_in: None,
             refusal: None,

@@ -208,7 +208,7 @@ impl Flight {
         let own = |outcome: &Outcome| (outcome.ending.clone(), outcome.released, outcome.overruns);
         let of_the_loop = own(&outcome);
         self.observer
-            .end("told to stop", &mut outcome, &mut self.reports);
+            .end("stop requested", &mut outcome, &mut self.reports);
         assert_eq!(own(&outcome), of_the_loop, "changes what is not its own");
         // A recorder says that not all was recorded.
         assert!([before, Conclusion::NotRecorded].contains(&outcome.conclusion));

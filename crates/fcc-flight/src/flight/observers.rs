@@ -3,7 +3,7 @@
 use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::Message;
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightMessage, event_words};
+use fcc_telemetry::{FlightMessage, describe_event};
 
 use super::assemble::Assembly;
 use super::host::Host;
@@ -48,7 +48,7 @@ impl Observers {
             }
             Message::Event(event) => {
                 let words =
-                    event_words::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
+                    describe_event::<Autopilot>(event, &self.names.sensors, &self.names.actuators);
                 for observer in &mut self.all {
                     observer.event(event, &words, &at);
                 }
@@ -184,6 +184,6 @@ mod tests {
         });
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
-        observer_conforms(|| Box::new(Live::new(&config.telemetry, 30.0..=80.0)));
+        observer_conforms(|| Box::new(Live::new(&config, 30.0..=80.0)));
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Message;
-use fcc_record::{About, News, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
+use fcc_record::{About, Notice, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
@@ -45,8 +45,9 @@ impl RecordingRequest {
 /// Facts about a flight from its configuration and its machine.
 pub fn about(config: &Config, as_given: Option<String>) -> About {
     let aircraft = match config.aircraft() {
-        Aircraft::XPlane(_) => "x-plane",
-        Aircraft::BuiltIn(_) => "built-in",
+        Some(Aircraft::XPlane(_)) => "x-plane",
+        Some(Aircraft::BuiltIn(_)) => "built-in",
+        None => "none",
     };
     let mut parameters = BTreeMap::new();
     // A configuration that was read can be written.
@@ -182,8 +183,8 @@ impl Observer for Recording {
         let Some(recorder) = &self.recorder else {
             return;
         };
-        while let Some(news) = recorder.news() {
-            pass_on(news, access.reports);
+        while let Some(notice) = recorder.notice() {
+            pass_on(notice, access.reports);
         }
         if self.reported.elapsed() >= REPORT_EVERY {
             self.reported = Instant::now();
@@ -197,9 +198,9 @@ impl Observer for Recording {
             outcome.was_not_recorded();
             return;
         };
-        let (status, news) = recorder.finish(ending);
-        for news in news {
-            pass_on(news, reports);
+        let (status, notices) = recorder.finish(ending);
+        for notice in notices {
+            pass_on(notice, reports);
         }
         if status.stopped.is_some() || status.not_recorded > 0 || outcome.records_dropped > 0 {
             outcome.was_not_recorded();
@@ -218,11 +219,11 @@ impl Observer for Recording {
     }
 }
 
-fn pass_on(news: News, reports: &mut Reports) {
-    if news.is_trouble {
-        reports.remark(news.text);
+fn pass_on(notice: Notice, reports: &mut Reports) {
+    if notice.is_trouble {
+        reports.remark(notice.text);
     } else {
-        reports.mention(news.text);
+        reports.mention(notice.text);
     }
 }
 

@@ -1,5 +1,5 @@
-//! The end that takes commands, in the publishing thread: hands them to who
-//! flies by a ring, and gives the answers back.
+//! Receives commands in the publishing thread: passes them to the flight
+//! through a ring, and sends the answers back.
 
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
@@ -11,45 +11,45 @@ use iceoryx2::service::service_name::ServiceName;
 use super::super::PublishError;
 use super::super::services::{Access, Ipc, explained};
 use super::wire::{Answer, Request};
-use super::{Asked, COMMANDS_VERSION, Verdict};
+use super::{COMMANDS_VERSION, PendingCommand, Verdict};
 use fcc_telemetry::Instance;
 
 /// Programs that may give commands to one daemon at the same time.
 const MAX_COMMANDERS: usize = 16;
-/// Processes that may hold the service open: some were killed and are not
+/// Processes that may have the service open: some were killed and are not
 /// cleaned up yet.
 const MAX_NODES: usize = MAX_COMMANDERS + 16;
-/// Commands of one program that may wait.
+/// Commands of one program that may be queued.
 const MAX_WAITING: usize = 4;
 
-/// The ends of the rings that who flies holds.
+/// The flight's ends of the rings.
 #[derive(Debug)]
 pub(in super::super) struct Ends {
-    pub(in super::super) commands: Receiver<Asked>,
+    pub(in super::super) commands: Receiver<PendingCommand>,
     pub(in super::super) verdicts: SyncSender<(u64, Verdict)>,
 }
 
-/// The ends of the same rings that the desk holds.
-pub(in super::super) type Rings = (SyncSender<Asked>, Receiver<(u64, Verdict)>);
+/// The server's ends of the same rings.
+pub(in super::super) type Rings = (SyncSender<PendingCommand>, Receiver<(u64, Verdict)>);
 
 type Waiting = ActiveRequest<Ipc, Request, (), Answer, ()>;
 
-/// Takes commands from other programs.
+/// Receives commands from other programs.
 pub(in super::super) struct CommandServer {
     server: Server<Ipc, Request, (), Answer, ()>,
     waiting: Vec<(u64, Waiting)>,
-    commands: SyncSender<Asked>,
+    commands: SyncSender<PendingCommand>,
     verdicts: Receiver<(u64, Verdict)>,
     next_id: u64,
 }
 
-/// What the daemon's commands are asked for by.
+/// The name of the service for commands.
 pub(super) fn service_name(instance: &Instance) -> Option<ServiceName> {
     ServiceName::new(&format!("fcc/{instance}/command/v{COMMANDS_VERSION}")).ok()
 }
 
 impl CommandServer {
-    /// The rings between the desk and who flies.
+    /// The rings between the server and the flight.
     pub(in super::super) fn rings() -> (Ends, Rings) {
         let room = MAX_COMMANDERS * MAX_WAITING;
         let (commands_in, commands) = sync_channel(room);
@@ -57,7 +57,7 @@ impl CommandServer {
         (Ends { commands, verdicts }, (commands_in, verdicts_out))
     }
 
-    /// Opens the service, and makes it if there is none.
+    /// Opens the service, or creates it.
     pub(in super::super) fn open(
         access: &Access,
         instance: &Instance,
@@ -65,7 +65,7 @@ impl CommandServer {
     ) -> Result<Self, PublishError> {
         let unavailable = |words: String| PublishError::NoSharedMemory(words);
         let name = service_name(instance)
-            .ok_or_else(|| unavailable(format!("'{instance}' cannot name a service")))?;
+            .ok_or_else(|| unavailable(format!("'{instance}' is not a valid service name")))?;
         let service = access
             .service_builder(&name)
             .request_response::<Request, Answer>()
@@ -91,7 +91,8 @@ impl CommandServer {
         })
     }
 
-    /// Takes what is asked, and gives the answers that there are.
+    /// Passes on the commands that have arrived, and sends the answers that are
+    /// ready.
     pub(in super::super) fn serve(&mut self) {
         while let Ok(Some(request)) = self.server.receive() {
             self.take(request);
@@ -102,14 +103,14 @@ impl CommandServer {
                 answer(&request, &verdict);
             }
         }
-        // Who is gone waits for nothing; the command stands.
+        // A program that has ended needs no answer; its command remains valid.
         self.waiting.retain(|(_, request)| request.is_connected());
     }
 
-    /// The flight is over: says so to all who wait.
+    /// The flight has ended: tells all programs that wait for an answer.
     pub(in super::super) fn close(mut self) {
         self.serve();
-        let over = Verdict::Refused("the flight is over".to_owned());
+        let over = Verdict::Refused("the flight has ended".to_owned());
         for (_, request) in &self.waiting {
             answer(request, &over);
         }
@@ -122,16 +123,20 @@ impl CommandServer {
         };
         let id = self.next_id;
         self.next_id += 1;
-        if self.commands.try_send(Asked { id, command }).is_ok() {
+        if self
+            .commands
+            .try_send(PendingCommand { id, command })
+            .is_ok()
+        {
             self.waiting.push((id, request));
         } else {
-            let words = "too many commands wait: send it again".to_owned();
+            let words = "too many commands are waiting: send it again".to_owned();
             answer(&request, &Verdict::Refused(words));
         }
     }
 }
 
 fn answer(request: &Waiting, verdict: &Verdict) {
-    // Who has left hears nothing.
+    // A program that has ended gets no answer.
     let _ = request.send_copy(Answer::from(verdict));
 }

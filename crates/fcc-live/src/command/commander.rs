@@ -1,4 +1,4 @@
-//! The end that gives commands.
+//! Sends commands.
 
 use std::time::{Duration, Instant};
 
@@ -10,15 +10,17 @@ use super::super::services::{self, Access, Ipc};
 use super::super::watcher::{check_layout, read_info};
 use super::super::{Info, WatchError};
 use super::wire::{Answer, Request};
-use super::{COMMANDS_VERSION, CommandError, FlightCommand, Unflyable, Verdict, command_server};
+use super::{
+    COMMANDS_VERSION, CommandError, FlightCommand, InvalidCommand, Verdict, command_server,
+};
 use fcc_telemetry::Instance;
 
-/// How long a daemon may take to answer: some ten times what it needs at the
+/// How long a daemon may take to answer: about ten times what it takes at the
 /// slowest rate, 1 Hz.
 const PATIENCE: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// Gives commands to a daemon on this machine.
+/// Sends commands to a daemon on this machine.
 ///
 /// ```no_run
 /// use fcc_telemetry::Instance;
@@ -36,23 +38,23 @@ pub struct Commander {
     instance: Instance,
     info: Info,
     client: Client<Ipc, Request, (), Answer, ()>,
-    // Last: it cleans up after the others.
+    // Dropped last: it cleans up after the others.
     _access: Access,
 }
 
 impl Commander {
-    /// Reaches a daemon.
+    /// Connects to a daemon.
     ///
     /// # Errors
-    /// When no daemon of this name runs here, when it is of another version,
-    /// or when it takes no commands.
+    /// When no daemon of this name runs here, it is another version, or it
+    /// accepts no commands.
     pub fn open(instance: &Instance) -> Result<Self, CommandError> {
         let access = services::access().map_err(WatchError::NoSharedMemory)?;
         let info = read_info(&access, instance)?;
         check_layout(&info, instance)?;
         let name = command_server::service_name(instance)
             .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
-        let takes_none = || CommandError::TakesNone {
+        let not_accepted = || CommandError::NotAccepted {
             instance: instance.clone(),
             software: info.software.as_str().to_owned(),
             own: COMMANDS_VERSION,
@@ -61,7 +63,7 @@ impl Commander {
             .service_builder(&name)
             .request_response::<Request, Answer>()
             .open()
-            .map_err(|error| refused(error, instance, takes_none))?;
+            .map_err(|error| refused(error, instance, not_accepted))?;
         let client = service
             .client_builder()
             .backpressure_strategy(BackpressureStrategy::DiscardData)
@@ -75,16 +77,17 @@ impl Commander {
         })
     }
 
-    /// Who takes the commands.
+    /// The daemon.
     pub const fn info(&self) -> &Info {
         &self.info
     }
 
-    /// Gives a command and waits until it is carried out; the tick that did.
+    /// Sends a command and waits until it is carried out; returns the tick that
+    /// did.
     ///
     /// # Errors
-    /// When it cannot be flown, when the daemon refuses it (with the daemon's
-    /// reason), is gone, or does not answer.
+    /// When the set points are invalid, the daemon refuses the command, has
+    /// ended, or does not answer.
     pub fn command(&mut self, command: FlightCommand) -> Result<u64, CommandError> {
         command.check()?;
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
@@ -94,14 +97,14 @@ impl Commander {
             .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
         let deadline = Instant::now() + PATIENCE;
         loop {
-            // Asked before looking: an answer given before the end counts.
+            // Checked first: an answer sent before the daemon ended counts.
             let connected = pending.is_connected();
             match pending.receive() {
                 Ok(Some(answer)) => {
                     return match answer.verdict(&command) {
                         Verdict::CarriedOut { tick } => Ok(tick),
                         Verdict::Refused(words) => Err(CommandError::Refused(words)),
-                        Verdict::Outside(outside) => Err(Unflyable::from(outside).into()),
+                        Verdict::Outside(outside) => Err(InvalidCommand::from(outside).into()),
                     };
                 }
                 Ok(None) if !connected => return Err(gone()),
@@ -124,14 +127,14 @@ impl Commander {
 fn refused(
     error: RequestResponseOpenError,
     instance: &Instance,
-    takes_none: impl Fn() -> CommandError,
+    not_accepted: impl Fn() -> CommandError,
 ) -> CommandError {
     use RequestResponseOpenError as Open;
     match error {
         Open::DoesNotExist
         | Open::IsMarkedForDestruction
         | Open::HangsInCreation
-        | Open::IncompatibleRequestOrResponseType => takes_none(),
+        | Open::IncompatibleRequestOrResponseType => not_accepted(),
         Open::ExceedsMaxNumberOfNodes => CommandError::TooMany(instance.clone()),
         Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()).into(),
         error => WatchError::NoSharedMemory(services::explained(&error)).into(),

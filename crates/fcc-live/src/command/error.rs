@@ -4,19 +4,20 @@ use super::super::WatchError;
 use super::OutsideLimits;
 use fcc_telemetry::Instance;
 
-/// Why a command cannot be flown.
+/// Why a command is invalid.
 #[derive(thiserror::Error, Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
-pub enum Unflyable {
+pub enum InvalidCommand {
     /// It changes nothing.
     #[error("no set point is given: give an airspeed, a heading or an altitude")]
     NoSetpoint,
-    /// It asks for what no aircraft flies, or not this one; in SI units.
+    /// A set point is out of range, for any aircraft or for this one; in SI
+    /// units.
     #[error(transparent)]
     Outside(#[from] OutsideLimits),
 }
 
-impl Unflyable {
+impl InvalidCommand {
     /// In the units of the command line: knots, degrees, feet.
     pub fn in_knots_degrees_feet(&self) -> String {
         match self {
@@ -33,12 +34,12 @@ pub enum CommandError {
     /// The daemon cannot be reached.
     #[error(transparent)]
     Unreachable(#[from] WatchError),
-    /// The daemon flies and takes no commands.
+    /// The daemon runs and accepts no commands.
     #[error(
-        "fccd '{instance}', version {software}, takes no commands of version {own}: it has commands = \
+        "fccd '{instance}', version {software}, accepts no commands of version {own}: it has commands = \
          false under [telemetry], or is another version"
     )]
-    TakesNone {
+    NotAccepted {
         /// The daemon.
         instance: Instance,
         /// Its version.
@@ -46,19 +47,20 @@ pub enum CommandError {
         /// The version of this program's commands.
         own: u32,
     },
-    /// As many programs give commands as may.
+    /// The maximum number of programs is connected.
     #[error("too many programs give commands to fccd '{0}' at once: end one of them")]
     TooMany(Instance),
-    /// It cannot be flown; in SI units.
+    /// The command is invalid; in SI units.
     #[error("refused: {0}")]
-    Unflyable(#[from] Unflyable),
+    InvalidCommand(#[from] InvalidCommand),
     /// The daemon refused it.
     #[error("refused: {0}")]
     Refused(String),
-    /// The daemon did not answer: whether it was carried out is not known.
+    /// The daemon did not answer: it is not known whether the command was
+    /// carried out.
     #[error(
         "fccd '{0}' did not answer within {1} s, so it is not known whether the command was carried \
-         out: look at it with `fccd top --instance {0}`"
+         out: check it with `fccd top --instance {0}`"
     )]
     NoAnswer(Instance, u64),
 }

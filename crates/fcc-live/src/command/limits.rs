@@ -1,4 +1,4 @@
-//! What may be commanded, and the message where something else was.
+//! Limits of commands, and the message for a value outside them.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -6,16 +6,16 @@ use std::ops::RangeInclusive;
 
 use fcc_telemetry::units::{M_FT, MPS_KT};
 
-/// What no command is beyond, whatever is flown.
+/// Limits for any aircraft.
 const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
 const HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
 const ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
 
-/// So near a limit counts as on it: a limit that is even in knots or feet is
-/// not in SI.
+/// A value this close to a limit counts as on it: a round limit in knots or
+/// feet is not round in SI units.
 const ROUNDING: f64 = 0.005;
 
-/// What a set point sets.
+/// The quantity of a set point.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Quantity {
     /// Indicated airspeed, m/s.
@@ -27,7 +27,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// What may be commanded of it, whatever is flown.
+    /// Its limits, for any aircraft.
     pub(super) const fn range(self) -> RangeInclusive<f64> {
         match self {
             Self::Airspeed => AIRSPEED_MPS,
@@ -37,21 +37,21 @@ impl Quantity {
     }
 }
 
-/// A set point beyond its limits, in SI units.
+/// A set point out of its limits, in SI units.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct OutsideLimits {
-    /// What it sets.
+    /// Its quantity.
     pub quantity: Quantity,
-    /// What was commanded.
+    /// The value commanded.
     pub value: f64,
-    /// The least that may be.
+    /// The smallest permitted value.
     pub least: f64,
-    /// The most that may be.
+    /// The largest permitted value.
     pub most: f64,
 }
 
 impl OutsideLimits {
-    /// Whether a value is outside; none if it may be commanded.
+    /// The error if a value is out of its limits; none if it is within.
     pub fn of(quantity: Quantity, value: f64, limits: &RangeInclusive<f64>) -> Option<Self> {
         let (least, most) = (*limits.start(), *limits.end());
         let inside = (least - ROUNDING..=most + ROUNDING).contains(&value);
@@ -66,19 +66,19 @@ impl OutsideLimits {
     /// In the units of the command line: knots, degrees, feet.
     pub fn in_knots_degrees_feet(&self) -> String {
         match self.quantity {
-            Quantity::Airspeed => self.words(MPS_KT, "kt"),
-            Quantity::Heading => self.words(1.0_f64.to_degrees(), "°"),
-            Quantity::Altitude => self.words(M_FT, "ft"),
+            Quantity::Airspeed => self.text_in(MPS_KT, "kt"),
+            Quantity::Heading => self.text_in(1.0_f64.to_degrees(), "°"),
+            Quantity::Altitude => self.text_in(M_FT, "ft"),
         }
     }
 
-    fn words(&self, factor: f64, unit: &str) -> String {
+    fn text_in(&self, factor: f64, unit: &str) -> String {
         let name = match self.quantity {
             Quantity::Airspeed => "airspeed",
             Quantity::Heading => "heading",
             Quantity::Altitude => "altitude",
         };
-        // To a hundredth: what is printed as a limit is taken.
+        // To a hundredth: a value printed as a limit is accepted.
         let [value, least, most] = [self.value, self.least, self.most]
             .map(|number| (number * factor * 100.0).round() / 100.0);
         let space = if unit == "°" { "" } else { " " };
@@ -92,9 +92,9 @@ impl fmt::Display for OutsideLimits {
     /// In SI units.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&match self.quantity {
-            Quantity::Airspeed => self.words(1.0, "m/s"),
-            Quantity::Heading => self.words(1.0, "rad"),
-            Quantity::Altitude => self.words(1.0, "m"),
+            Quantity::Airspeed => self.text_in(1.0, "m/s"),
+            Quantity::Heading => self.text_in(1.0, "rad"),
+            Quantity::Altitude => self.text_in(1.0, "m"),
         })
     }
 }
@@ -105,7 +105,7 @@ mod tests {
 
     /// 1 kt is 1852 m in an hour, 1 ft is 0.3048 m.
     #[test]
-    fn limits_are_said_in_either_units_and_are_taken_as_they_are_said() {
+    fn limits_are_printed_in_both_units_and_accepted_as_printed() {
         let airspeeds = 37.554_445..=65.334_444;
         let outside = |mps| OutsideLimits::of(Quantity::Airspeed, mps, &airspeeds);
         let fast = outside(300.0 * 1852.0 / 3600.0).unwrap();

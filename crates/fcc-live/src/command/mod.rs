@@ -6,10 +6,10 @@
 //!    └──────── response ◄─ answers ◄─ ring ◄ tells what became of the command
 //! ```
 //!
-//! The loop's thread takes no part but that it reads its ring of commands, as it
-//! always does. Whoever asks learns what became of the command in the tick that
-//! read it. Only the daemon's own user can open the service: iceoryx2 makes
-//! its files for their owner alone.
+//! The loop's thread only reads its ring of commands, as it always does. The
+//! sender learns the result and the tick that read the command. Only the
+//! daemon's own user can open the service: iceoryx2 creates its files for their
+//! owner alone.
 
 mod command_server;
 mod commander;
@@ -26,28 +26,29 @@ use fcc_core::framework::LoopCommand;
 
 pub(super) use command_server::{CommandServer, Ends, Rings};
 pub use commander::Commander;
-pub use error::{CommandError, Unflyable};
+pub use error::{CommandError, InvalidCommand};
 pub use limits::{OutsideLimits, Quantity};
 
-/// The version of commands and answers, apart from the layouts': whoever changes
-/// one of them, or what it means, counts this up, the names of the types with
-/// it.
+/// The version of commands and answers, independent of the layouts'. Increase
+/// it, and the version in the types' names, with every change of one of them or
+/// of its meaning.
 pub const COMMANDS_VERSION: u32 = 2;
 
-/// What may be asked of a flight from outside.
+/// A command to a flight from another program.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum FlightCommand {
-    /// Take over as things are, if nothing blocks it.
+    /// Take control with the present state as set points, if nothing inhibits
+    /// it.
     Engage,
-    /// Give the controls back.
+    /// Release the controls.
     Disengage,
-    /// Give the controls back and end the daemon.
+    /// Release the controls and end the daemon.
     Stop,
-    /// Fly by other set points; ends a pattern.
+    /// Fly to other set points; ends a pattern.
     Set(NewSetpoints),
 }
 
-/// The set points that are to change; the others stay.
+/// The set points to change; the others keep their value.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct NewSetpoints {
     /// Indicated airspeed, m/s, 5 to 340, and within the aircraft's envelope.
@@ -59,11 +60,11 @@ pub struct NewSetpoints {
 }
 
 impl FlightCommand {
-    /// Checks its numbers by what no aircraft flies.
+    /// Checks the values against the limits for any aircraft.
     ///
     /// # Errors
-    /// What cannot be flown.
-    pub fn check(&self) -> Result<(), Unflyable> {
+    /// The value that is out of range.
+    pub fn check(&self) -> Result<(), InvalidCommand> {
         let Self::Set(set) = self else {
             return Ok(());
         };
@@ -76,16 +77,16 @@ impl FlightCommand {
             .into_iter()
             .filter_map(|(quantity, value)| Some((quantity, value?)))
             .peekable();
-        given.peek().ok_or(Unflyable::NoSetpoint)?;
+        given.peek().ok_or(InvalidCommand::NoSetpoint)?;
         given
             .find_map(|(quantity, value)| OutsideLimits::of(quantity, value, &quantity.range()))
             .map_or(Ok(()), |outside| Err(outside.into()))
     }
 
-    /// Checks its airspeed by what an aircraft's envelope allows, m/s.
+    /// Checks the airspeed against an aircraft's envelope, m/s.
     ///
     /// # Errors
-    /// What is allowed.
+    /// The limits.
     pub fn check_airspeed(&self, allowed_mps: &RangeInclusive<f64>) -> Result<(), OutsideLimits> {
         let Self::Set(NewSetpoints {
             airspeed_mps: Some(mps),
@@ -97,7 +98,7 @@ impl FlightCommand {
         OutsideLimits::of(Quantity::Airspeed, *mps, allowed_mps).map_or(Ok(()), Err)
     }
 
-    /// What goes to the loop for it, in this sequence.
+    /// The loop's commands for it, in order.
     #[cfg(feature = "flight")]
     pub fn for_the_loop(&self) -> Vec<LoopCommand<AutopilotCommand>> {
         match self {
@@ -117,16 +118,16 @@ impl FlightCommand {
     }
 }
 
-/// A command that came from another program, and waits for its answer.
+/// A command from another program that waits for its answer.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub struct Asked {
-    /// Which, for [`Publisher::answer`](super::Publisher::answer).
+pub struct PendingCommand {
+    /// Its identifier, for [`Publisher::answer`](super::Publisher::answer).
     pub id: u64,
-    /// What is asked.
+    /// The command.
     pub command: FlightCommand,
 }
 
-/// What became of a command.
+/// The result of a command.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Verdict {
     /// It was carried out in this tick.
@@ -134,13 +135,13 @@ pub enum Verdict {
         /// The tick that read it.
         tick: u64,
     },
-    /// It was not, for this reason.
+    /// It was refused, for this reason.
     Refused(String),
-    /// It was not, for it asks for more than this aircraft may fly.
+    /// It was refused because it is outside this aircraft's envelope.
     Outside(OutsideLimits),
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "flight"))]
 mod tests {
     use super::*;
 
@@ -153,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_flown_is_refused_in_words() {
+    fn invalid_commands_are_refused_with_a_reason() {
         for (command, word) in [
             (set(None, None), "no set point"),
             (
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn each_set_point_is_an_order_of_its_own() {
+    fn each_set_point_is_a_separate_command() {
         assert_eq!(
             set(Some(50.0), Some(1.0)).for_the_loop(),
             [

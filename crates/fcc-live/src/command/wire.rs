@@ -1,4 +1,4 @@
-//! Commands and answers as they lie in shared memory.
+//! Commands and answers in shared memory.
 
 #![expect(unsafe_code, reason = "iceoryx2 asks for a promise about layouts")]
 
@@ -7,7 +7,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use super::super::Text;
 use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, OutsideLimits, Quantity, Verdict};
 
-/// A command as it lies in shared memory.
+/// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Request {
@@ -15,29 +15,29 @@ pub(super) struct Request {
     pub(super) version: u32,
     /// 0 engage, 1 disengage, 2 stop, 3 set.
     pub(super) code: u32,
-    /// NaN where it stays.
+    /// NaN: unchanged.
     pub(super) airspeed_mps: f64,
-    /// NaN where it stays.
+    /// NaN: unchanged.
     pub(super) heading_rad: f64,
-    /// NaN where it stays.
+    /// NaN: unchanged.
     pub(super) altitude_m: f64,
 }
 
-/// An answer as it lies in shared memory.
+/// An answer in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Answer {
-    /// 0 carried out, 1 refused, 2 refused for the airspeed's limits.
+    /// 0 carried out, 1 refused, 2 refused because of the airspeed's limits.
     pub(super) code: u32,
     /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
     /// The tick that read the command; 0 if none did.
     pub(super) tick: u64,
-    /// The least airspeed that this aircraft may fly, m/s; with code 2 alone.
+    /// The smallest airspeed of this aircraft, m/s; with code 2 only.
     pub(super) least_mps: f64,
-    /// The most.
+    /// The largest airspeed.
     pub(super) most_mps: f64,
-    /// Why it was refused.
+    /// The reason for refusing it.
     pub(super) text: Text<224>,
 }
 
@@ -84,14 +84,14 @@ impl From<FlightCommand> for Request {
 }
 
 impl Request {
-    /// What another program wrote may be anything.
+    /// Another program may have written anything.
     ///
     /// # Errors
-    /// Why it is no command, in words.
+    /// Why it is not a valid command, as text.
     pub(super) fn command(&self) -> Result<FlightCommand, String> {
         if self.version != COMMANDS_VERSION {
             return Err(format!(
-                "the command is of version {}, and this daemon takes version {COMMANDS_VERSION}: use \
+                "the command has version {}, and this daemon accepts version {COMMANDS_VERSION}: use \
                  the fccd that belongs to it",
                 self.version
             ));
@@ -147,7 +147,7 @@ impl From<&Verdict> for Answer {
 }
 
 impl Answer {
-    /// What became of this command.
+    /// The result of this command.
     pub(super) fn verdict(&self, command: &FlightCommand) -> Verdict {
         match (self.code, command) {
             (CARRIED_OUT, _) => Verdict::CarriedOut { tick: self.tick },
@@ -177,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_layouts_are_as_written_down() {
+    fn the_layouts_are_as_documented() {
         assert_eq!((size_of::<Request>(), size_of::<Answer>()), (32, 256));
         assert_eq!(
             [
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_and_verdicts_come_back() {
+    fn commands_and_results_are_read_back() {
         for command in [
             FlightCommand::Engage,
             FlightCommand::Disengage,
@@ -245,9 +245,9 @@ mod tests {
     }
 
     proptest! {
-        /// Nothing that lies in shared memory is a command that cannot be flown.
+        /// Invalid bytes in shared memory never give an invalid command.
         #[test]
-        fn any_bytes_are_an_order_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
+        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
             let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
             let request = Request { version, code, airspeed_mps, heading_rad, altitude_m };
             if let Ok(command) = request.command() {

@@ -24,7 +24,7 @@ pub(crate) struct PyCommander {
 
 fn refused(error: &CommandError) -> PyErr {
     match error {
-        CommandError::Unreachable(_) | CommandError::TakesNone { .. } => {
+        CommandError::Unreachable(_) | CommandError::NotAccepted { .. } => {
             errors::TELEMETRY.say(error)
         }
         _ => errors::ORDER.say(error),

@@ -1,7 +1,7 @@
 //! A struct with a schema as a class of Python.
 
 use fcc_core::framework::schema::{Kind, Schema, Value};
-use fcc_telemetry::schema::{Column, words_of};
+use fcc_telemetry::schema::{Column, spaced};
 use numpy::{PyArray1, ToPyArray};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
@@ -296,7 +296,7 @@ fn from_python(column: &Column, value: &Bound<'_, PyAny>) -> PyResult<Value> {
 
 /// The name of a variant as Python has it: `TimedPattern` is `timed-pattern`.
 fn code(variant: &str) -> String {
-    words_of(variant).replace(' ', "-")
+    spaced(variant).replace(' ', "-")
 }
 
 fn to_number(value: Value) -> f64 {

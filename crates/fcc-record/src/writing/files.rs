@@ -1,4 +1,4 @@
-//! One file after the other: begun, ended, and old ones deleted to make room.
+//! Begins and finishes files, and deletes old ones to make room.
 
 use std::io;
 use std::mem;
@@ -12,7 +12,7 @@ use super::super::part::Part;
 use super::Writing;
 use crate::recorded::Recorded;
 
-/// Names tried, and recordings deleted, for one file to begin.
+/// Attempts to begin a file: names tried, and recordings deleted.
 const MAX_ATTEMPTS: usize = 100;
 
 impl<C: Recorded> Writing<C> {
@@ -24,12 +24,12 @@ impl<C: Recorded> Writing<C> {
     }
 
     pub(super) fn rotate(&mut self) {
-        if self.close("the recording goes on in its next file") {
+        if self.close("the recording continues in its next file") {
             self.begin();
         }
     }
 
-    /// Ends the present file as it should end; whether that worked.
+    /// Finishes the present file; true if that succeeded.
     pub(super) fn close(&mut self, ending: &str) -> bool {
         if !self.commit() {
             return false;
@@ -43,9 +43,9 @@ impl<C: Recorded> Writing<C> {
         let finished = part.finish(ending);
         self.board.update(|status| status.file = None);
         if let Err(error) = &finished {
-            // All records are in it; what is missing is its index.
+            // All records are in it; only its index is missing.
             self.stop(format!(
-                "{}: not finished: {error}. Its records are safe: make room and run \
+                "{}: not finished: {error}. Its records are complete: make room and run \
                  `fccd recover`",
                 path.display()
             ));
@@ -68,14 +68,14 @@ impl<C: Recorded> Writing<C> {
                     status.files.push(path);
                 });
                 self.part = Some(Part::new(file));
-                for text in mem::take(&mut self.words) {
+                for text in mem::take(&mut self.remarks) {
                     self.note(text);
                 }
             }
             Err((path, error)) => {
                 self.about.part -= 1;
                 self.stop(format!(
-                    "{}: cannot be written: {error}. Choose a folder that can, with --recordings \
+                    "{}: cannot be written: {error}. Choose a writable folder with --recordings \
                      or recording.folder",
                     path.display()
                 ));
@@ -84,8 +84,7 @@ impl<C: Recorded> Writing<C> {
         self.acted = Instant::now();
     }
 
-    /// Begins a file under a name that is free, where there is room or room
-    /// may be made.
+    /// Begins a file under a free name; makes room if necessary and permitted.
     fn begin_file(&mut self) -> Result<RecordingFile<C>, (PathBuf, io::Error)> {
         for _ in 0..MAX_ATTEMPTS {
             let about = &self.about;
@@ -94,7 +93,8 @@ impl<C: Recorded> Writing<C> {
             let compression = self.settings.compression;
             match RecordingFile::begin(&mut *self.disk, &path, about, compression) {
                 Ok(file) => return Ok(file),
-                // Two flights in one millisecond: the second is a bit later.
+                // Two flights in one millisecond: the second is given a later
+                // one.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                     self.about.started_unix_ns += 1_000_000;
                 }
@@ -107,7 +107,7 @@ impl<C: Recorded> Writing<C> {
     }
 
     /// Deletes the oldest recording of another flight, if deleting is
-    /// configured; whether it did.
+    /// configured; true if it deleted one.
     pub(super) fn make_room(&mut self) -> bool {
         if self.settings.keep_total_bytes.is_none() {
             return false;
@@ -115,7 +115,7 @@ impl<C: Recorded> Writing<C> {
         let own = self.board.read().files;
         let deleted = folder::delete_oldest(&self.settings.folder, &own);
         if let Some(path) = &deleted {
-            self.tell(
+            self.report(
                 format!("{}: deleted, the disk is full", path.display()),
                 false,
             );
@@ -133,12 +133,12 @@ impl<C: Recorded> Writing<C> {
                 path.display(),
                 most / 1_000_000
             );
-            self.tell(text, false);
+            self.report(text, false);
         }
     }
 }
 
-/// Whether an error is of a kind that deleting files helps against.
+/// Whether deleting files can help against an error.
 pub(super) fn is_full(error: &io::Error) -> bool {
     matches!(
         error.kind(),

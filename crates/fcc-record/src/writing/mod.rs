@@ -1,5 +1,5 @@
-//! The recorder's thread: [files] begun, fed, committed each second, ended; and
-//! begun again where the disk [had failed](trouble).
+//! The recorder's thread: [files] are begun, written, committed and finished,
+//! and begun again after the disk [failed](trouble).
 
 mod files;
 mod trouble;
@@ -16,22 +16,22 @@ use super::disk::Disk;
 use super::lost::Lost;
 use super::part::Part;
 use super::settings::RecorderSettings;
-use super::status::{Board, News};
+use super::status::{Board, Notice};
 use crate::recorded::Recorded;
 
-/// How often what has gathered is written and synced. A loss of power costs
-/// this much and the time that takes on a busy machine, and must cost less than
-/// a second; more often is more work for the disk.
+/// Interval between two commits. A loss of power costs this plus the time of a
+/// commit on a busy machine, and must cost less than a second.
 const COMMIT_EVERY: Duration = Duration::from_millis(700);
 
-/// What has gathered is written before that if it is this much: a flight in
-/// lockstep fills memory faster than any second passes.
+/// Commits earlier if this much is buffered: a flight in lockstep produces data
+/// much faster than in real time.
 const COMMIT_BYTES: u64 = 1 << 20;
 
-/// What comes to the recorder's thread.
+/// Input of the recorder's thread.
 #[derive(Debug)]
 pub(super) enum Feed<M> {
-    Message(M),
+    /// Boxed: the channel is allocated as a whole, and seldom holds many.
+    Message(Box<M>),
     Remark(String),
     End(String),
 }
@@ -42,20 +42,20 @@ pub(super) struct Writing<C: Recorded> {
     about: About,
     settings: RecorderSettings,
     board: Board,
-    news: Sender<News>,
-    /// What is being written; none while the disk fails.
+    notices: Sender<Notice>,
+    /// The part being written; none while the disk fails.
     part: Option<Part<C>>,
-    /// What is lost and not told in a file yet.
+    /// What is lost and not reported in a file yet.
     lost: Lost,
-    /// Why nothing was recorded, until a file has taken something again.
+    /// Why nothing is recorded; none once a file has been committed again.
     trouble: Option<String>,
-    /// Words for the next file.
-    words: Vec<String>,
-    /// When what had gathered was committed, or a file was to begin.
+    /// Remarks for the next file.
+    remarks: Vec<String>,
+    /// Time of the last commit, or of the last attempt to begin a file.
     acted: Instant,
-    /// Whether the flight is over, and nothing is tried again.
-    over: bool,
-    /// Records and bytes in the parts before this one.
+    /// Whether the flight has ended; then no attempt is repeated.
+    ended: bool,
+    /// Records and bytes in earlier parts.
     ticks_before: u64,
     bytes_before: u64,
 }
@@ -66,26 +66,26 @@ impl<C: Recorded> Writing<C> {
         about: About,
         settings: RecorderSettings,
         board: Board,
-        news: Sender<News>,
+        notices: Sender<Notice>,
     ) -> Self {
         Self {
             disk,
             about: About { part: 0, ..about },
             settings,
             board,
-            news,
+            notices,
             part: None,
             lost: Lost::default(),
             trouble: None,
-            words: Vec::new(),
+            remarks: Vec::new(),
             acted: Instant::now(),
-            over: false,
+            ended: false,
             ticks_before: 0,
             bytes_before: 0,
         }
     }
 
-    /// Writes until the flight ends, or whoever feeds is gone.
+    /// Writes until the flight ends or the recorder is dropped.
     pub(super) fn run(mut self, fed: &Receiver<Feed<MessageOf<C>>>) {
         self.begin();
         loop {
@@ -129,8 +129,8 @@ impl<C: Recorded> Writing<C> {
         }
     }
 
-    /// Tells of what is lost in the file, if there is one, before the message
-    /// that ends the gap.
+    /// Reports what is lost in the file, if there is one, before the message
+    /// after the gap.
     fn report_gap(&mut self, next: Option<&MessageOf<C>>) {
         if self.part.is_some() && !self.lost.is_none() {
             let gap = mem::take(&mut self.lost).event(next);
@@ -139,7 +139,7 @@ impl<C: Recorded> Writing<C> {
     }
 
     fn lose(&mut self, message: &MessageOf<C>) {
-        if let Some(gap) = Lost::told_by(message) {
+        if let Some(gap) = Lost::reported_by(message) {
             self.lost.join(gap);
         } else {
             self.lost.widen(message);
@@ -147,8 +147,7 @@ impl<C: Recorded> Writing<C> {
         }
     }
 
-    /// Does something with the file, if there is one; deals with a disk that
-    /// fails.
+    /// Writes to the file, if there is one; handles a failing disk.
     fn attempt(&mut self, work: impl FnOnce(&mut Part<C>) -> io::Result<()>) -> bool {
         let Some(part) = &mut self.part else {
             return false;
@@ -170,7 +169,8 @@ impl<C: Recorded> Writing<C> {
             self.end_trouble(gaps);
             self.keep_below_total();
         }
-        // From the end of it: on a slow disk the next must not follow at once.
+        // Counted from its end: on a slow disk the next must not follow at
+        // once.
         self.acted = Instant::now();
         committed
     }
@@ -186,8 +186,8 @@ impl<C: Recorded> Writing<C> {
     }
 
     fn end(mut self, ending: &str) {
-        self.over = true;
-        // A second time where a full disk got room, and another file, just now.
+        self.ended = true;
+        // Twice: making room on a full disk begins another file.
         for _ in 0..2 {
             self.report_gap(None);
             if self.close(ending) || self.part.is_none() {

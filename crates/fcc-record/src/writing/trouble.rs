@@ -1,4 +1,4 @@
-//! What is done when the disk fails, and what is said of it.
+//! What happens when the disk fails, and how it is reported.
 
 use std::fmt::Write as _;
 use std::io;
@@ -6,17 +6,17 @@ use std::time::Instant;
 
 use super::super::lost::Lost;
 use super::super::part::Abandoned;
-use super::super::status::News;
+use super::super::status::Notice;
 use super::Writing;
 use super::files::is_full;
 use crate::recorded::Recorded;
 
-/// Words that are kept for the next file while there is none.
-const MAX_WORDS_KEPT: usize = 100;
+/// The most remarks kept for the next file while there is none.
+const MAX_REMARKS_KEPT: usize = 100;
 
 impl<C: Recorded> Writing<C> {
-    /// The disk failed: makes room if it may, or stops for now. The file stays
-    /// as it was when last committed.
+    /// The disk failed: makes room if permitted, or stops for now. The file
+    /// stays as it was when last committed.
     pub(super) fn fail(&mut self, error: &io::Error) {
         let Some(part) = self.part.take() else {
             return;
@@ -47,75 +47,75 @@ impl<C: Recorded> Writing<C> {
         });
         let what = format!("{}: {error}", path.display());
         if is_full(error) && self.make_room() {
-            self.tell(format!("{what}; {}", self.lost.words()), true);
+            self.report(format!("{what}; {}", self.lost.description()), true);
             self.begin();
         } else {
             self.stop(what);
         }
     }
 
-    /// Nothing is recorded until the next attempt. Said once, however many
+    /// Records nothing until the next attempt. Reported once, however many
     /// attempts fail.
     pub(super) fn stop(&mut self, why: String) {
         let is_new = self.trouble.replace(why).is_none();
         if is_new {
-            let mut text = format!("recording stopped: {}", self.trouble_words());
-            if !self.over {
+            let mut text = format!("recording stopped: {}", self.trouble_text());
+            if !self.ended {
                 let every_s = self.settings.retry_every.as_secs_f64();
                 let _ = write!(
                     text,
-                    ". The flight goes on unrecorded; recording is tried again every {every_s} s"
+                    ". The flight continues unrecorded; recording is tried again every {every_s} s"
                 );
             }
-            self.tell(text, true);
+            self.report(text, true);
         }
         self.post_trouble();
         self.acted = Instant::now();
     }
 
     pub(super) fn post_trouble(&self) {
-        let words = self.trouble_words();
-        self.board.update(|status| status.stopped = Some(words));
+        let text = self.trouble_text();
+        self.board.update(|status| status.stopped = Some(text));
     }
 
-    fn trouble_words(&self) -> String {
+    fn trouble_text(&self) -> String {
         let why = self.trouble.as_deref().unwrap_or_default();
         if self.lost.is_none() {
             why.to_owned()
         } else {
-            format!("{why}; {}", self.lost.words())
+            format!("{why}; {}", self.lost.description())
         }
     }
 
-    /// Says that the disk takes something again, if it had failed.
+    /// Reports that the disk works again, if it had failed.
     pub(super) fn end_trouble(&mut self, gaps: Lost) {
         if let (Some(part), Some(_)) = (&self.part, self.trouble.take()) {
             let mut lost = gaps;
             lost.join(self.lost);
             let path = part.path().display();
-            let text = format!("recording goes on in {path}: {}", lost.words());
-            self.tell(text, true);
+            let text = format!("recording continues in {path}: {}", lost.description());
+            self.report(text, true);
             self.board.update(|status| status.stopped = None);
         }
     }
 
-    /// Says something, here and in the file.
-    pub(super) fn tell(&mut self, text: String, is_trouble: bool) {
+    /// Reports to the user and in the file.
+    pub(super) fn report(&mut self, text: String, is_trouble: bool) {
         self.announce(text.clone(), is_trouble);
         self.note(text);
     }
 
     pub(super) fn announce(&self, text: String, is_trouble: bool) {
-        // Whoever flies may be gone already.
-        let _ = self.news.send(News { text, is_trouble });
+        // The flight may have ended already.
+        let _ = self.notices.send(Notice { text, is_trouble });
     }
 
-    /// Puts words into the file, or into the next one.
+    /// Writes a remark to the file, or keeps it for the next one.
     pub(super) fn note(&mut self, text: String) {
         if self.part.is_some() {
             self.attempt(|part| part.remark(text));
-        } else if self.words.len() < MAX_WORDS_KEPT {
-            self.words.push(text);
+        } else if self.remarks.len() < MAX_REMARKS_KEPT {
+            self.remarks.push(text);
         }
     }
 }

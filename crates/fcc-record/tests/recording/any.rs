@@ -1,12 +1,12 @@
-//! Records of any bits at all, and every bit of a record.
+//! Records with arbitrary bits.
 
 use fcc_core::framework::schema::{Field, Kind, Schema, Source, Type, Value, Values};
 use fcc_core::framework::{Cause, Flags, State};
 use fcc_telemetry::FlightRecord;
 use proptest::prelude::*;
 
-/// Every bit of a record, where a comparison of floats would take -0 for 0 and
-/// nothing for NaN.
+/// The bits of a record: comparing floats would treat -0 as 0, and NaN as
+/// different from itself.
 pub(crate) fn bits(record: &FlightRecord) -> Vec<u64> {
     const LEAVES: usize = FlightRecord::TYPE.leaves();
     let mut values = Values::<LEAVES>::default();
@@ -14,7 +14,7 @@ pub(crate) fn bits(record: &FlightRecord) -> Vec<u64> {
     values.as_slice().iter().map(|value| value.bits()).collect()
 }
 
-/// Numbers that formats like to lose.
+/// Numbers that file formats tend to change.
 const NUMBERS: [f64; 7] = [
     0.0,
     -0.0,
@@ -25,11 +25,11 @@ const NUMBERS: [f64; 7] = [
     f64::MIN_POSITIVE / 2.0,
 ];
 
-/// Makes a value of its kind of any bits: infinities, NaN of every payload;
-/// more often than chance would, those of [`NUMBERS`].
+/// Makes values from arbitrary bits: infinities, NaN with any payload, and
+/// often one of [`NUMBERS`].
 struct AnyBits {
     bits: std::vec::IntoIter<(u64, bool)>,
-    /// Whether in a state, of which not all bits are one.
+    /// Whether inside a state, for which not all bits are valid.
     in_state: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Recordings that were cut off, damaged or made up.
+//! Recordings that are cut off, damaged or invalid.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(crate) fn whole(folder: &Path, compression: Compression) -> PathBuf {
     only_file(folder)
 }
 
-/// All messages, and where the file was found to be cut.
+/// All messages, and where the file is cut off.
 pub(crate) fn read(path: &Path) -> (Vec<FlightMessage>, Option<String>) {
     let mut messages = Recording::open(path).unwrap().messages().unwrap();
     let all = messages.by_ref().collect();
@@ -33,7 +33,7 @@ pub(crate) fn read(path: &Path) -> (Vec<FlightMessage>, Option<String>) {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_read_to_its_cut_and_made_whole() {
+fn a_file_cut_anywhere_is_read_to_its_end_and_recovered() {
     let folder = tempfile::tempdir().unwrap();
     for compression in [Compression::None, Compression::Zstd, Compression::Lz4] {
         let folder = tempfile::tempdir_in(folder.path()).unwrap();
@@ -63,13 +63,13 @@ fn a_file_cut_anywhere_is_read_to_its_cut_and_made_whole() {
             before as u64 > TICKS / 2,
             "{compression:?}: {before} messages"
         );
-        // Nothing is left beside it.
+        // No other file is left.
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }
 
 #[test]
-fn a_whole_file_is_left_alone() {
+fn a_finished_file_is_not_changed() {
     let folder = tempfile::tempdir().unwrap();
     let path = whole(folder.path(), Compression::default());
     let before = fs::read(&path).unwrap();
@@ -121,9 +121,9 @@ fn what_is_being_written_is_not_recovered() {
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
 }
 
-/// Two programs that start at once in one folder repair one file.
+/// Two programs started at once in one folder repair one file.
 #[test]
-fn nobody_recovers_what_somebody_recovers() {
+fn a_file_being_recovered_is_not_recovered_twice() {
     let folder = tempfile::tempdir().unwrap();
     let path = whole(folder.path(), Compression::default());
     let bytes = fs::read(&path).unwrap();
@@ -165,7 +165,8 @@ fn other_files_are_refused_with_a_reason() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever a file says, reading it ends, and says nothing it does not know.
+    /// Whatever a file contains, reading it ends, and returns nothing that is
+    /// not in it.
     #[test]
     fn a_damaged_file_never_panics(
         damage in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),

@@ -13,7 +13,8 @@ use proptest::prelude::*;
 
 use crate::cut::{TICKS, read, whole};
 
-/// The bytes of a whole recording, its messages, and what is where.
+/// The bytes of a finished recording, its messages, and the places of its
+/// records.
 struct Original {
     bytes: Vec<u8>,
     messages: Vec<FlightMessage>,
@@ -33,8 +34,8 @@ static ORIGINALS: LazyLock<[Original; 3]> = LazyLock::new(|| {
     })
 });
 
-/// Opcode and place of each record of a file (MCAP's specification: an opcode,
-/// eight bytes of length, the content).
+/// Opcode and place of each record of a file (MCAP specification: opcode, eight
+/// bytes of length, content).
 fn records(bytes: &[u8]) -> Vec<(u8, Range<usize>)> {
     let magic = mcap::MAGIC.len();
     let mut at = magic;
@@ -56,8 +57,8 @@ impl Original {
     }
 }
 
-/// What a damaged file gives: its messages, what is damaged, and whether the
-/// file was found cut.
+/// What is read from a damaged file: messages, damage, and whether it is cut
+/// off.
 fn read_damaged(path: &Path) -> (Vec<FlightMessage>, Vec<Damage>, Option<String>) {
     let mut messages = Recording::open(path).unwrap().messages().unwrap();
     let all = messages.by_ref().collect();
@@ -73,8 +74,8 @@ fn ticks(messages: &[FlightMessage]) -> Vec<u64> {
     messages.iter().filter_map(tick).collect()
 }
 
-/// The ticks that damages say are missing.
-fn said_missing(damages: &[Damage]) -> Vec<u64> {
+/// The ticks reported missing.
+fn reported_missing(damages: &[Damage]) -> Vec<u64> {
     damages
         .iter()
         .filter_map(|damage| Some(damage.first_tick?..=damage.last_tick?))
@@ -82,13 +83,13 @@ fn said_missing(damages: &[Damage]) -> Vec<u64> {
         .collect()
 }
 
-/// How many, the first, the last and the sum of them: less to read than all.
+/// Number, first, last and sum: shorter to print than all.
 fn span(ticks: &[u64]) -> Option<(usize, u64, u64, u64)> {
     let (first, last) = (ticks.first()?, ticks.last()?);
     Some((ticks.len(), *first, *last, ticks.iter().sum()))
 }
 
-/// Changes bytes in a place; gives the changed file.
+/// Changes bytes in a place; returns the changed file.
 fn changed(bytes: &[u8], place: &Range<usize>, change: Change) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     match change {
@@ -96,7 +97,7 @@ fn changed(bytes: &[u8], place: &Range<usize>, change: Change) -> Vec<u8> {
         Change::Zeros(at, length) => {
             let start = place.start + at.index(place.len());
             let end = (start + length).min(place.end);
-            // What is zero already is no damage.
+            // Zeroing zeros is not damage.
             bytes[start] = !bytes[start];
             bytes[start + 1..end.max(start + 1)].fill(0);
         }
@@ -169,8 +170,8 @@ fn place(original: &Original, part: Part, which: prop::sample::Index) -> Range<u
     }
 }
 
-/// The ticks in the chunks that a place touches; the chunks are read by
-/// another program, `mcap`'s own reader.
+/// The ticks in the chunks that overlap a place; read by another program,
+/// `mcap`'s own reader.
 fn ticks_in(original: &Original, place: &Range<usize>) -> Vec<u64> {
     let summary = mcap::Summary::read(&original.bytes).unwrap().unwrap();
     summary
@@ -205,10 +206,10 @@ fn varint(bytes: &[u8]) -> u64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// Whatever is damaged: what is not is read, what is missing is said, and
-    /// made whole is all that can be read.
+    /// Whatever is damaged: the rest is read, the missing ticks are reported,
+    /// and recovery saves everything that can be read.
     #[test]
-    fn damage_costs_the_chunk_it_is_in_and_is_said(
+    fn damage_loses_only_its_chunk_and_is_reported(
         compression in 0_usize..3,
         part in prop::sample::select(&PARTS[..]),
         which in any::<prop::sample::Index>(),
@@ -227,11 +228,11 @@ proptest! {
         let missing: Vec<u64> = (1..=TICKS)
             .filter(|tick| there.binary_search(tick).is_err())
             .collect();
-        // A time in a chunk's header matters to nobody.
+        // The times in a chunk's header are not used.
         if !missing.is_empty() {
             prop_assert_eq!(span(&missing), span(&ticks_in(original, &place)));
         }
-        prop_assert_eq!(span(&said_missing(&damages)), span(&missing));
+        prop_assert_eq!(span(&reported_missing(&damages)), span(&missing));
         let is_there = |message: &&FlightMessage| match message {
             Message::Tick(record) => missing.binary_search(&record.tick.number).is_err(),
             Message::Event(_) => missing.first() != Some(&1),
@@ -265,9 +266,9 @@ proptest! {
     }
 }
 
-/// Half of the chunks, each in another way, and the index that leads to them.
+/// Half of the chunks, each damaged in another way, and the index.
 #[test]
-fn many_damages_are_each_said_and_all_else_is_read() {
+fn each_of_several_damages_is_reported_and_the_rest_is_read() {
     let original = &ORIGINALS[0];
     let chunks = original.all(op::CHUNK);
     assert!(chunks.len() > 5, "{}", chunks.len());
@@ -288,7 +289,7 @@ fn many_damages_are_each_said_and_all_else_is_read() {
     let (messages, damages, cut) = read_damaged(&path);
     assert_eq!(cut, None);
     assert_eq!(damages.len(), 3, "{damages:?}");
-    assert_eq!(span(&said_missing(&damages)), span(&missing));
+    assert_eq!(span(&reported_missing(&damages)), span(&missing));
     assert_eq!(messages.len() as u64 + missing.len() as u64, TICKS + 1);
     let words = damages[0].to_string();
     let (first, last) = (
@@ -299,18 +300,18 @@ fn many_damages_are_each_said_and_all_else_is_read() {
         words.contains(&format!("ticks {first} to {last} are missing")),
         "{words}"
     );
-    // 25 ms and 1 µs a tick: each of these wakes later than the one before.
+    // A tick takes 25 ms plus 1 µs of growing lateness.
     let periods = (last - first + 2) as f64;
     assert!((damages[0].span_s.unwrap() - periods * 0.025_001).abs() < 1e-9);
 
-    // At its two ends alone, it looks whole.
+    // At its beginning and end alone it looks undamaged.
     let glanced = glance(&path).unwrap();
     assert_eq!(glanced.file, Wholeness::Damaged);
 }
 
-/// What is missing is told in the recovered file, as what the recorder lost is.
+/// A recovered file reports missing ticks like those the recorder lost.
 #[test]
-fn a_recovered_file_tells_what_is_missing_from_it() {
+fn a_recovered_file_reports_what_is_missing() {
     let original = &ORIGINALS[1];
     let chunk = original.all(op::CHUNK)[2].clone();
     let mut bytes = original.bytes.clone();
@@ -338,16 +339,16 @@ fn a_recovered_file_tells_what_is_missing_from_it() {
     let (first, last) = (missing[0], missing[missing.len() - 1]);
     assert_eq!(lost, Some((missing.len() as u64, first, last)));
 
-    // The damaged file that is kept is not lost to another.
+    // The kept damaged file is not overwritten by another.
     fs::write(&path, &bytes).unwrap();
     let again = recover(&path, |_| {}).unwrap();
     assert_ne!(again.kept, recovered.kept);
     assert_eq!(fs::read(recovered.kept.unwrap()).unwrap(), bytes);
 }
 
-/// A loss of power can leave zeros where data was to be.
+/// A loss of power can leave zeros in place of data.
 #[test]
-fn zeros_behind_what_was_written_are_said_and_left() {
+fn zeros_after_the_data_are_reported_and_removed() {
     let original = &ORIGINALS[1];
     let chunks = original.all(op::CHUNK);
     let mut bytes = original.bytes[..chunks[2].start + 1_000].to_vec();

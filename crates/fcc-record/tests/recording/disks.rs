@@ -1,4 +1,4 @@
-//! Bad disks, and what they leave.
+//! Failing disks, and the files they leave.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -10,8 +10,7 @@ use std::time::{Duration, Instant};
 use fcc_core::framework::{EventKind, Message};
 use fcc_record::{Disk, DiskFile, FileSystem, Recorder, RecorderStatus, Recording};
 
-/// A disk that holds so many bytes and not one more, until a file that takes up
-/// its room is gone.
+/// A disk with a limited number of bytes. Deleting `in_the_way` makes room.
 pub(crate) struct Small {
     pub(crate) free: Arc<AtomicU64>,
     pub(crate) in_the_way: Option<PathBuf>,
@@ -34,7 +33,7 @@ impl Disk for Small {
 }
 
 impl Write for SmallFile {
-    /// As a file system does: what still fits is written, torn in the middle.
+    /// As a file system does: what fits is written, even a part of a record.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         // Deleting makes room at once, as it does on a disk.
         if self.in_the_way.as_ref().is_some_and(|file| !file.exists()) {
@@ -64,8 +63,8 @@ impl DiskFile for SmallFile {
     }
 }
 
-/// A disk whose syncs wait until they are let go.
-pub(crate) struct StuckDetector {
+/// A disk whose syncs block until the gate opens.
+pub(crate) struct StuckDisk {
     pub(crate) gate: Arc<(Mutex<bool>, Condvar)>,
 }
 
@@ -74,7 +73,7 @@ struct StuckFile {
     gate: Arc<(Mutex<bool>, Condvar)>,
 }
 
-impl Disk for StuckDetector {
+impl Disk for StuckDisk {
     fn create(&mut self, path: &Path) -> io::Result<Box<dyn DiskFile>> {
         Ok(Box::new(StuckFile {
             file: FileSystem.create(path)?,
@@ -113,7 +112,7 @@ pub(crate) fn set(gate: &(Mutex<bool>, Condvar), open: bool) {
     gate.1.notify_all();
 }
 
-/// Waits until the recorder's status is so, as it comes to be within seconds.
+/// Waits until the recorder's status meets a condition.
 pub(crate) fn wait_for(recorder: &Recorder, so: impl Fn(&RecorderStatus) -> bool) {
     let began = Instant::now();
     while !so(&recorder.status()) {
@@ -126,7 +125,7 @@ pub(crate) fn wait_for(recorder: &Recorder, so: impl Fn(&RecorderStatus) -> bool
     }
 }
 
-/// Waits until the recorder has committed, as it does each second.
+/// Waits until the recorder has committed.
 pub(crate) fn wait_for_ticks(recorder: &Recorder, ticks: u64) {
     wait_for(recorder, |status| status.ticks >= ticks);
 }
@@ -143,8 +142,7 @@ pub(crate) fn ticks(path: &Path) -> Vec<u64> {
         .collect()
 }
 
-/// The gaps that a file tells of: how many messages, the first and the last
-/// tick.
+/// The gaps reported in a file: number of messages, first and last tick.
 pub(crate) fn gaps(path: &Path) -> Vec<(u64, u64, u64)> {
     let recording = Recording::open(path).unwrap();
     recording

@@ -1,4 +1,4 @@
-//! Flights to record: made of numbers, not flown.
+//! Flights to record: computed, not flown.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use fcc_telemetry::{FlightMessage, FlightRecord};
 pub(crate) const STARTED_UNIX_NS: u64 = 1_795_148_493_000_000_000;
 /// 40 Hz.
 pub(crate) const PERIOD_NS: i64 = 25_000_000;
-/// What the loop's clock showed at the start.
+/// The loop's clock at the start.
 const CLOCK_AT_START_NS: i64 = 77_000_000_000;
 
 pub(crate) fn about() -> About {
@@ -35,7 +35,7 @@ pub(crate) fn about() -> About {
     }
 }
 
-/// Settings that wait rather than drop.
+/// Settings for a recorder that waits instead of dropping messages.
 pub(crate) fn settings(folder: &Path) -> RecorderSettings {
     RecorderSettings {
         pace: RecordingPace::Lockstep,
@@ -110,7 +110,7 @@ pub(crate) fn flight(ticks: u64) -> Vec<FlightMessage> {
         .collect()
 }
 
-/// Records messages and ends as a flight does.
+/// Records messages and finishes as a flight does.
 pub(crate) fn record_all(recorder: Recorder, messages: &[FlightMessage]) -> Vec<String> {
     let mut recorder = recorder;
     for message in messages {
@@ -120,7 +120,7 @@ pub(crate) fn record_all(recorder: Recorder, messages: &[FlightMessage]) -> Vec<
         .finish("stopped by command")
         .1
         .into_iter()
-        .map(|news| news.text)
+        .map(|notices| notices.text)
         .collect()
 }
 

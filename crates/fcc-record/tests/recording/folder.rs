@@ -1,4 +1,4 @@
-//! Many files: rotation, and a folder that is kept small.
+//! Rotation of files, and the size limit of a folder.
 
 use std::fs;
 use std::time::Duration;
@@ -40,7 +40,7 @@ fn a_recording_is_split_by_age_without_a_gap() {
     assert_eq!(parts[2].end().unwrap().ending, "stopped by command");
     assert_eq!(
         parts[0].end().unwrap().ending,
-        "the recording goes on in its next file"
+        "the recording continues in its next file"
     );
 }
 
@@ -63,7 +63,7 @@ fn a_recording_is_split_by_size_and_the_folder_kept_small() {
     assert!(!old.exists() && unrelated.exists());
     assert!(parts.len() >= 2);
     let sizes: Vec<u64> = parts.iter().map(Recording::bytes).collect();
-    // A chunk of 1 MiB comes in one piece, and an index at the end.
+    // A chunk of 1 MiB is written as a whole, and the index at the end.
     assert!(
         sizes.iter().all(|bytes| *bytes < 2_000_000 + 1_300_000),
         "{sizes:?}"
@@ -72,7 +72,7 @@ fn a_recording_is_split_by_size_and_the_folder_kept_small() {
         sizes.iter().sum::<u64>() < 5_000_000 + 3_300_000,
         "{sizes:?}"
     );
-    // The newest are kept, without a gap among them.
+    // The newest are kept, without a gap between them.
     let kept: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
     assert_eq!(*kept.last().unwrap(), 20_000);
     assert!(kept.windows(2).all(|pair| pair[1] == pair[0] + 1));

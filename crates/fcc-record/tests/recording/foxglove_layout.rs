@@ -1,4 +1,4 @@
-//! The layout in examples/foxglove shows what is in a recording.
+//! Each path in the layout in examples/foxglove exists in a recording.
 
 use std::fs;
 
@@ -14,7 +14,7 @@ use crate::flight::{about, flight, only_file, record_all, settings};
 
 const LAYOUT: &str = include_str!("../../../../examples/foxglove/fccd.json");
 
-/// All texts in a value that name a topic.
+/// All strings in a value that name a topic.
 fn paths(value: &Value) -> Vec<&str> {
     match value {
         Value::String(text) if text.starts_with('/') => vec![text],
@@ -68,7 +68,7 @@ fn every_path_of_the_layout_is_in_a_recording() {
         let channel = channel.unwrap_or_else(|| panic!("{path}: no such topic"));
         let schema = channel.schema.as_ref().unwrap();
         let set = FileDescriptorSet::decode(&*schema.data).unwrap();
-        // What Foxglove computes of it comes last.
+        // What Foxglove computes from it comes last.
         let fields = fields.split(".@").next().unwrap_or("");
         if !fields.is_empty() {
             let fields: Vec<&str> = fields.split('.').collect();

@@ -1,5 +1,5 @@
-//! Full and read-only disks: the flight goes on, nothing that was recorded
-//! before is lost, and what is lost is told once there is room again.
+//! Full and read-only disks: the flight continues, nothing that was committed
+//! is lost, and the loss is reported once there is room again.
 
 use std::fs::File;
 use std::ops::RangeInclusive;
@@ -14,7 +14,7 @@ use fcc_record::{Disk, DiskFile, Item, Recorder, RecorderSettings, Recording, re
 use crate::disks::{Small, gaps, ticks, wait_for, wait_for_ticks};
 use crate::flight::{about, flight, only_file, record, settings};
 
-/// A recorder on a disk with room for all, and what of that is free.
+/// A recorder on a disk with room for everything, and its free bytes.
 fn recorder(settings: RecorderSettings, in_the_way: Option<&Path>) -> (Recorder, Arc<AtomicU64>) {
     let free = Arc::new(AtomicU64::new(u64::MAX));
     let disk = Small {
@@ -47,21 +47,26 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
     // Room for a part of the next chunk.
     free.store(100, Ordering::SeqCst);
     take(&mut recorder, 41..=80);
-    let (status, news) = recorder.finish("stopped by command");
+    let (status, notices) = recorder.finish("stopped by command");
 
     let stopped = status.stopped.unwrap();
     assert!(
-        stopped.ends_with("; 40 messages of ticks 41 to 80 are lost, all before is safe"),
+        stopped
+            .ends_with("; 40 messages of ticks 41 to 80 are lost, all earlier ones are recorded"),
         "{stopped}"
     );
     assert!(
-        news.last().unwrap().text.starts_with("recording stopped: "),
-        "{news:?}"
+        notices
+            .last()
+            .unwrap()
+            .text
+            .starts_with("recording stopped: "),
+        "{notices:?}"
     );
     assert_eq!((status.ticks, status.not_recorded), (40, 40));
     let path = only_file(folder.path());
     assert_eq!(ticks(&path), (1..=40).collect::<Vec<_>>());
-    // Nothing torn is left: with room again, it becomes a whole file.
+    // No partial record is left: with room again, the file can be recovered.
     let recovered = recover(&path, |_| {}).unwrap();
     assert_eq!(recovered.ticks, 40);
     assert!(Recording::open(&path).unwrap().is_whole());
@@ -92,19 +97,19 @@ fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
     // The file that follows is begun as soon as there is room.
     wait_for(&recorder, |status| status.files.len() == 2);
     take(&mut recorder, 51..=60);
-    let (status, news) = recorder.finish("stopped by command");
-    assert_eq!(status.stopped, None, "{news:?}");
+    let (status, notices) = recorder.finish("stopped by command");
+    assert_eq!(status.stopped, None, "{notices:?}");
     assert!(!old.exists() && kept.exists() && unrelated.exists());
-    assert_eq!(status.files.len(), 2, "{news:?}");
+    assert_eq!(status.files.len(), 2, "{notices:?}");
     assert_eq!(ticks(&status.files[0]), (1..=40).collect::<Vec<_>>());
-    assert_all_is_there_or_told(&status.files[1], 41, 60);
-    // Those that came before the disk was seen to be full, and no others.
+    assert_recorded_or_reported(&status.files[1], 41, 60);
+    // Only those that came before the disk was found to be full.
     assert!(gaps(&status.files[1])[0].2 <= 50, "{status:?}");
 }
 
-/// Asserts that a file holds ticks up to `last`, and tells of all before them,
-/// from `first` on, as one gap.
-fn assert_all_is_there_or_told(path: &Path, first: u64, last: u64) {
+/// Asserts that a file contains the ticks up to `last`, and reports all before
+/// them, from `first` on, as one gap.
+fn assert_recorded_or_reported(path: &Path, first: u64, last: u64) {
     assert!(Recording::open(path).unwrap().is_whole());
     let [(count, from, to)] = gaps(path)[..] else {
         panic!("{:?}", gaps(path));
@@ -113,8 +118,8 @@ fn assert_all_is_there_or_told(path: &Path, first: u64, last: u64) {
     assert_eq!(ticks(path), (to + 1..=last).collect::<Vec<_>>());
 }
 
-/// What comes last meets a full disk: room is made, and the gap is told in a
-/// file of its own.
+/// The last messages meet a full disk: room is made, and the gap is reported in
+/// another file.
 #[test]
 fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
     let folder = tempfile::tempdir().unwrap();
@@ -130,34 +135,36 @@ fn a_disk_that_is_full_at_the_very_end_leaves_no_file_unfinished() {
     begin_well(&mut recorder);
     free.store(10, Ordering::SeqCst);
     take(&mut recorder, 41..=50);
-    let (status, news) = recorder.finish("stopped by command");
-    assert_eq!(status.stopped, None, "{news:?}");
+    let (status, notices) = recorder.finish("stopped by command");
+    assert_eq!(status.stopped, None, "{notices:?}");
     assert!(!old.exists());
     let [first, second] = &status.files[..] else {
         panic!("{status:?}");
     };
     assert_eq!(ticks(first), (1..=40).collect::<Vec<_>>());
-    assert_all_is_there_or_told(second, 41, 50);
+    assert_recorded_or_reported(second, 41, 50);
 }
 
-/// Where there is no room for what comes last, nothing is promised any more.
+/// Without room for the last messages, no retry is announced.
 #[test]
-fn a_recording_that_cannot_be_ended_says_so_and_no_more() {
+fn a_recording_that_cannot_be_finished_is_reported_without_a_retry() {
     let folder = tempfile::tempdir().unwrap();
     let (mut recorder, free) = recorder(settings(folder.path()), None);
     begin_well(&mut recorder);
     free.store(0, Ordering::SeqCst);
-    let (status, news) = recorder.finish("stopped by command");
-    assert!(status.stopped.unwrap().contains("fccd recover"), "{news:?}");
-    let last = &news.last().unwrap().text;
+    let (status, notices) = recorder.finish("stopped by command");
+    assert!(
+        status.stopped.unwrap().contains("fccd recover"),
+        "{notices:?}"
+    );
+    let last = &notices.last().unwrap().text;
     assert!(last.starts_with("recording stopped: "), "{last}");
     assert!(!last.contains("tried again"), "{last}");
     assert_eq!((status.ticks, status.not_recorded), (40, 0));
     assert_eq!(recover(&status.files[0], |_| {}).unwrap().ticks, 40);
 }
 
-/// As a full disk on which somebody makes room, or one that is plugged in
-/// again.
+/// As a full disk on which room is made, or one that is plugged in again.
 #[test]
 fn a_disk_that_has_room_again_is_recorded_to_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -172,8 +179,8 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
     free.store(0, Ordering::SeqCst);
     take(&mut recorder, 41..=80);
     wait_for(&recorder, |status| status.stopped.is_some());
-    // Room for a file to begin, and for nothing in it. It fails at its first
-    // commit, and nothing of it stays.
+    // Room to begin a file, and for nothing more. It fails at its first commit
+    // and is deleted.
     free.store(beginning + 10, Ordering::SeqCst);
     take(&mut recorder, 81..=90);
     wait_for(&recorder, |status| {
@@ -184,7 +191,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
     free.store(u64::MAX, Ordering::SeqCst);
     wait_for(&recorder, |status| status.file.is_some());
     take(&mut recorder, 91..=100);
-    let (status, news) = recorder.finish("stopped by command");
+    let (status, notices) = recorder.finish("stopped by command");
     assert_eq!((status.stopped, status.not_recorded), (None, 50));
     assert_eq!((status.ticks, status.files.len()), (50, 2));
     assert_eq!(fcc_record::files(folder.path()).unwrap(), status.files);
@@ -196,7 +203,7 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
     assert!(recording.is_whole());
     assert_eq!(recording.about().part, 2);
     assert_eq!(recording.end().unwrap().not_recorded, 50);
-    let told: Vec<_> = recording
+    let remarks: Vec<_> = recording
         .items::<fcc_telemetry::FlightMessage>()
         .unwrap()
         .filter_map(|item| match item {
@@ -204,26 +211,33 @@ fn a_disk_that_has_room_again_is_recorded_to_again() {
             Item::Message(_) | Item::Damage(_) => None,
         })
         .collect();
-    assert!(told[0].starts_with("recording stopped: "), "{told:?}");
-    // Said when it stops and when it goes on, and not at every attempt.
-    let said: Vec<_> = news.iter().map(|news| news.text.as_str()).collect();
-    let [begins, stops, goes_on] = said[..] else {
-        panic!("{said:?}");
+    assert!(remarks[0].starts_with("recording stopped: "), "{remarks:?}");
+    // Reported when it stops and when it continues, and not at every attempt.
+    let texts: Vec<_> = notices
+        .iter()
+        .map(|notices| notices.text.as_str())
+        .collect();
+    let [begins, stops, continues] = texts[..] else {
+        panic!("{texts:?}");
     };
     assert!(begins.starts_with("recording to "), "{begins}");
     assert!(stops.starts_with("recording stopped: "), "{stops}");
     assert!(stops.contains("tried again every 0.02 s"), "{stops}");
-    assert!(goes_on.starts_with("recording goes on in "), "{goes_on}");
     assert!(
-        goes_on.ends_with(": 50 messages of ticks 41 to 90 are lost, all before is safe"),
-        "{goes_on}"
+        continues.starts_with("recording continues in "),
+        "{continues}"
+    );
+    assert!(
+        continues
+            .ends_with(": 50 messages of ticks 41 to 90 are lost, all earlier ones are recorded"),
+        "{continues}"
     );
 }
 
-/// A folder that cannot be made, because a file is in its place: what a
-/// read-only file system looks like to root, too.
+/// A folder that cannot be created, because a file has its name: root sees this
+/// on a read-only file system, too.
 #[test]
-fn a_folder_that_cannot_be_written_is_news_and_no_error() {
+fn a_folder_that_cannot_be_written_is_a_notice_and_not_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let in_the_way = folder.path().join("recordings");
     File::create(&in_the_way).unwrap();
@@ -231,27 +245,30 @@ fn a_folder_that_cannot_be_written_is_news_and_no_error() {
     for message in &flight(10) {
         recorder.take(message);
     }
-    let (status, news) = recorder.finish("stopped by command");
-    assert_eq!(news.len(), 1);
-    assert!(news[0].text.starts_with("recording stopped: "), "{news:?}");
+    let (status, notices) = recorder.finish("stopped by command");
+    assert_eq!(notices.len(), 1);
     assert!(
-        news[0].is_trouble && news[0].text.contains("--recordings"),
-        "{news:?}"
+        notices[0].text.starts_with("recording stopped: "),
+        "{notices:?}"
+    );
+    assert!(
+        notices[0].is_trouble && notices[0].text.contains("--recordings"),
+        "{notices:?}"
     );
     assert_eq!((status.ticks, status.not_recorded), (0, 11));
 }
 
-/// A disk that makes the recorder panic.
+/// A disk that panics.
 struct Broken;
 
 impl Disk for Broken {
     fn create(&mut self, _: &Path) -> std::io::Result<Box<dyn DiskFile>> {
-        panic!("as asked for by the test");
+        panic!("required by the test");
     }
 }
 
 #[test]
-fn a_recorder_that_panics_says_so_in_flight() {
+fn a_recorder_that_panics_is_reported_in_flight() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder =
         Recorder::start_on(Box::new(Broken), about(), settings(folder.path())).unwrap();
@@ -259,9 +276,9 @@ fn a_recorder_that_panics_says_so_in_flight() {
     for message in &flight(10) {
         recorder.take(message);
     }
-    let (status, news) = recorder.finish("stopped by command");
-    assert!(status.stopped.unwrap().contains("panicked"), "{news:?}");
+    let (status, notices) = recorder.finish("stopped by command");
+    assert!(status.stopped.unwrap().contains("panicked"), "{notices:?}");
     assert_eq!((status.ticks, status.not_recorded), (0, 11));
-    assert_eq!(news.len(), 1);
-    assert!(news[0].is_trouble);
+    assert_eq!(notices.len(), 1);
+    assert!(notices[0].is_trouble);
 }

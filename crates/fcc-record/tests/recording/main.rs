@@ -1,4 +1,5 @@
-//! Recordings from outside: what goes in comes back, whatever the disk does.
+//! Recordings from outside: what is written is read back, whatever the disk
+//! does.
 #![cfg(test)]
 
 mod any;
@@ -9,5 +10,6 @@ mod flight;
 mod folder;
 mod foxglove_layout;
 mod full_disk;
+mod old_format;
 mod round_trip;
 mod slow_disk;

@@ -1,4 +1,4 @@
-//! What is recorded comes back with the very same bits.
+//! What is recorded is read back bit for bit.
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
@@ -33,12 +33,12 @@ const RESUME: Resume = Resume {
     },
 };
 
-/// Records, reads, and gives what came back from a file that must be whole.
+/// Records, reads, and returns what was read from a file that must be finished.
 fn there_and_back(messages: &[FlightMessage], settings: RecorderSettings) -> Vec<FlightMessage> {
     let folder = settings.folder.clone();
     let recorder = Recorder::start(about(), settings).unwrap();
-    let news = record_all(recorder, messages);
-    assert_eq!(news.len(), 1, "{news:?}");
+    let notices = record_all(recorder, messages);
+    assert_eq!(notices.len(), 1, "{notices:?}");
     let recording = Recording::open(only_file(&folder)).unwrap();
     assert!(recording.is_whole());
     let mut read = recording.messages().unwrap();
@@ -156,7 +156,7 @@ fn every_event_comes_back() {
 }
 
 #[test]
-fn a_file_says_what_flew_and_how_it_ended() {
+fn a_file_contains_metadata_and_ending() {
     let folder = tempfile::tempdir().unwrap();
     let recorder = Recorder::start(about(), settings(folder.path())).unwrap();
     recorder.remark("the wind is light".to_owned());
@@ -200,8 +200,8 @@ fn remarks_come_back_at_the_time_of_the_message_before() {
         .items::<FlightMessage>()
         .unwrap()
         .collect();
-    // The event of engaging, three ticks, the remark, a tick; the log's line
-    // of the event is no remark.
+    // The event of engaging, three ticks, the remark, a tick. The log line of
+    // the event is not a remark.
     let [.., Item::Message(_), Item::Remark(remark), Item::Message(_)] = &items[..] else {
         panic!("{items:?}");
     };
@@ -211,11 +211,11 @@ fn remarks_come_back_at_the_time_of_the_message_before() {
 }
 
 /// Readers of MCAP search by log time: wall clock at the start plus the loop's
-/// time since, and never backwards.
+/// time since. It never goes backwards.
 #[test]
 fn log_times_follow_the_wall_clock_and_never_go_back() {
     let mut messages = flight(50);
-    // A reading of a clock that stepped back, and a time that never was.
+    // A clock that stepped back, and a time that was never set.
     messages.push(Message::Tick(record(2)));
     messages.push(Message::Event(fcc_core::framework::Event {
         tick: 0,

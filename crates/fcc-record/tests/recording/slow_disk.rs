@@ -1,4 +1,5 @@
-//! A disk that is too slow: nobody waits for it, and what it costs is told.
+//! A disk that is too slow: the flight does not wait for it, and the loss is
+//! reported.
 
 use std::sync::{Arc, Condvar, Mutex};
 
@@ -6,14 +7,14 @@ use fcc_core::framework::{EventKind, Message};
 use fcc_record::{Recorder, RecorderSettings, Recording};
 use fcc_telemetry::FlightMessage;
 
-use crate::disks::{StuckDetector, set, wait_for_ticks};
+use crate::disks::{StuckDisk, set, wait_for_ticks};
 use crate::flight::{about, only_file, record};
 
 #[test]
-fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
+fn the_loss_from_a_slow_disk_is_counted_and_reported_with_its_ticks() {
     let folder = tempfile::tempdir().unwrap();
     let gate = Arc::new((Mutex::new(false), Condvar::new()));
-    let disk = StuckDetector {
+    let disk = StuckDisk {
         gate: Arc::clone(&gate),
     };
     let capacity = 16;
@@ -27,8 +28,8 @@ fn what_a_slow_disk_costs_is_counted_and_told_with_its_span() {
     )
     .unwrap();
     // The disk hangs in the file's first sync: the recorder's thread takes
-    // nothing, and 16 messages fit on the way to it.
-    // Whoever waited for the disk would wait here for ever.
+    // nothing, and 16 messages fit into the queue. A recorder that waited would
+    // hang here.
     for number in 1..=1_000 {
         recorder.take(&Message::Tick(record(number)));
     }

@@ -1,36 +1,63 @@
-//! The single values of a struct as columns.
+//! The values of a struct as columns.
 
-use fcc_core::framework::schema::{Field, Kind, Schema, Structure, Type};
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Structure, Type, Value};
 
-/// A single value of a struct.
+/// A column: one value of a struct.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Column {
-    /// What it is called in tables and arrays, its unit at the end.
+    /// Its name in tables and arrays, with the unit at the end.
     pub name: String,
-    /// Where it stands in the struct: `measurements.attitude.value.pitch_rad`.
+    /// Its name in its struct; of a reading's value, the reading's.
+    pub field: &'static str,
+    /// Its path in the struct: `measurements.attitude.value.pitch_rad`.
     pub path: String,
-    /// Where the reading stands that it is a part of, if it is of one.
+    /// The path of the reading that contains it, if there is one.
     pub reading: Option<String>,
     /// Bytes from the struct's beginning.
     pub offset: usize,
-    /// What kind of value it is.
+    /// The kind of value.
     pub kind: Kind,
     /// What it means.
     pub meaning: String,
     /// Its unit; empty if it has none.
     pub unit: &'static str,
-    /// The least and the greatest that it can be.
+    /// The smallest and the largest value.
     pub range: Option<(f64, f64)>,
 }
 
-/// The single values of a struct, in their order.
+/// The values of a struct, in order.
 pub fn columns<T: Schema>() -> Vec<Column> {
     collect::<T>(false)
 }
 
-/// The same, and what is worked out from the values of a struct after them.
+/// The same, followed by the derived values.
 pub(super) fn columns_and_derived<T: Schema>() -> Vec<Column> {
     collect::<T>(true)
+}
+
+/// The single values of a struct, in the order of its [`columns`].
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Leaves {
+    values: Vec<Value>,
+}
+
+impl Leaves {
+    /// Replaces the values by those of a struct.
+    pub fn take<T: Schema>(&mut self, of: &T) {
+        self.values.clear();
+        of.visit(self);
+    }
+
+    /// The values.
+    pub fn as_slice(&self) -> &[Value] {
+        &self.values
+    }
+}
+
+impl Sink for Leaves {
+    fn value(&mut self, _: &'static Field, value: Value) {
+        self.values.push(value);
+    }
 }
 
 fn collect<T: Schema>(derived: bool) -> Vec<Column> {
@@ -46,13 +73,13 @@ fn collect<T: Schema>(derived: bool) -> Vec<Column> {
     found
 }
 
-/// A field, and what it is in.
+/// A field and the structs that contain it.
 struct Around<'a> {
     path: String,
     offset: usize,
     field: &'static Field,
     outer: Option<&'a Self>,
-    /// Of a reading's parts: the name of the reading.
+    /// In a reading: the name of the reading.
     quantity: &'static str,
 }
 
@@ -81,7 +108,7 @@ impl Around<'_> {
     }
 
     fn column(&self, kind: Kind) -> Column {
-        // The value of a reading is what the reading is of.
+        // A reading's value is described by the reading.
         let told_by = match self.outer {
             Some(reading) if self.is_value() => reading.field,
             _ => self.field,
@@ -90,6 +117,7 @@ impl Around<'_> {
         named.of = Type::Leaf(kind);
         Column {
             name: self.name(),
+            field: told_by.name,
             path: self.path.clone(),
             reading: self.reading(),
             offset: self.offset,
@@ -117,12 +145,13 @@ impl Around<'_> {
         !self.quantity.is_empty() && self.field.name == "value"
     }
 
-    /// Its own name, as each struct around it wants it.
+    /// Its name, qualified as the structs around it require.
     fn name(&self) -> String {
         let own = self.field.column.unwrap_or(self.field.name);
         let mut around = self.outer;
         let mut name = match self.field.of {
-            // A reading's time is named after the reading, and its value is it.
+            // A reading's time is named after the reading; its value has the
+            // reading's name.
             Type::Leaf(Kind::Instant) if !self.quantity.is_empty() => {
                 let reading = around;
                 around = reading.and_then(|reading| reading.outer);

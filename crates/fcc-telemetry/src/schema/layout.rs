@@ -1,5 +1,4 @@
-//! The layout of a struct in memory, as a table for those who read it in other
-//! languages.
+//! The memory layout of a struct as a table, for programs in other languages.
 
 use std::fmt::Write as _;
 
@@ -7,7 +6,7 @@ use fcc_core::framework::schema::{Enumeration, Kind, Schema};
 
 use super::{Column, columns};
 
-/// The layout of a struct as a table in Markdown.
+/// The layout of a struct as a Markdown table.
 pub fn layout_table<T: Schema>() -> String {
     let mut text =
         String::from("| offset | field | type | unit | what |\n|---:|---|---|---|---|\n");
@@ -37,18 +36,19 @@ fn what(column: &Column) -> String {
     text
 }
 
-/// The numbers of an enum in words.
+/// The codes of an enum and their names.
 pub(crate) fn codes(of: &Enumeration) -> String {
     let known: Vec<_> = of
         .variants
         .iter()
-        .map(|variant| format!("{} {}", variant.number, words_of(variant.name)))
+        .map(|variant| format!("{} {}", variant.number, spaced(variant.name)))
         .collect();
     known.join(", ")
 }
 
-/// The name of a type or variant as words: `InvalidOutput` is `invalid output`.
-pub fn words_of(name: &str) -> String {
+/// The name of a type or variant in lower case with spaces: `InvalidOutput`
+/// gives `invalid output`.
+pub fn spaced(name: &str) -> String {
     let mut text = String::new();
     for letter in name.chars() {
         if letter.is_uppercase() && !text.is_empty() {
@@ -59,7 +59,7 @@ pub fn words_of(name: &str) -> String {
     text
 }
 
-/// One end of a range, in multiples of π where it is one.
+/// A limit of a range, as a multiple of π where it is one.
 pub(crate) fn end_of(value: f64) -> String {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
     let known = [(TAU, "2π"), (PI, "π"), (FRAC_PI_2, "π/2")];

@@ -1,6 +1,6 @@
-//! What follows from a [`Schema`](fcc_core::framework::schema::Schema):
-//! columns of tables and arrays, the layout in memory, and the messages of a
-//! recording with their description. Nothing here knows a field by name.
+//! Generated from a [`Schema`](fcc_core::framework::schema::Schema): columns of
+//! tables and arrays, the memory layout, and the messages of a recording with
+//! their description. No field is named here.
 
 mod columns;
 mod layout;
@@ -8,13 +8,12 @@ pub mod protobuf;
 mod row;
 mod words;
 
-pub use columns::{Column, columns};
-pub use layout::{layout_table, words_of};
+pub use columns::{Column, Leaves, columns};
+pub use layout::{layout_table, spaced};
 pub use row::{Row, header};
 pub use words::{Words, words, write_words};
 
-/// The lines of a doc comment as one: its first paragraph, without the marks of
-/// links and code.
+/// The first paragraph of a doc comment in one line, without markup.
 pub(crate) fn meaning(lines: &str) -> String {
     let words: Vec<_> = lines
         .lines()

@@ -5,27 +5,27 @@ use std::fmt::Write as _;
 use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Type, Value};
 
 use super::columns::columns_and_derived;
-use super::layout::words_of;
+use super::layout::spaced;
 
-/// The names of a table's columns: of all values, and of what is worked out.
+/// The names of a table's columns: values, then derived values.
 pub fn header<T: Schema>() -> Vec<String> {
     let all = columns_and_derived::<T>();
     all.into_iter().map(|column| column.name).collect()
 }
 
-/// A row of a table: a cell for each value, as it is recorded, and empty for
-/// what was never measured. Codes are words.
+/// A row of a table: one cell for each value, as recorded; empty for a reading
+/// that was never taken. Codes are given by name.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
     cells: Vec<String>,
     used: usize,
-    /// Where the structs that have begun and not ended begin.
+    /// The first cell of each struct that has begun and not ended.
     open: Vec<usize>,
     never: bool,
 }
 
 impl Row {
-    /// Takes the place of the row before.
+    /// Replaces the previous row.
     pub fn take<T: Schema>(&mut self, value: &T) {
         self.used = 0;
         self.open.clear();
@@ -56,7 +56,7 @@ impl Sink for Row {
 
     fn end(&mut self, field: &'static Field) {
         let first = self.open.pop().unwrap_or(self.used);
-        // What was never measured has no value, whatever the number says.
+        // A reading that was never taken has no value.
         if let Type::Struct(of) = field.of
             && of.is_reading
             && std::mem::take(&mut self.never)
@@ -77,7 +77,7 @@ impl Sink for Row {
             Value::Bool(value) => write!(cell, "{}", u8::from(value)),
             Value::Code(number) => match field.of {
                 Type::Leaf(Kind::Code(of)) => {
-                    write!(cell, "{}", words_of(of.name_of(number).unwrap_or_default()))
+                    write!(cell, "{}", spaced(of.name_of(number).unwrap_or_default()))
                 }
                 _ => write!(cell, "{number}"),
             },

@@ -1,5 +1,5 @@
-//! A struct as the words of its memory, with nothing undefined between the
-//! fields: two equal structs have the same words.
+//! A struct as 64-bit words, with no undefined bytes between the fields: equal
+//! structs have equal words.
 
 use std::marker::PhantomData;
 
@@ -7,8 +7,8 @@ use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Source, Type, Unkno
 
 const WORD: usize = size_of::<u64>();
 
-/// The words of `T`: what another process wrote may be anything, and is read
-/// back as a `T` only if every value of it is one that is declared.
+/// The 64-bit words of `T`. Another process may have written any bits: they are
+/// read as a `T` only if every value is a declared one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub struct Words<T, const N: usize> {
@@ -16,7 +16,7 @@ pub struct Words<T, const N: usize> {
     of: PhantomData<fn() -> T>,
 }
 
-/// How many words a `T` takes.
+/// The number of words of a `T`.
 pub const fn words<T>() -> usize {
     size_of::<T>().div_ceil(WORD)
 }
@@ -24,7 +24,7 @@ pub const fn words<T>() -> usize {
 impl<T: Schema, const N: usize> Words<T, N> {
     /// The words of a struct.
     pub fn of(value: &T) -> Self {
-        const { assert!(N == words::<T>(), "as many words as the struct takes") };
+        const { assert!(N == words::<T>(), "the words of the struct") };
         let mut words = [0; N];
         write_words(value, &mut words);
         Self {
@@ -36,7 +36,7 @@ impl<T: Schema, const N: usize> Words<T, N> {
     /// The struct in these words.
     ///
     /// # Errors
-    /// When a value is none of those that are declared.
+    /// When a value is not one of those declared.
     pub fn get(&self) -> Result<T, Unknown> {
         T::from_source(&mut Memory {
             words: &mut self.words.clone(),
@@ -58,13 +58,13 @@ pub fn write_words<T: Schema>(value: &T, words: &mut [u64]) {
 
 struct Memory<'a> {
     words: &'a mut [u64],
-    /// Of the struct that is being written or read.
+    /// Offset of the struct being written or read.
     offset: usize,
 }
 
 impl Memory<'_> {
-    /// The word that a field lies in, and the bits before it: no field lies
-    /// across two words, as each is aligned to its size.
+    /// The word that contains a field, and the bits before it. No field is in
+    /// two words, because each is aligned to its size.
     fn place(&mut self, field: &Field) -> Option<(&mut u64, usize)> {
         let at = self.offset + field.offset;
         let bytes_before = at % WORD;
@@ -95,7 +95,7 @@ impl Sink for Memory<'_> {
 
     fn value(&mut self, field: &'static Field, value: Value) {
         let bits = match value {
-            // Sign bits beyond the value's own bytes are others' room.
+            // Sign bits beyond the value's own bytes belong to other fields.
             Value::Signed(signed) => {
                 let above = 64 - 8 * kind(field).map_or(WORD, |kind| kind.bytes()) as u32;
                 (signed as u64) << above >> above
@@ -120,7 +120,7 @@ impl Source for Memory<'_> {
     fn value(&mut self, field: &'static Field) -> Option<Value> {
         let kind = kind(field)?;
         let (word, shift) = self.place(field)?;
-        // Bits that are no value are none that is declared.
+        // Invalid bits give an undeclared code.
         Some(Value::from_bits(kind, *word >> shift).unwrap_or(Value::Code(u8::MAX)))
     }
 }

@@ -1,24 +1,24 @@
-//! From bytes, of which nothing is believed.
+//! Decodes untrusted bytes.
 
 use fcc_core::framework::schema::{Field, Kind, Schema, Source, Type, Unknown, Value};
 use prost::encoding::{WireType, decode_key, decode_varint};
 
-/// Why bytes are no message of a type.
+/// Why bytes cannot be decoded as a message of a type.
 #[derive(thiserror::Error, Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum DecodeError {
-    /// They are no message at all, or a field of it is of another type.
-    #[error("its bytes are no message")]
+    /// They are not a message, or a field has another type.
+    #[error("its bytes are not a message")]
     Damaged,
-    /// A value is none of those that are declared.
+    /// A value is not one of those declared.
     #[error(transparent)]
     Unknown(#[from] Unknown),
 }
 
-/// The struct in a message.
+/// Decodes a struct.
 ///
 /// # Errors
-/// When the bytes are no message of this type.
+/// When the bytes are not a message of this type.
 pub fn decode<T: Schema>(bytes: &[u8]) -> Result<T, DecodeError> {
     let mut decoder = Decoder {
         fields: Vec::with_capacity(64),
@@ -42,17 +42,16 @@ enum Wire<'a> {
 }
 
 struct Decoder<'a> {
-    /// The fields of the messages that have begun and not ended.
+    /// The fields of the messages begun and not ended.
     fields: Vec<(u32, Wire<'a>)>,
-    /// Where in it those of each begin; none for a message that is not there.
+    /// Index of the first field of each; none for a message that is missing.
     open: Vec<Option<usize>>,
     root: &'a [u8],
     damaged: bool,
 }
 
 impl<'a> Decoder<'a> {
-    /// A field of the message that is being read; the last, if there are
-    /// several.
+    /// A field of the present message; the last, if there are several.
     fn find(&self, number: u32) -> Option<Wire<'a>> {
         let first = (*self.open.last()?)?;
         let fields = self.fields.get(first..)?;
@@ -60,7 +59,7 @@ impl<'a> Decoder<'a> {
         found.map(|(_, wire)| *wire)
     }
 
-    /// Takes a message apart.
+    /// Splits a message into fields.
     fn take(&mut self, mut bytes: &'a [u8]) -> Option<()> {
         while !bytes.is_empty() {
             let (number, wire_type) = decode_key(&mut bytes).ok()?;
@@ -118,7 +117,7 @@ impl Source for Decoder<'_> {
     }
 
     fn value(&mut self, field: &'static Field) -> Option<Value> {
-        // Of a message that is not there, every value is the default.
+        // Every value of a missing message is the default.
         (*self.open.last()?)?;
         let Type::Leaf(kind) = field.of else {
             return None;

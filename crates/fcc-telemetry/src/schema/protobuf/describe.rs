@@ -1,4 +1,4 @@
-//! What a recording carries so that any program can read it.
+//! The description in a recording, with which any program can read it.
 
 use fcc_core::framework::schema::{Enumeration, Kind};
 use prost::Message as _;
@@ -26,7 +26,7 @@ pub fn describe(file: &File, name: &str, package: &str) -> Vec<u8> {
     .encode_to_vec()
 }
 
-/// What the choice between the fields of a message is called.
+/// The name of the choice between a message's fields.
 pub(super) const ONEOF: &str = "kind";
 
 fn message(of: &Message, package: &str) -> DescriptorProto {
@@ -42,7 +42,7 @@ fn message(of: &Message, package: &str) -> DescriptorProto {
         if of.is_choice {
             made.oneof_index = Some(0);
         } else if field.is_optional() {
-            // What proto3 makes of `optional`: a choice of one.
+            // How proto3 represents `optional`: a choice with one field.
             made.proto3_optional = Some(true);
             made.oneof_index = Some(described.oneof_decl.len() as i32);
             described.oneof_decl.push(oneof(format!("_{}", field.name)));
@@ -60,7 +60,7 @@ const fn oneof(name: String) -> OneofDescriptorProto {
 }
 
 impl MessageField {
-    /// Whether it is written even where it is 0.
+    /// Whether it is written even if it is 0.
     pub(super) const fn is_optional(&self) -> bool {
         matches!(self.of, FieldType::Leaf(Kind::Number | Kind::Instant))
     }
@@ -101,8 +101,8 @@ fn enumeration(of: &Enumeration) -> EnumDescriptorProto {
     }
 }
 
-/// What proto3 calls a value of an enum: with the enum's name before it, as
-/// values of one file share their names.
+/// The proto3 name of an enum's value: prefixed with the enum's name, because
+/// the values of all enums in a file share one scope.
 pub(super) fn value_name(of: &Enumeration, variant: &str) -> String {
     format!("{}_{}", snake(of.name), snake(variant)).to_uppercase()
 }

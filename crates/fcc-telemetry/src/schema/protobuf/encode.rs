@@ -1,4 +1,4 @@
-//! Into bytes.
+//! Encodes structs as messages.
 
 use fcc_core::framework::schema::{Field, Schema, Sink, Type, Value};
 use prost::encoding::{self, WireType, encode_key, encode_varint, encoded_len_varint};
@@ -11,7 +11,7 @@ pub fn encode<T: Schema>(value: &T, into: &mut Vec<u8>) {
     });
 }
 
-/// Appends a text to a message, as its field of this number.
+/// Appends a text to a message, as the field with this number.
 pub fn append_text(number: u32, text: &str, into: &mut Vec<u8>) {
     encode_key(number, WireType::LengthDelimited, into);
     encode_varint(text.len() as u64, into);
@@ -20,14 +20,14 @@ pub fn append_text(number: u32, text: &str, into: &mut Vec<u8>) {
 
 struct Encoder<'a> {
     into: &'a mut Vec<u8>,
-    /// The messages that have begun and not ended.
+    /// The messages begun and not ended.
     open: Vec<Open>,
 }
 
 struct Open {
-    /// Where its fields begin.
+    /// Offset of its first field.
     start: usize,
-    /// Whether it is there to say which field it has.
+    /// Whether it is written even if empty, to select the field of a choice.
     is_choice: bool,
 }
 
@@ -42,7 +42,7 @@ impl Sink for Encoder<'_> {
         });
     }
 
-    /// A message's length stands before it and is known after it.
+    /// A message is preceded by its length, which is known at its end.
     fn end(&mut self, field: &'static Field) {
         let Some(Open { start, .. }) = self.open.pop() else {
             return;

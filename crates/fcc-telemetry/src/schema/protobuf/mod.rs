@@ -1,9 +1,9 @@
-//! A struct as a message of protobuf, and what describes such messages.
+//! Protobuf messages of structs, and their description.
 //!
-//! A number keeps its bits: every `double` and every instant is written, 0 and
-//! NaN too. A count, a code, a set of conditions or a `bool` that is 0 is left
-//! out, as proto3 has it. What a message leaves out altogether decodes to the
-//! default, so that fields may be added; a code that is not declared is refused.
+//! Numbers keep their bits: every `double` and every instant is written, 0 and
+//! NaN too. A count, a code, flags or a `bool` that is 0 is omitted, as in
+//! proto3. A message that is missing decodes to the default, so that fields can
+//! be added; an undeclared code is an error.
 
 mod decode;
 mod describe;

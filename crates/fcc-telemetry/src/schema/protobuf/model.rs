@@ -1,15 +1,15 @@
-//! The messages that a set of structs needs.
+//! The messages for a set of structs.
 
 use fcc_core::framework::schema::{Enumeration, Field, Kind, Structure, Type};
 
 use crate::schema::meaning;
 
-/// The messages and enums that some structs need, each once.
+/// The messages and enums for some structs, each once.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct File {
-    /// In the order of their first use.
+    /// In order of first use.
     pub messages: Vec<Message>,
-    /// In the order of their first use.
+    /// In order of first use.
     pub enums: Vec<&'static Enumeration>,
 }
 
@@ -20,11 +20,11 @@ pub struct Message {
     pub name: String,
     /// What it is.
     pub meaning: String,
-    /// Its fields, in their order.
+    /// Its fields, in order.
     pub fields: Vec<MessageField>,
-    /// Whether only one of its fields is there.
+    /// Whether it contains only one of its fields.
     pub is_choice: bool,
-    /// The numbers of fields that are gone.
+    /// The reserved numbers of removed fields.
     pub reserved: Vec<u32>,
 }
 
@@ -39,7 +39,7 @@ pub struct MessageField {
     pub meaning: String,
     /// Its unit; empty if it has none.
     pub unit: &'static str,
-    /// The least and the greatest that it can be.
+    /// The smallest and the largest value.
     pub range: Option<(f64, f64)>,
     /// Its type.
     pub of: FieldType,
@@ -56,7 +56,7 @@ pub enum FieldType {
     Text,
 }
 
-/// A text that is written with a struct and is no value of it.
+/// A text written with a struct that is not one of its fields.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Extra {
     /// The struct.
@@ -70,7 +70,7 @@ pub struct Extra {
 }
 
 impl File {
-    /// The messages of these structs and of all that they are made of.
+    /// The messages for these structs and all that they contain.
     pub fn of(roots: &[Type], extra: &[Extra]) -> Self {
         let mut file = Self::default();
         for root in roots {
@@ -142,7 +142,7 @@ fn field(of: &'static Field) -> MessageField {
     }
 }
 
-/// What a struct's message is called; a reading is called after its value.
+/// The name of a struct's message; a reading is named after its value.
 pub(crate) fn name_of(of: &Structure) -> String {
     let value = match of.fields {
         [value, ..] if of.is_reading => value,

@@ -1,4 +1,4 @@
-//! The same as text, for those who compile it.
+//! The messages as text, for compilers.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use super::model::{FieldType, File, Message, MessageField};
 use crate::schema::layout::end_of;
 use crate::schema::meaning;
 
-/// Longest line of a comment.
+/// The longest line of a comment.
 const WIDTH: usize = 80;
 
 /// A file as the text of a `.proto`.
@@ -43,7 +43,7 @@ fn message(out: &mut String, of: &Message) {
         let _ = writeln!(out, "  oneof {ONEOF} {{");
     }
     for field in &of.fields {
-        comment(out, indent, &told(field));
+        comment(out, indent, &comment_of(field));
         let optional = if field.is_optional() && !of.is_choice {
             "optional "
         } else {
@@ -63,7 +63,7 @@ fn message(out: &mut String, of: &Message) {
     out.push_str("}\n");
 }
 
-fn told(field: &MessageField) -> String {
+fn comment_of(field: &MessageField) -> String {
     let mut words = field.meaning.clone();
     if let Some((low, high)) = field.range {
         let _ = write!(words, " {} to {}.", end_of(low), end_of(high));
@@ -97,7 +97,7 @@ fn enumeration(out: &mut String, of: &Enumeration) {
     out.push_str("}\n");
 }
 
-/// A comment in lines that are not too long.
+/// A comment, wrapped.
 fn comment(out: &mut String, indent: &str, words: &str) {
     let mut line = String::new();
     for word in words.split_whitespace() {

@@ -1,0 +1,166 @@
+//! Events as text for users.
+
+use core::fmt;
+
+use super::{
+    Cause, Controller, EventKind, Flags, LoopCommand, Readings, SourceChange, Stage, State,
+};
+
+impl<O: Copy> EventKind<O> {
+    /// The event as text for users, with its conditions and commands named by
+    /// the controller.
+    pub const fn description<C: Controller<Command = O>>(&self) -> EventDescription<C> {
+        EventDescription { kind: *self }
+    }
+}
+
+/// An event as text for users; see [`EventKind::description`].
+///
+/// ```
+/// # use fcc_core::framework::{Controller, Flags, Tick};
+/// # struct Heating;
+/// # impl Controller for Heating {
+/// #     type Measurements = f64;
+/// #     type Estimate = ();
+/// #     type Setpoints = f64;
+/// #     type Outputs = f64;
+/// #     type Command = f64;
+/// #     fn estimate(&mut self, _: &Tick, _: &f64) {}
+/// #     fn engage_inhibits(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn faults(&self, _: &Tick, _: &f64) -> Flags { Flags::NONE }
+/// #     fn flag_name(_: u32) -> &'static str { "the door is open" }
+/// #     fn engage(&mut self, _: &Tick, _: &f64) {}
+/// #     fn control(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn failsafe(&mut self, _: &Tick, _: &f64) -> f64 { 0.0 }
+/// #     fn setpoints(&self) -> f64 { 21.0 }
+/// #     fn outputs_are_valid(&self, _: &f64) -> bool { true }
+/// # }
+/// use fcc_core::framework::EventKind;
+///
+/// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
+/// assert!(refused.description::<Heating>().to_string().ends_with("the door is open"));
+/// ```
+pub struct EventDescription<C: Controller> {
+    kind: EventKind<C::Command>,
+}
+
+impl<C: Controller> fmt::Display for EventDescription<C> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            EventKind::StateChanged { from, to } => state_change::<C>(f, from, to),
+            EventKind::CommandReceived(LoopCommand::Engage) => f.write_str("command: engage"),
+            EventKind::CommandReceived(LoopCommand::Disengage) => f.write_str("command: disengage"),
+            EventKind::CommandReceived(LoopCommand::Stop) => f.write_str("command: stop"),
+            EventKind::CommandReceived(LoopCommand::Controller(command)) => {
+                f.write_str("command: ")?;
+                C::write_command(&command, f)
+            }
+            EventKind::StopRequested => f.write_str("stop requested"),
+            EventKind::EngageRefused { engage_inhibits } if engage_inhibits.is_empty() => {
+                f.write_str("not engaged: control was released at the same time, or ticks overrun")
+            }
+            EventKind::EngageRefused { engage_inhibits } => {
+                f.write_str("not engaged: ")?;
+                name_flags::<C>(f, engage_inhibits)
+            }
+            EventKind::SensorFault { index, fault } => write!(f, "sensor {index}: {fault}"),
+            EventKind::SensorRecovered { index } => write!(f, "sensor {index} works again"),
+            EventKind::ActuatorFault { index, fault } => write!(f, "actuator {index}: {fault}"),
+            EventKind::ActuatorRecovered { index } => write!(f, "actuator {index} works again"),
+            EventKind::RecordsDropped { count, first, last } => write!(
+                f,
+                "{count} records lost, ticks {first} to {last}: they were not read in time"
+            ),
+            EventKind::EventsDropped { count, first, last } => write!(
+                f,
+                "{count} events lost, ticks {first} to {last}: they were not read in time"
+            ),
+            EventKind::NotRecorded { count, first, last } => write!(
+                f,
+                "{count} messages not recorded, ticks {first} to {last}: the disk was too slow or \
+                 full"
+            ),
+            EventKind::Released { ok: true } => f.write_str("actuators released"),
+            EventKind::Released { ok: false } => {
+                f.write_str("an actuator did not release: control may still be held")
+            }
+            EventKind::Panicked => f.write_str("a part of the loop panicked"),
+            EventKind::TimerFailed => f.write_str("the timer failed"),
+            EventKind::Overrun {
+                of: Stage::Timer,
+                took_ns,
+                budget_ns,
+                ..
+            } => write!(
+                f,
+                "the timer woke {:.1} ms late: periods of {:.1} ms were missed",
+                ms(took_ns),
+                ms(budget_ns)
+            ),
+            EventKind::Overrun {
+                of,
+                took_ns,
+                budget_ns,
+                longest,
+            } => {
+                write!(
+                    f,
+                    "{of} overran its budget: {:.3} ms of {:.3} ms",
+                    ms(took_ns),
+                    ms(budget_ns)
+                )?;
+                if of == Stage::Tick {
+                    write!(f, ", most of it in {longest}")?;
+                }
+                Ok(())
+            }
+            EventKind::OverrunsOver { count, first, last } => write!(
+                f,
+                "{count} ticks overran or were missed, between {first} and {last}; none for a second"
+            ),
+            EventKind::Hung { silent_ns } => write!(
+                f,
+                "the loop hung: no progress for {:.1} s",
+                ms(silent_ns) * 1e-3
+            ),
+            EventKind::SourceChanged(SourceChange { readings, from, to }) => {
+                for (n, bit) in readings.iter().enumerate() {
+                    let separator = if n > 0 { ", " } else { "" };
+                    let name = C::Measurements::NAMES.get(bit as usize);
+                    write!(f, "{separator}{}", name.unwrap_or(&"a reading"))?;
+                }
+                write!(f, ": from sensor {to} instead of {from}")
+            }
+        }
+    }
+}
+
+/// A change of state with the cause of a failsafe.
+fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: State) -> fmt::Result {
+    write!(f, "{from} -> {to}")?;
+    match to {
+        State::Failsafe(Cause::Faults(flags)) => {
+            f.write_str(": ")?;
+            name_flags::<C>(f, flags)
+        }
+        State::Failsafe(Cause::InvalidOutput) => f.write_str(": invalid output"),
+        State::Failsafe(Cause::Overrun) => {
+            f.write_str(": too many ticks in a row overran their budget")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn ms(ns: u64) -> f64 {
+    ns as f64 * 1e-6
+}
+
+fn name_flags<C: Controller>(f: &mut fmt::Formatter<'_>, flags: Flags) -> fmt::Result {
+    for (n, bit) in flags.iter().enumerate() {
+        if n > 0 {
+            f.write_str(", ")?;
+        }
+        f.write_str(C::flag_name(bit))?;
+    }
+    Ok(())
+}

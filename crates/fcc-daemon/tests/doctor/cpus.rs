@@ -1,0 +1,150 @@
+//! Interrupts, and the loop's CPU.
+
+use std::path::Path;
+
+use fcc_daemon::doctor::{Diagnosis, Grade};
+use fcc_timer::CpuRequest;
+
+use crate::machines::{PI_4, VIRTUAL, machine, put};
+use crate::{check, check_for, finding, lines};
+
+const DISK_ON_CPU_1: &str = "           CPU0       CPU1\n\
+     \x2034:        404          0 PCI-MSIX-0000:00:05.0   1-edge      virtio4-input\n\
+     \x2036:          0   15745011 PCI-MSIX-0000:00:02.0   1-edge      virtio1-req.0\n\
+     LOC:    7761385    8227841   Local timer interrupts\n";
+
+#[test]
+fn a_device_that_interrupts_often_is_named_with_its_cpu() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
+    let found = check(root.path());
+    let interrupts = finding(&found, "interrupts");
+    assert_eq!(interrupts.grade, Grade::Ok);
+    assert_eq!(interrupts.found, "CPU 1: virtio1-req.0 100 %");
+    assert!(
+        interrupts.why.contains("CPU 0 has none"),
+        "{}",
+        interrupts.why
+    );
+    assert_eq!(
+        lines(interrupts),
+        [("fccd's configuration, [realtime]", "cpu = \"auto\"")]
+    );
+}
+
+/// `smp_affinity_list` is from the kernel's core-api/irq/irq-affinity, the line
+/// from tmpfiles.d(5), the last from irqbalance(1).
+#[test]
+fn a_device_that_interrupts_an_isolated_cpu_gets_a_remedy() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "proc/interrupts", DISK_ON_CPU_1);
+    put(root.path(), "sys/devices/system/cpu/isolated", "1\n");
+    put(root.path(), "etc/default/irqbalance", "");
+    let of = |root: &Path| finding(&check(root), "interrupts").clone();
+    let there = of(root.path());
+    assert_eq!(there.grade, Grade::CouldBeBetter);
+    assert_eq!(
+        lines(&there),
+        [
+            (
+                "/etc/tmpfiles.d/fccd.conf, for virtio1-req.0",
+                "w /proc/irq/36/smp_affinity_list - - - - 0"
+            ),
+            (
+                "/etc/default/irqbalance, or it moves them back",
+                "IRQBALANCE_BANNED_CPULIST=1"
+            ),
+            ("fccd's configuration, [realtime]", "cpu = \"auto\""),
+        ]
+    );
+    // The present CPU of an interrupt counts, not the former.
+    put(root.path(), "proc/irq/36/effective_affinity_list", "0\n");
+    let moved = of(root.path());
+    assert_eq!(moved.grade, Grade::Ok);
+    assert_eq!(moved.found, "CPU 0: virtio1-req.0 100 %");
+}
+
+/// The CPUs named in all remedies.
+fn cpus_named(diagnosis: &Diagnosis) -> Vec<String> {
+    let all = diagnosis.findings.iter().flat_map(lines);
+    let of_isolation = |line: &str| {
+        let (_, rest) = line.split_once("nohz_full=")?;
+        Some(rest.split_whitespace().next()?.to_owned())
+    };
+    let named = |line: &str| {
+        let number = line.strip_prefix("cpu = ").map(str::to_owned);
+        let banned = line.strip_prefix("IRQBALANCE_BANNED_CPULIST=");
+        number.or(banned.map(str::to_owned)).or(of_isolation(line))
+    };
+    let mut cpus: Vec<String> = all.filter_map(|(_, line)| named(line)).collect();
+    cpus.dedup();
+    cpus
+}
+
+const EVEN: &str = "           CPU0       CPU1\n\
+     \x2034:     700000          0 PCI-MSIX-0000:00:05.0   1-edge      virtio4-input\n\
+     \x2036:          0     800000 PCI-MSIX-0000:00:02.0   1-edge      virtio1-req.0\n";
+
+#[test]
+fn all_findings_refer_to_the_loops_cpu() {
+    let root = machine(VIRTUAL);
+    put(root.path(), "etc/default/irqbalance", "");
+    for (interrupts, request, expected) in [
+        // Neither is much better, and the first one keeps the time.
+        (EVEN, None, &["1"][..]),
+        (EVEN, Some(CpuRequest::Auto), &["1"]),
+        (EVEN, Some(CpuRequest::Number(1)), &["1"]),
+        (EVEN, Some(CpuRequest::Number(0)), &["0"]),
+        // The first one is good, and cannot be isolated.
+        (DISK_ON_CPU_1, Some(CpuRequest::Auto), &[]),
+        (DISK_ON_CPU_1, Some(CpuRequest::Number(0)), &[]),
+    ] {
+        put(root.path(), "proc/interrupts", interrupts);
+        let found = check_for(root.path(), request);
+        assert_eq!(cpus_named(&found), expected, "{request:?}");
+    }
+    let isolation = finding(&check(root.path()), "isolated_cpus").clone();
+    assert!(
+        isolation.why.contains("cannot be isolated"),
+        "{}",
+        isolation.why
+    );
+}
+
+#[test]
+fn the_doctor_reports_the_loops_own_choice() {
+    let root = machine(PI_4);
+    let of = |cpu| finding(&check_for(root.path(), cpu), "loop_cpu").clone();
+    let chosen = of(Some(CpuRequest::Auto));
+    assert!(
+        chosen
+            .found
+            .starts_with("CPU 3, by cpu = \"auto\": it is isolated")
+    );
+    assert_eq!(lines(&chosen), []);
+    assert_eq!(of(Some(CpuRequest::Number(3))).grade, Grade::Ok);
+
+    let worse = of(Some(CpuRequest::Number(0)));
+    assert_eq!(worse.grade, Grade::CouldBeBetter);
+    assert!(worse.why.contains("CPU 3 is better"), "{}", worse.why);
+    let none = of(Some(CpuRequest::Number(9)));
+    assert_eq!(none.grade, Grade::Lacks);
+
+    // A service or a container that may use only some of the CPUs.
+    put(root.path(), "sys/devices/system/cpu/isolated", "\n");
+    put(root.path(), "proc/self/status", "Cpus_allowed_list:\t0-1\n");
+    let allowed = of(Some(CpuRequest::Auto));
+    assert!(allowed.found.starts_with("CPU 1"), "{}", allowed.found);
+}
+
+#[test]
+fn without_interrupts_of_devices_the_finding_is_ok() {
+    let root = machine(VIRTUAL);
+    let quiet = "           CPU0       CPU1\nLOC:    3461567    3545716   Local timer interrupts\n";
+    put(root.path(), "proc/interrupts", quiet);
+    let found = check(root.path());
+    assert_eq!(
+        finding(&found, "interrupts").found,
+        "no device has interrupted yet"
+    );
+}

@@ -1,0 +1,95 @@
+//! Constraints between the values of a configuration, and on its lists.
+
+use super::devices::MOST_ENTRIES;
+use super::{Config, SensorEntry};
+
+/// Of `SCHED_FIFO` (sched(7)).
+const HIGHEST_PRIORITY: u8 = 99;
+
+/// Reports the key and the message of each violated constraint.
+pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let early = &config.tick.early_wake;
+    let (least, most) = (early.min_us, early.max_us);
+    if least > most {
+        let message = format!("is {least}: choose no more than max_us, {most}");
+        report("loop.early_wake.min_us", message);
+    }
+    if config.watchdog.enabled && config.realtime.priority == HIGHEST_PRIORITY {
+        report(
+            "realtime.priority",
+            format!(
+                "is {HIGHEST_PRIORITY}: choose at most {}, so that the watchdog can have a higher \
+                 one and interrupt a loop that spins",
+                HIGHEST_PRIORITY - 1
+            ),
+        );
+    }
+    let envelope = &config.autopilot.envelope;
+    let (least, most) = (envelope.min_airspeed_kt, envelope.max_airspeed_kt);
+    if least >= most {
+        let message = format!("is {least}: choose less than max_airspeed_kt, {most}");
+        report("autopilot.envelope.min_airspeed_kt", message);
+    }
+    budgets(config, report);
+    if config.x_plane.is_some() && config.built_in.is_some() {
+        report(
+            "built-in",
+            "is given together with [x-plane]: keep the section of the aircraft that is to be flown"
+                .to_owned(),
+        );
+    }
+    lists(config, report);
+}
+
+fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let budget = &config.budget;
+    let Some(tick_us) = budget.tick_us else {
+        return;
+    };
+    // The rate itself may be out of range here.
+    let period_us = (1e6 / config.tick.rate_hz.max(0.0)).floor();
+    if f64::from(tick_us) > period_us {
+        report(
+            "budget.tick_us",
+            format!(
+                "is {tick_us}: choose no more than the period, {period_us}: a longer tick misses \
+                 the next period"
+            ),
+        );
+    }
+    for (key, stage_us) in [
+        ("budget.sensors_us", budget.sensors_us),
+        ("budget.estimate_us", budget.estimate_us),
+        ("budget.guide_us", budget.guide_us),
+        ("budget.control_us", budget.control_us),
+        ("budget.actuators_us", budget.actuators_us),
+    ] {
+        if let Some(stage_us) = stage_us.filter(|stage_us| *stage_us > tick_us) {
+            let message = format!("is {stage_us}: choose no more than tick_us, {tick_us}");
+            report(key, message);
+        }
+    }
+}
+
+fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let actuators = config.actuators().len();
+    let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
+    // Every actuator is the simulator's.
+    for (list, simulators) in [
+        ("sensor", sensors.collect::<Vec<_>>()),
+        ("actuator", vec![true; actuators]),
+    ] {
+        let entries = simulators.iter().enumerate();
+        for (at, _) in entries.filter(|(_, is_simulator)| **is_simulator).skip(1) {
+            let message = "is the simulator a second time: keep one".to_owned();
+            report(&format!("{list}[{at}].kind"), message);
+        }
+        if simulators.len() > MOST_ENTRIES {
+            let message = format!(
+                "has {} entries: keep at most {MOST_ENTRIES}",
+                simulators.len()
+            );
+            report(list, message);
+        }
+    }
+}
