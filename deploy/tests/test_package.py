@@ -92,9 +92,7 @@ def test_the_symbols_are_a_package_of_their_own(
     assert f"Build ID: {debug.parent.name}{debug.stem}" in notes
 
 
-def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
-    control: Path, tmp_path: Path
-) -> None:
+def test_an_upgrade_neither_starts_nor_stops_the_service(control: Path, tmp_path: Path) -> None:
     """The scripts run as dpkg runs them, where all that they may call is noted and does nothing."""
     called = tmp_path / "called"
     tools = tmp_path / "bin"
@@ -146,9 +144,7 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
     assert meddled == []
 
 
-def test_the_configuration_belongs_to_whoever_changed_it(
-    architecture: str, control: Path, files: Path
-) -> None:
+def test_a_changed_configuration_is_kept(architecture: str, control: Path, files: Path) -> None:
     assert "/etc/fccd/fccd.toml" in (control / "conffiles").read_text().split()
     here = subprocess.run(
         ["dpkg", "--print-architecture"], capture_output=True, text=True, check=True
@@ -171,7 +167,7 @@ def test_the_configuration_belongs_to_whoever_changed_it(
         "usr/lib/sysusers.d/fccd.conf",
     ],
 )
-def test_what_belongs_to_it_is_there(files: Path, path: str) -> None:
+def test_the_package_contains(files: Path, path: str) -> None:
     assert any((files / place).is_file() for place in path.split("|"))
 
 
@@ -181,7 +177,7 @@ def test_its_manual_can_be_read(files: Path) -> None:
     assert "--config" in text.replace("\\", "")
 
 
-def test_it_asks_for_a_c_library_that_is_new_enough(control: Path, files: Path) -> None:
+def test_it_requires_a_new_enough_c_library(control: Path, files: Path) -> None:
     asked = re.search(r"libc6 \(>= ([\d.]+)\)", (control / "control").read_text())
     assert asked is not None
     program = (files / "usr/bin/fccd").read_bytes()

@@ -66,7 +66,7 @@ class Agent:
 
     def run(self, words: Sequence[str], within_s: float) -> Done:
         """Run a program and wait for its end. Raises AgentError if that takes too long."""
-        said = " ".join(words)
+        log = " ".join(words)
         asked = {"path": words[0], "arg": list(words[1:]), "capture-output": True}
         number = self._ask("guest-exec", asked)["pid"]
         give_up_s = time.monotonic() + within_s
@@ -74,13 +74,13 @@ class Agent:
             status = self._ask("guest-exec-status", {"pid": number})
             if status["exited"]:
                 return Done(
-                    said,
+                    log,
                     status["exitcode"] if "exitcode" in status else -status["signal"],
                     _text(status.get("out-data", "")),
                     _text(status.get("err-data", "")),
                 )
             if time.monotonic() > give_up_s:
-                raise AgentError(f"not done within {within_s:.0f} s: {said}")
+                raise AgentError(f"not done within {within_s:.0f} s: {log}")
             time.sleep(_LOOK_S)
 
     def write(self, path: str, content: bytes) -> None:

@@ -50,8 +50,8 @@ class Service:
     def __init__(self, guest: Guest) -> None:
         """Know it from now on: the journal is read from here."""
         self.guest = guest
-        told = guest.sh("journalctl --lines 1 --quiet --output json")
-        self._cursor = json.loads(told)["__CURSOR"]
+        output = guest.sh("journalctl --lines 1 --quiet --output json")
+        self._cursor = json.loads(output)["__CURSOR"]
 
     def show(self, name: str) -> str:
         """Return one of its properties."""

@@ -67,9 +67,7 @@ def _assert_restarted_soon(service: Service, figures: list[str], what: str) -> N
     assert ended_s < scheduled_s <= starting_s < started_s < ended_s + RESTART_S
 
 
-def test_a_flight_that_was_killed_is_taken_up(
-    guest: Guest, tmp_path: Path, figures: list[str]
-) -> None:
+def test_a_killed_flight_is_recovered(guest: Guest, tmp_path: Path, figures: list[str]) -> None:
     with flight(guest, WARM) as (simulator, service):
         service.engage(simulator)
         # It is kept each second.
@@ -98,7 +96,7 @@ def test_a_flight_that_was_killed_is_taken_up(
         assert aims.altitude_m == pytest.approx(last.altitude_m, abs=KEPT_WITHIN_M)
 
 
-def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
+def test_after_a_killed_flight_it_stays_in_standby_if_configured(
     guest: Guest, tmp_path: Path
 ) -> None:
     with flight(guest, COLD) as (simulator, service):
@@ -116,7 +114,7 @@ def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
     assert all(record.state.phase != ENGAGED for record in after)
 
 
-def test_who_gives_no_sign_of_life_is_ended_and_started_again(
+def test_a_daemon_without_watchdog_notifications_is_restarted(
     guest: Guest, figures: list[str]
 ) -> None:
     with flight(guest, COLD) as (simulator, service):
@@ -151,7 +149,7 @@ def _no_right_to_real_time(guest: Guest) -> None:
     ("spoil", "exit_code"),
     [(_wrong_configuration, USAGE), (_no_right_to_real_time, REALTIME_REFUSED)],
 )
-def test_what_would_fail_again_is_not_tried_again(
+def test_a_start_that_would_fail_again_is_not_repeated(
     guest: Guest, spoil: Callable[[Guest], None], exit_code: int
 ) -> None:
     with flight(guest, {"realtime": {"strict": True}}) as (_, service):
@@ -168,7 +166,7 @@ def test_what_would_fail_again_is_not_tried_again(
             guest.sh(f"rm -rf {DROP_IN}; systemctl daemon-reload")
 
 
-def test_what_may_go_better_is_tried_again_for_ever(guest: Guest) -> None:
+def test_other_failures_are_restarted_without_limit(guest: Guest) -> None:
     """More often than systemd's own limit, which is five times in ten seconds."""
     with flight(guest) as (_, service):
         for _ in range(7):

@@ -96,7 +96,7 @@ def upgraded(guest: Guest, newer: Path) -> Iterator[Flying]:
         yield simulator, service, story
 
 
-def test_an_upgrade_neither_stops_nor_restarts_what_flies(upgraded: Flying) -> None:
+def test_an_upgrade_neither_stops_nor_restarts_the_daemon(upgraded: Flying) -> None:
     _, service, story = upgraded
     version = service.guest.sh("dpkg-query --show --showformat '${Version}' fccd")
     assert version == NEWER
@@ -123,7 +123,7 @@ def test_no_tick_is_missing_of_a_flight_through_an_upgrade(
     assert (found["exit_code"], found["identity"]["differing"]) == (0, 0), found
 
 
-def test_the_new_one_flies_when_somebody_says_so(upgraded: Flying) -> None:
+def test_the_new_version_flies_after_a_restart(upgraded: Flying) -> None:
     _, _, story = upgraded
     # systemd has read the new unit, without being told by anybody.
     assert story.needs_reload == "no"
@@ -133,7 +133,7 @@ def test_the_new_one_flies_when_somebody_says_so(upgraded: Flying) -> None:
     assert story.restarted_program == "/usr/bin/fccd"
 
 
-def test_the_configuration_is_the_one_that_somebody_wrote(upgraded: Flying) -> None:
+def test_the_edited_configuration_is_kept(upgraded: Flying) -> None:
     simulator, service, _ = upgraded
     assert f":{simulator.port}" in service.guest.sh(f"cat {CONFIG}")
 

@@ -19,17 +19,17 @@ import iceoryx2 as iox2
 LAYOUT = 2
 """The layout that this program was written for."""
 NEVER_NS = -(2**63)
-"""The time of what has not happened."""
+"""The time of something that never happened."""
 
 STATES = ("standby", "engaged", "failsafe", "stopped")
 
 
 class LiveError(RuntimeError):
-    """There is nothing to watch, or nothing that this program understands."""
+    """Nothing can be watched, or its layout is not supported."""
 
 
 def reading(value: Any) -> Any:
-    """Return the layout of a value and when it was taken."""
+    """Return the layout of a value and the time at which it was taken."""
 
     class Reading(ctypes.Structure):
         _fields_ = (
@@ -54,7 +54,7 @@ class Tick(ctypes.Structure):
 
 
 class Stages(ctypes.Structure):
-    """How long the stages of a tick took."""
+    """Durations of a tick's stages."""
 
     _fields_ = (
         ("sensors_ns", ctypes.c_uint64),
@@ -83,7 +83,7 @@ class BodyRates(ctypes.Structure):
 
 
 class SpecificForce(ctypes.Structure):
-    """What accelerometers feel."""
+    """Specific force."""
 
     _fields_ = (
         ("x_mps2", ctypes.c_double),
@@ -124,13 +124,13 @@ class Surfaces(ctypes.Structure):
 
 
 class Plant(ctypes.Structure):
-    """A simulated plant's own clock and condition."""
+    """A simulated plant's time and state."""
 
     _fields_ = (("time_s", ctypes.c_double), ("state", ctypes.c_uint8))
 
 
 class Measurements(ctypes.Structure):
-    """What the sensors had measured."""
+    """Measurements of the sensors."""
 
     _fields_ = (
         ("attitude", reading(Attitude)),
@@ -149,7 +149,7 @@ class Measurements(ctypes.Structure):
 
 
 class Estimate(ctypes.Structure):
-    """What navigation makes of the measurements."""
+    """Navigation's estimate."""
 
     _fields_ = (
         ("roll_rad", ctypes.c_double),
@@ -165,7 +165,7 @@ class Estimate(ctypes.Structure):
 
 
 class Targets(ctypes.Structure):
-    """What guidance asks of control."""
+    """Targets of guidance."""
 
     _fields_ = (
         ("airspeed_mps", ctypes.c_double),
@@ -175,7 +175,7 @@ class Targets(ctypes.Structure):
 
 
 class Progress(ctypes.Structure):
-    """The mode that guidance flies, and how far it has come."""
+    """The active mode of guidance and its progress."""
 
     _fields_ = (
         ("mode", ctypes.c_uint8),
@@ -186,7 +186,7 @@ class Progress(ctypes.Structure):
 
 
 class Setpoints(ctypes.Structure):
-    """What the autopilot aims for."""
+    """Set points of the autopilot."""
 
     _fields_ = (
         ("airspeed_mps", ctypes.c_double),
@@ -210,7 +210,7 @@ class State(ctypes.Structure):
 
 
 class Record(ctypes.Structure):
-    """All that is known of one tick."""
+    """The record of one tick."""
 
     _fields_ = (
         ("tick", Tick),
@@ -233,12 +233,12 @@ class Record(ctypes.Structure):
 
     @staticmethod
     def type_name() -> str:
-        """Return what the daemon calls this type."""
+        """Return the daemon's name of this type."""
         return "fcc.v2.Record"
 
 
 class Event(ctypes.Structure):
-    """What happened once."""
+    """An event."""
 
     _fields_ = (
         ("tick", ctypes.c_uint64),
@@ -251,12 +251,12 @@ class Event(ctypes.Structure):
 
     @staticmethod
     def type_name() -> str:
-        """Return what the daemon calls this type."""
+        """Return the daemon's name of this type."""
         return "fcc.v2.Event"
 
 
 class Info(ctypes.Structure):
-    """Who publishes, and in which layout."""
+    """The daemon and its layouts."""
 
     _fields_ = (
         ("layout", ctypes.c_uint32),
@@ -280,15 +280,15 @@ class Info(ctypes.Structure):
 
     @staticmethod
     def type_name() -> str:
-        """Return what the daemon calls this type."""
+        """Return the daemon's name of this type."""
         return "fcc.Info"
 
 
 class Watcher:
-    """A daemon on this machine, watched."""
+    """Watches a daemon on this machine."""
 
     def __init__(self, instance: str = "fccd", patience_s: float = 1.0) -> None:
-        """Find the daemon, and refuse one that speaks another layout."""
+        """Connect to the daemon; refuse one with another layout."""
         iox2.set_log_level(iox2.LogLevel.Error)
         config = iox2.config.default()
         # Each user has a folder: only the daemon's own user can watch it.
@@ -316,11 +316,11 @@ class Watcher:
         self._events = self._subscribe(f"fcc/{instance}/event/v{LAYOUT}", Event, instance)
 
     def records(self) -> Iterator[Record]:
-        """Yield all records that have come since the last time, the oldest first."""
+        """Yield the records received since the last call, oldest first."""
         return _received(self._records)
 
     def events(self) -> Iterator[Event]:
-        """Yield all events that have come since the last time, the oldest first."""
+        """Yield the events received since the last call, oldest first."""
         return _received(self._events)
 
     def _subscribe(self, name: str, payload: Any, instance: str) -> Any:
@@ -337,12 +337,12 @@ class Watcher:
 def _received(subscriber: Any) -> Iterator[Any]:
     while (sample := subscriber.receive()) is not None:
         payload = sample.payload().contents
-        # A copy: the sample is the daemon's again as soon as it is let go.
+        # A copy: the sample returns to the daemon when it is dropped.
         yield type(payload).from_buffer_copy(payload)
 
 
 def main() -> None:
-    """Print a line four times a second until the daemon falls silent."""
+    """Print a line four times a second until the daemon stops publishing."""
     watcher = Watcher(sys.argv[1] if len(sys.argv) > 1 else "fccd")
     info = watcher.info
     print(f"{info.aircraft.decode()}: {info.rate_hz} Hz by {info.timer.decode()}")

@@ -43,7 +43,7 @@ class Ending:
     """Negative for a signal."""
     report: dict[str, Any]
     """Its JSON; empty if it printed none."""
-    said: str
+    log: str
     """All that it said to people."""
 
     @property
@@ -97,7 +97,7 @@ class DaemonUnderTest:
         return self._process.poll() is None
 
     @property
-    def said(self) -> str:
+    def log(self) -> str:
         """Return what it has said to people so far."""
         return self._err.read_text()
 
@@ -107,7 +107,7 @@ class DaemonUnderTest:
         while True:
             # It may say its last words between our looking and its end.
             running = self.is_running
-            whole = self.said
+            whole = self.log
             for line in whole[self._heard :].splitlines(keepends=True):
                 if not line.endswith("\n"):
                     break
@@ -134,9 +134,9 @@ class DaemonUnderTest:
         try:
             exit_code = self._process.wait(within_s)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"it does not end; it said:\n{self.said}") from None
+            raise AssertionError(f"it does not end; its messages:\n{self.log}") from None
         printed = self._out.read_text()
-        return Ending(exit_code, json.loads(printed) if printed else {}, self.said)
+        return Ending(exit_code, json.loads(printed) if printed else {}, self.log)
 
 
 def wait_until(holds: Callable[[], bool], what: str, within_s: float = PATIENCE_S) -> None:

@@ -33,7 +33,7 @@ class ServiceManager:
         """Return what systemd would put into the service's environment."""
         return {"NOTIFY_SOCKET": self.path, "WATCHDOG_USEC": f"{watchdog_s * 1e6:.0f}"}
 
-    def hears(self, word: str, within_s: float = PATIENCE_S) -> bool:
+    def has_received(self, word: str, within_s: float = PATIENCE_S) -> bool:
         """Whether a line that begins with `word` comes in time."""
         deadline_s = time.monotonic() + within_s
         while (left_s := deadline_s - time.monotonic()) > 0.0:

@@ -126,17 +126,17 @@ class TamperedLink:
 
     def cut(self, *, to_simulator: bool = False, from_simulator: bool = False) -> None:
         """Let nothing through in these directions, and everything in the others."""
-        self._order({"to": to_simulator, "from": from_simulator}, {})
+        self._command({"to": to_simulator, "from": from_simulator}, {})
 
-    def say(self, values: Mapping[str, float]) -> None:
+    def replace_values(self, values: Mapping[str, float]) -> None:
         """Say this of these datarefs, whatever they are; nothing is cut."""
-        self._order({"to": False, "from": False}, dict(values))
+        self._command({"to": False, "from": False}, dict(values))
 
-    def mend(self) -> None:
+    def restore(self) -> None:
         """Let everything through as it is."""
-        self.say({})
+        self.replace_values({})
 
-    def _order(self, cut: dict[str, bool], says: dict[str, float]) -> None:
+    def _command(self, cut: dict[str, bool], says: dict[str, float]) -> None:
         self._pipe.send((cut, says))
         self._answer()
 

@@ -10,7 +10,7 @@ from daemon_under_test import assert_released, engage, flight, write_config
 
 from fcc_hil.daemon import command
 from fcc_hil.faults import Faults
-from fcc_hil.fly import Order, fly
+from fcc_hil.fly import Plan, fly
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.standin import Settings
 
@@ -39,7 +39,7 @@ def test_a_harsh_network_and_noisy_sensors(fccd: Path, tmp_path: Path) -> None:
         tmp_path, port, guidance=f'mode = "timed-pattern"\nhold_s = {pattern.hold_s}'
     )
     settings = Settings(port=port, noise=True, inbound=HARSH, outbound=HARSH)
-    flown = fly(Order(command(fccd, config), settings, legs=2, pattern=pattern), print)
+    flown = fly(Plan(command(fccd, config), settings, legs=2, pattern=pattern), print)
     assert flown.failures == []
     assert flown.report is not None
     events = [event["text"] for event in flown.report["events"]]

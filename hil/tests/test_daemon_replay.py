@@ -32,7 +32,7 @@ def replay(fccd: Path, *words: str | Path) -> tuple[int, dict[str, Any]]:
     return done.returncode, json.loads(done.stdout) if done.stdout else {}
 
 
-def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Path) -> None:
+def test_a_replay_of_a_flight_is_identical(fccd: Path, tmp_path: Path) -> None:
     """All that happens to a flight: the pattern, a switch, a silent simulator, a signal."""
     recordings = tmp_path / "recordings"
     with StandInProcess(Settings(port=0)) as simulator:
@@ -76,7 +76,7 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
     assert differing == {"elevator"}
 
 
-def test_a_file_that_is_no_recording_is_refused(fccd: Path, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_recording_is_refused(fccd: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.mcap"
     other.write_bytes(b"not a recording")
     assert replay(fccd, other) == (NOT_REPLAYED, {})

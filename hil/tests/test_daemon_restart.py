@@ -115,7 +115,7 @@ def cockpit(fccd: Path, tmp_path: Path) -> Iterator[Cockpit]:
         yield Cockpit(fccd, tmp_path, simulator)
 
 
-def test_a_warm_restart_goes_on_with_what_was_flown(
+def test_a_warm_restart_continues_the_flight(
     cockpit: Cockpit, record_property: Callable[[str, object], None]
 ) -> None:
     simulator = cockpit.simulator
@@ -157,7 +157,7 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     assert not cockpit.state_file.exists(), "a flight that ended regularly is not recovered"
 
 
-def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
+def test_a_cold_restart_stays_in_standby_and_reports_it(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill("")
     with cockpit.daemon("") as again:
         assert "staying in standby" in again.wait_for('restart.mode is "cold"')
@@ -192,7 +192,7 @@ def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 
-def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
+def test_a_switch_that_went_off_since_prevents_recovery(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill(WARM)
     cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
     with cockpit.daemon(WARM) as again:
@@ -201,7 +201,7 @@ def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 
-def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> None:
+def test_a_flight_that_ended_regularly_is_not_recovered(cockpit: Cockpit) -> None:
     with cockpit.daemon(WARM) as daemon:
         cockpit.engage(daemon)
         wait_until(cockpit.state_file.exists, "the state of the flight is stored")
@@ -211,7 +211,7 @@ def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> N
         again.wait_until_ready()
         ending = again.end(signal.SIGTERM)
     assert ending.states == ["standby -> stopped"]
-    assert "was interrupted" not in ending.said
+    assert "was interrupted" not in ending.log
 
 
 def test_a_helper_that_still_releases_is_ended(fccd: Path) -> None:

@@ -139,7 +139,7 @@ def traced_flight(
                 _START_S,
             )
             found = loop_thread(traced.pid)
-            assert found, f"no thread to trace: {traced.said}"
+            assert found, f"no thread to trace: {traced.log}"
             daemon, thread = found
             path = Path(f"{trace}.{thread}")
             try:
@@ -154,7 +154,7 @@ def traced_flight(
                 # Killing strace alone would leave the daemon flying.
                 if traced.is_running:
                     os.kill(daemon, signal.SIGKILL)
-    assert ending.exit_code == 0, ending.said
+    assert ending.exit_code == 0, ending.log
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     return [
         (call[1], call[2]) for line in path.read_text().splitlines() if (call := _CALL.match(line))

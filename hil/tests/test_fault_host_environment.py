@@ -186,7 +186,7 @@ def test_a_configuration_that_changes_in_flight_changes_nothing(
     assert_flown_again(fccd, flown)
 
 
-def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> None:
+def test_a_watcher_that_hangs_loses_no_record_of_others(flights: dict[str, object]) -> None:
     flown = flights["watcher"]
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == SUCCESS
@@ -195,7 +195,7 @@ def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> Non
     assert_regular(flown.records, 1_000_000_000 // FAST_HZ)
 
 
-def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> None:
+def test_a_full_ring_drops_and_counts_records(flights: dict[str, object]) -> None:
     flown = flights["ring"]
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == NOT_RECORDED
@@ -223,7 +223,7 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
         assert time.monotonic() - begun_s < AT_ONCE_S
         assert refused.exit_code == TAKEN
         assert f"another fccd on this machine flies X-Plane at 127.0.0.1:{simulator.port}" in (
-            refused.said
+            refused.log
         )
         assert simulator.progress().overridden, "the first flies on"
         daemon.send(signal.SIGKILL)
@@ -239,7 +239,7 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
 
 
 @pytest.mark.parametrize(("first", "second"), [("address", "beacon"), ("beacon", "address")])
-def test_a_beacon_does_not_lead_where_another_daemon_flies(
+def test_a_beacon_does_not_lead_to_a_simulator_under_control(
     fccd: Path, tmp_path: Path, first: str, second: str
 ) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
@@ -261,9 +261,9 @@ def test_a_beacon_does_not_lead_where_another_daemon_flies(
             took_s = time.monotonic() - begun_s
             assert took_s < AT_ONCE_S + (BEACON_PERIOD_S if second == "beacon" else 0.0)
             assert refused.exit_code == TAKEN
-            assert f"another fccd on this machine flies X-Plane at {address}" in refused.said
+            assert f"another fccd on this machine flies X-Plane at {address}" in refused.log
             # It saw the switch on, and has not touched the controls.
-            assert "engaged" not in refused.said
+            assert "engaged" not in refused.log
             assert simulator.progress().overridden
             assert simulator.releases() == []
             assert "engaged" in flies.wait_for("heading")
@@ -271,7 +271,7 @@ def test_a_beacon_does_not_lead_where_another_daemon_flies(
         assert_released(simulator)
 
 
-def test_a_local_port_that_another_program_has_is_told_apart(fccd: Path, tmp_path: Path) -> None:
+def test_a_local_port_in_use_has_its_own_exit_code(fccd: Path, tmp_path: Path) -> None:
     """By the exit code: who starts the daemon again for ever would do so in vain."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("0.0.0.0", 0))
@@ -280,4 +280,4 @@ def test_a_local_port_that_another_program_has_is_told_apart(fccd: Path, tmp_pat
         with start(fccd, tmp_path, config) as daemon:
             refused = daemon.end()
     assert refused.exit_code == TAKEN
-    assert f"cannot receive on UDP port {port}" in refused.said
+    assert f"cannot receive on UDP port {port}" in refused.log

@@ -41,7 +41,7 @@ def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
         assert "attitude is missing or too old" in daemon.wait_for("engaged -> failsafe")
         daemon.wait_for("failsafe -> standby")
         assert_released(simulator)
-        link.mend()
+        link.restore()
         simulator.write(ENGAGE_SWITCH, 0.0)
         engage(simulator, daemon)
         ending = daemon.end(signal.SIGTERM)
@@ -62,7 +62,7 @@ def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
         cut_ns = time.monotonic_ns()
         simulator.write(OVERRIDE_JOYSTICK, 0.0)
         assert "have no effect" in daemon.wait_for("Accept incoming connections")
-        link.mend()
+        link.restore()
         daemon.wait_for("take effect")
         ending = daemon.end(signal.SIGTERM)
         wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
@@ -99,7 +99,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
     )
 
 
-def test_nothing_from_the_simulator_is_failsafe_and_a_release_that_gets_there(
+def test_nothing_from_the_simulator_is_failsafe_and_the_release_arrives(
     flights: dict[str, Flown],
 ) -> None:
     flown = flights["from"]
@@ -109,7 +109,9 @@ def test_nothing_from_the_simulator_is_failsafe_and_a_release_that_gets_there(
     assert MAX_AGE_S < age_s < 2 * MAX_AGE_S
 
 
-def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]) -> None:
+def test_nothing_to_the_simulator_is_reported_and_the_flight_continues(
+    flights: dict[str, Flown],
+) -> None:
     flown = flights["to"]
     faults = [
         event
@@ -129,7 +131,7 @@ def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]
     assert flown.ending.report["released"] is True
 
 
-def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) -> None:
+def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -> None:
     flown = flights["slow"]
     assert flown.ending.exit_code == SUCCESS
     assert flown.failsafes == []
@@ -143,5 +145,5 @@ def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) ->
 
 
 @pytest.mark.parametrize("name", ["from", "to", "slow"])
-def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])

@@ -147,7 +147,7 @@ def missed(flight: Flown) -> list[Any]:
 
 
 @pytest.mark.parametrize(("name", "least"), [("late by one", 1), ("late by many", 10)])
-def test_a_late_timer_is_counted_told_and_flown_through(
+def test_a_late_timer_is_counted_and_reported(
     flights: dict[str, Flown], name: str, least: int
 ) -> None:
     flight = flights[name]
@@ -161,7 +161,7 @@ def test_a_late_timer_is_counted_told_and_flown_through(
     assert_regular(flight.records, PERIOD_NS)
 
 
-def test_as_many_missed_as_half_a_second_has_are_failsafe(flights: dict[str, Flown]) -> None:
+def test_half_a_second_of_missed_periods_is_failsafe(flights: dict[str, Flown]) -> None:
     flight = flights["late by far too many"]
     assert flight.ending.exit_code == FAILSAFE_HAPPENED
     (place,) = flight.failsafes
@@ -206,7 +206,7 @@ def test_a_stage_that_overruns_is_named(flights: dict[str, Flown]) -> None:
     assert flight.records[flight.failsafes[0]].state.cause == OVERRUN
 
 
-def test_a_process_that_was_stopped_goes_on_where_it_is(flights: dict[str, Flown]) -> None:
+def test_a_stopped_process_continues(flights: dict[str, Flown]) -> None:
     """Its own watchdog was stopped with it, and takes nobody's life for that."""
     flight = flights["stopped"]
     assert flight.ending.exit_code == SUCCESS
@@ -231,7 +231,7 @@ def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> N
 
 
 @pytest.mark.parametrize("name", ["control hangs", "a sensor blocks"])
-def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
+def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
     flights: dict[str, Flown], name: str
 ) -> None:
     flight = flights[name]
@@ -242,7 +242,7 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     assert last.kind.WhichOneof("kind") == "hung"
     # It looks ten times in that time, and counts two looks at most for one.
     assert HANG_AFTER_NS <= last.kind.hung.silent_ns < 1.2 * HANG_AFTER_NS
-    assert "the watchdog released the controls" in flight.ending.said
+    assert "the watchdog released the controls" in flight.ending.log
     # All up to the tick that hangs, which has no end and so no record.
     assert [record.tick.number for record in flight.records][-1] == last.tick
     assert flight.records[-1].state.phase == ENGAGED
@@ -261,7 +261,7 @@ def test_a_loop_that_hangs_is_ended_though_the_main_thread_hangs_too(
 
 
 @pytest.mark.parametrize("name", ["overruns", "late by far too many", "stopped", "control hangs"])
-def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
 
 

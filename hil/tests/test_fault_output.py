@@ -199,7 +199,7 @@ def assert_whole(flown: Flown) -> None:
         "hung up under nohup",
     ],
 )
-def test_output_that_cannot_be_written_costs_the_flight_nothing(
+def test_output_that_cannot_be_written_has_no_effect_on_the_flight(
     flights: dict[str, Flown], name: str
 ) -> None:
     flown = flights[name]
@@ -210,7 +210,7 @@ def test_output_that_cannot_be_written_costs_the_flight_nothing(
     assert len(engaged) + missed >= FLOWN_S * RATE_HZ
 
 
-def test_a_terminal_that_hangs_up_ends_the_flight_in_good_order(
+def test_a_terminal_that_hangs_up_ends_the_flight_properly(
     flights: dict[str, Flown],
 ) -> None:
     assert_whole(flights["hung up"])

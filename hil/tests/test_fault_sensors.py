@@ -149,9 +149,9 @@ class Breaking:
     def put_in(self, fault: str) -> None:
         sensor = SENSED[self.name]
         if fault == "out of range":
-            self.link.say(sensor.impossible)
+            self.link.replace_values(sensor.impossible)
         elif fault == "infinite":
-            self.link.say(sensor.infinite)
+            self.link.replace_values(sensor.infinite)
         else:
             made = {
                 "silent": (Kind.LOSS, 0.0),
@@ -175,8 +175,8 @@ class Breaking:
                 [SensorFault(kind, self.name, channels, begins_s, ends_s, amount, share)]
             )
 
-    def mend(self) -> None:
-        self.link.mend()
+    def restore(self) -> None:
+        self.link.restore()
         self.simulator.set_sensor_faults([])
 
     def engage(self) -> None:
@@ -205,17 +205,17 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
             flight.put_in(fault)
             began_s = simulator.progress().time_s
             while simulator.progress().time_s < began_s + FLOWN_THROUGH_S:
-                assert "engaged" in daemon.wait_for("heading"), daemon.said
+                assert "engaged" in daemon.wait_for("heading"), daemon.log
             flight.disengage()
-            flight.mend()
+            flight.restore()
         for fault in FAULTS:
             flight.engage()
             flight.put_in(fault)
             words = SENSED[name].frozen if fault == "frozen" else SENSED[name].missing
-            said = daemon.wait_for("engaged -> ", within_s=40.0)
-            assert "failsafe" in said, said
-            assert words in said, f"{fault}: {said}"
-            flight.mend()
+            log = daemon.wait_for("engaged -> ", within_s=40.0)
+            assert "failsafe" in log, log
+            assert words in log, f"{fault}: {log}"
+            flight.restore()
             flight.disengage()
         return daemon.end(signal.SIGTERM)
 
@@ -295,7 +295,7 @@ def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
 
 
 @pytest.mark.parametrize("name", SENSED)
-def test_what_is_reordered_or_a_little_late_is_flown_through(
+def test_reordered_or_slightly_late_samples_have_no_effect(
     flown: dict[str, Flown], name: str
 ) -> None:
     states = [text for text in flown[name].texts() if " -> " in text]
@@ -337,5 +337,5 @@ def test_every_failsafe_ends_in_a_release(flown: dict[str, Flown], name: str) ->
 
 
 @pytest.mark.parametrize("name", SENSED)
-def test_it_is_the_same_when_flown_again(fccd: Path, flown: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flown: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flown[name])

@@ -58,7 +58,7 @@ ROWS = rows()
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row[0] for row in ROWS])
-def test_a_row_is_whole_and_names_a_test_there_is(row: list[str]) -> None:
+def test_a_row_is_complete_and_names_an_existing_test(row: list[str]) -> None:
     assert len(row) == COLUMNS
     assert all(row)
     shown = SHOWN_BY.findall(row[-1])
@@ -70,5 +70,5 @@ def test_a_row_is_whole_and_names_a_test_there_is(row: list[str]) -> None:
 
 
 @pytest.mark.parametrize("fault", REQUIRED)
-def test_a_fault_that_must_be_there_is(fault: str) -> None:
+def test_a_required_fault_is_in_the_table(fault: str) -> None:
     assert any(row[0].startswith(fault) for row in ROWS)

@@ -120,13 +120,13 @@ paths = st.from_regex(r"sim/[a-z_/]{1,60}(\[[0-9]{1,2}\])?", fullmatch=True)
 
 
 @given(finite, paths)
-def test_writes_survive_the_wire(value: float, path: str) -> None:
+def test_writes_are_read_back(value: float, path: str) -> None:
     datagram = b"DREF\0" + struct.pack("<f500s", value, path.encode())
     assert parse(datagram) == WriteDataref(value, path)
 
 
 @given(st.integers(0, 1000), st.integers(-(2**31), 2**31 - 1), paths)
-def test_subscriptions_survive_the_wire(frequency: int, index: int, path: str) -> None:
+def test_subscriptions_are_read_back(frequency: int, index: int, path: str) -> None:
     datagram = b"RREF\0" + struct.pack("<ii400s", frequency, index, path.encode())
     assert parse(datagram) == Subscribe(frequency, index, path)
 

@@ -14,7 +14,7 @@ from fcc_hil import airspeed, altitude, attitude, bank, heading, throttle
 from fcc_hil.flight import Flight, RequirementError
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.quantities import QUANTITIES, Quantity
-from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, FlightError, Happening
+from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError
 from fcc_hil.sensor_faults import SensorFault
 from fcc_hil.truth import COLUMNS, Row, Truth
 
@@ -31,25 +31,25 @@ class TableRig:
     failsafe_shows_after_s = 0.0
     holds_control = True
 
-    def __init__(self, coming: Sequence[Happening] = (), **flown: Flown) -> None:
+    def __init__(self, coming: Sequence[Event] = (), **flown: Flown) -> None:
         self.time_s = 0.0
-        self.happenings: list[Happening] = []
-        self.left_deflected = ""
-        self._coming = [Happening(ENGAGED_AT_S, ENGAGED), *coming]
+        self.events: list[Event] = []
+        self.not_centred = ""
+        self._coming = [Event(ENGAGED_AT_S, ENGAGED), *coming]
         self._flown = flown
         self._rows: list[Row] = [self._row()]
 
     def prepare(self) -> None:
         self.fly_to(0.5)
 
-    def throw_switch(self, *, on: bool) -> None:
+    def set_switch(self, *, on: bool) -> None:
         pass
 
     def fly_to(self, time_s: float, until: Callable[[], bool] | None = None) -> None:
         while self.time_s < time_s - 1e-6 and not (until is not None and until()):
             self.time_s = round((self.time_s + 0.025) * 40.0) / 40.0
             self._rows.append(self._row())
-            self.happenings = [h for h in self._coming if h.time_s <= self.time_s]
+            self.events = [h for h in self._coming if h.time_s <= self.time_s]
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
         pass
@@ -57,7 +57,7 @@ class TableRig:
     def truth(self) -> Truth:
         return Truth(self._rows)
 
-    def leave_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
+    def save_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
         return []
 
     def close(self) -> None:
@@ -74,7 +74,7 @@ class TableRig:
         return tuple(columns[name](since_s) if name in columns else 0.0 for name in COLUMNS)
 
 
-def _flight(*coming: Happening, pattern: TimedPattern | None = PATTERN, **flown: Flown) -> Flight:
+def _flight(*coming: Event, pattern: TimedPattern | None = PATTERN, **flown: Flown) -> Flight:
     flight = Flight(TableRig(coming, **flown), pattern)
     flight.engages(by=1.0)
     return flight
@@ -89,7 +89,7 @@ def _turn(t: float) -> float:
     return 90.0 + (4.0 * math.sin(math.pi * (t - 16.0) / 2.0) if t < 18.0 else 0.0)
 
 
-def test_a_heading_settles_when_it_is_inside_to_stay() -> None:
+def test_a_heading_settles_when_it_stays_inside() -> None:
     flight = _flight(heading_deg=_turn)
     flight.flies(to=10)
     # 4 sin(pi/2 (t - 16)) is 2 at 16 1/3 s and at 17 2/3 s.
@@ -103,7 +103,7 @@ def test_a_heading_settles_when_it_is_inside_to_stay() -> None:
     ]
 
 
-def test_what_leaves_again_has_not_settled() -> None:
+def test_a_value_that_leaves_again_has_not_settled() -> None:
     flight = _flight(heading_deg=lambda t: 90.0 if 11.0 < t < 18.0 else 0.0)
     flight.flies(to=10)
     flight.settles(heading, within=2, by=2, for_=1)
@@ -165,11 +165,11 @@ def test_never_is_never() -> None:
     flight.never(abs(bank) > 30, to=6)
 
 
-def test_states_are_awaited_and_judged_by_when_they_came() -> None:
+def test_states_are_awaited_and_judged_by_their_time() -> None:
     flight = _flight(
-        Happening(4.0, f"{FAILSAFE}: airspeed is missing or too old"),
-        Happening(6.0, "failsafe -> standby"),
-        Happening(6.0, RELEASED),
+        Event(4.0, f"{FAILSAFE}: airspeed is missing or too old"),
+        Event(6.0, "failsafe -> standby"),
+        Event(6.0, RELEASED),
     )
     flight.flies(to=2.5)
     fault = flight.faults.loss(airspeed)
@@ -192,11 +192,11 @@ def test_states_are_awaited_and_judged_by_when_they_came() -> None:
         flight.falls_into_failsafe(by=1)
 
 
-def test_controls_that_are_let_go_deflected_are_not_released() -> None:
-    rig = TableRig([Happening(3.0, RELEASED)])
+def test_controls_released_while_deflected_are_a_failure() -> None:
+    rig = TableRig([Event(3.0, RELEASED)])
     flight = Flight(rig, None)
     flight.engages(by=1)
-    rig.left_deflected = "released with elevator +0.20"
+    rig.not_centred = "released with elevator +0.20"
     with pytest.raises(RequirementError, match=r"elevator \+0\.20"):
         flight.releases(by=5)
 
@@ -211,7 +211,7 @@ def test_an_autopilot_that_does_not_engage_in_time() -> None:
     ]
 
 
-def test_what_cannot_be_asked_is_said() -> None:
+def test_invalid_requirements_are_refused() -> None:
     flight = Flight(TableRig(), PATTERN)
     with pytest.raises(FlightError, match="engages"):
         flight.settles(heading, within=1, by=1)
@@ -257,7 +257,7 @@ nonsense: st.SearchStrategy[object] = st.one_of(
         ]
     ),
 )
-def test_arguments_that_are_no_sizes_are_refused_by_name(
+def test_invalid_amounts_are_refused_by_name(
     value: object, ask: tuple[str, Callable[[Flight, object], None]]
 ) -> None:
     name, call = ask
@@ -276,6 +276,6 @@ def test_units_that_are_not_its_own_are_refused(quantity: Quantity, unit: str) -
 
 
 @given(limit=st.sampled_from([math.nan, math.inf, "3", None]))
-def test_limits_that_are_no_numbers_are_refused(limit: float) -> None:
+def test_limits_that_are_not_finite_are_refused(limit: float) -> None:
     with pytest.raises((TypeError, ValueError), match=r"^limit is "):
         _ = bank > limit

@@ -32,20 +32,20 @@ def settings(name: str) -> list[str]:
     return re.findall(rf"^{name}=(.*)$", UNIT.read_text(), re.MULTILINE)
 
 
-def test_systemd_finds_nothing_wrong(fccd: Path, tmp_path: Path) -> None:
+def test_systemd_verifies_the_unit(fccd: Path, tmp_path: Path) -> None:
     unit = tmp_path / UNIT.name
     unit.write_text(UNIT.read_text().replace("/usr/bin/fccd", str(fccd)))
     assert analyze("verify", "--man=no", unit).strip() == ""
 
 
 def test_little_is_exposed() -> None:
-    said = analyze("security", "--offline=true", UNIT)
-    found = re.search(r"Overall exposure level for \S+: ([\d.]+)", said)
-    assert found is not None, said
+    log = analyze("security", "--offline=true", UNIT)
+    found = re.search(r"Overall exposure level for \S+: ([\d.]+)", log)
+    assert found is not None, log
     assert float(found[1]) <= MOST_EXPOSED
 
 
-def test_it_may_call_what_it_calls(fccd: Path, tmp_path: Path) -> None:
+def test_the_system_calls_of_a_flight_are_permitted(fccd: Path, tmp_path: Path) -> None:
     """Every system call of a flight, by the unit's own filter."""
     strace = shutil.which("strace")
     assert strace, "there is no strace: apt-get install strace"
@@ -93,5 +93,5 @@ def _calls(group: str) -> set[str]:
         ("User", ["fccd"]),
     ],
 )
-def test_what_flying_needs_is_granted(name: str, values: list[str]) -> None:
+def test_required_settings(name: str, values: list[str]) -> None:
     assert settings(name) == values

@@ -15,7 +15,7 @@ _LOOK_S = 0.1
 _WRITES = (b"DREF", b"DATA")
 
 
-class DeafSimulator:
+class ReadOnlySimulator:
     """Stands between one daemon and a stand-in; a context manager."""
 
     def __init__(self, simulator_port: int) -> None:
@@ -26,7 +26,7 @@ class DeafSimulator:
         self._inside = self._open()
         self._inside.connect(("127.0.0.1", simulator_port))
         self._over = threading.Event()
-        self._thread = threading.Thread(target=self._forward, name="deaf-simulator")
+        self._thread = threading.Thread(target=self._forward, name="read-only-simulator")
 
     @property
     def port(self) -> int:
@@ -34,7 +34,7 @@ class DeafSimulator:
         port: int = self._outside.getsockname()[1]
         return port
 
-    def __enter__(self) -> DeafSimulator:
+    def __enter__(self) -> ReadOnlySimulator:
         self._thread.start()
         return self
 
