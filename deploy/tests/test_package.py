@@ -1,6 +1,6 @@
-"""The Debian package from outside: what it brings, and what its scripts leave alone.
+"""The Debian package: its content, and the effect of its scripts.
 
-`make test-deb` builds it and gives its path in DEB; one for a board too, with DEB_TARGET.
+`make test-deb` builds it and sets DEB to its path; for a board with DEB_TARGET.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pytest
 
 # Of the ELF header: 1 for 32 bits and 2 for 64, and e_machine (elf(5)).
 MACHINES = {"amd64": (2, 62), "arm64": (2, 183), "armhf": (1, 40)}
-# Runs the program of a board here, on the libraries of Debian's cross compilers.
+# Runs a board's program here, with the libraries of Debian's cross compilers.
 RUNNERS = {
     "arm64": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
     "armhf": ["qemu-arm", "-L", "/usr/arm-linux-gnueabihf"],
@@ -31,7 +31,7 @@ def package() -> Path:
 
 @pytest.fixture(scope="session")
 def control(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of the package's own files."""
+    """Return the folder of the package's control files."""
     folder = tmp_path_factory.mktemp("control")
     subprocess.run(["dpkg-deb", "--control", package, folder], check=True)
     return folder
@@ -47,7 +47,7 @@ def files(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def architecture(package: Path) -> str:
-    """Return what it is for, in Debian's words."""
+    """Return its architecture, in Debian's terms."""
     command = ["dpkg-deb", "--field", package, "Architecture"]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
@@ -93,7 +93,7 @@ def test_the_symbols_are_a_package_of_their_own(
 
 
 def test_an_upgrade_neither_starts_nor_stops_the_service(control: Path, tmp_path: Path) -> None:
-    """The scripts run as dpkg runs them, where all that they may call is noted and does nothing."""
+    """The scripts run as dpkg runs them, with stubs that record calls and do nothing."""
     called = tmp_path / "called"
     tools = tmp_path / "bin"
     tools.mkdir()
@@ -126,7 +126,7 @@ def test_an_upgrade_neither_starts_nor_stops_the_service(control: Path, tmp_path
         script = control / name
         if not script.exists():
             continue
-        # The check for a running systemd is the only thing that is changed.
+        # Only the check for a running systemd is changed.
         text = script.read_text().replace("-d /run/systemd/system", "-d /")
         copy = tmp_path / name
         copy.write_text(text)

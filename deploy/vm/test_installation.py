@@ -1,4 +1,4 @@
-"""What installing the package does to a machine, and what it leaves alone."""
+"""The effects of installing the package."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MACHINE_LACKS = 10
 
 
 def test_nothing_is_started(guest: Guest) -> None:
-    """Asked of systemd, and of the kernel: nobody runs the program."""
+    """According to systemd and to the kernel, the program does not run."""
     assert guest.try_sh("systemctl is-active fccd").out.strip() == "inactive"
     assert guest.try_sh("systemctl is-enabled fccd").out.strip() == "disabled"
     never = "0"

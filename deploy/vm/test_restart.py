@@ -1,4 +1,4 @@
-"""What systemd does when the daemon hangs, is killed, or refuses to run."""
+"""What systemd does when the daemon hangs, is killed, or cannot start."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ UNIT_STARTED = "39f53479d3a045ac8e11786248231fbf"
 # Nominally less than one; an emulated machine takes two, and nine on a busy host.
 RESTART_S = 60.0
 
-# The same goes for how old a flight may be that is recovered, 10 s unless configured.
+# The same applies to the age of a flight to recover, 10 s by default.
 WARM = {"restart": {"mode": "warm", "max_age_s": 300.0}}
-# An altitude that was captured becomes surer for some seconds; what is kept is
-# a second old at most, and never further away than this.
+# The estimate of a captured altitude improves for some seconds; the stored one is at most a second
+# old and differs by less than this.
 KEPT_WITHIN_M = 0.3
 COLD = {"restart": {"mode": "cold"}}
 
@@ -87,7 +87,7 @@ def test_a_killed_flight_is_recovered(guest: Guest, tmp_path: Path, figures: lis
     engaged = [record for record in taken_up if record.state.phase == ENGAGED]
     before_s = (engaged[0].woke_ns - taken_up[0].woke_ns) * 1e-9
     figures.append(f"killed: flight recovered {before_s:.2f} s after the new loop's first tick")
-    # It engages as it always does, and is told in the next tick what was flown.
+    # It engages as always, and gets the stored state in the next tick.
     last = killed[-1].setpoints
     for record in engaged[1:]:
         aims = record.setpoints
@@ -130,7 +130,7 @@ def test_a_daemon_without_watchdog_notifications_is_restarted(
         assert int(ended[-1]["EXIT_STATUS"]) == signal.SIGABRT
         _assert_restarted_soon(service, figures, "stopped, and ended by the watchdog")
         service.wait_until(lambda: not simulator.progress().overridden, "the helper releases")
-        # And it flies again, when somebody wants it to.
+        # It flies again after the switch goes on.
         service.engage_again(simulator)
 
 

@@ -1,4 +1,4 @@
-"""A flight by the unit, and what systemd and the kernel say while it goes on."""
+"""A flight of the service, and its state in systemd and the kernel."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Flying = tuple[StandInProcess, Service]
 def flying(guest: Guest) -> Iterator[Flying]:
     """Fly, from `systemctl enable --now` on, all tests of this module."""
     with flight(guest, AWAKE) as (simulator, service):
-        # It comes back when it is ready, and not before.
+        # It returns when the service is ready, and not before.
         assert service.status.startswith("standby")
         service.engage(simulator)
         yield simulator, service
@@ -103,7 +103,7 @@ def test_its_folders_are_its_own(flying: Flying) -> None:
     for folder in ("/var/lib/fccd", "/var/lib/fccd/recordings", "/run/fccd"):
         owner = service.guest.sh(f"stat --format '%U:%G' {folder}").strip()
         assert owner == "fccd:fccd", folder
-    # What was flown is nobody else's business.
+    # Other users must not read recordings.
     modes = service.guest.sh("stat --format %a /var/lib/fccd/recordings/*.mcap").split()
     assert modes == ["640"]
 
@@ -114,7 +114,7 @@ def test_nothing_was_denied(flying: Flying) -> None:
     assert any("recording to" in line for line in log)
     refused = re.compile("refused|not granted|denied|not permitted|EPERM|EACCES|failed", re.I)
     assert [line for line in log if refused.search(line)] == []
-    # Nor has the kernel ended or noted anything for a system call.
+    # The kernel has not ended or logged anything because of a system call.
     assert "seccomp" not in service.guest.sh("dmesg")
 
 
@@ -134,7 +134,7 @@ def test_it_can_be_watched_as_the_manual_says(flying: Flying) -> None:
     assert output["process_id"] == service.pid
     assert output["tick"]["state"] == "engaged"
     assert (output["policy"], output["priority"]) == ("SCHED_FIFO", LOOP_PRIORITY)
-    # On a terminal, until somebody types a q.
+    # On a terminal, until q is typed.
     screen = service.guest.sh(
         "cd $(mktemp -d); mkfifo keys; touch screen;"
         "TERM=xterm script --quiet --flush --return --command "
@@ -145,7 +145,7 @@ def test_it_can_be_watched_as_the_manual_says(flying: Flying) -> None:
 
 
 def test_it_stops_on_request_and_its_flight_can_be_replayed(flying: Flying, tmp_path: Path) -> None:
-    """The last one: nobody flies any more."""
+    """The last test: the service is stopped."""
     simulator, service = flying
     service.guest.sh("systemctl stop fccd")
     assert (service.show("ActiveState"), service.show("Result")) == ("inactive", "success")

@@ -1,4 +1,4 @@
-"""Overrides: whose the controls are, and what is left when they are let go."""
+"""Overrides: who has control, and the controls after a release."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_release_restores_the_trimmed_controls_and_is_recorded() -> None:
     assert cockpit.controls() == TRIMMED
     assert cockpit.releases[0] == Release(2.0, OVERRIDE_JOYSTICK, 0.0, -0.4, 0.3)
     assert [release.path for release in cockpit.releases] == [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES]
-    # Letting go of what is not held is no release.
+    # Clearing an override that is not set is not a release.
     cockpit.write(3.0, OVERRIDE_JOYSTICK, 0.0)
     assert len(cockpit.releases) == 2
 

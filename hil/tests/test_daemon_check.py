@@ -1,4 +1,4 @@
-"""`fccd check`: what is wrong in a configuration, in which line, at which key, what is right."""
+"""`fccd check`: problems of a configuration with line, key and permitted values."""
 
 from __future__ import annotations
 
@@ -164,7 +164,7 @@ def test_every_problem_is_reported_in_the_order_of_the_file(fccd: Path, tmp_path
 
 
 def test_one_problem_hides_no_other(fccd: Path, tmp_path: Path) -> None:
-    """Of syntax, of keys, of types, of choices, of ranges, and of what belongs together."""
+    """Problems of syntax, keys, types, choices, ranges and combinations."""
     file = tmp_path / "wrong.toml"
     file.write_text(
         "[x-plane]\n"

@@ -1,4 +1,4 @@
-"""The daemon's commands as other tools and shells see them: JSON, exit codes, completions."""
+"""The daemon's command line as used by programs: JSON, exit codes, completions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-# What other tools will read; these names are a promise.
+# Keys for other programs; they must not change.
 TIMING = {
     "rate_hz",
     "timer",

@@ -1,4 +1,4 @@
-"""However the daemon ends, X-Plane has its controls back: asserted on X-Plane's side."""
+"""On every exit path X-Plane has its controls back, as seen by X-Plane."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_in_the_same_tick
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
 
-# What `fccd --help` says of them.
+# As in `fccd --help`.
 SUCCESS = 0
 FAILSAFE = 3
 PANICKED = 6
@@ -68,7 +68,7 @@ def test_an_output_that_is_not_a_number_is_never_sent(faulty_fccd: Path, tmp_pat
         daemon.wait_for("failsafe -> standby")
         assert_released(simulator)
         ending = daemon.end(signal.SIGTERM)
-        # The stand-in refuses what is no number; nothing was to be refused.
+        # The stand-in refuses values that are not finite; there must be none.
         assert simulator.status()["last_refusals"] == []
         assert all(math.isfinite(write.value) for write in simulator.journal())
     assert ending.exit_code == FAILSAFE

@@ -1,4 +1,4 @@
-"""Flights of the daemon under conditions that are not the best, scored from JSBSim's truth."""
+"""Flights of the daemon under bad conditions, scored from JSBSim's true state."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fcc_hil.pattern import TimedPattern
 from fcc_hil.standin import Settings
 
 HARSH = Faults(loss=0.02, duplicate=0.01, reorder=0.01)
-# Twice what is asked of a good network; a leg has no more than 20 s to settle in.
+# Twice the limits for a good network; a leg has at most 20 s to settle.
 WORST_HEADING_OVERSHOOT_DEG = 2 * 1.5
 WORST_ALTITUDE_OVERSHOOT_FT = 2 * 4.0
 WORST_ALTITUDE_RMS_FT = 2 * 2.0
@@ -46,7 +46,7 @@ def test_a_harsh_network_and_noisy_sensors(fccd: Path, tmp_path: Path) -> None:
     states = [text for text in events if " -> " in text]
     assert states == ["standby -> engaged", "engaged -> standby", "standby -> stopped"]
     assert "missed" in flown.report["timing"]
-    # The faults did strike.
+    # The faults occurred.
     assert flown.standin["inbound"]["lost"] > 0
     assert flown.standin["outbound"]["reordered"] > 0
     for leg in flown.figures["legs"]:

@@ -1,4 +1,4 @@
-"""The plugin with the real daemon: on this machine, and as if it were on another host."""
+"""The plugin with the real daemon: on this machine, and as if on another host."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A daemon that is killed in flight and started again: asserted on the aircraft.
 
-What is killed is the daemon alone; the simulator flies on, its engage switch still on, and
-the release helper releases the controls to a pilot who leaves them as they were.
+Only the daemon is killed; the simulator continues, its engage switch still on, and the release
+helper releases the controls to a pilot who does not move them.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ SUCCESS = 0
 RECOVERED_S = 3.0
 """Nominally 0.7 s; machines are busy with other things."""
 WARM = '[restart]\nmode = "warm"\n'
-# Half a minute to each leg: killed early in the first, the aircraft is far from where
-# it is to go, and a recovered flight cannot be mistaken for a new capture.
+# Long legs: killed early in the first, the aircraft is far from its set points, and a recovered
+# flight differs clearly from a new capture.
 PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
 
 _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
@@ -48,7 +48,7 @@ _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) f
 
 @dataclass(frozen=True)
 class Aims:
-    """What the daemon aims for, in the words of its status line."""
+    """The set points in the daemon's status line."""
 
     heading_deg: float
     altitude_ft: float
@@ -62,7 +62,7 @@ class Aims:
 
 
 class Cockpit:
-    """A simulator in flight, and one daemon after the other."""
+    """A simulator in flight, and successive daemons."""
 
     def __init__(self, fccd: Path, scratch: Path, simulator: StandInProcess) -> None:
         self.fccd = fccd
@@ -81,7 +81,7 @@ class Cockpit:
             yield daemon
 
     def fly_and_kill(self, others: str, guidance: str = PATTERN) -> Aims:
-        """Fly into the first turn, and kill; return what was aimed for."""
+        """Fly into the first turn, and kill the daemon; return its set points."""
         with self.daemon(others, guidance) as daemon:
             captured = self.engage(daemon)
             aims = captured
@@ -165,7 +165,7 @@ def test_a_cold_restart_stays_in_standby_and_reports_it(cockpit: Cockpit) -> Non
         again.wait_until_ready()
         assert "standby" in again.wait_for("heading")
         assert not cockpit.simulator.progress().overridden
-        # And flies when somebody wants it to.
+        # It flies after the switch goes on.
         cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
         again.wait_until_ready()
         cockpit.engage(again)

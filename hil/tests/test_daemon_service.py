@@ -1,4 +1,4 @@
-"""What systemd hears of a flight, and what it does to one that hangs."""
+"""Notifications to systemd during a flight, and what it does if the loop hangs."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_systemd_that_does_not_read_delays_nothing(fccd: Path, tmp_path: Path)
         ),
     ):
         engage(simulator, daemon)
-        # Long enough to fill every queue there is.
+        # Long enough to fill all queues.
         for _ in range(5):
             daemon.wait_for("engaged ")
         ending = daemon.end(signal.SIGTERM)
@@ -74,6 +74,6 @@ def test_a_loop_that_hangs_sends_no_notification_and_is_released(
 
 
 def _children(pid: int) -> list[int]:
-    """Return the processes that this one has started, and none of them has ended."""
+    """Return the child processes that are still running."""
     listed = (task.read_text().split() for task in Path(f"/proc/{pid}/task").glob("*/children"))
     return [int(child) for children in listed for child in children]

@@ -1,4 +1,4 @@
-"""What simulators do to a flight control computer: die, pause, hang, reload, not listen."""
+"""Faults of simulators: end, pause, hang, reload, ignore writes."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
 MAX_AGE_S = 0.25
-"""What is older is lost, unless configured."""
+"""The default; older readings are lost."""
 SAID_AFTER_S = 1.5
 """Silent after half a second, and for another second."""
 ASKED_EVERY_S = 1.0
-"""A simulator that sends nothing is asked to, so often."""
+"""Interval of requests to a silent simulator."""
 AGAIN_AFTER_S = 0.25
-"""Between one release and the next, until it shows."""
+"""Interval between releases, until confirmed."""
 PAUSED = 1
 """The plant's state, as the recording calls it."""
 SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
@@ -44,7 +44,7 @@ def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_pa
     mistyped = "sim/cockpit2/switches/generic_light_switch[0]"
     with flight(fccd, tmp_path, x_plane=f'engage_switch = "{mistyped}"') as (_, daemon):
         assert mistyped in daemon.wait_for("answers")
-        # The stand-in lacks another dataref too, one that nothing depends on.
+        # The stand-in also lacks another dataref, which nothing depends on.
         words = daemon.wait_for("does not send x-plane.engage_switch")
         assert f'"{mistyped}"' in words
         ending = daemon.end(signal.SIGTERM)
@@ -142,7 +142,7 @@ def test_a_release_lost_by_a_hung_simulator_is_repeated_until_confirmed(
         engage(simulator, daemon)
         simulator.set_mode(Mode.FROZEN)
         daemon.wait_for("engaged -> failsafe")
-        # What is written to it now piles up until nothing more fits.
+        # Writes to it now fill the socket's buffer.
         time.sleep(2.0)
         daemon.send(signal.SIGTERM)
         daemon.wait_for("failsafe -> stopped")
@@ -214,7 +214,7 @@ def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Pat
 
 
 def test_a_reloaded_flight_is_not_continued(fccd: Path, tmp_path: Path) -> None:
-    """The switch comes back off and the clock at zero; either is a reason to let go."""
+    """The switch is off and the clock at zero again; either causes a release."""
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.restart_flight()

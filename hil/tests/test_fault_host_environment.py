@@ -1,4 +1,4 @@
-"""What surrounds a flight and breaks: disk, terminal, watchers, configuration, a second daemon."""
+"""Faults of a flight's environment: disk, terminal, watchers, configuration, a second daemon."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ TAKEN = 12
 NORMAL_HZ = 40
 FAST_HZ = 1_000
 RING_S = 4.2
-"""The loop's ring has room for so much of a flight at 1 kHz."""
+"""The capacity of the loop's ring at 1 kHz, s."""
 WRITTEN_EVERY_S = 0.7
-"""What has gathered goes to the disk so often."""
+"""Interval of commits, s."""
 BEACON_PERIOD_S = 1.0
 """As X-Plane sends it."""
 
@@ -89,7 +89,7 @@ def a_full_disk(fccd: Path, scratch: Path) -> Ending:
 
 
 def a_changed_configuration(fccd: Path, scratch: Path) -> Flown:
-    """Fly while somebody writes nonsense, and then nothing, over the configuration."""
+    """Fly while the configuration is overwritten with invalid text, and then emptied."""
     recordings = scratch / "recordings"
     with fly(fccd, scratch, "[telemetry]\nenabled = false\n", "--recordings", recordings) as daemon:
         daemon.wait_for("standby -> engaged")
@@ -123,7 +123,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
             # More than fit into its buffer of 1,024 records.
             for _ in range(3):
                 assert "engaged" in daemon.wait_for("heading")
-            # Who comes now sees the newest all the same.
+            # A new watcher still gets the newest record.
             assert live.Watcher(instance).info.process_id == daemon.pid
             return Flown.of(daemon.end(signal.SIGTERM), recordings)
         finally:
@@ -132,7 +132,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
 
 
 def a_full_ring(faulty_fccd: Path, scratch: Path) -> Flown:
-    """Fly at 1 kHz, and let nobody fetch until what waits finds no room."""
+    """Fly at 1 kHz without reading the ring until it overflows."""
     recordings = scratch / "recordings"
     config = f"[loop]\nrate_hz = {FAST_HZ}\n[telemetry]\nenabled = false\n"
     paused = {"FCCD_PAUSE_AT_S": "3", "FCCD_PAUSE_S": str(2 * RING_S)}
@@ -228,7 +228,7 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
         assert simulator.progress().overridden, "the first flies on"
         daemon.send(signal.SIGKILL)
         daemon.end()
-        # What was killed leaves nothing behind that is in the way.
+        # A killed daemon leaves nothing that blocks the next.
         third_scratch = tmp_path / "third"
         third_scratch.mkdir()
         with start(fccd, third_scratch, write_config(third_scratch, simulator.port)) as third:
@@ -272,7 +272,7 @@ def test_a_beacon_does_not_lead_to_a_simulator_under_control(
 
 
 def test_a_local_port_in_use_has_its_own_exit_code(fccd: Path, tmp_path: Path) -> None:
-    """By the exit code: who starts the daemon again for ever would do so in vain."""
+    """It has its own exit code, so that a service manager does not restart it in vain."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("0.0.0.0", 0))
         port = other.getsockname()[1]

@@ -1,4 +1,4 @@
-"""What becomes of a flight when the way to the simulator is cut, or the simulator is slow."""
+"""Flights with a link to the simulator that is cut, or a slow simulator."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SLOW_FPS = 10.0
 
 
 def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
-    """Cut the way from the simulator: what is sent to it still gets there."""
+    """Cut the link from the simulator: datagrams to it still arrive."""
     scratch.mkdir()
     with (
         StandInProcess(Settings(port=0)) as simulator,
@@ -49,7 +49,7 @@ def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
 
 
 def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
-    """Cut the way to the simulator: it flies on with what it was told last."""
+    """Cut the link to the simulator: it keeps the last controls."""
     scratch.mkdir()
     with (
         StandInProcess(Settings(port=0)) as simulator,
@@ -58,7 +58,7 @@ def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
     ):
         engage(simulator, daemon)
         link.cut(to_simulator=True)
-        # Somebody else lets go of the override, and the daemon cannot set it again.
+        # Another program clears the override, and the daemon cannot set it again.
         cut_ns = time.monotonic_ns()
         simulator.write(OVERRIDE_JOYSTICK, 0.0)
         assert "have no effect" in daemon.wait_for("Accept incoming connections")
@@ -122,9 +122,9 @@ def test_nothing_to_the_simulator_is_reported_and_the_flight_continues(
     recovered = [
         event for event in flown.events if event.kind.WhichOneof("kind") == "actuator_recovered"
     ]
-    # A second after it shows.
+    # A second after the difference appears.
     assert 0.0 < (faults[0].time_ns - flown.injected_ns) * NS < 1.0 + AT_ONCE_S
-    # And a second later in words, for people.
+    # And a second later as a message.
     said_s = flown.ending.when("Accept incoming connections")
     assert 0.0 < said_s - flown.ending.when("actuator X-Plane: ") < 1.0 + AT_ONCE_S
     assert recovered

@@ -1,6 +1,6 @@
-"""What a machine and a controller do to the loop itself: late, stopped, slow, hung.
+"""Faults of the loop itself: late, stopped, slow, hung.
 
-All flights of the built-in aircraft, side by side, and then asked.
+All flights are of the built-in aircraft, at the same time, and checked afterwards.
 """
 
 from __future__ import annotations
@@ -178,7 +178,7 @@ def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     place = flight.failsafes[0]
     record = flight.records[place]
     assert record.state.cause == OVERRUN
-    # Told once, of the stage, and each counted: in its own record.
+    # Reported once, with the stage, and each counted in its own record.
     told = [
         event.kind.overrun for event in flight.events if event.kind.WhichOneof("kind") == "overrun"
     ]
@@ -207,7 +207,7 @@ def test_a_stage_that_overruns_is_named(flights: dict[str, Flown]) -> None:
 
 
 def test_a_stopped_process_continues(flights: dict[str, Flown]) -> None:
-    """Its own watchdog was stopped with it, and takes nobody's life for that."""
+    """Its own watchdog was stopped too, and does not fire."""
     flight = flights["stopped"]
     assert flight.ending.exit_code == SUCCESS
     assert max(record.tick.missed for record in flight.records) >= 1.5 * RATE_HZ
@@ -240,7 +240,7 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
     assert flight.ending.report["released"] is True
     last = flight.events[-1]
     assert last.kind.WhichOneof("kind") == "hung"
-    # It looks ten times in that time, and counts two looks at most for one.
+    # It checks ten times in that time, and counts at most two checks for one.
     assert HANG_AFTER_NS <= last.kind.hung.silent_ns < 1.2 * HANG_AFTER_NS
     assert "the watchdog released the controls" in flight.ending.log
     # All up to the tick that hangs, which has no end and so no record.
@@ -252,7 +252,7 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
 def test_a_loop_that_hangs_is_ended_though_the_main_thread_hangs_too(
     faulty_fccd: Path, tmp_path: Path
 ) -> None:
-    """It can end nothing in good order."""
+    """It cannot finish the recording."""
     environment = {"FCCD_HANG_AT_S": "2", "FCCD_PAUSE_AT_S": "3"}
     with fly(faulty_fccd, tmp_path / "both", environment, QUICK_WATCHDOG) as daemon:
         ending = daemon.end(within_s=60.0)

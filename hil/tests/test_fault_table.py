@@ -1,4 +1,4 @@
-"""The table of faults: every fault that must be in it is, and every row names a test there is."""
+"""The table of faults contains every required fault, and every row names an existing test."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "faults.md"
-# What needs a machine of its own is tested by `make test-vm`.
+# Tests that need a whole machine run in `make test-vm`.
 FOLDERS = (ROOT / "hil" / "tests", ROOT / "deploy" / "vm")
 SHOWN_BY = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
 COLUMNS = 5

@@ -1,4 +1,4 @@
-"""The faulty network: how often each fault strikes, and that nothing else does."""
+"""The faulty network: the rate of each fault, and no other changes."""
 
 from __future__ import annotations
 

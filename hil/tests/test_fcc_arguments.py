@@ -1,4 +1,4 @@
-"""Whatever is given to the module `fcc`, it answers or raises, and says what was wrong."""
+"""Any argument to the module `fcc` gives a result or an exception with a message."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ ALLOWED = (fcc.Error, ValueError, TypeError, OverflowError)
 
 
 def answers(call: Callable[[], Any]) -> None:
-    """Answer or raise one of the allowed exceptions, in words."""
+    """Return, or raise one of the permitted exceptions with a message."""
     words = "answered"
     try:
         call()
@@ -100,7 +100,7 @@ ONE: dict[str, Callable[..., Any]] = {
     "Watcher": fcc.Watcher,
     "Commander": fcc.Commander,
 }
-"""What is called with one argument."""
+"""Functions of one argument."""
 TWO: dict[str, Callable[..., Any]] = {
     "Autopilot.observe": lambda a, b: engaged().observe(a, b),
     "Autopilot.observe_series": lambda a, b: engaged().observe_series(a, b),
@@ -134,7 +134,7 @@ TWO: dict[str, Callable[..., Any]] = {
     "Timer": fcc.Timer,
     "replay": fcc.replay,
 }
-"""What is called with two."""
+"""Functions of two arguments."""
 
 
 @pytest.mark.parametrize("name", ONE)

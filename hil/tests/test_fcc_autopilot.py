@@ -1,4 +1,4 @@
-"""The autopilot by hand, in series, in fleets, and in the daemon's loop around a plant."""
+"""The autopilot step by step, in series, in fleets, and in the daemon's loop around a plant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def flown(seconds: float, loop: fcc.Machine, aircraft: fcc.BuiltInAircraft) -> N
 
 
 def series(seconds: float = 10.0) -> np.ndarray:
-    """Return what sensors measure in trimmed flight, hands off."""
+    """Return the measurements of trimmed flight without control."""
     aircraft = fcc.BuiltInAircraft()
     return np.array([aircraft.step(None).to_array() for _ in range(round(seconds * 40))])
 

@@ -1,4 +1,4 @@
-"""A flight watched from outside: by Python, by `fccd top`, and by many that are killed."""
+"""A flight watched by Python, by `fccd top`, and by many watchers that are killed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnd
 
 
 def watch(instance: str, daemon: DaemonUnderTest) -> live.Watcher:
-    """Watch as soon as there is something to watch."""
+    """Watch as soon as the daemon publishes."""
     daemon.wait_for("standby -> engaged")
     return live.Watcher(instance)
 
@@ -89,7 +89,7 @@ def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance:
 
         place = Path(f"/dev/shm/fccd-{uid}")
         assert (place.stat().st_uid, place.stat().st_mode & 0o777) == (uid, 0o700)
-        # What somebody else has put there is named, and the flight goes on.
+        # A foreign file is reported, and the flight continues.
         shutil.rmtree(place)
         place.mkdir()
         flown = as_user(*(str(program), "fly", "--seconds", "0.5", "--quiet"))

@@ -1,4 +1,4 @@
-"""The autopilot on a flight model that we did not write, held to the issue's figures.
+"""The autopilot on JSBSim's flight model, compared with limits.
 
 One set of gains, the daemon's defaults, flies both Cessnas. The seeds are not those
 on which the gains were found.

@@ -1,4 +1,4 @@
-"""The daemon's own loop from Python: its states, what it says, its recording."""
+"""The daemon's own loop from Python: states, messages, recording."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ bad_numbers = st.sampled_from([math.nan, math.inf, -math.inf])
 
 @pytest.fixture(scope="module")
 def level() -> fcc.Measurements:
-    """Return what sensors say of a trimmed Cessna."""
+    """Return the measurements of a trimmed Cessna."""
     return measurements(Plant("c172p").state())
 
 

@@ -1,4 +1,4 @@
-"""The marks of a test: what they ask for, and what is refused."""
+"""The marks of a test: their effect, and wrong arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The plugin as those who write tests see it: what fails says why, and leaves a flight."""
+"""The plugin as used in tests: messages of failures, and artifacts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import fcc_hil.lockstep_rig  # noqa: F401
 
 IMPORTS = "import pytest\nfrom fcc_hil import airspeed, altitude, bank, heading\n"
 NOWHERE = "/proc/none"
-"""A folder that cannot be: plots take longer than flights."""
+"""A folder that cannot be created, because plots take longer than flights."""
 
 FAILING = """
 @pytest.mark.aircraft("c172p", turbulence=3, seed=4)

@@ -1,4 +1,4 @@
-"""Requirements on flights that are known to the last sample: a rig that replays a table."""
+"""Requirements on flights with known samples: a rig that replays functions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Flown = Callable[[float], float]
 
 
 class TableRig:
-    """Flies what a test says, as functions of the time since engagement."""
+    """Flies functions of the time since engagement."""
 
     name = "a table"
     failsafe_shows_after_s = 0.0

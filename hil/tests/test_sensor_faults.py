@@ -1,4 +1,4 @@
-"""What the faults do to a sensor, sample by sample: a sensor that counts."""
+"""The effect of faults on a sensor, sample by sample."""
 
 from __future__ import annotations
 

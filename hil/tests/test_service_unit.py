@@ -1,4 +1,4 @@
-"""The systemd unit: free of faults, closed where it can be, and open enough to fly."""
+"""The systemd unit: valid, restricted, and with the rights needed to fly."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def _calls(group: str) -> set[str]:
     ("name", "values"),
     [
         ("Type", ["notify"]),
-        # Who watches is not in a world of their own.
+        # Watchers need the same shared memory.
         ("RemoveIPC", ["no"]),
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),

@@ -1,4 +1,4 @@
-"""The soak: what it counts, and a short one in real time."""
+"""The soak: its counts, and a short one in real time."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_whole_periods_of_lateness_are_lost_ones() -> None:
 
 
 def test_periods_beyond_the_histogram_are_counted() -> None:
-    # cyclictest leaves it out of its JSON, but for the maximum.
+    # cyclictest omits it from its JSON, except for the maximum.
     assert periods_lost({"17": 3}, 2_345_678.0, 10_000.0) == 234
 
 
@@ -110,7 +110,7 @@ def test_a_short_soak_never_waits_for_anything_but_the_timer(
     written = tmp_path / "soak.json"
     main(["soak", "--fccd", str(fccd), "--minutes", "0.05", "--idle", "--json", str(written)])
     figures = json.loads(written.read_text())
-    # How late it was is the machine's affair; that it did not wait is ours.
+    # Lateness depends on the machine; waiting does not.
     assert figures["ticks"] > 200
     assert figures["watched_ticks"] >= 300
     if figures["memory_locked"]:

@@ -1,4 +1,4 @@
-"""The flight suite: its quick part flown and held to its limits, and how it judges."""
+"""The flight suite: its quick part flown and checked against limits, and its judgement."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tuning: what a flight costs, what the search finds, and where it may fly."""
+"""Tuning: the cost of a flight, the search, and the workers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from fcc_hil.tuning.workers import Flight
 
 ELEVATOR = "autopilot.scale.elevator"
 LIMP = "[autopilot.scale]\nelevator = 0.15\n"
-"""An elevator that is moved too little: the aircraft wallows after its altitude."""
+"""An elevator with too little gain: altitude oscillates slowly."""
 
 
 def _task(**changes: object) -> Task:

@@ -1,4 +1,4 @@
-"""The tests that docs/tutorial.md has its reader write, as they are printed there."""
+"""The tests in docs/tutorial.md, as printed there."""
 
 from __future__ import annotations
 
