@@ -96,7 +96,7 @@ def test_a_host_without_a_daemon_is_reported(
     result = _run(pytester, FLIES, "--fccd", "127.0.0.1", "--fccd-listen", at)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        [f'E *FlightError: nobody subscribed*is fccd running on 127.0.0.1*simulator = "{at}"*']
+        [f'E *FlightError: no daemon subscribed*is fccd running on 127.0.0.1*simulator = "{at}"*']
     )
 
 

@@ -36,7 +36,7 @@ REQUIRED = (
     "disk full",
     "ring full",
     "telemetry reader hung",
-    "configuration changed",
+    "configuration file changed",
     "second instance started",
     "SIGTERM",
     "SIGKILL",

@@ -123,7 +123,7 @@ def test_the_stand_ins_process_takes_commands_and_can_be_killed() -> None:
     assert simulator.read("sim/time/paused") == 0.0
     assert simulator.read("sim/no/such") is None
     simulator.kill()
-    with pytest.raises(StandInError, match="is gone"):
+    with pytest.raises(StandInError, match="has ended"):
         simulator.progress()
     simulator.stop()
 

@@ -93,7 +93,7 @@ def test_a_folder_that_cannot_be_created_is_reported_after_the_failure(
 ) -> None:
     result = _run(pytester, FAILING, "--flight-artifacts", NOWHERE)
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*RequirementError: required:*", "not all is left behind: *"])
+    result.stdout.fnmatch_lines(["*RequirementError: required:*", "not everything was saved: *"])
 
 
 def test_a_passed_test_saves_nothing(pytester: pytest.Pytester) -> None:

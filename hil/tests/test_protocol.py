@@ -75,7 +75,7 @@ def test_good_datagrams(datagram: bytes, message: object) -> None:
         (WRITE[:9] + b"x" * 500, "no NUL"),
         (WRITE[:9] + bytes(500), "empty"),
         (WRITE[:9] + padded(b"sim/\xff", 500), "ASCII"),
-        (WRITE[:5] + b"\0\0\xc0\x7f" + WRITE[9:], "not a number"),
+        (WRITE[:5] + b"\0\0\xc0\x7f" + WRITE[9:], "not a finite number"),
         (b"DATA\0", r"5 \+ n x 36"),
         (b"DATA\0" + ROW_8[:-1], r"5 \+ n x 36"),
         (b"DATA\0" + b"\x8b\0\0\0" + ROW_8[4:], "row 139"),

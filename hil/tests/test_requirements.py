@@ -183,7 +183,7 @@ def test_states_are_awaited_and_judged_by_their_time() -> None:
     assert str(refused.value).splitlines() == [
         "required: the autopilot falls into failsafe by 0.4 s after loss of airspeed at 2.50 s",
         "flown:    engaged -> failsafe: airspeed is missing or too old, 0.50 s later",
-        "said:     1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
+        "events:   1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
         "too old; 6.00 s failsafe -> standby; 6.00 s actuators released",
     ]
     with pytest.raises(RequirementError, match=r"failsafe: airspeed .* at 3\.00 s"):
@@ -207,7 +207,7 @@ def test_an_autopilot_that_does_not_engage_in_time() -> None:
     assert str(refused.value).splitlines() == [
         "required: the autopilot engages by 0.4 s",
         "flown:    it engages after 0.50 s",
-        "said:     1.00 s standby -> engaged",
+        "events:   1.00 s standby -> engaged",
     ]
 
 
@@ -218,11 +218,11 @@ def test_invalid_requirements_are_refused() -> None:
     flight.engages(by=1)
     with pytest.raises(ValueError, match="sets no bank: give at="):
         flight.stays(bank, within=1)
-    with pytest.raises(ValueError, match="no single number"):
+    with pytest.raises(ValueError, match="not a single number"):
         flight.stays(attitude, within=1, at=0)
     with pytest.raises(ValueError, match="change again 10 s"):
         flight.settles(heading, within=1, by=11)
-    with pytest.raises(ValueError, match="comes before the start"):
+    with pytest.raises(ValueError, match="is before the start"):
         flight.stays(heading, within=1, from_=5, to=4)
     with pytest.raises(ValueError, match="no state 'panic'"):
         flight.never("panic")

@@ -150,5 +150,5 @@ def test_a_missing_program_is_reported_before_the_flight(
     # Found by its name, although it is `nice` that starts it.
     programs("nice", _CYCLICTEST)
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(SoakError, match=f"{missing} is not there"):
+    with pytest.raises(SoakError, match=f"{missing} is missing"):
         soak(Soak(Path("fccd"), 600.0, 100, stress=True), lambda _: None)

@@ -71,7 +71,7 @@ def test_exceeded_limits_are_described() -> None:
     figures = {"altitude_rms_ft": 0.91, "heading_settle_s": None, "turn_loss_ft": 1.0}
     words = broken(figures, asked)
     assert words == [
-        "altitude_rms_ft: 0.91 is beyond 0.9 ft",
+        "altitude_rms_ft: 0.91 exceeds 0.9 ft",
         "heading_settle_s: some leg never settles; the limit is 16.6 s",
     ]
     assert broken({"turn_loss_ft": float("nan")}, limits(turn_loss_ft=1.0))

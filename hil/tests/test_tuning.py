@@ -105,14 +105,14 @@ def test_costs_by_name_and_by_weights() -> None:
 
 
 def test_the_search_finds_a_wrong_elevator_scale_repeatably(fccd: Path, tmp_path: Path) -> None:
-    told = []
+    calls = []
     with local_workers(1) as fly_all:
-        found = tune(_task(), fly_all, lambda flown, least: told.append((flown, least)))
+        found = tune(_task(), fly_all, lambda flown, least: calls.append((flown, least)))
         again = tune(_task(), fly_all)
     assert found.after < 0.8 * found.before
     assert found.values[ELEVATOR] > 0.2
     assert found == again
-    assert told[-1] == (found.evaluations, found.after)
+    assert calls[-1] == (found.evaluations, found.after)
     file = tmp_path / "found.toml"
     file.write_text(found.config, encoding="utf-8")
     checked = subprocess.run([fccd, "check", file], capture_output=True, text=True, check=False)

@@ -1,10 +1,10 @@
-//! The framework with no aircraft in it: a room, a heater and a PI controller
-//! under the same 40 Hz loop that flies an aircraft, timed and reported in the
-//! same way.
+//! The framework without an aircraft: a room, a heater and a PI controller
+//! under the same 40 Hz loop that flies an aircraft, with the same timing and
+//! report.
 //!
-//! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
-//! flights are.
+//! `cargo run -p thermostat` heats the room for eight seconds, each of which is
+//! 33 minutes in the room. With `-- --record DIR` the run is recorded, like a
+//! flight.
 
 #[cfg(test)]
 mod conformance;
@@ -49,7 +49,7 @@ fn recording_folder(
     }
 }
 
-/// Puts the parts together.
+/// Assembles the parts.
 fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     let thermometer = Thermometer {
         room_c: 12.0,
@@ -63,8 +63,8 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     }
 }
 
-/// Heats for a while, reports it once a second, and records it if there is a
-/// folder to record into. Output that cannot be written ends nothing.
+/// Heats for some seconds, reports each second, and records if there is a
+/// folder. Output that cannot be written does not end it.
 fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
@@ -85,7 +85,7 @@ fn heat(
     let (this, mut link) = Loop::new(parts, &config)?;
     let handle = this.spawn()?;
     for denied in &handle.granted().denied {
-        let _ = writeln!(out, "goes on without: {denied}");
+        let _ = writeln!(out, "continues without: {denied}");
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
@@ -160,9 +160,10 @@ mod tests {
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
     use thermostat::Heating;
 
-    /// After one time constant a first-order room has come 1 - 1/e of the way.
+    /// After one time constant a first-order room has covered 1 - 1/e of the
+    /// difference.
     #[test]
-    fn the_room_is_the_textbooks() {
+    fn the_room_has_the_textbooks_time_constant() {
         let mut heater = Heater::default();
         Actuator::apply(&mut heater, &Tick::default(), &Heating { power: 0.5 }).unwrap();
         let mut thermometer = Thermometer {
@@ -177,10 +178,10 @@ mod tests {
         assert!((thermometer.room_c - (OUTSIDE_C + 20.0 * 0.632_120_558_8)).abs() < 1e-6);
     }
 
-    /// In the end the heater gives what the walls lose at the wanted
-    /// temperature: (20 - 2)/0.02 = 900 W.
+    /// Finally the heater gives what the walls lose at the wanted temperature:
+    /// (20 - 2)/0.02 = 900 W.
     #[test]
-    fn the_room_gets_as_warm_as_it_was_told() {
+    fn the_room_reaches_the_set_point() {
         let heater = Heater::default();
         let timer = Box::new(ManualTimer::new(PERIOD).unwrap());
         let (mut machine, mut link) =
@@ -201,7 +202,7 @@ mod tests {
         assert!(heater.power() <= 0.0, "the heater is still on");
     }
 
-    /// And is recorded to the last tick, even where nothing can be printed.
+    /// It is recorded to the last tick, even if nothing can be printed.
     #[test]
     fn it_runs_on_a_real_clock() {
         let folder = tempfile::tempdir().unwrap();
@@ -218,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn it_records_only_where_it_is_asked_to() {
+    fn it_records_only_if_requested() {
         let folder = |words: &[&str]| recording_folder(words.iter().map(OsString::from));
         assert_eq!(folder(&[]), Ok(None));
         assert_eq!(folder(&["--record", "runs"]), Ok(Some("runs".into())));

@@ -1,4 +1,4 @@
-//! The controller: heats until the room is as warm as it was told.
+//! The controller: heats the room to its set point.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use fcc_core::schema;
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
 
 schema! {
-    /// What is measured of a room.
+    /// Measurements of a room.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Measured {
         /// Temperature of its air.
@@ -20,7 +20,7 @@ schema! {
 }
 
 schema! {
-    /// What is to become of a room.
+    /// Set points of a room.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Wanted {
         /// Temperature of its air.
@@ -30,7 +30,7 @@ schema! {
 }
 
 schema! {
-    /// What is done about it.
+    /// Outputs.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Heating {
         /// Power of the heater: 0 off, 1 full.
@@ -43,7 +43,7 @@ fcc_core::readings!(Measured {
     room_c: "the room's temperature"
 });
 
-/// How fast the room shall follow, s of its own time.
+/// Response time of the room, s of its own time.
 const RESPONSE_S: f64 = 600.0;
 const MAX_AGE: Duration = Duration::from_secs(1);
 const NO_TEMPERATURE: Flags = Flags::bit(0);
@@ -75,7 +75,7 @@ impl Controller for Thermostat {
     type Estimate = ();
     type Setpoints = Wanted;
     type Outputs = Heating;
-    /// Another temperature, °C.
+    /// Another set point, °C.
     type Command = f64;
 
     fn estimate(&mut self, _: &Tick, _: &Measured) {}

@@ -51,6 +51,6 @@ def broken(figures: Mapping[str, Any], asked: Limits) -> list[str]:
         value = figures[name]
         if value is None:
             words.append(f"{name}: some leg never settles; the limit is {most:g} {UNITS[name]}")
-        elif not value <= most:  # NaN is beyond every limit
+        elif not value <= most:  # NaN exceeds every limit
             words.append(f"{name}: {value:.3g} exceeds {most:g} {UNITS[name]}")
     return words
