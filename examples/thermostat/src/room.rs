@@ -56,10 +56,10 @@ pub(crate) struct Thermometer {
 }
 
 impl Thermometer {
-    /// Advances the time. One heat capacity behind one resistance, `C dT/dt = P
-    /// - (T - T_outside)/R` (lumped capacitance; Incropera et al., Fundamentals
-    /// of Heat and Mass Transfer, 2007, section 5.1), solved for constant
-    /// power.
+    /// Advances the time. One heat capacity behind one resistance,
+    /// `C dT/dt = P - (T - T_outside)/R` (lumped capacitance; Incropera et al.,
+    /// Fundamentals of Heat and Mass Transfer, 2007, section 5.1), solved for
+    /// constant power.
     pub(crate) fn pass(&mut self, seconds: f64) {
         let steady_c = OUTSIDE_C + RESISTANCE_K_PER_W * HEATER_W * self.heater.power();
         self.room_c = steady_c + (self.room_c - steady_c) * (-seconds / TIME_CONSTANT_S).exp();
