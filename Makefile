@@ -62,8 +62,9 @@ test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon --no-default-features
-	@! cargo tree --locked -p thermostat -e features -i fcc-core | grep 'feature "flight"' || \
-	    { echo "the thermostat is compiled with an aircraft: see above"; exit 1; }
+	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat; do \
+	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
+	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
@@ -164,7 +165,7 @@ bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircr
 	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
-	cargo build --locked --release -p fcc-live --example watch
+	cargo build --locked --release -p fcc-live --features flight --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
 doc: $(STAMPS)/rust ## Build the API documentation

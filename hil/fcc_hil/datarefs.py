@@ -39,6 +39,7 @@ class Readout:
     dialect: Dialect
     flight_time_s: float
     paused: bool
+    frame_period_s: float
     origin_latitude_rad: float
     """Origin of X-Plane's local axes."""
     origin_longitude_rad: float
@@ -156,6 +157,7 @@ _READABLE: dict[str, Getter] = {
     "sim/cockpit2/gauges/indicators/altitude_ft_pilot": lambda r: r.state.altitude_m / FT_TO_M,
     "sim/time/paused": lambda r: float(r.paused),
     "sim/time/total_flight_time_sec": lambda r: r.flight_time_s,
+    "sim/time/framerate_period": lambda r: r.frame_period_s,
     "sim/flightmodel/failures/onground_any": lambda r: float(r.state.on_ground),
     "sim/version/xplane_internal_version": lambda r: float(r.dialect.version),
 }

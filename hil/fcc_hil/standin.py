@@ -319,6 +319,7 @@ class StandIn:
             dialect=self.dialect,
             flight_time_s=self.plant.time_s + self._time_offset_s,
             paused=self.mode is Mode.PAUSED,
+            frame_period_s=self.clock.period_s,
             origin_latitude_rad=self._origin[0],
             origin_longitude_rad=self._origin[1],
             magnetic_variation_deg=self.settings.magnetic_variation_deg,

@@ -180,7 +180,7 @@ def test_help_names_the_exit_codes(fccd: Path) -> None:
     assert ended.returncode == 0
     assert "3  the flight fell into failsafe" in ended.stdout
     assert "12  another program uses the simulator" in ended.stdout
-    assert "14  the flight went as it should, but was not recorded" in ended.stdout
+    assert "14  the flight succeeded, but was not recorded" in ended.stdout
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

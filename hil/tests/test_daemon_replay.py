@@ -73,7 +73,7 @@ def test_a_replay_of_a_flight_is_identical(fccd: Path, tmp_path: Path) -> None:
     exit_code, found = replay(fccd, recording, "--config", config)
     assert exit_code == SUCCESS
     differing = {q["name"] for q in found["deviation"]["quantities"] if q["differing"] > 0}
-    assert differing == {"elevator"}
+    assert differing == {"commanded elevator"}
 
 
 def test_a_file_that_is_not_a_recording_is_refused(fccd: Path, tmp_path: Path) -> None:

@@ -39,6 +39,7 @@ def readout(state: State, version: int = 121_000, variation_deg: float = 0.0) ->
         dialect=Dialect(version),
         flight_time_s=12.5,
         paused=False,
+        frame_period_s=0.02,
         origin_latitude_rad=0.0,
         origin_longitude_rad=0.0,
         magnetic_variation_deg=variation_deg,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import signal
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
-from fault_flights import AT_ONCE_S, NS, Flown, assert_flown_again, at_once, seconds
+from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_flown_again, at_once, seconds
 from tampered_link import TamperedLink
 
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
@@ -86,6 +87,25 @@ def slow(fccd: Path, scratch: Path) -> Flown:
     return Flown.of(ending, scratch / "recordings", slowed_ns)
 
 
+def one_of_two(fccd: Path, scratch: Path) -> Flown:
+    """Measure by two simulators, and end the preferred one: the other is flown."""
+    scratch.mkdir()
+    with StandInProcess(Settings(port=0)) as flown, ExitStack() as preferred:
+        other = preferred.enter_context(StandInProcess(Settings(port=0)))
+        entry = f'[[sensor]]\nkind = "x-plane"\nsimulator = "127.0.0.1:{other.port}"\n'
+        config = write_config(scratch, flown.port, others=f"{PATIENT}{entry}")
+        with start(fccd, scratch, config) as daemon:
+            other.write(ENGAGE_SWITCH, 1.0)
+            engage(flown, daemon)
+            preferred.close()
+            assert "airspeed" in daemon.wait_for(": from sensor 1 instead of 0")
+            for _ in range(3):
+                assert "engaged" in daemon.wait_for("heading")
+            ending = daemon.end(signal.SIGTERM)
+            assert_released(flown)
+    return Flown.of(ending, scratch / "recordings")
+
+
 @pytest.fixture(scope="module")
 def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flown]:
     """All flights, side by side."""
@@ -95,6 +115,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
             "from": lambda: nothing_arrives(fccd, scratch / "from"),
             "to": lambda: nothing_gets_there(fccd, scratch / "to"),
             "slow": lambda: slow(fccd, scratch / "slow"),
+            "two": lambda: one_of_two(fccd, scratch / "two"),
         }
     )
 
@@ -144,6 +165,20 @@ def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -
     assert plant_s < 0.9 * ours_s
 
 
-@pytest.mark.parametrize("name", ["from", "to", "slow"])
+@pytest.mark.parametrize("name", ["from", "to", "slow", "two"])
 def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
+
+
+def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str, Flown]) -> None:
+    flown = flights["two"]
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.ending.states == ["standby -> engaged", "engaged -> stopped"]
+    readings = [record.measurements.airspeed_mps for record in flown.records]
+    engaged = next(n for n, record in enumerate(flown.records) if record.state.phase == ENGAGED)
+    changed = engaged + [reading.source for reading in readings[engaged:]].index(1)
+    assert changed > engaged
+    assert {reading.source for reading in readings[changed:]} == {1}
+    # `fallback_after_ms` is 100.
+    age_s = (flown.records[changed].tick.woke_ns - readings[changed - 1].taken_ns) * NS
+    assert 0.1 < age_s < MAX_AGE_S

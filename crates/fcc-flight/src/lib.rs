@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`config`] | reads and checks the configuration file |
 //! | [`flight`] | assembles a flight from a configuration, flies and observes it |
-//! | [`replay`] | replays a recording and compares |
+//! | [`replay`] | prepares the replay of a recorded flight |
 
 pub mod config;
 pub mod flight;

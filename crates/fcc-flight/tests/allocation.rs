@@ -3,51 +3,14 @@
 //! allocator.
 #![cfg(test)]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::time::Duration;
 
+use fcc_conformance::allocator_calls;
 use fcc_core::framework::State;
 use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
 use fcc_flight::flight::assemble;
 use fcc_runtime::{Machine, Message, Parts};
 use fcc_timer::ManualTimer;
-
-struct Counting;
-
-thread_local! {
-    /// Of this thread: the test harness allocates in its own, when it likes.
-    static CALLS: Cell<u64> = const { Cell::new(0) };
-}
-
-fn count() {
-    CALLS.with(|calls| calls.set(calls.get() + 1));
-}
-
-#[expect(unsafe_code, reason = "an allocator is unsafe by nature")]
-// SAFETY: every call goes to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        count();
-        // SAFETY: as above.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        count();
-        // SAFETY: as above.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
@@ -74,23 +37,19 @@ fn ten_thousand_ticks_of_a_flight_do_not_allocate() {
     machine.start().unwrap();
 
     let (mut engaged, mut records) = (0, 0);
-    let before = CALLS.get();
-    for _ in 0..10_000 {
-        if machine.step() == State::Engaged {
-            engaged += 1;
+    let ((), calls) = allocator_calls(|| {
+        for _ in 0..10_000 {
+            if machine.step() == State::Engaged {
+                engaged += 1;
+            }
+            while let Some(message) = link.messages.receive() {
+                records += u32::from(matches!(message, Message::Tick(_)));
+            }
         }
-        while let Some(message) = link.messages.receive() {
-            records += u32::from(matches!(message, Message::Tick(_)));
-        }
-    }
-    assert_eq!(CALLS.get() - before, 0);
+    });
+    assert_eq!(calls, 0);
 
     // It was a flight: 2 s of standby, and engaged to the end.
     assert_eq!(records, 10_000);
     assert!((9_900..=9_920).contains(&engaged), "{engaged}");
-
-    // The counter counts.
-    let before = CALLS.get();
-    drop(std::hint::black_box(Box::new(1)));
-    assert_eq!(CALLS.get() - before, 2);
 }

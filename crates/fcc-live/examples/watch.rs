@@ -1,7 +1,7 @@
 //! Watches a flight and prints a line each second:
 //!
 //! ```text
-//! cargo run -p fcc-telemetry --example watch -- fccd [SECONDS]
+//! cargo run -p fcc-live --features flight --example watch -- fccd [SECONDS]
 //! ```
 
 #![expect(clippy::print_stdout, reason = "a program that prints")]

@@ -14,10 +14,6 @@ use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use fcc_telemetry::{Instance, Telemetry};
 
-/// Messages that may wait to be published: two seconds of records at 1 kHz. The
-/// publishing thread may be delayed by one when a watcher joins or leaves.
-const WAITING: usize = 2_048;
-
 /// How long the start and the end of publishing may take. A flight waits no
 /// longer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -61,13 +57,15 @@ pub struct PublisherOf<C: Telemetry> {
 }
 
 impl<C: Telemetry> PublisherOf<C> {
-    /// Starts to publish as `instance`, without commands.
+    /// Starts to publish as `instance`, without commands. Up to `waiting` records
+    /// wait to be published: two seconds of them are enough, because a watcher
+    /// that joins or leaves may delay the publishing thread by one.
     ///
     /// # Errors
     /// When no shared memory is available, or the name is taken. The flight
     /// continues without.
-    pub fn start(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, false)
+    pub fn start(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, false)
     }
 
     /// Starts to publish as `instance`, and to receive commands: poll
@@ -75,12 +73,16 @@ impl<C: Telemetry> PublisherOf<C> {
     ///
     /// # Errors
     /// As [`start`](Self::start).
-    pub fn start_with_commands(instance: &Instance) -> Result<Self, PublishError> {
-        Self::start_thread(instance, true)
+    pub fn start_with_commands(instance: &Instance, waiting: usize) -> Result<Self, PublishError> {
+        Self::start_thread(instance, waiting, true)
     }
 
-    fn start_thread(instance: &Instance, takes_commands: bool) -> Result<Self, PublishError> {
-        let (ring, items) = RingBuffer::new(WAITING);
+    fn start_thread(
+        instance: &Instance,
+        waiting: usize,
+        takes_commands: bool,
+    ) -> Result<Self, PublishError> {
+        let (ring, items) = RingBuffer::new(waiting.max(1));
         let (started, start) = mpsc::sync_channel::<Started>(1);
         // More than the thread ever reports between two polls.
         let (reports, texts) = mpsc::sync_channel(16);

@@ -27,7 +27,7 @@ pub(super) const NAME: &str = "fcc-live";
 pub(super) const STACK_BYTES: usize = if cfg!(debug_assertions) {
     4 << 20
 } else {
-    1 << 20
+    512 << 10
 };
 
 /// How long it sleeps unless woken.

@@ -29,7 +29,7 @@ fn describe(mut publisher: Publisher) -> Publisher {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    describe(Publisher::start_with_commands(instance).unwrap())
+    describe(Publisher::start_with_commands(instance, 2_048).unwrap())
 }
 
 fn next(publisher: &mut Publisher) -> PendingCommand {
@@ -121,7 +121,7 @@ fn a_daemon_without_commands_is_distinguished_from_none() {
         Commander::open(&instance).unwrap_err(),
         CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
     );
-    let _publisher = describe(Publisher::start(&instance).unwrap());
+    let _publisher = describe(Publisher::start(&instance, 2_048).unwrap());
     let words = Commander::open(&instance).unwrap_err().to_string();
     assert!(
         words.contains("version 1.2.3, accepts no commands"),
@@ -133,7 +133,7 @@ fn a_daemon_without_commands_is_distinguished_from_none() {
 #[test]
 fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start_with_commands(&instance).unwrap();
+    let mut publisher = Publisher::start_with_commands(&instance, 2_048).unwrap();
     publisher.describe(Info {
         layout: u32::MAX,
         software: Text::new("9.0.0"),

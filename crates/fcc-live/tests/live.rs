@@ -22,7 +22,7 @@ fn instance(test: &str) -> Instance {
 }
 
 fn started(instance: &Instance) -> Publisher {
-    let mut publisher = Publisher::start(instance).unwrap();
+    let mut publisher = Publisher::start(instance, 2_048).unwrap();
     publisher.describe(Info {
         software: Text::new("1.2.3"),
         rate_hz: 40.0,
@@ -165,7 +165,7 @@ fn without_a_daemon_the_error_says_what_to_do() {
 #[test]
 fn a_daemon_with_another_layout_is_refused_with_a_reason() {
     let instance = instance("layout");
-    let mut publisher = Publisher::start(&instance).unwrap();
+    let mut publisher = Publisher::start(&instance, 2_048).unwrap();
     publisher.describe(Info {
         layout: LAYOUT + 1,
         software: Text::new("9.0.0"),
@@ -186,7 +186,7 @@ fn a_name_is_taken_once() {
     let instance = instance("taken");
     let _first = started(&instance);
     assert_eq!(
-        Publisher::start(&instance).unwrap_err(),
+        Publisher::start(&instance, 2_048).unwrap_err(),
         PublishError::NameTaken(instance)
     );
 }

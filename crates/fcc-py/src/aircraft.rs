@@ -42,7 +42,7 @@ impl PyAircraft {
     #[pyo3(signature = (config = None))]
     fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let config = configuration(config)?;
-        let Aircraft::BuiltIn(section) = config.aircraft() else {
+        let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
             return Err(
                 errors::FLIGHT.say("the configuration has [x-plane]: that aircraft is not here")
             );

@@ -128,7 +128,7 @@ pub(crate) fn fly(
     keep: bool,
 ) -> PyResult<PyFlight> {
     let config = configuration(config)?;
-    let Aircraft::BuiltIn(section) = config.aircraft() else {
+    let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
         return Err(errors::FLIGHT.say(
             "the configuration has [x-plane]: fly() is for the built-in aircraft, and `fccd run` \
              for another",

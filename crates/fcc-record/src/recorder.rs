@@ -91,7 +91,7 @@ impl<C: Recorded> RecorderOf<C> {
     /// Records a message. In real time it never waits; in lockstep it waits for
     /// the disk.
     pub fn take(&mut self, message: &MessageOf<C>) {
-        if !self.report_gap(message) || !self.send(Feed::Message(*message)) {
+        if !self.report_gap(message) || !self.send(Feed::Message(Box::new(*message))) {
             self.lose(message);
         }
     }
@@ -118,7 +118,7 @@ impl<C: Recorded> RecorderOf<C> {
     /// yet.
     pub fn finish(self, ending: &str) -> (RecorderStatus, Vec<Notice>) {
         let began = Instant::now();
-        let last = (!self.lost.is_none()).then(|| Feed::Message(self.lost.event(None)));
+        let last = (!self.lost.is_none()).then(|| Feed::Message(Box::new(self.lost.event(None))));
         for feed in last.into_iter().chain([Feed::End(ending.to_owned())]) {
             self.send_patiently(feed, began);
         }
@@ -156,7 +156,7 @@ impl<C: Recorded> RecorderOf<C> {
         if self.lost.is_none() {
             return true;
         }
-        let reported = self.send(Feed::Message(self.lost.event(Some(next))));
+        let reported = self.send(Feed::Message(Box::new(self.lost.event(Some(next)))));
         if reported {
             self.lost = Lost::default();
         }

@@ -1,7 +1,7 @@
 //! Files generated from the declarations and committed: the `.proto` of a
 //! recording and the table of a record in shared memory.
 //!
-//! `FCC_UPDATE=1 cargo test -p fcc-record --test declared` writes both again.
+//! `FCC_UPDATE=1 cargo test -p fcc-record --all-features --test declared` writes both again.
 #![cfg(test)]
 
 use std::collections::BTreeMap;

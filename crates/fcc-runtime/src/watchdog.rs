@@ -22,7 +22,7 @@ const THREAD_NAME: &str = "fcc-watchdog";
 const STACK_BYTES: usize = if cfg!(debug_assertions) {
     4 << 20
 } else {
-    1 << 20
+    256 << 10
 };
 
 /// How often the heartbeat is read within the time limit: the watchdog is late by

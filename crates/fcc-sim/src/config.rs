@@ -3,11 +3,10 @@
 use thiserror::Error;
 
 use crate::airframe::Airframe;
-use crate::sensing::SensorConfig;
 use crate::servos::Servos;
 use crate::trim::TrimError;
 use crate::turbulence::Severity;
-use crate::units::{FOOT_M, KNOT_MPS, POUND_KG};
+use crate::units::{DEGREE_RAD, FOOT_M, KNOT_MPS, POUND_KG};
 
 /// The configuration of a simulation. The default: a light single with two
 /// aboard and full tanks at 3,000 ft and 100 kt indicated, heading north,
@@ -66,6 +65,62 @@ pub struct SwitchScript {
     pub off_at_s: Option<f64>,
 }
 
+/// The longest delay of the sensors, ms.
+pub const LONGEST_DELAY_MS: u16 = 1000;
+
+/// Errors and delay of the sensors; the default has none.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct SensorConfig {
+    /// One standard deviation of the noise on each sample.
+    pub noise: Channels,
+    /// Added to every sample.
+    pub bias: Channels,
+    /// Resolution; 0 for full precision.
+    pub resolution: Channels,
+    /// Delay of the measurements, ms, 0..=1000.
+    pub delay_ms: u16,
+}
+
+/// One number for each kind of measurement, the same for all its axes.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Channels {
+    /// Pitch and roll, rad.
+    pub attitude_rad: f64,
+    /// Heading, rad.
+    pub heading_rad: f64,
+    /// Turn rates, rad/s.
+    pub rates_radps: f64,
+    /// Specific force, m/s².
+    pub specific_force_mps2: f64,
+    /// Indicated airspeed, m/s.
+    pub airspeed_mps: f64,
+    /// Barometric altitude, m.
+    pub altitude_m: f64,
+    /// Angle of attack, rad.
+    pub angle_of_attack_rad: f64,
+    /// Position north, east and up, m.
+    pub position_m: f64,
+    /// Velocity over the ground, m/s.
+    pub velocity_mps: f64,
+}
+
+impl Channels {
+    /// Noise typical of a phone's or low-cost sensors: 0.2° of attitude, 0.4°
+    /// of heading, 0.3°/s, 0.6 ft/s², 0.7 kt, 2.5 ft, 0.3° of angle of attack,
+    /// with 2 m and 0.1 m/s of satellite navigation.
+    pub const TYPICAL_NOISE: Self = Self {
+        attitude_rad: 0.2 * DEGREE_RAD,
+        heading_rad: 0.4 * DEGREE_RAD,
+        rates_radps: 0.3 * DEGREE_RAD,
+        specific_force_mps2: 0.6 * FOOT_M,
+        airspeed_mps: 0.7 * KNOT_MPS,
+        altitude_m: 2.5 * FOOT_M,
+        angle_of_attack_rad: 0.3 * DEGREE_RAD,
+        position_m: 2.0,
+        velocity_mps: 0.1,
+    };
+}
+
 impl Default for SimConfig {
     fn default() -> Self {
         Self {
@@ -113,127 +168,83 @@ pub enum SimError {
     Trim(#[from] TrimError),
 }
 
+/// Checks numbers against their ranges: fields, smallest and largest value, and
+/// the range in words. A NaN is in no range.
+macro_rules! check {
+    ($($($field:expr),+ => $low:expr, $high:expr, $allowed:expr;)+) => {
+        $($(
+            if !($low..=$high).contains(&$field) {
+                return Err(SimError::Invalid {
+                    field: stringify!($field).trim_start_matches("self."),
+                    value: $field,
+                    allowed: $allowed,
+                });
+            }
+        )+)+
+    };
+}
+
+/// The same for every channel of a set.
+macro_rules! check_channels {
+    ($set:expr => $low:expr, $high:expr, $allowed:expr) => {
+        check! {
+            $set.attitude_rad, $set.heading_rad, $set.rates_radps, $set.specific_force_mps2,
+            $set.airspeed_mps, $set.altitude_m, $set.angle_of_attack_rad, $set.position_m,
+            $set.velocity_mps => $low, $high, $allowed;
+        }
+    };
+}
+
 impl SimConfig {
     /// Checks every number.
     ///
     /// # Errors
     /// [`SimError::Invalid`] with the first field that is out of range.
     pub fn validate(&self) -> Result<(), SimError> {
-        use core::f64::consts::PI;
-        const ANGLE: &str = "-6.284..=6.284 rad";
+        use core::f64::consts::{PI, TAU};
         let inertia = &self.airframe.inertia;
-        let airframe = &self.airframe;
-        let travel = &airframe.travel;
-        for (field, value) in [
-            ("airframe.mass_kg", airframe.mass_kg),
-            ("airframe.inertia.xx", inertia.xx),
-            ("airframe.inertia.yy", inertia.yy),
-            ("airframe.inertia.zz", inertia.zz),
-            ("airframe.wing_area_m2", airframe.wing_area_m2),
-            ("airframe.wing_span_m", airframe.wing_span_m),
-            ("airframe.chord_m", airframe.chord_m),
-            (
-                "airframe.propulsion.diameter_m",
-                airframe.propulsion.diameter_m,
-            ),
-            ("airframe.travel.elevator_up_rad", travel.elevator_up_rad),
-            (
-                "airframe.travel.elevator_down_rad",
-                travel.elevator_down_rad,
-            ),
-            ("airframe.travel.aileron_rad", travel.aileron_rad),
-            ("airframe.travel.rudder_rad", travel.rudder_rad),
-            (
-                "servos.surfaces.rate_per_s",
-                self.servos.surfaces.rate_per_s,
-            ),
-            (
-                "servos.throttle.rate_per_s",
-                self.servos.throttle.rate_per_s,
-            ),
-        ] {
-            within(field, value, f64::MIN_POSITIVE, f64::MAX, "more than 0")?;
+        let largest_xz = 0.999 * libm::sqrt(inertia.xx * inertia.zz);
+        check! {
+            self.airframe.mass_kg, self.airframe.inertia.xx, self.airframe.inertia.yy,
+            self.airframe.inertia.zz, self.airframe.wing_area_m2, self.airframe.wing_span_m,
+            self.airframe.chord_m, self.airframe.propulsion.diameter_m,
+            self.airframe.travel.elevator_up_rad, self.airframe.travel.elevator_down_rad,
+            self.airframe.travel.aileron_rad, self.airframe.travel.rudder_rad,
+            self.servos.surfaces.rate_per_s, self.servos.throttle.rate_per_s
+                => f64::MIN_POSITIVE, f64::MAX, "more than 0";
+            self.airframe.inertia.xz => -largest_xz, largest_xz, "smaller than √(xx·zz)";
+            self.servos.surfaces.lag_s, self.servos.throttle.lag_s => 0.0, 10.0, "0..=10 s";
+            self.altitude_m => 0.0, 15_000.0, "0..=15000 m";
+            self.indicated_airspeed_mps => 10.0, 150.0, "10..=150 m/s";
+            self.heading_rad, self.wind.from_rad => -TAU, TAU, "-6.284..=6.284 rad";
+            self.latitude_rad => -1.4, 1.4, "-1.4..=1.4 rad";
+            self.longitude_rad, self.magnetic_variation_rad => -PI, PI, "-π..=π rad";
+            self.wind.speed_mps => 0.0, 60.0, "0..=60 m/s";
+            self.substep_s => 1e-4, 0.01, "0.0001..=0.01 s";
         }
-        let largest_xz = libm::sqrt(inertia.xx * inertia.zz);
-        within(
-            "airframe.inertia.xz",
-            inertia.xz.abs(),
-            0.0,
-            0.999 * largest_xz,
-            "smaller than √(xx·zz)",
-        )?;
-        for (field, value) in [
-            ("servos.surfaces.lag_s", self.servos.surfaces.lag_s),
-            ("servos.throttle.lag_s", self.servos.throttle.lag_s),
-        ] {
-            within(field, value, 0.0, 10.0, "0..=10 s")?;
-        }
-        within("altitude_m", self.altitude_m, 0.0, 15_000.0, "0..=15000 m")?;
-        within(
-            "indicated_airspeed_mps",
-            self.indicated_airspeed_mps,
-            10.0,
-            150.0,
-            "10..=150 m/s",
-        )?;
-        within("heading_rad", self.heading_rad, -2.0 * PI, 2.0 * PI, ANGLE)?;
-        within(
-            "latitude_rad",
-            self.latitude_rad,
-            -1.4,
-            1.4,
-            "-1.4..=1.4 rad",
-        )?;
-        within("longitude_rad", self.longitude_rad, -PI, PI, "-π..=π rad")?;
-        within(
-            "magnetic_variation_rad",
-            self.magnetic_variation_rad,
-            -PI,
-            PI,
-            "-π..=π rad",
-        )?;
-        within(
-            "wind.from_rad",
-            self.wind.from_rad,
-            -2.0 * PI,
-            2.0 * PI,
-            ANGLE,
-        )?;
-        within(
-            "wind.speed_mps",
-            self.wind.speed_mps,
-            0.0,
-            60.0,
-            "0..=60 m/s",
-        )?;
-        within("substep_s", self.substep_s, 1e-4, 0.01, "0.0001..=0.01 s")?;
-        for (field, time) in [
+        for (field, time_s) in [
             ("switch.on_at_s", self.switch.on_at_s),
             ("switch.off_at_s", self.switch.off_at_s),
         ] {
-            if let Some(time_s) = time {
-                within(field, time_s, 0.0, f64::MAX, "a time of 0 s or later")?;
+            if let Some(value) = time_s.filter(|time_s| !(0.0..=f64::MAX).contains(time_s)) {
+                let allowed = "a time of 0 s or later";
+                return Err(SimError::Invalid {
+                    field,
+                    value,
+                    allowed,
+                });
             }
         }
-        self.sensors.validate()
-    }
-}
-
-/// `value` if it lies in `low..=high`; a NaN never does.
-pub(crate) fn within(
-    field: &'static str,
-    value: f64,
-    low: f64,
-    high: f64,
-    allowed: &'static str,
-) -> Result<(), SimError> {
-    if (low..=high).contains(&value) {
+        check_channels!(self.sensors.noise => 0.0, f64::MAX, "0 or more");
+        check_channels!(self.sensors.bias => -f64::MAX, f64::MAX, "a finite number");
+        check_channels!(self.sensors.resolution => 0.0, f64::MAX, "0 or more");
+        if self.sensors.delay_ms > LONGEST_DELAY_MS {
+            return Err(SimError::Invalid {
+                field: "sensors.delay_ms",
+                value: self.sensors.delay_ms.into(),
+                allowed: "0..=1000 ms",
+            });
+        }
         Ok(())
-    } else {
-        Err(SimError::Invalid {
-            field,
-            value,
-            allowed,
-        })
     }
 }

@@ -60,9 +60,10 @@ pub mod units;
 
 pub use aircraft::{Aircraft, LONGEST_STEP_S};
 pub use airframe::Airframe;
-pub use config::{SimConfig, SimError, SwitchScript, Wind};
+pub use config::{
+    Channels, LONGEST_DELAY_MS, SensorConfig, SimConfig, SimError, SwitchScript, Wind,
+};
 pub use link::{SwitchHandle, TruthHandle};
-pub use sensing::{Channels, LONGEST_DELAY_MS, SensorConfig};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
 pub use truth::{NUMBERS as TRUTH_NUMBERS, Truth};

@@ -12,6 +12,7 @@ mod of_flights {
 
     use crate::schema::{Words, words};
     use crate::telemetry::Telemetry;
+    use crate::units::{AVIATION, Shown};
 
     /// The record of one tick of a flight.
     pub type FlightRecord = RecordOf<Autopilot>;
@@ -27,6 +28,7 @@ mod of_flights {
 
     impl Telemetry for Autopilot {
         type Words = FlightWords;
+        const UNITS: &'static [Shown] = AVIATION;
     }
 }
 

@@ -6,6 +6,7 @@ use fcc_core::framework::schema::{Schema, Unknown};
 use fcc_core::framework::{Controller, RecordOf};
 
 use crate::schema::Words;
+use crate::units::{self, Shown};
 
 /// A controller whose loop can be recorded and watched. The declarations of its
 /// types suffice, except for the size of its record.
@@ -40,6 +41,9 @@ use crate::schema::Words;
 pub trait Telemetry: Controller + 'static {
     /// The words of its record in shared memory.
     type Words: RecordWords<RecordOf<Self>>;
+
+    /// The units in which people read its values: [`units::SI`] or others.
+    const UNITS: &'static [Shown] = units::SI;
 }
 
 mod sealed {

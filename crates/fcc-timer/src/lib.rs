@@ -33,6 +33,7 @@ mod early;
 mod kind;
 mod manual;
 mod nanosleep;
+mod periodic;
 mod posix;
 pub mod realtime;
 mod stats;

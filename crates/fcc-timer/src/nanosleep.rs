@@ -6,92 +6,36 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns, os_error, timespec};
 use crate::early::{Alarm, Early};
+use crate::periodic::{Kernel, periodic};
 use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 
-/// A periodic timer made of sleeps. Nothing runs in the kernel between two
-/// waits, so passed deadlines are calculated from the clock. It is the only
-/// timer here that the timer slack delays if the thread is not real-time.
+periodic! {
+    /// A periodic timer made of sleeps. Nothing runs in the kernel between two
+    /// waits, so passed deadlines are calculated from the clock. It is the only
+    /// timer here that the timer slack delays if the thread is not real-time.
+    Nanosleep, "nanosleep", Sleep
+}
+
+/// A sleep has no kernel timer to set.
 #[derive(Debug)]
-pub struct Nanosleep {
-    period: Period,
-    deadlines: Option<Deadlines>,
-    early: Option<Early>,
-}
+struct Sleep;
 
-impl Nanosleep {
-    pub(crate) const NAME: &str = "nanosleep";
-
-    /// Makes a timer, not yet started.
-    ///
-    /// # Errors
-    /// When the period is not between 10 µs and 1 hour.
-    pub fn new(period: Duration) -> Result<Self, TimerError> {
-        Ok(Self {
-            period: Period::new(period)?,
-            deadlines: None,
-            early: None,
-        })
+impl Kernel for Sleep {
+    fn new(_: Period) -> Result<Self, TimerError> {
+        Ok(Self)
     }
 
-    /// Makes it wake early and spin until its deadlines.
-    ///
-    /// # Errors
-    /// When a value is out of its range.
-    pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
-        self.early = Some(Early::new(early, self.period)?);
-        Ok(self)
-    }
-}
-
-impl Timer for Nanosleep {
-    fn start(&mut self) -> Result<(), TimerError> {
-        let deadlines = Early::grid(self.early.as_mut(), self.period);
-        self.deadlines = Some(deadlines);
-        Ok(())
-    }
-
-    fn wait(&mut self) -> Result<Expiry, TimerError> {
-        let deadlines = self.deadlines.as_mut().ok_or(TimerError::NotStarted)?;
-        if let Some(early) = &mut self.early {
-            return early.wait(deadlines, &mut Sleep);
-        }
+    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError> {
         let alarm_ns = deadlines.alarm_ns();
         loop {
-            Sleep.sleep_until(alarm_ns)?;
+            self.sleep_until(alarm_ns)?;
             let woke_ns = monotonic_ns();
             if woke_ns >= alarm_ns {
                 return Ok(deadlines.woken_uncounted(woke_ns));
             }
         }
     }
-
-    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
-        match (&mut self.early, &mut self.deadlines) {
-            (Some(early), Some(deadlines)) => early.wait_or_warm_up(deadlines, &mut Sleep),
-            _ => self.wait().map(Wake::Deadline),
-        }
-    }
-
-    fn disable_early_wake(&mut self) {
-        self.early = None;
-    }
-
-    fn period(&self) -> Duration {
-        self.period.duration()
-    }
-
-    fn now_ns(&self) -> i64 {
-        monotonic_ns()
-    }
-
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
 }
-
-/// A sleep has no kernel timer to set.
-#[derive(Debug)]
-struct Sleep;
 
 impl Alarm for Sleep {
     fn move_to(&mut self, _: i64) -> Result<(), TimerError> {

@@ -13,10 +13,11 @@ use crate::config::XPlaneConfig;
 use crate::confirmation::Confirmation;
 use crate::controls::{Controls, LET_GO_TIMES, yoke_ratios};
 use crate::link::{Control, SharedState, count};
-use crate::port::{Errno, Port, UdpPort};
+use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
 use crate::sensor::send;
+use crate::udp_port::UdpPort;
 
 /// While control is held, the overrides are set again at this interval, in case
 /// a datagram was lost or the simulator was restarted.

@@ -6,8 +6,8 @@ use core::str::FromStr;
 use std::io;
 use std::net::{IpAddr, SocketAddr, ToSocketAddrs};
 
-use crate::config::{XPLANE_PORT, XPlaneConfigError};
-use crate::open::OpenError;
+/// The port on which X-Plane listens.
+pub const XPLANE_PORT: u16 = 49_000;
 
 /// Where X-Plane is. As text: `beacon`, an IP address or a host name, the last
 /// two with a port if it is not 49000.
@@ -126,46 +126,13 @@ fn is_host_name(name: &str) -> bool {
         && !last.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-impl Simulator {
-    /// Where datagrams are sent; `None` if it is known only from a beacon. A
-    /// name is looked up, which may wait for the network, so do not call this
-    /// in a loop.
-    pub(crate) fn locate(&self) -> Result<Option<SocketAddr>, OpenError> {
-        let address = match self {
-            Self::Beacon => return Ok(None),
-            Self::At(address) => *address,
-            Self::Named(host) => host.look_up().map_err(|source| OpenError::NoSuchHost {
-                host: host.clone(),
-                source,
-            })?,
-        };
-        check(address)?;
-        Ok(Some(address))
-    }
-}
-
 impl HostName {
-    fn look_up(&self) -> io::Result<SocketAddr> {
+    /// Asks the network, and may wait for it.
+    pub(crate) fn look_up(&self) -> io::Result<SocketAddr> {
         let found: Vec<SocketAddr> = (self.name.as_str(), self.port).to_socket_addrs()?.collect();
         let first = found.iter().find(|address| address.is_ipv4());
         let first = first.or(found.first()).copied();
         first.ok_or_else(|| io::Error::other("it has no address"))
-    }
-}
-
-/// Whether this is the address of a single machine to which datagrams can be
-/// sent.
-pub(crate) fn check(address: SocketAddr) -> Result<(), XPlaneConfigError> {
-    let ip = address.ip();
-    let is_broadcast = matches!(ip, IpAddr::V4(ip) if ip.is_broadcast());
-    if address.port() == 0 || ip.is_unspecified() || ip.is_multicast() || is_broadcast {
-        return Err(XPlaneConfigError::Simulator(address));
-    }
-    match address {
-        SocketAddr::V6(v6) if v6.ip().is_unicast_link_local() && v6.scope_id() == 0 => {
-            Err(XPlaneConfigError::NoInterface(address))
-        }
-        _ => Ok(()),
     }
 }
 
@@ -225,43 +192,5 @@ mod tests {
             assert!(error.contains(&format!("\"{text}\"")), "{error}");
             assert!(error.contains("[::1]:49000"), "{error}");
         }
-    }
-
-    #[test]
-    fn a_name_is_looked_up_and_ipv4_comes_first() {
-        // Every machine has this name (RFC 6761), most of them for IPv6 too.
-        let here: Simulator = "localhost:49000".parse().unwrap();
-        let found = here.locate().unwrap().unwrap();
-        assert!(found.is_ipv4() && found.ip().is_loopback(), "{found}");
-        // No machine has this name (RFC 6761).
-        let nowhere: Simulator = "sim.invalid".parse().unwrap();
-        let message = nowhere.locate().unwrap_err().to_string();
-        assert!(message.contains("sim.invalid:49000"), "{message}");
-        assert!(message.contains("IP address"), "{message}");
-    }
-
-    #[test]
-    fn broadcast_multicast_and_unspecified_addresses_are_refused() {
-        for text in [
-            "0.0.0.0",
-            "255.255.255.255",
-            "239.1.1.1",
-            "[::]",
-            "[ff02::1]",
-        ] {
-            let simulator: Simulator = text.parse().unwrap();
-            let message = simulator.locate().unwrap_err().to_string();
-            assert!(message.contains("one machine"), "{message}");
-        }
-        let somewhere: Simulator = "fe80::1".parse().unwrap();
-        let message = somewhere.locate().unwrap_err().to_string();
-        assert!(message.contains("%2]:49000"), "{message}");
-        assert!(
-            "[fe80::1%2]:49000"
-                .parse::<Simulator>()
-                .unwrap()
-                .locate()
-                .is_ok()
-        );
     }
 }

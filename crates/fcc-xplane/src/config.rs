@@ -1,13 +1,10 @@
 //! The connection's configuration and its validation.
 
 use core::time::Duration;
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 
-use crate::address::{self, Simulator};
+use crate::address::{Simulator, XPLANE_PORT};
 use crate::protocol::{PathError, beacon, check_path, rref};
-
-/// The port on which X-Plane listens.
-pub const XPLANE_PORT: u16 = 49_000;
 
 /// How X-Plane is reached, and what is read and written.
 ///
@@ -213,7 +210,7 @@ impl XPlaneConfig {
             }
         })?;
         if let Simulator::At(at) = self.simulator {
-            address::check(at)?;
+            check_address(at)?;
         }
         if let Input::Data(rows) = self.input {
             let column = rows.magnetic_heading_column;
@@ -223,6 +220,22 @@ impl XPlaneConfig {
             }
         }
         Ok(())
+    }
+}
+
+/// Whether this is the address of a single machine to which datagrams can be
+/// sent.
+pub(crate) fn check_address(address: SocketAddr) -> Result<(), XPlaneConfigError> {
+    let ip = address.ip();
+    let is_broadcast = matches!(ip, IpAddr::V4(ip) if ip.is_broadcast());
+    if address.port() == 0 || ip.is_unspecified() || ip.is_multicast() || is_broadcast {
+        return Err(XPlaneConfigError::Simulator(address));
+    }
+    match address {
+        SocketAddr::V6(v6) if v6.ip().is_unicast_link_local() && v6.scope_id() == 0 => {
+            Err(XPlaneConfigError::NoInterface(address))
+        }
+        _ => Ok(()),
     }
 }
 

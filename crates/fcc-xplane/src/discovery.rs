@@ -4,8 +4,8 @@ use std::io;
 use std::net::{SocketAddr, SocketAddrV4};
 use std::time::{Duration, Instant};
 
-use crate::port::UdpPort;
 use crate::protocol::beacon;
+use crate::udp_port::UdpPort;
 
 /// An X-Plane that sent a beacon.
 #[derive(Clone, PartialEq, Eq, Debug)]

@@ -62,27 +62,26 @@ mod quantity;
 mod release;
 mod release_monitor;
 mod rows;
-mod scratch_port;
 mod sensor;
 mod simulator;
 mod specific_force;
 mod status;
 mod subscriptions;
+mod udp_port;
 mod units;
 mod values;
 
 pub use actuator::XPlaneActuator;
-pub use address::{AddressError, HostName, Simulator};
+pub use address::{AddressError, HostName, Simulator, XPLANE_PORT};
 pub use authority::XPlaneAuthority;
-pub use config::{
-    DataRows, Input, Output, RowsVersion, XPLANE_PORT, XPlaneConfig, XPlaneConfigError,
-};
+pub use config::{DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError};
 pub use discovery::{DiscoverError, Found, discover};
 pub use fcc_core::framework::Released;
 pub use link::Control;
 pub use missing::Missing;
 pub use open::{OpenError, XPlane};
-pub use port::{Errno, Port, UdpPort};
+pub use port::{Errno, Port};
 pub use sensor::XPlaneSensor;
 pub use simulator::SimulatorState;
 pub use status::{Counts, Trouble, XPlaneStatus};
+pub use udp_port::UdpPort;

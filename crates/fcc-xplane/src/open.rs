@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
 use crate::address::{HostName, Simulator};
-use crate::config::{XPlaneConfig, XPlaneConfigError};
+use crate::config::{XPlaneConfig, XPlaneConfigError, check_address};
 use crate::link::SharedState;
-use crate::port::{Port, UdpPort};
+use crate::port::Port;
 use crate::protocol::PathError;
 use crate::sensor::XPlaneSensor;
+use crate::udp_port::UdpPort;
 
 /// Opens connections to X-Plane.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +71,7 @@ impl XPlane {
     /// cannot be bound.
     pub fn open(config: &XPlaneConfig) -> Result<(XPlaneSensor, XPlaneActuator), OpenError> {
         config.validate()?;
-        let simulator = config.simulator.locate()?;
+        let simulator = locate(&config.simulator)?;
         // Beacons are sent over IPv4, so the simulator has an IPv4 address.
         let peer = simulator.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |at| at.ip());
         let port = bind(config.local_port, peer)?;
@@ -96,7 +97,7 @@ impl XPlane {
         beacons: Option<P>,
     ) -> Result<(XPlaneSensor<P>, XPlaneActuator<P>), OpenError> {
         config.validate()?;
-        Self::join(config, config.simulator.locate()?, port, beacons)
+        Self::join(config, locate(&config.simulator)?, port, beacons)
     }
 
     fn join<P: Port>(
@@ -115,4 +116,58 @@ impl XPlane {
 
 fn bind(port: u16, peer: IpAddr) -> Result<UdpPort, OpenError> {
     UdpPort::bind(port, peer).map_err(|source| OpenError::Bind { port, source })
+}
+
+/// Where datagrams are sent; `None` if it is known only from a beacon. A
+/// name is looked up, which may wait for the network, so do not call this
+/// in a loop.
+fn locate(simulator: &Simulator) -> Result<Option<SocketAddr>, OpenError> {
+    let address = match simulator {
+        Simulator::Beacon => return Ok(None),
+        Simulator::At(address) => *address,
+        Simulator::Named(host) => host.look_up().map_err(|source| OpenError::NoSuchHost {
+            host: host.clone(),
+            source,
+        })?,
+    };
+    check_address(address)?;
+    Ok(Some(address))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_looked_up_and_ipv4_comes_first() {
+        // Every machine has this name (RFC 6761), most of them for IPv6 too.
+        let here: Simulator = "localhost:49000".parse().unwrap();
+        let found = locate(&here).unwrap().unwrap();
+        assert!(found.is_ipv4() && found.ip().is_loopback(), "{found}");
+        // No machine has this name (RFC 6761).
+        let nowhere: Simulator = "sim.invalid".parse().unwrap();
+        let message = locate(&nowhere).unwrap_err().to_string();
+        assert!(message.contains("sim.invalid:49000"), "{message}");
+        assert!(message.contains("IP address"), "{message}");
+    }
+
+    #[test]
+    fn broadcast_multicast_and_unspecified_addresses_are_refused() {
+        for text in [
+            "0.0.0.0",
+            "255.255.255.255",
+            "239.1.1.1",
+            "[::]",
+            "[ff02::1]",
+        ] {
+            let simulator: Simulator = text.parse().unwrap();
+            let message = locate(&simulator).unwrap_err().to_string();
+            assert!(message.contains("one machine"), "{message}");
+        }
+        let somewhere: Simulator = "fe80::1".parse().unwrap();
+        let message = locate(&somewhere).unwrap_err().to_string();
+        assert!(message.contains("%2]:49000"), "{message}");
+        let there = "[fe80::1%2]:49000".parse().unwrap();
+        assert!(locate(&there).is_ok());
+    }
 }

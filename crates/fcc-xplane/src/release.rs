@@ -10,9 +10,10 @@ use fcc_core::framework::Released;
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
 use crate::open::{OpenError, XPlane};
-use crate::port::{Errno, any_address};
+use crate::port::Errno;
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
+use crate::udp_port::any_address;
 
 /// The interval between two releases.
 const AGAIN_AFTER: Duration = Duration::from_millis(250);

@@ -13,12 +13,13 @@ use crate::config::{DataRows, Input, XPlaneConfig};
 use crate::controls::Controls;
 use crate::inbox::Inbox;
 use crate::link::{Control, SharedState, count};
-use crate::port::{Errno, Port, UdpPort};
+use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
 use crate::simulator::SimulatorState;
 use crate::status::XPlaneStatus;
 use crate::subscriptions::Subscriptions;
+use crate::udp_port::UdpPort;
 
 /// Longer than what X-Plane sends: 1,469 bytes of values, or 134 rows.
 const BUFFER_BYTES: usize = 8_192;

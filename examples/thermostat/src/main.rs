@@ -4,49 +4,96 @@
 //!
 //! `cargo run -p thermostat` heats the room for eight seconds, each of which is
 //! 33 minutes in the room. With `-- --record DIR` the run is recorded, like a
-//! flight.
+//! flight; `-- replay FILE` replays it, and `-- report FILE` reports on it. A
+//! run with `-- --live` can be watched with `-- top`.
 
 #[cfg(test)]
 mod conformance;
 mod recording;
+mod replay;
 mod room;
+mod show;
 mod thermostat;
 
-use std::env;
 use std::error::Error;
-use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::thread;
 use std::time::Duration;
 
+use clap::{Parser, Subcommand};
+use fcc_live::PublisherOf;
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
-use thermostat::Thermostat;
+use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
-const WANTED_C: f64 = 20.0;
 const SECONDS: u64 = 8;
+/// How often the loop's messages are received: the greatest delay of a watcher.
+const LOOKS_A_SECOND: u32 = 20;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = recording_folder(env::args_os().skip(1))?;
-    let timer = TimerKind::Timerfd.build(PERIOD)?;
-    heat(timer, SECONDS, folder.as_deref(), &mut io::stdout())?;
-    Ok(())
+/// Heats a simulated room for eight seconds.
+#[derive(Parser)]
+struct Arguments {
+    /// Record the run into this folder.
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+    /// Publish the run for `thermostat top`.
+    #[arg(long)]
+    live: bool,
+    #[command(subcommand)]
+    command: Option<Command>,
 }
 
-/// The folder to record into, if the command line names one.
-fn recording_folder(
-    mut arguments: impl Iterator<Item = OsString>,
-) -> Result<Option<PathBuf>, String> {
-    match (arguments.next(), arguments.next(), arguments.next()) {
-        (None, ..) => Ok(None),
-        (Some(option), Some(folder), None) if option == "--record" => Ok(Some(folder.into())),
-        _ => Err("usage: thermostat [--record DIR]".to_owned()),
+#[derive(Subcommand)]
+enum Command {
+    /// Replay a recording, and compare every output bit for bit.
+    Replay {
+        /// The recording, or its parts, oldest first.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+    /// Report on a recording.
+    Report {
+        /// The recording.
+        file: PathBuf,
+        /// Write a page with all plots.
+        #[arg(long, value_name = "PAGE")]
+        html: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Watch a run that was started with --live.
+    Top,
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let out = &mut io::stdout();
+    match arguments.command {
+        None => {
+            let timer = TimerKind::Timerfd.build(PERIOD)?;
+            let folder = arguments.record.as_deref();
+            heat(timer, SECONDS, folder, arguments.live, out)?;
+        }
+        Some(Command::Replay { files }) => return replay::replay(&files, out),
+        Some(Command::Report { file, html, json }) => {
+            let report = show::report(&file, html.as_deref())?;
+            let text = if json {
+                serde_json::to_string_pretty(&report)?
+            } else {
+                report.to_text()
+            };
+            writeln!(out, "{text}")?;
+        }
+        Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
     }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Assembles the parts.
@@ -58,7 +105,7 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     Parts {
         timer,
         sensors: vec![Box::new(thermometer)],
-        controller: Thermostat::new(WANTED_C),
+        controller: Thermostat::new(&Config::default()),
         actuators: vec![Box::new(heater.clone())],
     }
 }
@@ -69,12 +116,15 @@ fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
     folder: Option<&Path>,
+    live: bool,
     out: &mut dyn Write,
 ) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let mut recorder = folder
         .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
         .transpose()?;
+    let instance = show::instance()?;
+    let mut publisher = live.then(|| show::publish(&instance, &parts)).transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -89,8 +139,13 @@ fn heat(
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
-        thread::sleep(Duration::from_secs(1));
-        if let Some(record) = receive(&mut link, recorder.as_mut(), out) {
+        let mut last = None;
+        for _ in 0..LOOKS_A_SECOND {
+            thread::sleep(Duration::from_secs(1) / LOOKS_A_SECOND);
+            let newest = receive(&mut link, recorder.as_mut(), publisher.as_mut(), out);
+            last = newest.or(last);
+        }
+        if let Some(record) = last {
             let _ = writeln!(
                 out,
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
@@ -103,7 +158,12 @@ fn heat(
     link.commands.send(LoopCommand::Stop)?;
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
-    receive(&mut link, recorder.as_mut(), &mut io::sink());
+    receive(
+        &mut link,
+        recorder.as_mut(),
+        publisher.as_mut(),
+        &mut io::sink(),
+    );
     let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
@@ -118,6 +178,7 @@ fn heat(
 fn receive(
     link: &mut Link<Thermostat>,
     mut recorder: Option<&mut RecorderOf<Thermostat>>,
+    mut publisher: Option<&mut PublisherOf<Thermostat>>,
     out: &mut dyn Write,
 ) -> Option<RecordOf<Thermostat>> {
     let mut last = None;
@@ -125,12 +186,18 @@ fn receive(
         if let Some(recorder) = &mut recorder {
             recorder.take(&message);
         }
+        if let Some(publisher) = &mut publisher {
+            show::publish_message(publisher, &message);
+        }
         match message {
             Message::Tick(record) => last = Some(record),
             Message::Event(event) => {
                 let _ = writeln!(out, "{}", event.kind.description::<Thermostat>());
             }
         }
+    }
+    if let Some(publisher) = publisher {
+        publisher.flush();
     }
     last
 }
@@ -188,15 +255,16 @@ mod tests {
             Machine::new(parts(timer, &heater), &LoopConfig::default()).unwrap();
         machine.start().unwrap();
         link.commands.send(LoopCommand::Engage).unwrap();
+        let wanted_c = Config::default().wanted_c;
         let mut warmest_c = 0.0_f64;
         for _ in 0..40 * SECONDS {
             assert_eq!(machine.step(), State::Engaged);
             warmest_c = warmest_c.max(machine.record().measurements.room_c.value);
         }
         let room_c = machine.record().measurements.room_c.value;
-        assert!((room_c - WANTED_C).abs() < 0.01, "{room_c} °C");
-        assert!(warmest_c < WANTED_C + 0.1, "overshoot to {warmest_c} °C");
-        let lost_w = (WANTED_C - OUTSIDE_C) / RESISTANCE_K_PER_W;
+        assert!((room_c - wanted_c).abs() < 0.01, "{room_c} °C");
+        assert!(warmest_c < wanted_c + 0.1, "overshoot to {warmest_c} °C");
+        let lost_w = (wanted_c - OUTSIDE_C) / RESISTANCE_K_PER_W;
         assert!((heater.power() * HEATER_W - lost_w).abs() < 1.0);
         machine.finish();
         assert!(heater.power() <= 0.0, "the heater is still on");
@@ -208,7 +276,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
-        let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
+        let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);
@@ -219,12 +287,17 @@ mod tests {
     }
 
     #[test]
-    fn it_records_only_if_requested() {
-        let folder = |words: &[&str]| recording_folder(words.iter().map(OsString::from));
-        assert_eq!(folder(&[]), Ok(None));
-        assert_eq!(folder(&["--record", "runs"]), Ok(Some("runs".into())));
-        for wrong in [&["--record"][..], &["runs"], &["--record", "runs", "2"]] {
-            assert!(folder(wrong).unwrap_err().contains("--record DIR"));
+    fn its_command_line_is_read_as_documented() {
+        let parse = |words: &[&str]| Arguments::try_parse_from([&["thermostat"], words].concat());
+        assert!(parse(&[]).unwrap().record.is_none());
+        let recorded = parse(&["--record", "runs"]).unwrap().record;
+        assert_eq!(recorded, Some("runs".into()));
+        assert!(matches!(
+            parse(&["replay", "run.mcap"]).unwrap().command,
+            Some(Command::Replay { files }) if files == [PathBuf::from("run.mcap")]
+        ));
+        for wrong in [&["--record"][..], &["runs"], &["replay"]] {
+            assert!(parse(wrong).is_err(), "{wrong:?}");
         }
     }
 }

@@ -6,6 +6,7 @@ use fcc_core::blocks::{Pid, PidConfig};
 use fcc_core::framework::schema::in_range;
 use fcc_core::framework::{Controller, Flags, Reading, Tick};
 use fcc_core::schema;
+use serde::{Deserialize, Serialize};
 
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
 
@@ -43,10 +44,27 @@ fcc_core::readings!(Measured {
     room_c: "the room's temperature"
 });
 
-/// Response time of the room, s of its own time.
-const RESPONSE_S: f64 = 600.0;
 const MAX_AGE: Duration = Duration::from_secs(1);
 const NO_TEMPERATURE: Flags = Flags::bit(0);
+
+/// The configuration; each recording has it, as TOML.
+#[derive(Clone, Copy, PartialEq, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Config {
+    /// How warm the room is to be in the beginning.
+    pub(crate) wanted_c: f64,
+    /// How fast the room is to follow, s of its own time.
+    pub(crate) response_s: f64,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            wanted_c: 20.0,
+            response_s: 600.0,
+        }
+    }
+}
 
 pub(crate) struct Thermostat {
     wanted_c: f64,
@@ -54,11 +72,15 @@ pub(crate) struct Thermostat {
 }
 
 impl Thermostat {
-    pub(crate) fn new(wanted_c: f64) -> Self {
-        // Both poles of the closed loop at 1/RESPONSE_S (pole placement for
+    pub(crate) fn new(config: &Config) -> Self {
+        let Config {
+            wanted_c,
+            response_s,
+        } = *config;
+        // Both poles of the closed loop at 1/response_s (pole placement for
         // a first-order plant: Åström and Hägglund 1995, chapter 4).
         let gain_k = RESISTANCE_K_PER_W * HEATER_W;
-        let pole_per_s = 1.0 / RESPONSE_S;
+        let pole_per_s = 1.0 / response_s;
         let pid = Pid::new(PidConfig {
             kp: (2.0 * pole_per_s * TIME_CONSTANT_S - 1.0) / gain_k,
             ki: pole_per_s * pole_per_s * TIME_CONSTANT_S / gain_k,

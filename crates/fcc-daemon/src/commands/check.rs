@@ -48,8 +48,9 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
     match checked {
         Ok(config) => {
             let aircraft = match config.aircraft() {
-                Aircraft::XPlane(_) => "X-Plane's aircraft",
-                Aircraft::BuiltIn(_) => "the built-in aircraft",
+                Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
+                Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",
+                None => "listed sensors and actuators, no simulator",
             };
             let mut text = format!(
                 "{}: valid: flies {aircraft} at {} Hz by {}",

@@ -152,16 +152,16 @@ fn another_pattern_deviates_by_what_the_pattern_says() {
     *turn_deg = -90.0;
     let other = deviation(&config, &messages);
     let of = |name: &str| other.quantities.iter().find(|q| q.name == name).unwrap();
-    let heading = of("heading set point");
+    let heading = of("desired heading");
     assert!((heading.largest.abs() - 180.0).abs() < 1e-9);
     let at_s = heading.largest_at_s.unwrap();
     assert!((at_s - 21.975).abs() < 0.03, "{at_s}");
     // 19 of 39 s at 180°: rms 180 sqrt(19/39).
     let expected = 180.0 * (19.0_f64 / 39.0).sqrt();
     assert!((heading.rms - expected).abs() < 1.0, "{}", heading.rms);
-    assert_eq!(of("altitude set point").differing, 0);
-    assert!(of("bank set point").largest.abs() > 30.0);
-    assert!(of("aileron").differing > 600);
+    assert_eq!(of("desired altitude").differing, 0);
+    assert!(of("desired roll").largest.abs() > 30.0);
+    assert!(of("commanded aileron").differing > 600);
     let text = other.to_text();
     assert!(text.contains("did not react"), "{text}");
 }

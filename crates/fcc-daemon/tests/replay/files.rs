@@ -192,9 +192,9 @@ fn another_configuration_is_compared_and_written_out() {
     let told = json(&output);
     let quantities = told["deviation"]["quantities"].as_array().unwrap();
     let of = |name: &str| quantities.iter().find(|q| q["name"] == name).unwrap();
-    assert!(of("aileron")["rms"].as_f64().unwrap() > 0.1);
+    assert!(of("commanded aileron")["rms"].as_f64().unwrap() > 0.1);
     // The gain of the roll rate is none of the elevator's business.
-    assert_eq!(of("elevator")["differing"], 0);
+    assert_eq!(of("commanded elevator")["differing"], 0);
     assert!(told["remarks"][0].as_str().unwrap().contains("40 Hz"));
 
     // The same figure from the table that was written.
@@ -202,7 +202,10 @@ fn another_configuration_is_compared_and_written_out() {
     let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
     let column = |name: &str| header.iter().position(|cell| *cell == name).unwrap();
-    let (was, is) = (column("aileron recorded (%)"), column("aileron other (%)"));
+    let (was, is) = (
+        column("commanded aileron recorded (%)"),
+        column("commanded aileron other (%)"),
+    );
     let squares: Vec<f64> = lines
         .filter(|cells| !cells[was].is_empty())
         .map(|cells| {
@@ -211,7 +214,7 @@ fn another_configuration_is_compared_and_written_out() {
         })
         .collect();
     let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-    assert!((rms - of("aileron")["rms"].as_f64().unwrap()).abs() < 1e-9);
+    assert!((rms - of("commanded aileron")["rms"].as_f64().unwrap()).abs() < 1e-9);
     assert_eq!(rows.lines().count(), 1_001);
 
     let output = fccd_replay(&parts, &more(false));

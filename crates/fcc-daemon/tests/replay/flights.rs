@@ -4,13 +4,14 @@ use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use fcc_core::flight::{AutopilotCommand, Measurements};
-use fcc_core::framework::{LoopCommand, Message, Sensor, SensorFault, State, Tick};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
+use fcc_core::framework::{LoopCommand, Message, Record, Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
 use fcc_flight::flight::assemble;
-use fcc_flight::replay::{Identity, Replay, Run, run};
+use fcc_flight::replay::replay;
+use fcc_replay::{Identity, Run, run};
 use fcc_runtime::{Machine, Parts};
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_telemetry::FlightMessage;
 use fcc_timer::ManualTimer;
 
 /// What happens in a flight, beside gusts.
@@ -129,18 +130,23 @@ impl Sensor<Measurements> for Second {
     }
 }
 
-/// Flies a recording again.
+/// Replays a recording.
 pub(crate) fn again(config: &Config, messages: &[FlightMessage]) -> (Run, Identity) {
-    let mut identity = Identity::default();
-    let replay = Replay::new(config).unwrap();
-    let run = run(replay, messages.iter().copied(), |recorded, again| {
-        identity.take(recorded, again);
-    });
+    let mut identity = Identity::of::<Autopilot>();
+    let run = run(
+        replay(config).unwrap(),
+        messages.iter().copied(),
+        |recorded, again| {
+            identity.take(recorded, again);
+        },
+    );
     (run, identity)
 }
 
-pub(crate) fn records(messages: &[FlightMessage]) -> Vec<FlightRecord> {
-    let record = |message: &FlightMessage| match message {
+pub(crate) fn records<M: Copy, E: Copy, S: Copy, O: Copy, R>(
+    messages: &[Message<M, E, S, O, R>],
+) -> Vec<Record<M, E, S, O>> {
+    let record = |message: &Message<M, E, S, O, R>| match message {
         Message::Tick(record) => Some(*record),
         Message::Event(_) => None,
     };

@@ -1,4 +1,4 @@
-//! What was flown is the same in every bit when it is flown again.
+//! What was flown is the same in every bit when it is replayed.
 
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;

@@ -76,7 +76,7 @@ fn a_recording_that_begins_in_flight_is_refused_and_chained_ones_are_not() {
     // The same twice, or in the wrong sequence.
     let (run, _) = again(&rough(), &[one, one].concat());
     assert_eq!(run.ticks, records(one).len() as u64);
-    assert!(run.unflown.unwrap().why.contains("another flight"));
+    assert!(run.unflown.unwrap().why.contains("another run"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! A recording flown again gives the same outputs to the last bit, and what
+//! A replay of a recording gives the same outputs to the last bit, and what
 //! is not the same is found.
 #![cfg(test)]
 
@@ -9,9 +9,11 @@ mod identical;
 mod incomplete;
 mod sources;
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::State;
 use fcc_flight::config::Config;
-use fcc_flight::replay::{Deviation, Replay, run};
+use fcc_flight::replay::replay;
+use fcc_replay::{Deviation, run};
 use fcc_telemetry::FlightMessage;
 
 use flights::{again, records};
@@ -21,7 +23,7 @@ use flights::{again, records};
 /// engage inhibits, faults, and whether they were sent.
 const OUTPUTS: u64 = 34;
 
-/// Asserts that a recording flown again is the same in every bit, and gives
+/// Asserts that a replay is the same in every bit, and gives
 /// the states it went through.
 fn assert_identical(config: &Config, messages: &[FlightMessage]) -> Vec<State> {
     let (run, identity) = again(config, messages);
@@ -36,11 +38,14 @@ fn assert_identical(config: &Config, messages: &[FlightMessage]) -> Vec<State> {
 }
 
 fn deviation(config: &Config, messages: &[FlightMessage]) -> Deviation {
-    let mut deviation = Deviation::default();
-    let replay = Replay::new(config).unwrap();
-    run(replay, messages.iter().copied(), |recorded, other| {
-        deviation.take(recorded, other);
-    });
+    let mut deviation = Deviation::of::<Autopilot>();
+    run(
+        replay(config).unwrap(),
+        messages.iter().copied(),
+        |recorded, other| {
+            deviation.take(recorded, other);
+        },
+    );
     deviation
 }
 

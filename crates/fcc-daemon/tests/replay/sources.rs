@@ -3,8 +3,9 @@
 
 use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
 use fcc_flight::config::Config;
-use fcc_flight::replay::{Replay, run};
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_flight::replay::replay;
+use fcc_replay::run;
+use fcc_telemetry::FlightMessage;
 
 use super::assert_identical;
 use super::flights::{Happenings, fly, records, rough};
@@ -46,8 +47,9 @@ fn a_second_sensor_that_is_not_needed_changes_no_bit() {
 #[test]
 fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
     let one = flown(false, true);
-    let has_failed = |record: &FlightRecord| matches!(record.state.state(), State::Failsafe(_));
-    assert!(records(&one).iter().any(has_failed));
+    let one = records(&one);
+    let mut states = one.iter().map(|record| record.state.state());
+    assert!(states.any(|state| matches!(state, State::Failsafe(_))));
 
     let two = flown(true, true);
     let states = assert_identical(&rough(), &two);
@@ -69,12 +71,15 @@ fn a_loss_that_is_failsafe_with_one_sensor_is_flown_through_with_two() {
 #[test]
 fn a_replay_reproduces_which_sensor_was_used() {
     let messages = flown(true, true);
-    let replay = Replay::new(&rough()).unwrap();
     let mut used = 0;
-    run(replay, messages.iter().copied(), |recorded, again| {
-        assert_eq!(recorded.measurements, again.measurements);
-        used += u32::from(again.measurements.attitude.source == 1);
-    });
+    run(
+        replay(&rough()).unwrap(),
+        messages.iter().copied(),
+        |recorded, again| {
+            assert_eq!(recorded.measurements, again.measurements);
+            used += u32::from(again.measurements.attitude.source == 1);
+        },
+    );
     assert_eq!(used, 76);
 }
 

@@ -2,7 +2,10 @@
 //! simulator's, or instead of them.
 
 use serde::{Deserialize, Serialize};
+use toml::Spanned;
+use toml::de::DeTable;
 
+use super::read::Reader;
 use super::{Config, XPlaneSection};
 
 /// The maximum number of entries of a list. A reading stores its sensor's
@@ -10,7 +13,7 @@ use super::{Config, XPlaneSection};
 pub(super) const MOST_ENTRIES: usize = 16;
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum SensorEntry {
     /// The simulator's, if it is not to be the last in the order.
@@ -20,7 +23,7 @@ pub enum SensorEntry {
 }
 
 /// One entry of `[[actuator]]`: a kind, and that kind's keys.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ActuatorEntry {
     /// The simulator's.
@@ -32,21 +35,35 @@ pub enum ActuatorEntry {
 #[serde(default, deny_unknown_fields)]
 pub struct NoKeys {}
 
-static SIMULATOR: SensorEntry = SensorEntry::Simulator(NoKeys {});
+static SENSOR: SensorEntry = SensorEntry::Simulator(NoKeys {});
+static ACTUATOR: ActuatorEntry = ActuatorEntry::Simulator(NoKeys {});
 
 impl Config {
     /// The sensors in their order of preference: those of `[[sensor]]`, and the
     /// simulator's last if it is not among them.
     pub fn sensors(&self) -> impl Iterator<Item = &SensorEntry> {
         let listed = self.sensor.iter();
-        let is_listed = listed.clone().any(SensorEntry::is_simulator);
-        listed.chain((!is_listed).then_some(&SIMULATOR))
+        let is_complete =
+            self.is_without_simulator() || listed.clone().any(SensorEntry::is_simulator);
+        listed.chain((!is_complete).then_some(&SENSOR))
     }
 
-    /// Whether the simulator's controls are driven: yes, unless there is a list
-    /// of actuators that does not contain it.
-    pub fn moves_simulator(&self) -> bool {
-        self.actuator.as_ref().is_none_or(|list| !list.is_empty())
+    /// The actuators: those of `[[actuator]]`, or the simulator's without such a
+    /// list.
+    pub fn actuators(&self) -> &[ActuatorEntry] {
+        let simulator = std::slice::from_ref(&ACTUATOR);
+        self.actuator.as_deref().unwrap_or(simulator)
+    }
+
+    /// Whether there is no simulator: its section is missing, and the lists give
+    /// sensors and, even if there are none, actuators without it.
+    pub fn is_without_simulator(&self) -> bool {
+        let is_given = self.x_plane.is_some() || self.built_in.is_some();
+        let moves_it = |entry: &ActuatorEntry| matches!(entry, ActuatorEntry::Simulator(_));
+        !is_given
+            && !self.sensor.is_empty()
+            && !self.sensor.iter().any(SensorEntry::is_simulator)
+            && !self.actuators().iter().any(moves_it)
     }
 }
 
@@ -57,61 +74,65 @@ impl SensorEntry {
     }
 }
 
-/// The key of an error in an entry of a list, as far as it can be determined:
-/// the TOML reader reports the beginning of the list, not the entry. None where
-/// `key` is in no entry.
-pub(super) fn in_entry(text: &str, key: &str, message: &str) -> Option<String> {
-    let (list, _) = key.split_once('[')?;
-    let table: toml::Table = toml::from_str(text).ok()?;
-    let entries = table.get(list)?.as_array()?.iter().cloned();
-    let is_wrong = |entry: toml::Value| match list {
-        "sensor" => SensorEntry::deserialize(entry).is_err(),
-        _ => ActuatorEntry::deserialize(entry).is_err(),
-    };
-    let at = entries.map(is_wrong).position(|is_wrong| is_wrong)?;
-    let unknown = message.strip_prefix("unknown field `");
-    let name = match unknown.and_then(|rest| rest.split('`').next()) {
-        Some(name) => format!(".{name}"),
-        None if message.starts_with("unknown variant") => ".kind".to_owned(),
-        None => String::new(),
-    };
-    Some(format!("{list}[{at}]{name}"))
+/// An entry of a list: a kind, and that kind's keys.
+pub(super) trait Entry: Sized {
+    /// The kinds as a configuration names them.
+    const KINDS: &'static [&'static str];
+
+    /// Reads the keys of one of the kinds; none if that is impossible.
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self>;
+}
+
+impl Entry for SensorEntry {
+    const KINDS: &'static [&'static str] = &["simulator", "x-plane"];
+
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+        match kind {
+            "x-plane" => reader.table(keys, 1).map(Self::XPlane),
+            _ => reader.table(keys, 1).map(Self::Simulator),
+        }
+    }
+}
+
+impl Entry for ActuatorEntry {
+    const KINDS: &'static [&'static str] = &["simulator"];
+
+    fn read<'t>(_: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self> {
+        reader.table(keys, 1).map(Self::Simulator)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use crate::config::{Config, SensorEntry};
 
-    fn kinds(text: &str) -> (Vec<&'static str>, bool) {
+    fn kinds(text: &str) -> (Vec<&'static str>, usize) {
         let config = Config::parse(text, "test").unwrap();
         let kinds = config.sensors().map(|entry| match entry {
             SensorEntry::Simulator(_) => "simulator",
             SensorEntry::XPlane(_) => "x-plane",
         });
-        (kinds.collect(), config.moves_simulator())
+        (kinds.collect(), config.actuators().len())
     }
 
     #[test]
     fn a_simulator_provides_both_and_is_last_unless_it_is_listed() {
-        assert_eq!(kinds("[built-in]\n"), (vec!["simulator"], true));
+        assert_eq!(kinds("[built-in]\n"), (vec!["simulator"], 1));
         assert_eq!(
             kinds("[built-in]\n[[sensor]]\nkind = \"x-plane\"\n"),
-            (vec!["x-plane", "simulator"], true)
+            (vec!["x-plane", "simulator"], 1)
         );
         assert_eq!(
             kinds(
                 "[x-plane]\n[[sensor]]\nkind = \"simulator\"\n\
                  [[sensor]]\nkind = \"x-plane\"\ninput = \"data\"\nlocal_port = 49005\n"
             ),
-            (vec!["simulator", "x-plane"], true)
+            (vec!["simulator", "x-plane"], 1)
         );
-        assert_eq!(
-            kinds("actuator = []\n[built-in]\n"),
-            (vec!["simulator"], false)
-        );
+        assert_eq!(kinds("actuator = []\n[built-in]\n"), (vec!["simulator"], 0));
         assert_eq!(
             kinds("[built-in]\n[[actuator]]\nkind = \"simulator\"\n"),
-            (vec!["simulator"], true)
+            (vec!["simulator"], 1)
         );
     }
 
@@ -136,8 +157,6 @@ mod tests {
             kind,
             "test:5: sensor[1].kind: is \"gyroscope\": choose \"simulator\" or \"x-plane\""
         );
-        let value = message(&format!("{two}kind = \"x-plane\"\nengines = true\n"));
-        assert!(value.starts_with("test:4: sensor[1]: is true"), "{value}");
         let missing = message(two);
         assert!(missing.contains("`kind` is missing"), "{missing}");
         let rows = message(&format!("{two}kind = \"x-plane\"\ninput = \"data\"\n"));
@@ -154,6 +173,43 @@ mod tests {
     }
 
     #[test]
+    fn all_errors_of_all_entries_are_reported() {
+        let text = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\nengines = true\nrate = 10\n\
+                    silent_after_ms = 1\n[[sensor]]\nkind = \"x-plan\"\n[[actuator]]\nkind = 5\n";
+        let all = message(text);
+        let lines: Vec<&str> = all.lines().collect();
+        let expected = [
+            "test:4: sensor[0].engines: is true: choose a whole number",
+            "test:5: sensor[0].rate: there is no such key, did you mean `rate_hz`: choose",
+            "test:6: sensor[0].silent_after_ms: is 1: choose 50 to 60000",
+            "test:8: sensor[1].kind: is \"x-plan\", did you mean \"x-plane\": choose",
+            "test:10: actuator[0].kind: is no text: choose a text in quotes",
+        ];
+        assert_eq!(lines.len(), expected.len(), "{all}");
+        for (line, begins) in lines.iter().zip(expected) {
+            assert!(line.starts_with(begins), "{line}");
+        }
+    }
+
+    #[test]
+    fn lists_alone_are_enough_without_a_simulator() {
+        let own = "actuator = []\n[[sensor]]\nkind = \"x-plane\"\n";
+        assert_eq!(kinds(own), (vec!["x-plane"], 0));
+        assert!(Config::parse(own, "test").unwrap().aircraft().is_none());
+        for lacking in [
+            "[[sensor]]\nkind = \"x-plane\"\n",
+            "actuator = []\n",
+            "actuator = []\n[[sensor]]\nkind = \"simulator\"\n",
+        ] {
+            let refused = message(lacking);
+            assert!(
+                refused.contains("neither [x-plane] nor [built-in]"),
+                "{refused}"
+            );
+        }
+    }
+
+    #[test]
     fn lists_are_restored_unchanged() {
         let text = "actuator = []\n[built-in]\n[[sensor]]\nkind = \"x-plane\"\nrate_hz = 50\n\
                     [[sensor]]\nkind = \"simulator\"\n";
@@ -161,6 +217,6 @@ mod tests {
         let again = Config::parse(&written, "again").unwrap();
         assert_eq!(again.to_toml().unwrap(), written);
         assert_eq!(again.sensors().count(), 2);
-        assert!(!again.moves_simulator());
+        assert!(again.actuators().is_empty());
     }
 }

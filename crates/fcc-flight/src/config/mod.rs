@@ -5,6 +5,7 @@
 //! conversion to the core's. Optional keys have defaults; a value out of its
 //! range is refused with line, key and range.
 
+mod as_text;
 mod autopilot;
 mod budget;
 mod built_in;
@@ -87,10 +88,10 @@ pub struct Config {
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
     /// Sensors in addition to the simulator's, the most preferred first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", skip_deserializing)]
     pub sensor: Vec<SensorEntry>,
     /// The actuators; the simulator's without a list.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", skip_deserializing)]
     pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
@@ -173,7 +174,7 @@ impl Config {
     /// As [`Config::parse`].
     pub fn parse_without_aircraft(text: &str, file: &str) -> Result<Self, ConfigError> {
         let mut read = read::read(text);
-        if read.config.x_plane.is_none() {
+        if read.config.x_plane.is_none() && !read.config.is_without_simulator() {
             read.config.built_in.get_or_insert_default();
         }
         checked(read, file)
@@ -230,14 +231,15 @@ impl Config {
     }
 
     /// The aircraft; the built-in one if a program did not choose (a file has
-    /// to).
-    pub fn aircraft(&self) -> Aircraft<'_> {
+    /// to), none if the lists of sensors and actuators stand alone.
+    pub fn aircraft(&self) -> Option<Aircraft<'_>> {
         static DEFAULT: std::sync::LazyLock<BuiltInSection> =
             std::sync::LazyLock::new(BuiltInSection::default);
         match (&self.x_plane, &self.built_in) {
-            (Some(section), _) => Aircraft::XPlane(section),
-            (None, Some(section)) => Aircraft::BuiltIn(section),
-            (None, None) => Aircraft::BuiltIn(&DEFAULT),
+            (Some(section), _) => Some(Aircraft::XPlane(section)),
+            (None, Some(section)) => Some(Aircraft::BuiltIn(section)),
+            (None, None) if self.is_without_simulator() => None,
+            (None, None) => Some(Aircraft::BuiltIn(&DEFAULT)),
         }
     }
 }

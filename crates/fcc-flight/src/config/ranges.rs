@@ -165,12 +165,13 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             x_plane(&format!("sensor[{at}]"), section, &mut problems, places);
         }
     }
-    if config.x_plane.is_none() && config.built_in.is_none() {
+    let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
+    if !has_simulator && !config.is_without_simulator() {
         problems.push(Problem {
             line: None,
             key: None,
             message: "has neither [x-plane] nor [built-in]: add the section of the aircraft that \
-                      is to be flown"
+                      is to be flown, or list sensors and actuators that need none"
                 .to_owned(),
         });
     }

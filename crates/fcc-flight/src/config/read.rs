@@ -4,11 +4,11 @@
 //! removed from the table, and reading is repeated: the rest is read as if that
 //! key were not given. This file is independent of the sections.
 
-use serde::Deserialize;
+use serde::de::{DeserializeOwned, Error as _};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
 
-use super::devices::in_entry;
+use super::devices::Entry;
 use super::places::{Places, line_of};
 use super::wording::reword;
 use super::{Config, Problem};
@@ -27,30 +27,22 @@ pub(super) fn read(text: &str) -> Read<'_> {
     let mut problems: Vec<Problem> = broken.iter().map(|error| syntax(text, error)).collect();
     // An error in a line is often found twice.
     problems.dedup_by_key(|problem| problem.line);
-    let config = loop {
-        let error = match Config::deserialize(Deserializer::from(table.clone())) {
-            Ok(config) => break config,
-            Err(error) => error,
-        };
-        let path = error.span().map(|span| places.path_at(span.start));
-        let path = path.unwrap_or_default();
-        // A missing field may have been removed before.
-        let section = path.join(".") + ".";
-        let in_section = |problem: &Problem| {
-            let key = problem.key.as_deref().unwrap_or_default();
-            key.starts_with(&section)
-        };
-        if !(error.message().starts_with("missing field") && problems.iter().any(in_section)) {
-            problems.push(value(text, &places, &path, &error));
-        }
-        if !remove(&mut table, &path) {
-            break Config::default();
-        }
-    };
-    Read {
-        config,
-        problems,
+    let mut reader = Reader {
+        text,
         places,
+        problems,
+    };
+    let sensor = reader.list(&mut table, "sensor");
+    let actuator = reader.list(&mut table, "actuator");
+    let read = reader.table(table, 0).unwrap_or_default();
+    Read {
+        config: Config {
+            sensor: sensor.unwrap_or_default(),
+            actuator,
+            ..read
+        },
+        problems: reader.problems,
+        places: reader.places,
     }
 }
 
@@ -67,40 +59,111 @@ fn syntax(text: &str, error: &Error) -> Problem {
     }
 }
 
-fn value(text: &str, places: &Places<'_>, path: &[String], error: &Error) -> Problem {
-    let key = (!path.is_empty()).then(|| path.join("."));
-    // The entry of a list is read as a whole, so its keys have no positions.
-    let inside = key
-        .as_deref()
-        .and_then(|key| in_entry(text, key, error.message()));
-    let line = match &inside {
-        Some(key) => places.nearest_line(key),
-        None => error.span().map(|span| line_of(text, &span)),
-    };
-    let key = inside.or(key);
-    Problem {
-        line,
-        message: reword(error.message(), key.as_deref()),
-        key,
+/// A table of a configuration, which one type is read from.
+pub(super) struct Reader<'t> {
+    text: &'t str,
+    places: Places<'t>,
+    problems: Vec<Problem>,
+}
+
+impl<'t> Reader<'t> {
+    /// Reads a table that is `depth` sections below the text's own; none if
+    /// that is impossible without the keys that are wrong.
+    pub(super) fn table<T: DeserializeOwned>(
+        &mut self,
+        mut table: Spanned<DeTable<'t>>,
+        depth: usize,
+    ) -> Option<T> {
+        loop {
+            let error = match T::deserialize(Deserializer::from(table.clone())) {
+                Ok(read) => return Some(read),
+                Err(error) => error,
+            };
+            let path = error.span().map(|span| self.places.path_at(span.start));
+            let path = path.unwrap_or_default();
+            // A missing field may have been removed before.
+            let section = path.join(".") + ".";
+            let in_section = |problem: &Problem| {
+                let key = problem.key.as_deref().unwrap_or_default();
+                key.starts_with(&section)
+            };
+            if !(error.message().starts_with("missing field")
+                && self.problems.iter().any(in_section))
+            {
+                let line = error.span().map(|span| line_of(self.text, &span));
+                self.report(line, path.join("."), &error);
+            }
+            if !remove(&mut table, path.get(depth..).unwrap_or_default()) {
+                return None;
+            }
+        }
+    }
+
+    /// Takes a list out of a table and reads its entries; none if it is not
+    /// given.
+    fn list<T: Entry>(&mut self, table: &mut Spanned<DeTable<'t>>, name: &str) -> Option<Vec<T>> {
+        let list = table.get_mut().remove(name)?;
+        let line = Some(line_of(self.text, &list.span()));
+        let DeValue::Array(entries) = list.into_inner() else {
+            let message = "invalid type: no list, expected a sequence";
+            self.report(line, name.to_owned(), &Error::custom(message));
+            return None;
+        };
+        let entries = entries.into_iter().enumerate();
+        let read: Vec<Option<T>> = entries
+            .map(|(at, entry)| self.entry(entry, &format!("{name}[{at}]")))
+            .collect();
+        // Up to one that has no kind, so that an entry's number is the text's.
+        Some(read.into_iter().map_while(|entry| entry).collect())
+    }
+
+    /// Reads an entry of a list: its kind, and the other keys as that kind's.
+    fn entry<T: Entry>(&mut self, entry: Spanned<DeValue<'t>>, key: &str) -> Option<T> {
+        let span = entry.span();
+        let line = Some(line_of(self.text, &span));
+        let DeValue::Table(mut keys) = entry.into_inner() else {
+            let message = "invalid type: a value, expected struct entry";
+            self.report(line, key.to_owned(), &Error::custom(message));
+            return None;
+        };
+        let Some(kind) = keys.remove("kind") else {
+            self.report(line, key.to_owned(), &Error::missing_field("kind"));
+            return None;
+        };
+        let line = Some(line_of(self.text, &kind.span()));
+        let kind_key = format!("{key}.kind");
+        let Some(kind) = kind.get_ref().as_str() else {
+            let message = "invalid type: no text, expected a string";
+            self.report(line, kind_key, &Error::custom(message));
+            return None;
+        };
+        if !T::KINDS.contains(&kind) {
+            self.report(line, kind_key, &Error::unknown_variant(kind, T::KINDS));
+            return None;
+        }
+        T::read(kind, Spanned::new(span, keys), self)
+    }
+
+    fn report(&mut self, line: Option<usize>, key: String, error: &Error) {
+        let key = (!key.is_empty()).then_some(key);
+        self.problems.push(Problem {
+            line,
+            message: reword(error.message(), key.as_deref()),
+            key,
+        });
     }
 }
 
-/// Removes the value at a path from a table, a list as a whole; returns whether
-/// there was one.
+/// Removes the value at a path from a table; returns whether there was one.
 fn remove(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
-    let mut inner = table.get_mut();
-    for (depth, part) in path.iter().enumerate() {
-        let (name, is_list) = match part.split_once('[') {
-            Some((name, _)) => (name, true),
-            None => (part.as_str(), false),
-        };
-        if is_list || depth + 1 == path.len() {
-            return inner.remove(name).is_some();
+    let Some((last, sections)) = path.split_last() else {
+        return false;
+    };
+    let inner = sections.iter().try_fold(table.get_mut(), |inner, section| {
+        match inner.get_mut(section.as_str()).map(Spanned::get_mut) {
+            Some(DeValue::Table(next)) => Some(next),
+            _ => None,
         }
-        match inner.get_mut(name).map(Spanned::get_mut) {
-            Some(DeValue::Table(next)) => inner = next,
-            _ => return false,
-        }
-    }
-    false
+    });
+    inner.is_some_and(|inner| inner.remove(last.as_str()).is_some())
 }

@@ -72,7 +72,7 @@ fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {
 }
 
 fn lists(config: &Config, report: &mut impl FnMut(&str, String)) {
-    let actuators = config.actuator.as_deref().unwrap_or_default().len();
+    let actuators = config.actuators().len();
     let sensors = config.sensor.iter().map(SensorEntry::is_simulator);
     // Every actuator is the simulator's.
     for (list, simulators) in [

@@ -17,7 +17,7 @@ pub struct LoopSection {
     /// Ticks per second.
     pub rate_hz: f64,
     /// Which timer wakes the loop.
-    #[serde(with = "timer_name")]
+    #[serde(with = "super::as_text")]
     pub timer: TimerKind,
     /// Waking before the deadline, to begin on time.
     pub early_wake: EarlyWakeSection,
@@ -222,23 +222,5 @@ impl Default for FailsafeSection {
             hold_s: 5.0,
             then: Then::Standby,
         }
-    }
-}
-
-/// A timer by its name.
-mod timer_name {
-    use std::str::FromStr;
-
-    use fcc_timer::TimerKind;
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-    pub(super) fn serialize<S: Serializer>(kind: &TimerKind, out: S) -> Result<S::Ok, S::Error> {
-        out.collect_str(kind)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<TimerKind, D::Error> {
-        let name = String::deserialize(from)?;
-        TimerKind::from_str(&name).map_err(D::Error::custom)
     }
 }

@@ -10,7 +10,7 @@ pub struct TelemetrySection {
     /// Whether the flight is published in shared memory.
     pub enabled: bool,
     /// The instance name of this daemon.
-    #[serde(with = "instance_name")]
+    #[serde(with = "super::as_text")]
     pub instance: Instance,
     /// Whether programs of the same user may give commands.
     pub commands: bool,
@@ -23,22 +23,5 @@ impl Default for TelemetrySection {
             instance: Instance::default(),
             commands: true,
         }
-    }
-}
-
-/// An instance by its name.
-mod instance_name {
-    use std::str::FromStr;
-
-    use fcc_telemetry::Instance;
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    pub(super) fn serialize<S: Serializer>(name: &Instance, out: S) -> Result<S::Ok, S::Error> {
-        out.collect_str(name)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Instance, D::Error> {
-        let name = String::deserialize(from)?;
-        Instance::from_str(&name).map_err(D::Error::custom)
     }
 }

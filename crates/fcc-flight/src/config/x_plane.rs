@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct XPlaneSection {
     /// `beacon`, or an address or host name, with a port if it is not 49000.
-    #[serde(with = "simulator_text")]
+    #[serde(with = "super::as_text")]
     pub simulator: Simulator,
     /// UDP port to receive on; 0 for any that is free.
     pub local_port: u16,
@@ -110,20 +110,5 @@ impl From<&XPlaneSection> for XPlaneConfig {
             fallback_after: Duration::from_millis(section.fallback_after_ms),
             ..Self::default()
         }
-    }
-}
-
-/// `beacon`, or an address or host name, with a port or without.
-mod simulator_text {
-    use super::Simulator;
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    pub(super) fn serialize<S: Serializer>(at: &Simulator, out: S) -> Result<S::Ok, S::Error> {
-        out.collect_str(at)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Simulator, D::Error> {
-        let text = String::deserialize(from)?;
-        text.parse().map_err(D::Error::custom)
     }
 }

@@ -19,7 +19,7 @@ use super::restart::{RestartKeeper, RestartRequest};
 use super::scorer::Scorer;
 use super::truth_recorder::{TruthReceiver, tap};
 use crate::config::{
-    Aircraft, BuiltInSection, Config, SensorEntry, WatchdogSection, XPlaneSection,
+    ActuatorEntry, Aircraft, BuiltInSection, Config, SensorEntry, WatchdogSection, XPlaneSection,
 };
 
 /// An assembled flight, complete except for its clock.
@@ -63,7 +63,8 @@ impl AssemblyError {
     }
 }
 
-/// The plant of a flight: its sensors and actuators.
+/// A simulated plant: its sensors and actuators.
+#[derive(Default)]
 struct Plant {
     sensors: Vec<Box<dyn Sensor<Measurements>>>,
     actuators: Vec<Box<dyn Actuator<Surfaces>>>,
@@ -78,8 +79,9 @@ struct Plant {
 pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     let loop_config = config.loop_config();
     let mut plant = match config.aircraft() {
-        Aircraft::BuiltIn(section) => built_in(section, loop_config.messages_capacity)?,
-        Aircraft::XPlane(section) => x_plane(section)?,
+        Some(Aircraft::BuiltIn(section)) => built_in(section, loop_config.messages_capacity)?,
+        Some(Aircraft::XPlane(section)) => x_plane(section)?,
+        None => Plant::default(),
     };
     let mut sensors = Vec::new();
     for entry in config.sensors() {
@@ -91,13 +93,16 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             }
         }
     }
-    if !config.moves_simulator() {
-        plant.actuators.clear();
+    let mut actuators = Vec::new();
+    for entry in config.actuators() {
+        match entry {
+            ActuatorEntry::Simulator(_) => actuators.append(&mut plant.actuators),
+        }
     }
     Ok(Assembly {
         sensors,
         autopilot: Autopilot::new(config.autopilot_config()),
-        actuators: plant.actuators,
+        actuators,
         loop_config,
         watchdog: config.watchdog.clone(),
         restart: plant
@@ -136,8 +141,8 @@ fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
 /// what another one held; none if nothing can be left held.
 pub fn authority_without_connection(config: &Config) -> Option<Arc<dyn ControlAuthority>> {
     match config.aircraft() {
-        Aircraft::BuiltIn(_) => None,
-        Aircraft::XPlane(section) => Some(Arc::new(XPlaneAuthority::without_connection(
+        Some(Aircraft::BuiltIn(_)) | None => None,
+        Some(Aircraft::XPlane(section)) => Some(Arc::new(XPlaneAuthority::without_connection(
             &XPlaneConfig::from(section),
         ))),
     }
@@ -166,7 +171,7 @@ impl Assembly {
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::new(
-                &config.telemetry,
+                config,
                 self.autopilot.config().envelope.allowed_airspeeds(),
             )));
         }

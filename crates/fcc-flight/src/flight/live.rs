@@ -4,26 +4,36 @@ use std::ops::RangeInclusive;
 
 use fcc_live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
 use fcc_record as recording;
-use fcc_telemetry::{FlightEvent, FlightRecord};
+use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
 
 use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
-use crate::config::TelemetrySection;
+use crate::config::Config;
+
+/// How long the publishing thread may be delayed before records are left out, at
+/// 1 kHz or less.
+const PUBLISHED_WITHIN_S: f64 = 2.0;
+const MOST_WAITING: usize = 2_048;
 
 /// Publishes a flight and receives commands; without effect if that is not
 /// possible.
 pub(super) struct Live {
-    section: TelemetrySection,
+    instance: Instance,
+    takes_commands: bool,
+    /// The most records that wait to be published.
+    waiting: usize,
     publisher: Option<Publisher>,
     commands: Commands,
 }
 
 impl Live {
     /// Commands are limited to these airspeeds, m/s.
-    pub(super) fn new(section: &TelemetrySection, airspeeds_mps: RangeInclusive<f64>) -> Self {
+    pub(super) fn new(config: &Config, airspeeds_mps: RangeInclusive<f64>) -> Self {
         Self {
-            section: section.clone(),
+            instance: config.telemetry.instance.clone(),
+            takes_commands: config.telemetry.commands,
+            waiting: config.tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
             publisher: None,
             commands: Commands::new(airspeeds_mps),
         }
@@ -34,12 +44,12 @@ impl Observer for Live {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
-        let start = if self.section.commands {
+        let start = if self.takes_commands {
             Publisher::start_with_commands
         } else {
             Publisher::start
         };
-        match start(&self.section.instance) {
+        match start(&self.instance, self.waiting) {
             Ok(publisher) => self.publisher = Some(publisher),
             Err(error) => reports.mention(format!("no live telemetry for this flight: {error}")),
         }

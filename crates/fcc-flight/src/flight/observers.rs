@@ -184,6 +184,6 @@ mod tests {
         });
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
-        observer_conforms(|| Box::new(Live::new(&config.telemetry, 30.0..=80.0)));
+        observer_conforms(|| Box::new(Live::new(&config, 30.0..=80.0)));
     }
 }

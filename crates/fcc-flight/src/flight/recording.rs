@@ -45,8 +45,9 @@ impl RecordingRequest {
 /// Facts about a flight from its configuration and its machine.
 pub fn about(config: &Config, as_given: Option<String>) -> About {
     let aircraft = match config.aircraft() {
-        Aircraft::XPlane(_) => "x-plane",
-        Aircraft::BuiltIn(_) => "built-in",
+        Some(Aircraft::XPlane(_)) => "x-plane",
+        Some(Aircraft::BuiltIn(_)) => "built-in",
+        None => "none",
     };
     let mut parameters = BTreeMap::new();
     // A configuration that was read can be written.

@@ -141,7 +141,7 @@ pub enum Verdict {
     Outside(OutsideLimits),
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "flight"))]
 mod tests {
     use super::*;
 

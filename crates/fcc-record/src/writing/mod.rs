@@ -30,7 +30,8 @@ const COMMIT_BYTES: u64 = 1 << 20;
 /// Input of the recorder's thread.
 #[derive(Debug)]
 pub(super) enum Feed<M> {
-    Message(M),
+    /// Boxed: the channel is allocated as a whole, and seldom holds many.
+    Message(Box<M>),
     Remark(String),
     End(String),
 }

@@ -10,5 +10,6 @@ mod flight;
 mod folder;
 mod foxglove_layout;
 mod full_disk;
+mod old_format;
 mod round_trip;
 mod slow_disk;

@@ -8,7 +8,7 @@ pub mod protobuf;
 mod row;
 mod words;
 
-pub use columns::{Column, columns};
+pub use columns::{Column, Leaves, columns};
 pub use layout::{layout_table, spaced};
 pub use row::{Row, header};
 pub use words::{Words, words};

@@ -12,32 +12,45 @@ use std::time::Duration;
 
 use crate::deadlines::{Deadlines, Period, monotonic_ns};
 use crate::early::{Alarm, Early};
+use crate::periodic::{Kernel, periodic};
 use crate::{EarlyWake, Expiry, Timer, TimerError, Wake};
 use interval::IntervalTimer;
 use signal::TimerSignal;
 
-/// A periodic timer on `timer_create`, with a real-time signal to the thread
-/// that started it. The kernel keeps one signal queued and counts the
-/// expiries that found it still there: those are the missed deadlines.
-///
-/// Each running timer has a real-time signal of its own, the highest that is
-/// free.
+periodic! {
+    /// A periodic timer on `timer_create`, with a real-time signal to the thread
+    /// that started it. The kernel keeps one signal queued and counts the
+    /// expiries that found it still there: those are the missed deadlines.
+    ///
+    /// Each running timer has a real-time signal of its own, the highest that is
+    /// free.
+    PosixTimer, "posix", Signals
+}
+
+/// The kernel's timer and the signal that it sends.
 #[derive(Debug)]
-pub struct PosixTimer {
+struct Signals {
     period: Period,
-    running: Option<Running>,
-    early: Option<Early>,
-}
-
-#[derive(Debug)]
-struct Running {
-    deadlines: Deadlines,
+    /// The one that the signals are sent to.
     thread: ThreadId,
-    signals: Signals,
+    // Before the signal, because fields are dropped in this order: a signal is
+    // let through again only when no timer can send it any more.
+    timer: IntervalTimer,
+    signal: TimerSignal,
 }
 
-impl Running {
-    /// The signals are sent to the thread that started the timer.
+impl Kernel for Signals {
+    fn new(period: Period) -> Result<Self, TimerError> {
+        let signal = TimerSignal::block()?;
+        let timer = IntervalTimer::new(&signal)?;
+        Ok(Self {
+            period,
+            thread: thread::current().id(),
+            timer,
+            signal,
+        })
+    }
+
     fn check_thread(&self) -> Result<(), TimerError> {
         if self.thread == thread::current().id() {
             Ok(())
@@ -45,106 +58,12 @@ impl Running {
             Err(TimerError::WrongThread)
         }
     }
-}
 
-impl PosixTimer {
-    pub(crate) const NAME: &str = "posix";
-
-    /// Makes a timer, not yet started.
-    ///
-    /// # Errors
-    /// When the period is not between 10 µs and 1 hour.
-    pub fn new(period: Duration) -> Result<Self, TimerError> {
-        Ok(Self {
-            period: Period::new(period)?,
-            running: None,
-            early: None,
-        })
-    }
-
-    /// Makes it wake early and spin until its deadlines.
-    ///
-    /// # Errors
-    /// When a value is out of its range.
-    pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
-        self.early = Some(Early::new(early, self.period)?);
-        Ok(self)
-    }
-}
-
-impl Timer for PosixTimer {
-    fn start(&mut self) -> Result<(), TimerError> {
-        // The timer of an earlier start is deleted first, with its signal.
-        self.running = None;
-        let mut signals = Signals::new(self.period)?;
-        let deadlines = Early::grid(self.early.as_mut(), self.period);
-        signals.move_to(deadlines.alarm_ns())?;
-        self.running = Some(Running {
-            deadlines,
-            thread: thread::current().id(),
-            signals,
-        });
-        Ok(())
-    }
-
-    fn wait(&mut self) -> Result<Expiry, TimerError> {
-        let running = self.running.as_mut().ok_or(TimerError::NotStarted)?;
-        running.check_thread()?;
-        if let Some(early) = &mut self.early {
-            return early.wait(&mut running.deadlines, &mut running.signals);
-        }
-        running.signals.signal.wait()?;
+    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError> {
+        self.signal.wait()?;
         let woke_ns = monotonic_ns();
-        let passed = running.signals.timer.overruns()?.saturating_add(1);
-        Ok(running.deadlines.woken(passed, woke_ns))
-    }
-
-    fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
-        match (&mut self.early, &mut self.running) {
-            (Some(early), Some(running)) => {
-                running.check_thread()?;
-                early.wait_or_warm_up(&mut running.deadlines, &mut running.signals)
-            }
-            _ => self.wait().map(Wake::Deadline),
-        }
-    }
-
-    fn disable_early_wake(&mut self) {
-        self.early = None;
-    }
-
-    fn period(&self) -> Duration {
-        self.period.duration()
-    }
-
-    fn now_ns(&self) -> i64 {
-        monotonic_ns()
-    }
-
-    fn name(&self) -> &'static str {
-        Self::NAME
-    }
-}
-
-/// The kernel's timer and the signal that it sends.
-#[derive(Debug)]
-struct Signals {
-    period: Period,
-    // Before the signal, because fields are dropped in this order: a signal is
-    // let through again only when no timer can send it any more.
-    timer: IntervalTimer,
-    signal: TimerSignal,
-}
-
-impl Signals {
-    fn new(period: Period) -> Result<Self, TimerError> {
-        let signal = TimerSignal::block()?;
-        let timer = IntervalTimer::new(&signal)?;
-        Ok(Self {
-            period,
-            timer,
-            signal,
-        })
+        let passed = self.timer.overruns()?.saturating_add(1);
+        Ok(deadlines.woken(passed, woke_ns))
     }
 }
 

@@ -1,22 +1,28 @@
 //! Locking the memory of the process.
+#![allow(unsafe_code)]
 
 use nix::errno::Errno;
-use nix::sys::mman::{MlockAllFlags, mlockall, munlockall};
+use nix::sys::mman::{MlockAllFlags, mlock, mlockall, munlockall};
 use nix::sys::resource::{Resource, getrlimit};
 use std::fs;
+use std::ops::Range;
+use std::ptr::{self, NonNull};
 
 use super::DeniedRequest;
 
 /// The calling thread's own, because capabilities belong to threads.
 const STATUS: &str = "/proc/thread-self/status";
+/// What the process has mapped.
+const MAPS: &str = "/proc/self/maps";
 /// How the users of this process' namespace map to those of the system.
 const UID_MAP: &str = "/proc/self/uid_map";
 /// The bit of `CAP_IPC_LOCK` in a set of capabilities.
 const CAP_IPC_LOCK: u32 = 14;
 
 /// Locks and loads what the process has mapped, and locks what it maps later,
-/// once it is touched.
-pub(super) fn lock() -> Result<(), DeniedRequest> {
+/// once it is touched. `on_touch`, the calling thread's stack, is also loaded
+/// only where it is touched: few threads use a part of theirs that matters.
+pub(super) fn lock(on_touch: &Range<usize>) -> Result<(), DeniedRequest> {
     let denied = |reason: String| DeniedRequest {
         request: "locked memory".to_owned(),
         reason,
@@ -30,11 +36,10 @@ pub(super) fn lock() -> Result<(), DeniedRequest> {
             limit_bytes / 1024
         )));
     }
-    // In two calls: pages mapped now are loaded, pages mapped later only when
-    // they are touched.
-    let later = MlockAllFlags::MCL_FUTURE | MlockAllFlags::from_bits_retain(libc::MCL_ONFAULT);
-    mlockall(MlockAllFlags::MCL_CURRENT)
-        .and_then(|()| mlockall(later))
+    // Everything when it is touched, and then what is mapped now at once.
+    let on_fault = MlockAllFlags::from_bits_retain(libc::MCL_ONFAULT);
+    mlockall(MlockAllFlags::MCL_CURRENT | MlockAllFlags::MCL_FUTURE | on_fault)
+        .and_then(|()| load(on_touch))
         .map_err(|errno: Errno| {
             // Partly locked memory is useless. Unlocking needs no right and
             // cannot fail.
@@ -48,6 +53,41 @@ pub(super) fn lock() -> Result<(), DeniedRequest> {
             "the kernel reads back less locked than used memory".to_owned(),
         ))
     }
+}
+
+/// Loads what is mapped now and may be accessed, but for one range.
+fn load(except: &Range<usize>) -> Result<(), Errno> {
+    let maps = fs::read_to_string(MAPS).map_err(|_| Errno::EIO)?;
+    for Range { start, end } in maps.lines().filter_map(mapping) {
+        for part in [start..end.min(except.start), start.max(except.end)..end] {
+            let length = part.end.saturating_sub(part.start);
+            let Some(first) = NonNull::new(ptr::without_provenance_mut(part.start)) else {
+                continue;
+            };
+            if length > 0 {
+                // SAFETY: nothing is read or written through the pointer; the
+                // kernel refuses a range that is not mapped.
+                match unsafe { mlock(first, length) } {
+                    // Unmapped since, by another thread.
+                    Ok(()) | Err(Errno::ENOMEM) => {}
+                    Err(errno) => return Err(errno),
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The addresses of a line of the table of mappings; none if nothing there can
+/// be loaded: a guard page, or a page of the kernel's.
+fn mapping(line: &str) -> Option<Range<usize>> {
+    let mut words = line.split_whitespace();
+    let (first, end) = words.next()?.split_once('-')?;
+    let is_accessible = words.next()?.starts_with('r');
+    let is_kernels = words.nth(3).is_some_and(|name| name.starts_with("[v"));
+    let address = |digits| usize::from_str_radix(digits, 16).ok();
+    let range = address(first)?..address(end)?;
+    (is_accessible && !is_kernels).then_some(range)
 }
 
 /// Whether at least as much memory is locked as is in use.
@@ -117,6 +157,20 @@ mod tests {
         assert_eq!(kib(ORDINARY, "VmRSS:"), Some(5208));
         assert_eq!(kib(ORDINARY, "VmSwap:"), None);
         assert_eq!(kib("VmRSS:\tmany kB", "VmRSS:"), None);
+    }
+
+    // As proc_pid_maps(5) shows the lines.
+    #[test]
+    fn guard_pages_and_the_kernels_pages_are_not_loaded() {
+        let of = |rest: &str| mapping(&format!("7f0000001000-7f0000003000 {rest}"));
+        let range = Some(0x7f00_0000_1000..0x7f00_0000_3000);
+        assert_eq!(
+            of("r-xp 00000000 08:02 173521      /usr/bin/dbus-daemon"),
+            range
+        );
+        assert_eq!(of("rw-p 00000000 00:00 0"), range);
+        assert_eq!(of("---p 00000000 00:00 0"), None);
+        assert_eq!(of("r-xp 00000000 00:00 0           [vdso]"), None);
     }
 
     #[test]

@@ -50,8 +50,9 @@ pub struct RealtimeRequest {
     /// The CPU to run on.
     pub cpu: Option<CpuRequest>,
     /// Whether to keep all pages of the process in memory. Pages mapped now are
-    /// loaded and stay; pages mapped later stay once they are first touched, so
-    /// that a thread's stack or a large mapped file costs memory only where it is
+    /// loaded and stay, except those of this thread's stack that
+    /// `stack_prefault_bytes` does not contain; they, and pages mapped later, stay
+    /// once they are first touched, so that they cost memory only where they are
     /// used. This concerns all threads.
     ///
     /// Under a limit (`RLIMIT_MEMLOCK`) that is not "unlimited", locking may
@@ -128,7 +129,12 @@ impl RealtimeRequest {
             }
         }
         if self.lock_memory {
-            denied.extend(memory::lock().err());
+            // Without a request for the stack all of it is loaded.
+            let stack = match self.stack_prefault_bytes {
+                0 => 0..0,
+                _ => stack::range().unwrap_or_default(),
+            };
+            denied.extend(memory::lock(&stack).err());
         }
         let mut stack_prefaulted = false;
         if self.stack_prefault_bytes > 0 {

@@ -8,6 +8,7 @@
 use nix::errno::Errno;
 use std::hint::black_box;
 use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::ptr;
 
 use super::DeniedRequest;
@@ -75,6 +76,11 @@ fn touch(pages: usize) {
 /// Bytes of the calling thread's stack below this frame.
 fn left_over() -> Result<usize, Errno> {
     let here = MaybeUninit::<u8>::uninit();
+    Ok(here.as_ptr().addr().saturating_sub(range()?.start))
+}
+
+/// The addresses of the calling thread's stack.
+pub(super) fn range() -> Result<Range<usize>, Errno> {
     let mut attributes = MaybeUninit::<libc::pthread_attr_t>::uninit();
     let mut lowest = ptr::null_mut();
     let mut size = 0;
@@ -89,7 +95,7 @@ fn left_over() -> Result<usize, Errno> {
         errno
     };
     if errno == 0 {
-        Ok(here.as_ptr().addr().saturating_sub(lowest.addr()))
+        Ok(lowest.addr()..lowest.addr().saturating_add(size))
     } else {
         Err(Errno::from_raw(errno))
     }

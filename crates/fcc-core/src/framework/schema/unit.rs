@@ -2,9 +2,9 @@
 
 /// A name without its unit, and the unit.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub struct Named {
+pub struct Named<'a> {
     /// The name before the unit: `airspeed` of `airspeed_mps`.
-    pub quantity: &'static str,
+    pub quantity: &'a str,
     /// The unit; empty for a name that ends in none.
     pub unit: &'static str,
 }
@@ -44,7 +44,7 @@ const UNITS: [(&str, &str); 22] = [
 /// assert_eq!((named.quantity, named.unit), ("climb_rate", "m/s"));
 /// assert_eq!(unit::of("throttle").unit, "");
 /// ```
-pub const fn of(name: &'static str) -> Named {
+pub const fn of(name: &str) -> Named<'_> {
     let mut rest: &[(&str, &'static str)] = &UNITS;
     while let [(end, unit), others @ ..] = rest {
         let whole = name.as_bytes();

@@ -1,0 +1,33 @@
+//! What a replay of a flight needs: the autopilot of the recorded configuration.
+//! How it is replayed and compared is in [`fcc_replay`].
+
+use fcc_core::flight::Autopilot;
+use fcc_replay::{Chain, Replay};
+use fcc_timer::TimerError;
+
+use crate::config::{Config, ConfigError};
+
+/// The configuration in the recording cannot be read by this version.
+#[derive(thiserror::Error, Debug)]
+#[error("the configuration in the recording cannot be read by this version of fccd:\n{0}")]
+pub struct RecordedConfigError(#[from] ConfigError);
+
+/// The configuration that was flown, defaults and command line included.
+///
+/// # Errors
+/// When this version cannot read it.
+pub fn recorded_config(chain: &Chain) -> Result<Config, RecordedConfigError> {
+    Ok(Config::parse(&chain.about().config, &chain.config_name())?)
+}
+
+/// A replay of a flight by this configuration.
+///
+/// # Errors
+/// When the period cannot be kept statistics of.
+pub fn replay(config: &Config) -> Result<Replay<Autopilot>, TimerError> {
+    Replay::new(
+        Autopilot::new(config.autopilot_config()),
+        config.tick.period(),
+        &config.loop_config(),
+    )
+}

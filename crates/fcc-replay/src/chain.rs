@@ -1,0 +1,250 @@
+//! The files of a recording as one.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use fcc_core::framework::{Controller, Message, MessageOf, RecordOf};
+use fcc_record::{About, Item, Items, OpenError, Recording};
+use serde::Serialize;
+
+use crate::run::{Replay, Run, run};
+
+/// The files of one recording, oldest first: one, or several where it was
+/// rotated.
+#[derive(Debug)]
+pub struct Chain {
+    first: Recording,
+    others: Vec<Recording>,
+}
+
+/// Why files cannot be replayed as one recording.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum ChainError {
+    /// No file is given.
+    #[error("no recording is given: name at least one file")]
+    Empty,
+    /// One cannot be read or is something else.
+    #[error(transparent)]
+    Open(#[from] OpenError),
+    /// Two are of different runs.
+    #[error(
+        "{file}: is of another run than {first}: give the parts of one recording, or one \
+         recording at a time"
+    )]
+    AnotherRun {
+        /// Which file.
+        file: PathBuf,
+        /// The file it does not go with.
+        first: PathBuf,
+    },
+    /// They are not given in their order.
+    #[error("{file}: is part {part}, and follows part {after}: give the parts oldest first")]
+    OutOfOrder {
+        /// Which file.
+        file: PathBuf,
+        /// Which part of the recording it is.
+        part: u32,
+        /// The part before it.
+        after: u32,
+    },
+    /// The configuration that was run is not in the file.
+    #[error("{file}: holds no configuration, so it is not known what was run")]
+    NoConfig {
+        /// Which file.
+        file: PathBuf,
+    },
+}
+
+impl Chain {
+    /// Opens the files of a recording.
+    ///
+    /// # Errors
+    /// When they are not the parts of one recording in their order.
+    pub fn open(files: &[PathBuf]) -> Result<Self, ChainError> {
+        let mut recordings = files.iter().map(Recording::open);
+        let first = recordings.next().ok_or(ChainError::Empty)??;
+        let others = recordings.collect::<Result<Vec<_>, _>>()?;
+        let mut before = &first;
+        for next in &others {
+            follows(before, next)?;
+            before = next;
+        }
+        if first.about().config.trim().is_empty() {
+            return Err(ChainError::NoConfig {
+                file: first.path().to_owned(),
+            });
+        }
+        Ok(Self { first, others })
+    }
+
+    /// What is known of the run, from the first file.
+    pub const fn about(&self) -> &About {
+        self.first.about()
+    }
+
+    /// The name of the configuration in the first file, for messages about it.
+    pub fn config_name(&self) -> String {
+        format!("{}: config.toml", self.first.path().display())
+    }
+
+    /// How long the files are together.
+    pub fn bytes(&self) -> u64 {
+        self.files().map(Recording::bytes).sum()
+    }
+
+    fn files(&self) -> impl Iterator<Item = &Recording> {
+        std::iter::once(&self.first).chain(&self.others)
+    }
+
+    /// Replays the recording as far as it goes: gives `compare` each tick as
+    /// recorded and as replayed, and `progress` from time to time how many
+    /// [`bytes`](Self::bytes) were read.
+    pub fn replay<C: Controller>(
+        &self,
+        replay: Replay<C>,
+        compare: impl FnMut(&RecordOf<C>, &RecordOf<C>),
+        progress: impl FnMut(u64),
+    ) -> Replayed {
+        let mut messages = ChainMessages::<C, _, _> {
+            waiting: self.files(),
+            present: None,
+            bytes_before: 0,
+            read: 0,
+            progress,
+            cuts: Vec::new(),
+            damages: Vec::new(),
+        };
+        let run = run(replay, &mut messages, compare);
+        Replayed {
+            run,
+            cuts: messages.cuts,
+            damages: messages.damages,
+        }
+    }
+}
+
+/// What became of a replay.
+#[derive(Clone, Debug, Serialize)]
+pub struct Replayed {
+    /// How far the recording was replayed.
+    #[serde(flatten)]
+    pub run: Run,
+    /// Where and why files ended before their recording did.
+    pub cuts: Vec<String>,
+    /// What in the files is damaged.
+    pub damages: Vec<String>,
+}
+
+impl Replayed {
+    /// Whether every tick of the recording was replayed.
+    pub const fn is_complete(&self) -> bool {
+        self.run.unflown.is_none() && self.cuts.is_empty()
+    }
+
+    /// What was not replayed, in words; empty where all was.
+    pub fn missing(&self) -> String {
+        let mut text = String::new();
+        if let Some(unflown) = &self.run.unflown {
+            let which = match (unflown.first, unflown.last) {
+                (Some(first), Some(last)) => format!("{} ticks, {first} to {last}", unflown.ticks),
+                _ => "what follows".to_owned(),
+            };
+            let compared = self.run.last_tick.map_or_else(
+                || "nothing was compared".to_owned(),
+                |last| format!("compared up to tick {last}"),
+            );
+            let _ = write!(
+                text,
+                "\n\nNOT replayed: {which}: {}; {compared}",
+                unflown.why
+            );
+        }
+        for damage in self.cuts.iter().chain(&self.damages) {
+            let _ = write!(text, "\n\nthe recording is not whole: {damage}");
+        }
+        text
+    }
+}
+
+fn follows(before: &Recording, next: &Recording) -> Result<(), ChainError> {
+    let (was, is) = (before.about(), next.about());
+    if was.clock_offset_ns != is.clock_offset_ns || was.config != is.config {
+        return Err(ChainError::AnotherRun {
+            file: next.path().to_owned(),
+            first: before.path().to_owned(),
+        });
+    }
+    if is.part <= was.part {
+        return Err(ChainError::OutOfOrder {
+            file: next.path().to_owned(),
+            part: is.part,
+            after: was.part,
+        });
+    }
+    Ok(())
+}
+
+/// Messages between two reports of progress.
+const REPORT_EVERY: u64 = 4_096;
+
+/// All records and events of a recording, file by file.
+struct ChainMessages<'a, C: Controller, W, P> {
+    waiting: W,
+    present: Option<(&'a Path, Items<MessageOf<C>>)>,
+    bytes_before: u64,
+    read: u64,
+    progress: P,
+    cuts: Vec<String>,
+    damages: Vec<String>,
+}
+
+impl<C: Controller, W, P> ChainMessages<'_, C, W, P> {
+    fn leave(&mut self) {
+        if let Some((path, items)) = self.present.take() {
+            self.bytes_before += items.bytes_read();
+            if let Some(cut) = items.cut() {
+                self.cuts.push(format!("{}: {cut}", path.display()));
+            }
+        }
+    }
+}
+
+impl<'a, C: Controller, W: Iterator<Item = &'a Recording>, P: FnMut(u64)> Iterator
+    for ChainMessages<'a, C, W, P>
+{
+    type Item = MessageOf<C>;
+
+    fn next(&mut self) -> Option<MessageOf<C>> {
+        self.read += 1;
+        if self.read.is_multiple_of(REPORT_EVERY) {
+            let present = self.present.as_ref();
+            let bytes_present = present.map_or(0, |(_, items)| items.bytes_read());
+            (self.progress)(self.bytes_before + bytes_present);
+        }
+        loop {
+            while let Some((path, items)) = &mut self.present
+                && let Some(item) = items.next()
+            {
+                match item {
+                    Item::Message(message) => return Some(message),
+                    Item::Remark(_) => {}
+                    Item::Damage(damage) => {
+                        self.damages.push(format!("{}: {damage}", path.display()));
+                        // What was lost there is lost as if it had never been
+                        // recorded.
+                        if let Some(gap) = damage.event() {
+                            return Some(Message::Event(gap));
+                        }
+                    }
+                }
+            }
+            self.leave();
+            let recording = self.waiting.next()?;
+            match recording.items() {
+                Ok(items) => self.present = Some((recording.path(), items)),
+                Err(error) => self.cuts.push(error.to_string()),
+            }
+        }
+    }
+}

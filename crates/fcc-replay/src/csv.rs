@@ -1,0 +1,89 @@
+//! Both runs, tick by tick, for other tools.
+
+use std::io::{self, Write};
+
+use fcc_core::framework::Record;
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::Telemetry;
+
+use crate::outputs::RecordValues;
+use crate::quantity::Quantity;
+
+/// Writes a line a tick: time, tick, both states, and every quantity as
+/// recorded and as the other configuration has it; empty where nothing was
+/// commanded.
+pub struct Csv<W: Write> {
+    out: W,
+    quantities: Vec<Quantity>,
+    began_ns: Option<i64>,
+    recorded: RecordValues,
+    other: RecordValues,
+}
+
+impl<W: Write> Csv<W> {
+    /// Writes the header of a table for this controller.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn begin<C: Telemetry>(mut out: W) -> io::Result<Self> {
+        out.write_all(b"time_s,tick,state_recorded,state_other")?;
+        let quantities = Quantity::all::<C>();
+        for quantity in &quantities {
+            for whose in ["recorded", "other"] {
+                write!(out, ",{} {whose}", quantity.name)?;
+                if !quantity.unit.is_empty() {
+                    write!(out, " ({})", quantity.unit)?;
+                }
+            }
+        }
+        out.write_all(b"\n")?;
+        Ok(Self {
+            out,
+            quantities,
+            began_ns: None,
+            recorded: RecordValues::default(),
+            other: RecordValues::default(),
+        })
+    }
+
+    /// Writes a tick.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        other: &Record<M, E, S, O>,
+    ) -> io::Result<()> {
+        let at_ns = recorded.tick.scheduled.as_nanos();
+        let began_ns = *self.began_ns.get_or_insert(at_ns);
+        write!(
+            self.out,
+            "{},{},{},{}",
+            at_ns.saturating_sub(began_ns) as f64 * 1e-9,
+            recorded.tick.number,
+            recorded.state,
+            other.state
+        )?;
+        self.recorded.take(recorded);
+        self.other.take(other);
+        for quantity in &self.quantities {
+            for (sent, values) in [(recorded.sent, &self.recorded), (other.sent, &self.other)] {
+                if sent {
+                    write!(self.out, ",{}", quantity.of(values))?;
+                } else {
+                    self.out.write_all(b",")?;
+                }
+            }
+        }
+        self.out.write_all(b"\n")
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// When what is left cannot be written.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}

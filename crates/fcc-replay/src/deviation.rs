@@ -1,0 +1,167 @@
+//! Where another configuration would have commanded otherwise.
+
+use std::fmt::Write as _;
+
+use fcc_core::framework::Record;
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::Telemetry;
+use serde::Serialize;
+
+use crate::outputs::RecordValues;
+use crate::profile::Profile;
+use crate::quantity::Quantity;
+
+/// Where another configuration would have commanded otherwise, had it seen
+/// these measurements.
+///
+/// The plant did not react to it: small differences that it would have evened
+/// out add up in the integrators.
+#[derive(Clone, Debug, Serialize)]
+pub struct Deviation {
+    /// Ticks in which both commanded something: what is compared.
+    pub compared: u64,
+    /// Ticks in which only the recorded loop commanded something.
+    pub only_recorded: u64,
+    /// Ticks in which only the other configuration would have.
+    pub only_other: u64,
+    /// Outputs and set points.
+    pub quantities: Vec<QuantityDeviation>,
+    #[serde(skip)]
+    compares: Vec<Quantity>,
+    #[serde(skip)]
+    began_ns: Option<i64>,
+    #[serde(skip)]
+    recorded: RecordValues,
+    #[serde(skip)]
+    other: RecordValues,
+}
+
+/// How far one quantity is from the recorded one.
+#[derive(Clone, Debug, Serialize)]
+pub struct QuantityDeviation {
+    /// Its name.
+    pub name: String,
+    /// The unit of what follows.
+    pub unit: &'static str,
+    /// Ticks in which it differs at all.
+    pub differing: u64,
+    /// The largest difference, other less recorded; 0 if there is none.
+    pub largest: f64,
+    /// When that was, s after the first tick; none if there is none.
+    pub largest_at_s: Option<f64>,
+    /// Root of the mean square of the difference over all ticks compared.
+    pub rms: f64,
+    #[serde(skip)]
+    sum_of_squares: f64,
+    #[serde(skip)]
+    profile: Profile,
+}
+
+impl Deviation {
+    /// Nothing compared yet, of this controller's records.
+    pub fn of<C: Telemetry>() -> Self {
+        let compares = Quantity::all::<C>();
+        let quantities = compares.iter().map(|quantity| QuantityDeviation {
+            name: quantity.name.clone(),
+            unit: quantity.unit,
+            differing: 0,
+            largest: 0.0,
+            largest_at_s: None,
+            rms: 0.0,
+            sum_of_squares: 0.0,
+            profile: Profile::default(),
+        });
+        Self {
+            compared: 0,
+            only_recorded: 0,
+            only_other: 0,
+            quantities: quantities.collect(),
+            compares,
+            began_ns: None,
+            recorded: RecordValues::default(),
+            other: RecordValues::default(),
+        }
+    }
+
+    /// Compares one tick as recorded and as the other configuration has it.
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        other: &Record<M, E, S, O>,
+    ) {
+        let at_ns = recorded.tick.scheduled.as_nanos();
+        let began_ns = *self.began_ns.get_or_insert(at_ns);
+        let at_s = at_ns.saturating_sub(began_ns) as f64 * 1e-9;
+        let both = recorded.sent && other.sent;
+        self.compared += u64::from(both);
+        self.only_recorded += u64::from(recorded.sent && !other.sent);
+        self.only_other += u64::from(!recorded.sent && other.sent);
+        self.recorded.take(recorded);
+        self.other.take(other);
+        for (quantity, deviation) in self.compares.iter().zip(&mut self.quantities) {
+            if both {
+                let difference = quantity.difference(&self.recorded, &self.other);
+                deviation.take(difference, at_s, self.compared);
+            } else {
+                deviation.profile.push(0.0);
+            }
+        }
+    }
+
+    /// For people.
+    pub fn to_text(&self) -> String {
+        let names = self.quantities.iter().map(|quantity| quantity.name.len());
+        let width = names.max().unwrap_or(0).max(19);
+        let mut text = format!(
+            "{:width$} {:>8} {:>12} {:>12} {:>7} {:>9}  {}\n{}",
+            "other - recorded",
+            "ticks",
+            "rms",
+            "largest",
+            "",
+            "at",
+            "size over the recording",
+            "─".repeat(width + 81)
+        );
+        for quantity in &self.quantities {
+            let at = quantity
+                .largest_at_s
+                .map_or(String::new(), |at_s| format!("{at_s:.2} s"));
+            let _ = write!(
+                text,
+                "\n{:width$} {:>8} {:>12.5} {:>+12.5} {:7} {at:>9}  {}",
+                quantity.name,
+                quantity.differing,
+                quantity.rms,
+                quantity.largest,
+                quantity.unit,
+                quantity.profile.line(),
+            );
+        }
+        let _ = write!(
+            text,
+            "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \
+             {}, only the other configuration would have in {}.\n\
+             The measurements are as recorded: the plant did not react to the other \
+             configuration, so differences may add up that it would have evened out.",
+            self.compared, self.only_recorded, self.only_other
+        );
+        text
+    }
+}
+
+impl QuantityDeviation {
+    fn take(&mut self, difference: f64, at_s: f64, compared: u64) {
+        let size = difference.abs();
+        if size > 0.0 {
+            self.differing += 1;
+        }
+        if size > self.largest.abs() {
+            self.largest = difference;
+            self.largest_at_s = Some(at_s);
+        }
+        self.sum_of_squares += difference * difference;
+        self.rms = (self.sum_of_squares / compared as f64).sqrt();
+        self.profile.push(size);
+    }
+}

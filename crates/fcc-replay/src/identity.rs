@@ -1,0 +1,181 @@
+//! Whether a replay gives the same outputs, bit for bit.
+
+use std::fmt::Write as _;
+
+use fcc_core::framework::schema::Schema;
+use fcc_core::framework::{Controller, Record};
+use fcc_telemetry::schema::Column;
+use serde::Serialize;
+
+use crate::outputs::{RecordValues, distance, outputs, words};
+
+/// Whether a replay gives the same outputs, bit for bit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Identity {
+    /// Outputs compared, of all ticks.
+    pub outputs: u64,
+    /// How many of them differ.
+    pub differing: u64,
+    /// The first that differs.
+    pub first: Option<Difference>,
+    /// The outputs that differ anywhere, each once.
+    pub fields: Vec<FieldDifference>,
+    #[serde(skip)]
+    began_ns: Option<i64>,
+    #[serde(skip)]
+    compared: Vec<(usize, Column)>,
+    #[serde(skip)]
+    flag_name: fn(u32) -> &'static str,
+    #[serde(skip)]
+    recorded: RecordValues,
+    #[serde(skip)]
+    again: RecordValues,
+}
+
+/// One output of one tick that differs.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize)]
+pub struct Difference {
+    /// The tick.
+    pub tick: u64,
+    /// Milliseconds since the first tick.
+    pub time_ms: i64,
+    /// The output, as the record calls it.
+    pub field: String,
+    /// What was recorded, in words for people.
+    pub recorded: String,
+    /// What it is in the replay.
+    pub again: String,
+    /// The recorded bits, hexadecimal.
+    pub recorded_bits: String,
+    /// The bits in the replay.
+    pub again_bits: String,
+}
+
+/// How one output differs over a recording.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct FieldDifference {
+    /// The output, as the record calls it.
+    pub field: String,
+    /// In how many ticks it differs.
+    pub differing: u64,
+    /// The first of them.
+    pub first_tick: u64,
+    /// The largest difference, in the unit of the record; none for what is no
+    /// number.
+    pub largest: Option<f64>,
+}
+
+impl Identity {
+    /// Nothing compared yet, of this controller's records.
+    pub fn of<C: Controller>() -> Self {
+        Self {
+            outputs: 0,
+            differing: 0,
+            first: None,
+            fields: Vec::new(),
+            began_ns: None,
+            compared: outputs::<C>(),
+            flag_name: C::flag_name,
+            recorded: RecordValues::default(),
+            again: RecordValues::default(),
+        }
+    }
+
+    /// Compares one tick as recorded and as replayed.
+    pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        again: &Record<M, E, S, O>,
+    ) {
+        let at_ns = recorded.tick.scheduled.as_nanos();
+        let began_ns = *self.began_ns.get_or_insert(at_ns);
+        self.recorded.take(recorded);
+        self.again.take(again);
+        for (index, output) in &self.compared {
+            let (Some(was), Some(is)) = (self.recorded.get(*index), self.again.get(*index)) else {
+                continue;
+            };
+            if was.bits() == is.bits() {
+                continue;
+            }
+            self.differing += 1;
+            if self.first.is_none() {
+                self.first = Some(Difference {
+                    tick: recorded.tick.number,
+                    time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
+                    field: output.path.clone(),
+                    recorded: words(output.kind, was, self.flag_name),
+                    again: words(output.kind, is, self.flag_name),
+                    recorded_bits: format!("{:#018x}", was.bits()),
+                    again_bits: format!("{:#018x}", is.bits()),
+                });
+            }
+            let distance = distance(was, is);
+            match self.fields.iter_mut().find(|f| f.field == output.path) {
+                Some(known) => {
+                    known.differing += 1;
+                    known.largest = known.largest.max_of(distance);
+                }
+                None => self.fields.push(FieldDifference {
+                    field: output.path.clone(),
+                    differing: 1,
+                    first_tick: recorded.tick.number,
+                    largest: distance,
+                }),
+            }
+        }
+        self.outputs += self.compared.len() as u64;
+    }
+
+    /// Whether nothing differs.
+    pub const fn is_identical(&self) -> bool {
+        self.differing == 0
+    }
+
+    /// For people.
+    pub fn to_text(&self) -> String {
+        let mut text = format!(
+            "{} outputs compared bit for bit: {} differ",
+            self.outputs, self.differing
+        );
+        if let Some(first) = &self.first {
+            let _ = write!(
+                text,
+                "\n\nfirst in tick {}, {:.3} s after the first tick: {}\n  \
+                 recorded     {}  {}\n  flown again  {}  {}\n",
+                first.tick,
+                first.time_ms as f64 * 1e-3,
+                first.field,
+                first.recorded_bits,
+                first.recorded,
+                first.again_bits,
+                first.again,
+            );
+        }
+        for field in &self.fields {
+            let _ = write!(
+                text,
+                "\n{:27} differs in {:7} ticks from {} on",
+                field.field, field.differing, field.first_tick
+            );
+            if let Some(largest) = field.largest {
+                let _ = write!(text, ", at most by {largest:e}");
+            }
+        }
+        text
+    }
+}
+
+/// The larger of two that may not be there.
+trait MaxOf {
+    fn max_of(self, other: Self) -> Self;
+}
+
+impl MaxOf for Option<f64> {
+    fn max_of(self, other: Self) -> Self {
+        match (self, other) {
+            (Some(one), Some(two)) => Some(one.max(two)),
+            (one, two) => one.or(two),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The outputs of a tick that are compared.
+
+use std::fmt::Write as _;
+
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Value};
+use fcc_core::framework::{Controller, Flags, RecordOf};
+use fcc_telemetry::schema::{Column, columns};
+
+/// What of a record the loop works out, causes before what they lead to, so
+/// that the first that differs is the most telling. The rest is what came into
+/// the loop, or how long things took.
+const OUTPUTS: [&str; 8] = [
+    "tick.dt_s",
+    "estimate",
+    "engage_inhibits",
+    "faults",
+    "state",
+    "setpoints",
+    "outputs",
+    "sent",
+];
+
+/// All outputs of a tick, each with its place among the values of a record.
+pub(super) fn outputs<C: Controller>() -> Vec<(usize, Column)> {
+    let found = OUTPUTS.into_iter().flat_map(columns_of::<C>);
+    found.collect()
+}
+
+/// The values of one part of a record, each with its place among all of them.
+pub(super) fn columns_of<C: Controller>(part: &str) -> Vec<(usize, Column)> {
+    let is_in = |path: &str| {
+        path.strip_prefix(part)
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    };
+    let all = columns::<RecordOf<C>>().into_iter().enumerate();
+    all.filter(|(_, column)| is_in(&column.path)).collect()
+}
+
+/// The values of a record, one after another; it keeps its memory from record
+/// to record.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RecordValues(Vec<Value>);
+
+impl RecordValues {
+    /// Replaces the values by those of another record.
+    pub(super) fn take(&mut self, record: &impl Schema) {
+        self.0.clear();
+        record.visit(self);
+    }
+
+    pub(super) fn get(&self, index: usize) -> Option<Value> {
+        self.0.get(index).copied()
+    }
+}
+
+impl Sink for RecordValues {
+    fn value(&mut self, _: &'static Field, value: Value) {
+        self.0.push(value);
+    }
+}
+
+/// How far two numbers are apart; none for what is no number.
+pub(super) fn distance(one: Value, other: Value) -> Option<f64> {
+    match (one, other) {
+        (Value::Number(one), Value::Number(two)) => {
+            Some((one - two).abs()).filter(|distance| distance.is_finite())
+        }
+        _ => None,
+    }
+}
+
+/// A value for people.
+pub(super) fn words(kind: Kind, value: Value, flag_name: fn(u32) -> &'static str) -> String {
+    match (kind, value) {
+        // As many digits as tell it from every other number.
+        (_, Value::Number(number)) => format!("{number:?}"),
+        (_, Value::Bool(truth)) => if truth { "yes" } else { "no" }.to_owned(),
+        (_, Value::Flags(0)) => "none".to_owned(),
+        (_, Value::Flags(bits)) => {
+            let mut text = String::new();
+            for bit in Flags::from_bits(bits).iter() {
+                let separator = if text.is_empty() { "" } else { ", " };
+                let _ = write!(text, "{separator}{}", flag_name(bit));
+            }
+            text
+        }
+        (Kind::Code(of), Value::Code(number)) => {
+            fcc_telemetry::schema::spaced(of.name_of(number).unwrap_or_default())
+        }
+        (_, value) => value.bits().to_string(),
+    }
+}

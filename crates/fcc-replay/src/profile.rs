@@ -1,0 +1,104 @@
+//! A value over a recording of unknown length, small enough for a
+//! line of a terminal.
+
+/// Columns of a line at most.
+const COLUMNS: usize = 48;
+
+/// Eighths of a cell, none to full.
+const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// The largest of a value in each of up to 48 equal spans of ticks. When the
+/// recording outgrows them, each two become one.
+#[derive(Clone, Debug)]
+pub(super) struct Profile {
+    /// Ticks that one span holds.
+    span: u64,
+    ticks: u64,
+    largest: Vec<f64>,
+}
+
+impl Default for Profile {
+    fn default() -> Self {
+        Self {
+            span: 1,
+            ticks: 0,
+            largest: Vec::with_capacity(COLUMNS),
+        }
+    }
+}
+
+impl Profile {
+    /// Takes the next tick's value, 0 or more.
+    pub(super) fn push(&mut self, value: f64) {
+        if self.ticks.is_multiple_of(self.span) {
+            if self.largest.len() == COLUMNS {
+                self.merge();
+            }
+            // After merging, the tick may still belong to the last span.
+            if self.ticks.is_multiple_of(self.span) {
+                self.largest.push(0.0);
+            }
+        }
+        if let Some(last) = self.largest.last_mut() {
+            *last = last.max(value);
+        }
+        self.ticks += 1;
+    }
+
+    fn merge(&mut self) {
+        self.largest = self
+            .largest
+            .chunks(2)
+            .map(|pair| pair.iter().copied().fold(0.0, f64::max))
+            .collect();
+        self.largest.reserve(COLUMNS);
+        self.span *= 2;
+    }
+
+    /// One character a span, the highest for the largest of all.
+    pub(super) fn line(&self) -> String {
+        let most = self.largest.iter().copied().fold(0.0, f64::max);
+        let full = (BARS.len() - 1) as f64;
+        let bar = |value: &f64| {
+            // What is there at all shows.
+            let eighths = if most > 0.0 {
+                (value / most * full).ceil() as usize
+            } else {
+                0
+            };
+            BARS.get(eighths).copied().unwrap_or('█')
+        };
+        self.largest.iter().map(bar).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peak_is_where_it_was_however_long_the_flight() {
+        for ticks in [48_u64, 100, 1_000, 123_456] {
+            let mut profile = Profile::default();
+            for tick in 0..ticks {
+                profile.push(if tick == ticks / 2 { 8.0 } else { 1.0 });
+            }
+            let line: Vec<char> = profile.line().chars().collect();
+            assert!((24..=48).contains(&line.len()), "{ticks}: {}", line.len());
+            let peaks: Vec<_> = (0..line.len()).filter(|n| line[*n] == '█').collect();
+            assert_eq!(peaks.len(), 1);
+            // 0.5 of the ticks, to a span; the spans may reach past the end.
+            let place = (peaks[0] as f64 + 0.5) * profile.span as f64 / ticks as f64;
+            assert!((place - 0.5).abs() <= 0.5 / 24.0 + 0.01, "{ticks}: {place}");
+            assert!(line.iter().all(|c| *c == '█' || *c == '▁'));
+        }
+    }
+
+    #[test]
+    fn nothing_is_an_empty_line() {
+        let mut profile = Profile::default();
+        assert_eq!(profile.line(), "");
+        profile.push(0.0);
+        assert_eq!(profile.line(), " ");
+    }
+}

@@ -1,0 +1,84 @@
+//! The outputs and set points that two configurations are compared in.
+
+use std::f64::consts::TAU;
+
+use fcc_core::blocks::wrap_pi;
+use fcc_core::framework::schema::{Kind, Value, unit};
+use fcc_telemetry::Telemetry;
+use fcc_telemetry::schema::Column;
+use fcc_telemetry::units::Shown;
+
+use crate::outputs::{RecordValues, columns_of};
+
+/// A number that a controller outputs or aims for.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// The name of its column in tables without the unit: `desired heading`.
+    pub name: String,
+    /// Its unit, for people.
+    pub unit: &'static str,
+    /// That many of the unit in one of the record's.
+    scale: f64,
+    /// Whether it is an angle that starts again after a full turn: 359° and 1°
+    /// are 2° apart.
+    wraps: bool,
+    /// Its place among the values of a record.
+    index: usize,
+}
+
+impl Quantity {
+    /// All of a controller, outputs first, by the schema of its record.
+    pub(crate) fn all<C: Telemetry>() -> Vec<Self> {
+        let parts = ["outputs", "setpoints"].into_iter();
+        let columns = parts.flat_map(columns_of::<C>);
+        columns
+            .filter(|(_, column)| is_number(column.kind))
+            .map(|(index, column)| Self::new(index, &column, C::UNITS))
+            .collect()
+    }
+
+    fn new(index: usize, column: &Column, units: &[Shown]) -> Self {
+        let shown = Shown::of(column, units);
+        let is_full_turn = |(low, high): (f64, f64)| (high - low - TAU).abs() < 1e-9;
+        Self {
+            name: unit::of(&column.name).quantity.replace('_', " "),
+            unit: shown.unit,
+            scale: shown.scale,
+            wraps: column.unit == "rad" && column.range.is_some_and(is_full_turn),
+            index,
+        }
+    }
+
+    /// Its value in a record, in [`unit`](Self::unit)s.
+    pub(crate) fn of(&self, record: &RecordValues) -> f64 {
+        self.number(record) * self.scale
+    }
+
+    /// The other value less the recorded one.
+    pub(crate) fn difference(&self, recorded: &RecordValues, other: &RecordValues) -> f64 {
+        let difference = self.number(other) - self.number(recorded);
+        let difference = if self.wraps {
+            wrap_pi(difference)
+        } else {
+            difference
+        };
+        difference * self.scale
+    }
+
+    fn number(&self, record: &RecordValues) -> f64 {
+        match record.get(self.index) {
+            Some(Value::Number(number)) => number,
+            Some(Value::Bool(truth)) => f64::from(u8::from(truth)),
+            Some(Value::Count(count)) => count as f64,
+            Some(Value::Signed(number)) => number as f64,
+            _ => f64::NAN,
+        }
+    }
+}
+
+const fn is_number(kind: Kind) -> bool {
+    match kind {
+        Kind::Number | Kind::Bool | Kind::Count(_) | Kind::Signed(_) => true,
+        Kind::Code(_) | Kind::Flags | Kind::Instant => false,
+    }
+}

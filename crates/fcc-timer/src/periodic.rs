@@ -1,0 +1,105 @@
+//! What the timers of the kernel have in common: all but the calls.
+
+use crate::deadlines::{Deadlines, Period};
+use crate::early::Alarm;
+use crate::{Expiry, TimerError};
+
+/// One of the kernel's ways to wake a thread periodically.
+pub(crate) trait Kernel: Alarm + Sized {
+    /// Makes what is needed, without an alarm.
+    fn new(period: Period) -> Result<Self, TimerError>;
+
+    /// Whether the calling thread is the one that is woken.
+    fn check_thread(&self) -> Result<(), TimerError> {
+        Ok(())
+    }
+
+    /// Waits for the next deadline and serves it.
+    fn wait(&mut self, deadlines: &mut Deadlines) -> Result<Expiry, TimerError>;
+}
+
+/// Declares a timer, its name, and the [`Kernel`] that it waits by.
+macro_rules! periodic {
+    ($(#[$doc:meta])* $timer:ident, $name:literal, $kernel:ty) => {
+        $(#[$doc])*
+        #[derive(Debug)]
+        pub struct $timer {
+            period: Period,
+            running: Option<(Deadlines, $kernel)>,
+            early: Option<Early>,
+        }
+
+        impl $timer {
+            pub(crate) const NAME: &str = $name;
+
+            /// Makes a timer, not yet started.
+            ///
+            /// # Errors
+            /// When the period is not between 10 µs and 1 hour.
+            pub fn new(period: Duration) -> Result<Self, TimerError> {
+                Ok(Self {
+                    period: Period::new(period)?,
+                    running: None,
+                    early: None,
+                })
+            }
+
+            /// Makes it wake early and spin until its deadlines.
+            ///
+            /// # Errors
+            /// When a value is out of its range.
+            pub fn waking_early(mut self, early: &EarlyWake) -> Result<Self, TimerError> {
+                self.early = Some(Early::new(early, self.period)?);
+                Ok(self)
+            }
+        }
+
+        impl Timer for $timer {
+            fn start(&mut self) -> Result<(), TimerError> {
+                // What an earlier start made is given back first.
+                self.running = None;
+                let mut kernel = <$kernel>::new(self.period)?;
+                let deadlines = Early::grid(self.early.as_mut(), self.period);
+                kernel.move_to(deadlines.alarm_ns())?;
+                self.running = Some((deadlines, kernel));
+                Ok(())
+            }
+
+            fn wait(&mut self) -> Result<Expiry, TimerError> {
+                let (deadlines, kernel) = self.running.as_mut().ok_or(TimerError::NotStarted)?;
+                kernel.check_thread()?;
+                match &mut self.early {
+                    Some(early) => early.wait(deadlines, kernel),
+                    None => kernel.wait(deadlines),
+                }
+            }
+
+            fn wait_or_warm_up(&mut self) -> Result<Wake, TimerError> {
+                match (&mut self.early, &mut self.running) {
+                    (Some(early), Some((deadlines, kernel))) => {
+                        kernel.check_thread()?;
+                        early.wait_or_warm_up(deadlines, kernel)
+                    }
+                    _ => self.wait().map(Wake::Deadline),
+                }
+            }
+
+            fn disable_early_wake(&mut self) {
+                self.early = None;
+            }
+
+            fn period(&self) -> Duration {
+                self.period.duration()
+            }
+
+            fn now_ns(&self) -> i64 {
+                monotonic_ns()
+            }
+
+            fn name(&self) -> &'static str {
+                Self::NAME
+            }
+        }
+    };
+}
+pub(crate) use periodic;
