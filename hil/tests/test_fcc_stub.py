@@ -1,4 +1,4 @@
-"""The stub of the module `fcc`: what it has, and what follows from the schema.
+"""The stub of the module `fcc`: what it declares, and what follows from the schema.
 
 `FCC_UPDATE=1 python -m pytest hil/tests/test_fcc_stub.py` writes the parts that follow from
 the schema anew.
@@ -71,7 +71,7 @@ def test_the_values_of_the_stub_are_those_of_the_schema() -> None:
     assert STUB.read_text() == declared, "see the head of this test"
 
 
-def test_the_stubs_say_what_the_module_has(tmp_path: Path) -> None:
+def test_the_stubs_match_the_module(tmp_path: Path) -> None:
     allowed = tmp_path / "allowed"
     # The binary beside the package, and the list of its names.
     allowed.write_text("fcc\\.fcc\nfcc\\.__all__\n")

@@ -1,4 +1,4 @@
-"""A flight watched from outside: by Python, by `fccd top`, and by many that are killed."""
+"""A flight watched by Python, by `fccd top`, and by many watchers that are killed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def fly(fccd: Path, scratch: Path, instance: str, config: str = "") -> DaemonUnd
 
 
 def watch(instance: str, daemon: DaemonUnderTest) -> fcc.Watcher:
-    """Watch as soon as there is something to watch."""
+    """Watch as soon as the daemon publishes."""
     daemon.wait_for("standby -> engaged")
     return fcc.Watcher(instance)
 
@@ -55,7 +55,7 @@ def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may become another user")
-def test_users_do_not_meet_in_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
+def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
     """Two daemons of one name, of two users: each is watched by its own."""
     uid = 65_534 - os.getpid() % 1_000
     with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
@@ -89,7 +89,7 @@ def test_users_do_not_meet_in_shared_memory(fccd: Path, tmp_path: Path, instance
 
         place = Path(f"/dev/shm/fccd-{uid}")
         assert (place.stat().st_uid, place.stat().st_mode & 0o777) == (uid, 0o700)
-        # What somebody else has put there is named, and the flight goes on.
+        # A foreign file is reported, and the flight continues.
         shutil.rmtree(place)
         place.mkdir()
         flown = as_user(*(str(program), "fly", "--seconds", "0.5", "--quiet"))
@@ -98,7 +98,7 @@ def test_users_do_not_meet_in_shared_memory(fccd: Path, tmp_path: Path, instance
         assert f"{place} belongs to user root and not to user #{uid}" in flown.stderr
 
 
-def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> None:
+def test_python_reads_the_flight(fccd: Path, tmp_path: Path, instance: str) -> None:
     records: list[np.void] = []
     with fly(fccd, tmp_path, instance) as daemon:
         watcher = watch(instance, daemon)
@@ -144,7 +144,7 @@ def test_python_reads_what_flies(fccd: Path, tmp_path: Path, instance: str) -> N
     assert [event["text"] for event in seen["events"]] == events
 
 
-def test_without_a_daemon_top_says_so(fccd: Path, instance: str) -> None:
+def test_without_a_daemon_top_reports_it(fccd: Path, instance: str) -> None:
     asked = snapshot(fccd, instance)
     assert asked.returncode == FAILURE
     assert f"no fccd named '{instance}' runs here: start one" in asked.stderr
@@ -168,10 +168,10 @@ def test_a_killed_daemon_leaves_its_name(fccd: Path, tmp_path: Path, instance: s
         first.end(signal.SIGKILL)
     with fly(fccd, tmp_path, instance) as second:
         assert watch(instance, second).info["process_id"] == second.pid
-        assert "no live telemetry" not in second.said
+        assert "no live telemetry" not in second.log
 
 
-def test_fifty_watchers_some_killed_cost_no_record(
+def test_fifty_watchers_some_killed_lose_no_record(
     fccd: Path, tmp_path: Path, instance: str
 ) -> None:
     came, at_once = 50, 10
@@ -196,7 +196,7 @@ def test_fifty_watchers_some_killed_cost_no_record(
     assert ending.exit_code == SUCCESS
     assert ending.report["records_dropped"] == 0
     assert ending.report["failsafes"] == 0
-    assert "live telemetry" not in ending.said
+    assert "live telemetry" not in ending.log
 
 
 def _end(process: subprocess.Popen[Any]) -> None:
