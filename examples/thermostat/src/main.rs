@@ -1,11 +1,11 @@
-//! The framework with no aircraft in it: a room, a heater and a PI controller
-//! under the same 40 Hz loop that flies an aircraft, timed and reported in the
-//! same way.
+//! The framework without an aircraft: a room, a heater and a PI controller
+//! under the same 40 Hz loop that flies an aircraft, with the same timing and
+//! report.
 //!
-//! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
-//! flights are, and `-- replay FILE` replays it, `-- report FILE` reports on it;
-//! a run with `-- --live` is watched by `-- top`.
+//! `cargo run -p thermostat` heats the room for eight seconds, each of which is
+//! 33 minutes in the room. With `-- --record DIR` the run is recorded, like a
+//! flight; `-- replay FILE` replays it, and `-- report FILE` reports on it. A
+//! run with `-- --live` can be watched with `-- top`.
 
 #[cfg(test)]
 mod conformance;
@@ -33,7 +33,7 @@ use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
 const SECONDS: u64 = 8;
-/// How often the loop's messages are received: a watcher sees them as late.
+/// How often the loop's messages are received: the greatest delay of a watcher.
 const LOOKS_A_SECOND: u32 = 20;
 
 /// Heats a simulated room for eight seconds.
@@ -96,7 +96,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Puts the parts together.
+/// Assembles the parts.
 fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     let thermometer = Thermometer {
         room_c: 12.0,
@@ -110,8 +110,8 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     }
 }
 
-/// Heats for a while, reports it once a second, and records it if there is a
-/// folder to record into. Output that cannot be written ends nothing.
+/// Heats for some seconds, reports each second, and records if there is a
+/// folder. Output that cannot be written does not end it.
 fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
@@ -135,7 +135,7 @@ fn heat(
     let (this, mut link) = Loop::new(parts, &config)?;
     let handle = this.spawn()?;
     for denied in &handle.granted().denied {
-        let _ = writeln!(out, "goes on without: {denied}");
+        let _ = writeln!(out, "continues without: {denied}");
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
@@ -227,9 +227,10 @@ mod tests {
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
     use thermostat::Heating;
 
-    /// After one time constant a first-order room has come 1 - 1/e of the way.
+    /// After one time constant a first-order room has covered 1 - 1/e of the
+    /// difference.
     #[test]
-    fn the_room_is_the_textbooks() {
+    fn the_room_has_the_textbooks_time_constant() {
         let mut heater = Heater::default();
         Actuator::apply(&mut heater, &Tick::default(), &Heating { power: 0.5 }).unwrap();
         let mut thermometer = Thermometer {
@@ -244,10 +245,10 @@ mod tests {
         assert!((thermometer.room_c - (OUTSIDE_C + 20.0 * 0.632_120_558_8)).abs() < 1e-6);
     }
 
-    /// In the end the heater gives what the walls lose at the wanted
-    /// temperature: (20 - 2)/0.02 = 900 W.
+    /// Finally the heater gives what the walls lose at the wanted temperature:
+    /// (20 - 2)/0.02 = 900 W.
     #[test]
-    fn the_room_gets_as_warm_as_it_was_told() {
+    fn the_room_reaches_the_set_point() {
         let heater = Heater::default();
         let timer = Box::new(ManualTimer::new(PERIOD).unwrap());
         let (mut machine, mut link) =
@@ -269,7 +270,7 @@ mod tests {
         assert!(heater.power() <= 0.0, "the heater is still on");
     }
 
-    /// And is recorded to the last tick, even where nothing can be printed.
+    /// It is recorded to the last tick, even if nothing can be printed.
     #[test]
     fn it_runs_on_a_real_clock() {
         let folder = tempfile::tempdir().unwrap();

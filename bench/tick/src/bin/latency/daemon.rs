@@ -1,4 +1,4 @@
-//! The daemon in a process of its own, and what it recorded.
+//! The daemon in a separate process, and its recording.
 
 use std::error::Error;
 use std::fs;
@@ -20,7 +20,7 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// What the loop of any plant records: ticks, stages, states.
 pub(crate) type LoopRecord = Record<(), (), (), ()>;
 
-/// The daemon at work.
+/// A running daemon.
 pub(crate) struct Daemon {
     process: Child,
     folder: TempDir,
@@ -36,7 +36,8 @@ impl Daemon {
         let folder = tempfile::tempdir()?;
         let config = folder.path().join("fccd.toml");
         let recordings = folder.path().join("recordings").display().to_string();
-        // The simulator's values stand still, which is no fault of sensors here.
+        // The simulator's values are constant; this must not count as frozen
+        // sensors.
         let text = format!(
             "[failsafe]\nsensor_frozen_s = 0.0\n\n[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
              [recording]\nfolder = \"{recordings}\"\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
@@ -54,7 +55,7 @@ mode = \"hold\"\n"
         Ok(Self { process, folder })
     }
 
-    /// Ends it and reads what it recorded; the simulator lives on meanwhile.
+    /// Ends it and reads its recording; the simulator continues meanwhile.
     pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<LoopRecord>, Box<dyn Error>> {
         kill(
             Pid::from_raw(self.process.id().cast_signed()),
@@ -96,7 +97,7 @@ mode = \"hold\"\n"
 
 impl Drop for Daemon {
     fn drop(&mut self) {
-        // Ended long ago, unless something went wrong.
+        // Already ended, unless an error occurred.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -1,7 +1,7 @@
-"""A way to the stand-in that lets requests through and drops everything that is written.
+"""A link to the stand-in that forwards requests and drops writes.
 
-What X-Plane 12 does with "Accept incoming connections" half set, or a firewall: its
-output flows, and nothing that is written to it arrives.
+As X-Plane 12 with "Accept incoming connections" partly enabled, or a firewall: it sends its data,
+and receives no writes.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ _LOOK_S = 0.1
 _WRITES = (b"DREF", b"DATA")
 
 
-class DeafSimulator:
-    """Stands between one daemon and a stand-in; a context manager."""
+class ReadOnlySimulator:
+    """Between a daemon and a stand-in; a context manager."""
 
     def __init__(self, simulator_port: int) -> None:
         self.dropped = 0
-        """Datagrams that would have written something."""
+        """The number of writes dropped."""
         self._daemon: tuple[str, int] | None = None
         self._outside = self._open()
         self._inside = self._open()
         self._inside.connect(("127.0.0.1", simulator_port))
         self._over = threading.Event()
-        self._thread = threading.Thread(target=self._forward, name="deaf-simulator")
+        self._thread = threading.Thread(target=self._forward, name="read-only-simulator")
 
     @property
     def port(self) -> int:
-        """Return the port that the daemon is to be told."""
+        """Return the port for the daemon."""
         port: int = self._outside.getsockname()[1]
         return port
 
-    def __enter__(self) -> DeafSimulator:
+    def __enter__(self) -> ReadOnlySimulator:
         self._thread.start()
         return self
 

@@ -1,4 +1,4 @@
-"""However the daemon ends, X-Plane has its controls back: asserted on X-Plane's side."""
+"""On every exit path X-Plane has its controls back, as seen by X-Plane."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_in_the_same_tick
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
 
-# What `fccd --help` says of them.
+# As in `fccd --help`.
 SUCCESS = 0
 FAILSAFE = 3
 PANICKED = 6
@@ -35,7 +35,7 @@ def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signa
     assert ending.report["ending"] == "interrupted by a signal"
     assert ending.report["released"] is True
     assert ending.report["failsafes"] == 0
-    assert "Accept incoming connections" not in ending.said
+    assert "Accept incoming connections" not in ending.log
     events = Flown.of(ending, tmp_path / "recordings").events
     heard = next(event for event in events if event.kind.WhichOneof("kind") == "stop_requested")
     assert (heard.time_ns - told_ns) * NS < AT_ONCE_S
@@ -56,9 +56,7 @@ def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Pa
     assert_in_the_same_tick(flown, len(flown.records) - 1, after_s=1.0)
 
 
-def test_a_command_that_is_no_number_never_leaves_the_daemon(
-    faulty_fccd: Path, tmp_path: Path
-) -> None:
+def test_an_output_that_is_not_a_number_is_never_sent(faulty_fccd: Path, tmp_path: Path) -> None:
     with flight(
         faulty_fccd,
         tmp_path,
@@ -70,7 +68,7 @@ def test_a_command_that_is_no_number_never_leaves_the_daemon(
         daemon.wait_for("failsafe -> standby")
         assert_released(simulator)
         ending = daemon.end(signal.SIGTERM)
-        # The stand-in refuses what is no number; nothing was to be refused.
+        # The stand-in refuses values that are not finite; there must be none.
         assert simulator.status()["last_refusals"] == []
         assert all(math.isfinite(write.value) for write in simulator.journal())
     assert ending.exit_code == FAILSAFE
@@ -89,13 +87,13 @@ def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
         assert_released(simulator)
         assert simulator.releases()[0].time_s - killed_at_s < AT_ONCE_S
         wait_until(
-            lambda: "fccd release-helper: the daemon has ended" in daemon.said,
+            lambda: "fccd release-helper: the daemon has ended" in daemon.log,
             "the helper's message",
         )
     assert ending.exit_code == -signal.SIGKILL
 
 
-def test_switching_off_releases_and_watches_on(fccd: Path, tmp_path: Path) -> None:
+def test_switching_off_releases_and_returns_to_standby(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.write(ENGAGE_SWITCH, 0.0)
@@ -111,7 +109,7 @@ def test_switching_off_releases_and_watches_on(fccd: Path, tmp_path: Path) -> No
     assert ending.exit_code == SUCCESS
 
 
-def test_switching_off_ends_the_program_where_that_is_wanted(fccd: Path, tmp_path: Path) -> None:
+def test_switching_off_ends_the_program_if_configured(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path, others='[engage]\nswitch_off = "stop"') as (simulator, daemon):
         engage(simulator, daemon)
         simulator.write(ENGAGE_SWITCH, 0.0)

@@ -1,8 +1,7 @@
-"""What watchers cost the loop: flights with and without them, in turn.
+"""The effect of watchers on the loop: flights with and without them, in turn.
 
-The daemon flies its built-in aircraft at 1 kHz. In every second flight programs
-that watch it come one after the other; half of them leave by themselves, half are
-killed with SIGKILL. What counts is the lateness of the loop.
+The daemon flies its built-in aircraft at 1 kHz. In every second flight programs watch it one after
+the other; half of them leave, half are killed with SIGKILL. The lateness of the loop is measured.
 """
 
 from __future__ import annotations
@@ -27,11 +26,11 @@ _SETTLE_S = 1.0
 
 @dataclass(frozen=True)
 class Load:
-    """How many watch, and for how long the daemon flies."""
+    """The number of watchers, and the duration of the daemon's flight."""
 
     fccd: Path
     watcher: Path
-    """The example `watch`: its words are the instance and how long to stay."""
+    """The example `watch`: its arguments are the instance and how long to stay."""
     rounds: int
     seconds: float
     watchers: int
@@ -71,7 +70,7 @@ def ratio(flights: list[Flight]) -> float:
 
 
 def fly(load: Load, watchers: int, number: int) -> Flight:
-    """Fly once; `watchers` come at an even pace and leave or are killed."""
+    """Fly once; `watchers` start at a constant rate and leave or are killed."""
     chance = random.Random(load.seed + number)
     instance = f"watched-{os.getpid()}"
     with tempfile.TemporaryDirectory() as scratch, Path(scratch, "report.json").open("w+") as out:
@@ -100,7 +99,7 @@ def fly(load: Load, watchers: int, number: int) -> Flight:
 def _watch(
     load: Load, watchers: int, instance: str, daemon: subprocess.Popen[Any], chance: random.Random
 ) -> None:
-    """Let watchers come and go until all have come and the daemon has ended."""
+    """Start and end watchers until all have run and the daemon has ended."""
     pace_s = (load.seconds - 2.0 * _SETTLE_S) / max(watchers, 1)
     began_s = time.monotonic()
     come = 0
@@ -109,7 +108,7 @@ def _watch(
         now_s = time.monotonic() - began_s
         if come < watchers and now_s >= come * pace_s:
             stays_s = chance.uniform(*_STAY_S)
-            # Every second one would stay for ever.
+            # Every second one would stay until the end.
             words: list[str | Path] = [
                 load.watcher,
                 instance,

@@ -1,4 +1,4 @@
-"""The limits of each aircraft, as a table of their own."""
+"""The limits of each aircraft."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ def _row(*figures: float) -> Limits:
 
 SMOOTH = MappingProxyType(
     {
-        # Of 40 flights on seeds 4101 to 4140, 39 keep every leg within 0.9 ft of altitude RMS.
-        # One leg of the 320 is at 0.92, in a flight that is among those flown here.
+        # Of 40 flights on seeds 4101 to 4140, 39 keep every leg within 0.9 ft of altitude RMS. One
+        # leg of the 320 has 0.92, in a flight that is one of those flown here.
         "c172p": _row(16.6, 0.5, 0.4, 10.5, 1.6, 0.95, 1.6, 2.5, 0.05),
         "c172x": _row(16.4, 0.5, 0.4, 10.5, 2.0, 1.4, 2.5, 5.0, 0.05),
         "c172r": _row(17.0, 0.5, 0.4, 10.6, 1.6, 0.9, 1.6, 8.0, 0.05),
@@ -47,7 +47,7 @@ ROUGH = MappingProxyType(
         "c172p": (_rough(0.15, 2.3), _rough(0.40, 5.0)),
         "c172x": (_rough(0.15, 2.3), _rough(0.40, 12.0)),
         "c172r": (_rough(0.35, 2.3), _rough(0.50, 4.0)),
-        # At 65 kt these gusts are beyond what it has the power to fly through level.
+        # At 65 kt it does not have the power to fly level in these gusts.
         "J3Cub": (_rough(0.40, 8.0), _rough(0.50, 120.0)),
         "OV10": (_rough(0.25, 5.0), _rough(0.50, 9.0)),
         "t6texan2": (_rough(0.25, 4.5), _rough(0.25, 7.0)),
@@ -60,4 +60,4 @@ ROUGH = MappingProxyType(
 """With noise and a delay of 25 ms in turbulence 3 and 4: over all legs."""
 
 TAKEN_OVER = MappingProxyType({"c172p": 1.0, "c172x": 2.0, "OV10": 1.0, "737": 2.0})
-"""After taking over in another state than trimmed flight: altitude RMS, ft."""
+"""After engaging in another state than trimmed flight: altitude RMS, ft."""

@@ -1,7 +1,7 @@
-"""In what state of flight the autopilot takes over.
+"""The state of flight in which the autopilot engages.
 
-Whoever flew before is played by an autopilot of its own, which sees the truth; what
-takes over watches its sensors meanwhile, as the daemon does in standby.
+A separate autopilot, which knows the true state, flies before; the one under test observes its
+sensors meanwhile, as the daemon does in standby.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .truth import STEPS_PER_ROW, TRUTH_HZ
 from .units import FT_TO_M, KT_TO_MPS
 
 SETTLING_S = 5.0
-"""Sensors are watched for so long before engaging, as the daemon does in standby."""
+"""Sensors are observed for this time before engaging, as by the daemon in standby."""
 
 _TURN_RAD = 3.0
 _CLIMB_FT = 2_000.0
@@ -26,66 +26,66 @@ _ENGINE_OFF_S = 3.0
 _BOTH_MAGNETOS = 3
 
 
-class Beginning(Enum):
-    """What the aircraft is doing when the autopilot takes over."""
+class InitialState(Enum):
+    """The state of the aircraft when the autopilot engages."""
 
     TRIMMED = "trimmed"
     """Straight and level, as trimmed."""
     IN_A_TURN = "in a turn"
-    """At the bank limit, the turn unfinished."""
+    """At the bank limit, with the turn unfinished."""
     IN_A_CLIMB = "in a climb"
     ABOVE_TRIM = "above trim"
-    """12 % faster than the trim is for, the elevator held."""
+    """12 % above the trimmed speed, elevator fixed."""
     BELOW_TRIM = "below trim"
-    """The same, slower."""
+    """The same, below the trimmed speed."""
     AT_IDLE = "at idle"
-    """The throttle was closed 4 s before."""
+    """The throttle was closed 4 s earlier."""
     AT_FULL_THROTTLE = "at full throttle"
-    """It was opened 4 s before."""
+    """The throttle was opened 4 s earlier."""
     ENGINE_RESTARTED = "engine restarted"
-    """The magnetos were off for 3 s; the starter is just let go."""
+    """The magnetos were off for 3 s; the starter has just been released."""
 
 
 @dataclass(frozen=True)
 class _Way:
-    """How to fly there."""
+    """How to fly to that state."""
 
     seconds: float
     turn_rad: float = 0.0
     climb_ft: float = 0.0
     airspeed_ratio: float = 1.0
     throttle: float | None = None
-    """Held at this in the last 4 s."""
+    """Fixed at this value in the last 4 s."""
     restart: bool = False
 
 
 _WAYS = {
-    Beginning.IN_A_TURN: _Way(6.0, turn_rad=_TURN_RAD),
-    Beginning.IN_A_CLIMB: _Way(6.0, climb_ft=_CLIMB_FT),
-    Beginning.ABOVE_TRIM: _Way(20.0, airspeed_ratio=1.12),
-    Beginning.BELOW_TRIM: _Way(20.0, airspeed_ratio=0.88),
-    Beginning.AT_IDLE: _Way(6.0, throttle=0.0),
-    Beginning.AT_FULL_THROTTLE: _Way(6.0, throttle=1.0),
-    Beginning.ENGINE_RESTARTED: _Way(8.0, restart=True),
+    InitialState.IN_A_TURN: _Way(6.0, turn_rad=_TURN_RAD),
+    InitialState.IN_A_CLIMB: _Way(6.0, climb_ft=_CLIMB_FT),
+    InitialState.ABOVE_TRIM: _Way(20.0, airspeed_ratio=1.12),
+    InitialState.BELOW_TRIM: _Way(20.0, airspeed_ratio=0.88),
+    InitialState.AT_IDLE: _Way(6.0, throttle=0.0),
+    InitialState.AT_FULL_THROTTLE: _Way(6.0, throttle=1.0),
+    InitialState.ENGINE_RESTARTED: _Way(8.0, restart=True),
 }
 _THROTTLE_HELD_S = 4.0
 
 Watch = Callable[[State], object]
-"""Is shown every state on the way."""
+"""Called with every state."""
 
 
 def begin(
     plant: Plant,
-    how: Beginning,
+    how: InitialState,
     config: str,
     see: Callable[[State], fcc.Measurements],
     watch: Watch,
 ) -> Controls:
-    """Fly the plant into a state; returns where the controls stand then.
+    """Fly the plant to a state; return the positions of the controls then.
 
-    `see` makes the former pilot's measurements of a state, `watch` is shown each state.
+    `see` makes the first autopilot's measurements of a state; `watch` is called with each state.
     """
-    if how is Beginning.TRIMMED:
+    if how is InitialState.TRIMMED:
         for _ in range(round(SETTLING_S * TRUTH_HZ)):
             watch(plant.state())
             plant.step(STEPS_PER_ROW)
@@ -132,7 +132,7 @@ def _fly(
 
 
 def _restart(plant: Plant, left_s: float) -> None:
-    """Switch the magnetos off, then start again with the starter, done as time runs out."""
+    """Switch the magnetos off, then restart the engine with the starter until the time is up."""
     off = _ENGINE_OFF_S < left_s <= 2.0 * _ENGINE_OFF_S
     plant.fdm["propulsion/magneto_cmd"] = 0 if off else _BOTH_MAGNETOS
     plant.fdm["propulsion/starter_cmd"] = 1 if 0.0 < left_s <= _ENGINE_OFF_S else 0
