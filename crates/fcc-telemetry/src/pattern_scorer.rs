@@ -94,13 +94,16 @@ mod tests {
 
     const DT_S: f64 = 0.025;
 
+    /// How long is flown, in which state, and what is changed in the progress.
+    type Part = (f64, State, fn(&mut Progress));
+
     /// Flies without an error for so many seconds, with the progress of
     /// guidance changed by `change`; the number of complete legs, 20 s each
     /// after 20 s.
-    fn legs(flights: &[(f64, State, fn(&mut Progress))]) -> usize {
+    fn legs(flight: &[Part]) -> usize {
         let mut scorer = PatternScorer::new(TimedPatternConfig::default());
         let mut tick = 0_u32;
-        for (seconds, state, change) in flights {
+        for (seconds, state, change) in flight {
             for n in 1..=(seconds / DT_S).round() as u32 {
                 tick += 1;
                 let mut progress = Progress {
