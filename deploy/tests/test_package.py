@@ -168,6 +168,7 @@ def test_the_configuration_belongs_to_whoever_changed_it(
         "usr/share/bash-completion/completions/fccd",
         "usr/share/doc/fccd/copyright",
         "usr/share/doc/fccd/deploy.md",
+        "usr/share/doc/fccd/guides/add-a-sensor.md",
         "usr/lib/sysusers.d/fccd.conf",
     ],
 )
