@@ -62,7 +62,7 @@ test-rust: $(STAMPS)/rust
 	cargo test --locked --workspace --exclude fcc-py --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon --no-default-features
-	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay thermostat; do \
+	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat; do \
 	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 

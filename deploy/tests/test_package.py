@@ -1,6 +1,6 @@
-"""The Debian package from outside: what it brings, and what its scripts leave alone.
+"""The Debian package: its content, and the effect of its scripts.
 
-`make test-deb` builds it and gives its path in DEB; one for a board too, with DEB_TARGET.
+`make test-deb` builds it and sets DEB to its path; for a board with DEB_TARGET.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import pytest
 
 # Of the ELF header: 1 for 32 bits and 2 for 64, and e_machine (elf(5)).
 MACHINES = {"amd64": (2, 62), "arm64": (2, 183), "armhf": (1, 40)}
-# Runs the program of a board here, on the libraries of Debian's cross compilers.
+# Runs a board's program here, with the libraries of Debian's cross compilers.
 RUNNERS = {
     "arm64": ["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
     "armhf": ["qemu-arm", "-L", "/usr/arm-linux-gnueabihf"],
@@ -31,7 +31,7 @@ def package() -> Path:
 
 @pytest.fixture(scope="session")
 def control(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the folder of the package's own files."""
+    """Return the folder of the package's control files."""
     folder = tmp_path_factory.mktemp("control")
     subprocess.run(["dpkg-deb", "--control", package, folder], check=True)
     return folder
@@ -47,7 +47,7 @@ def files(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def architecture(package: Path) -> str:
-    """Return what it is for, in Debian's words."""
+    """Return its architecture, in Debian's terms."""
     command = ["dpkg-deb", "--field", package, "Architecture"]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
@@ -92,10 +92,8 @@ def test_the_symbols_are_a_package_of_their_own(
     assert f"Build ID: {debug.parent.name}{debug.stem}" in notes
 
 
-def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
-    control: Path, tmp_path: Path
-) -> None:
-    """The scripts run as dpkg runs them, where all that they may call is noted and does nothing."""
+def test_an_upgrade_neither_starts_nor_stops_the_service(control: Path, tmp_path: Path) -> None:
+    """The scripts run as dpkg runs them, with stubs that record calls and do nothing."""
     called = tmp_path / "called"
     tools = tmp_path / "bin"
     tools.mkdir()
@@ -128,7 +126,7 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
         script = control / name
         if not script.exists():
             continue
-        # The check for a running systemd is the only thing that is changed.
+        # Only the check for a running systemd is changed.
         text = script.read_text().replace("-d /run/systemd/system", "-d /")
         copy = tmp_path / name
         copy.write_text(text)
@@ -146,9 +144,7 @@ def test_what_flies_is_neither_started_nor_stopped_by_an_upgrade(
     assert meddled == []
 
 
-def test_the_configuration_belongs_to_whoever_changed_it(
-    architecture: str, control: Path, files: Path
-) -> None:
+def test_a_changed_configuration_is_kept(architecture: str, control: Path, files: Path) -> None:
     assert "/etc/fccd/fccd.toml" in (control / "conffiles").read_text().split()
     here = subprocess.run(
         ["dpkg", "--print-architecture"], capture_output=True, text=True, check=True
@@ -172,7 +168,7 @@ def test_the_configuration_belongs_to_whoever_changed_it(
         "usr/lib/sysusers.d/fccd.conf",
     ],
 )
-def test_what_belongs_to_it_is_there(files: Path, path: str) -> None:
+def test_the_package_contains(files: Path, path: str) -> None:
     assert any((files / place).is_file() for place in path.split("|"))
 
 
@@ -182,7 +178,7 @@ def test_its_manual_can_be_read(files: Path) -> None:
     assert "--config" in text.replace("\\", "")
 
 
-def test_it_asks_for_a_c_library_that_is_new_enough(control: Path, files: Path) -> None:
+def test_it_requires_a_new_enough_c_library(control: Path, files: Path) -> None:
     asked = re.search(r"libc6 \(>= ([\d.]+)\)", (control / "control").read_text())
     assert asked is not None
     program = (files / "usr/bin/fccd").read_bytes()

@@ -1,4 +1,4 @@
-"""Commands in the guest, by qemu's own guest agent over a virtio serial port.
+"""Runs commands in the guest through qemu's guest agent on a virtio serial port.
 
 The agent needs no network, no login and no clock that is right. Its protocol is one JSON
 object a line (QEMU, "QEMU Guest Agent Protocol Reference").
@@ -21,7 +21,7 @@ _CHUNK = 1 << 20
 
 
 class AgentError(RuntimeError):
-    """The agent refused something, or does not answer."""
+    """The agent refused a command, or does not answer."""
 
 
 @dataclass(frozen=True)
@@ -36,10 +36,10 @@ class Done:
 
 
 class Agent:
-    """The agent's end of a connection; a context manager that closes it."""
+    """A connection to the agent; a context manager that closes it."""
 
     def __init__(self, path: Path) -> None:
-        """Connect to qemu's end of the port, which is there before the guest is."""
+        """Connect to qemu's end of the port, which exists before the guest runs."""
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.connect(str(path))
         self._heard = b""
@@ -51,8 +51,8 @@ class Agent:
         self._socket.close()
 
     def answers(self, within_s: float) -> bool:
-        """Whether the agent is there yet."""
-        # What was asked before it was there may be answered late, and more than once.
+        """Return whether the agent answers yet."""
+        # Requests sent before it ran may be answered late, and more than once.
         number = time.monotonic_ns()
         try:
             self._send("guest-sync", {"id": number})
@@ -66,7 +66,7 @@ class Agent:
 
     def run(self, words: Sequence[str], within_s: float) -> Done:
         """Run a program and wait for its end. Raises AgentError if that takes too long."""
-        said = " ".join(words)
+        log = " ".join(words)
         asked = {"path": words[0], "arg": list(words[1:]), "capture-output": True}
         number = self._ask("guest-exec", asked)["pid"]
         give_up_s = time.monotonic() + within_s
@@ -74,13 +74,13 @@ class Agent:
             status = self._ask("guest-exec-status", {"pid": number})
             if status["exited"]:
                 return Done(
-                    said,
+                    log,
                     status["exitcode"] if "exitcode" in status else -status["signal"],
                     _text(status.get("out-data", "")),
                     _text(status.get("err-data", "")),
                 )
             if time.monotonic() > give_up_s:
-                raise AgentError(f"not done within {within_s:.0f} s: {said}")
+                raise AgentError(f"not done within {within_s:.0f} s: {log}")
             time.sleep(_LOOK_S)
 
     def write(self, path: str, content: bytes) -> None:
@@ -92,7 +92,7 @@ class Agent:
         self._ask("guest-file-close", {"handle": handle})
 
     def read(self, path: str) -> bytes:
-        """Return what is in a file of the guest."""
+        """Return the content of a file of the guest."""
         handle = self._ask("guest-file-open", {"path": path, "mode": "r"})
         content = b""
         while True:

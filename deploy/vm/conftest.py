@@ -1,4 +1,4 @@
-"""A booted guest for each module, and the package that `make test-vm` made."""
+"""A booted guest for each module, and the package built by `make test-vm`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_terminal_summary(
     terminalreporter: pytest.TerminalReporter, config: pytest.Config
 ) -> None:
-    """Print what was measured: it is not asserted, for machines differ."""
+    """Print the measured times, which are not asserted, because machines differ."""
     terminalreporter.section("measured")
     for line in config.stash[FIGURES]:
         terminalreporter.line(line)

@@ -1,10 +1,9 @@
-"""A small Debian in qemu, booted for a few tests: its systemd and kernel are real ones.
+"""A small Debian in qemu, booted for a few tests, with its own systemd and kernel.
 
     with Guest(Path("target/vm"), scratch) as guest:
         guest.sh("systemctl is-system-running --wait")
 
-Nothing is left of what happened in it: the disk is written to a copy that goes with it.
-The host's loopback is at 10.0.2.2 there.
+Changes are discarded: the disk is a temporary copy. The host's loopback is 10.0.2.2 there.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ HOST = "10.0.2.2"
 """This machine, as the guest sees it."""
 
 INSTALL_S = 300.0
-"""How long a package may take."""
+"""Longest duration of an installation."""
 
 # An emulated machine on a busy one takes minutes.
 _BOOT_S = 300.0
@@ -37,7 +36,7 @@ class Guest:
     """A running machine; a context manager that ends it, without a shutdown."""
 
     def __init__(self, image: Path, scratch: Path) -> None:
-        """Boot, and wait until systemd has started all that it starts."""
+        """Boot, and wait until systemd has started everything."""
         self._console = scratch / "console"
         with contextlib.ExitStack() as undo:
             # A socket's path has to be short, which pytest's folders are not.
@@ -79,7 +78,7 @@ class Guest:
             raise AgentError(f"{error}\n{self._last_words()}") from error
 
     def sh(self, script: str, within_s: float = _COMMAND_S) -> str:
-        """Run a line of shell as root that has to end well; return what it printed."""
+        """Run a line of shell as root that must succeed; return its output."""
         done = self.try_sh(script, within_s)
         assert done.exit_code == 0, f"{script}: exit code {done.exit_code}\n{done.out}{done.err}"
         return done.out
@@ -106,10 +105,9 @@ class Guest:
 
 
 def accelerator() -> str:
-    """Return `kvm` where the processor runs guests, and else `tcg`: emulated, much slower.
+    """Return `kvm` if the processor can run guests, otherwise `tcg`: emulated, much slower.
 
-    A kernel without either vendor's module may have /dev/kvm all the same, and run
-    guests only that were built for it.
+    A kernel without either vendor's module may have /dev/kvm, and run only guests built for it.
     """
     hardware = any(Path(f"/sys/module/{name}").exists() for name in ("kvm_intel", "kvm_amd"))
     return "kvm" if hardware and os.access("/dev/kvm", os.R_OK | os.W_OK) else "tcg"

@@ -4,8 +4,8 @@
         service.engage(simulator)
         guest.sh("systemctl restart fccd")
 
-What is known of it comes from the guest's systemd, its journal, its kernel and the
-recordings. Everything waits for what it needs, for an emulated machine is slow.
+Its state is read from the guest's systemd, journal, kernel and recordings. All waits have long
+limits, because an emulated machine is slow.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ ENGAGED = 1
 PATIENCE_S = 180.0
 _LOOK_S = 0.1
 
-# A guest whose host is busy stands still at times. That a loop or a reading that is late
-# is seen, is not what is asked here.
+# A guest on a busy host pauses at times. These limits keep that from causing failsafes, which are
+# not tested here.
 UNHURRIED: Mapping[str, Mapping[str, object]] = {
     "budget": {"failsafe_after": 0},
     "failsafe": {"sensor_max_age_ms": 2_000},
@@ -48,10 +48,10 @@ class Service:
     """`fccd.service` of a guest."""
 
     def __init__(self, guest: Guest) -> None:
-        """Know it from now on: the journal is read from here."""
+        """Read the journal from now on."""
         self.guest = guest
-        told = guest.sh("journalctl --lines 1 --quiet --output json")
-        self._cursor = json.loads(told)["__CURSOR"]
+        output = guest.sh("journalctl --lines 1 --quiet --output json")
+        self._cursor = json.loads(output)["__CURSOR"]
 
     def show(self, name: str) -> str:
         """Return one of its properties."""
@@ -59,7 +59,7 @@ class Service:
 
     @property
     def status(self) -> str:
-        """What it has told systemd of itself."""
+        """Return its status in systemd."""
         return self.show("StatusText")
 
     @property
@@ -67,14 +67,14 @@ class Service:
         return int(self.show("MainPID"))
 
     def journal(self) -> list[dict[str, Any]]:
-        """Return what systemd and the daemon wrote since this was made."""
+        """Return the journal of systemd and the daemon since this was created."""
         lines = self.guest.sh(
             f"journalctl --unit fccd --output json --after-cursor '{self._cursor}'"
         )
         return [json.loads(line) for line in lines.splitlines()]
 
     def configure(self, sections: Mapping[str, Mapping[str, object]]) -> None:
-        """Change values in its configuration, as somebody with an editor would."""
+        """Change values in its configuration, as with an editor."""
         document = tomlkit.parse(self.guest.agent.read(CONFIG).decode())
         for section, values in sections.items():
             if section not in document:
@@ -95,7 +95,7 @@ class Service:
         self.wait_until(lambda: re.match(expression, self.status) is not None, expression)
 
     def engage(self, simulator: StandInProcess) -> None:
-        """Move the switch inside the simulator, and wait until systemd knows."""
+        """Move the switch inside the simulator, and wait for the status in systemd."""
         self.wait_for_status("standby$")
         simulator.write(ENGAGE_SWITCH, 1.0)
         self.wait_for_status("engaged$")
@@ -132,7 +132,7 @@ class Service:
 def flight(
     guest: Guest, sections: Mapping[str, Mapping[str, object]] | None = None
 ) -> Iterator[tuple[StandInProcess, Service]]:
-    """Start a stand-in here and the service there; end both, and leave nothing of it."""
+    """Start a stand-in here and the service there; end both, and remove all files."""
     # East, where a heading and another one beside it are nearly the same number.
     with StandInProcess(Settings(port=0, heading_deg=90.0)) as simulator:
         service = Service(guest)

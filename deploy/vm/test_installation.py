@@ -1,4 +1,4 @@
-"""What installing the package does to a machine, and what it leaves alone."""
+"""The effects of installing the package."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ MACHINE_LACKS = 10
 
 
 def test_nothing_is_started(guest: Guest) -> None:
-    """Asked of systemd, and of the kernel: nobody runs the program."""
+    """According to systemd and to the kernel, the program does not run."""
     assert guest.try_sh("systemctl is-active fccd").out.strip() == "inactive"
     assert guest.try_sh("systemctl is-enabled fccd").out.strip() == "disabled"
     never = "0"
-    told = guest.sh("systemctl show --property ActiveEnterTimestampMonotonic --value fccd")
-    assert told.strip() == never
+    output = guest.sh("systemctl show --property ActiveEnterTimestampMonotonic --value fccd")
+    assert output.strip() == never
     assert "fccd" not in guest.sh("cat /proc/[0-9]*/comm").split()
     assert guest.sh("systemctl list-units --failed --plain --no-legend") == ""
 
@@ -37,11 +37,11 @@ def test_nothing_is_started(guest: Guest) -> None:
         ("/dev/cpu_dma_latency", "root:fccd 660"),
     ],
 )
-def test_it_belongs_to_whom_it_should(guest: Guest, path: str, owner_and_mode: str) -> None:
+def test_owner_and_mode(guest: Guest, path: str, owner_and_mode: str) -> None:
     assert guest.sh(f"stat --format '%U:%G %a' {path}").strip() == owner_and_mode
 
 
-def test_who_flies_is_a_user_that_cannot_log_in(guest: Guest) -> None:
+def test_the_user_cannot_log_in(guest: Guest) -> None:
     name, _, uid, _, _, home, shell = guest.sh("getent passwd fccd").strip().split(":")
     assert (name, home) == ("fccd", "/var/lib/fccd")
     assert shell.endswith("/nologin")
@@ -68,12 +68,12 @@ def test_dpkg_finds_every_file_as_it_was_packed(guest: Guest) -> None:
 @pytest.mark.parametrize("who", ["root", "fccd"])
 def test_the_doctor_knows_the_machine(guest: Guest, who: str) -> None:
     done = guest.try_sh(f"sudo -u {who} fccd doctor --json")
-    told = json.loads(done.out)
-    findings = {finding["id"]: finding for finding in told["findings"]}
-    lacking = [finding for finding in told["findings"] if finding["grade"] == "lacks"]
+    output = json.loads(done.out)
+    findings = {finding["id"]: finding for finding in output["findings"]}
+    lacking = [finding for finding in output["findings"] if finding["grade"] == "lacks"]
     assert done.exit_code == (MACHINE_LACKS if lacking else 0)
     assert guest.try_sh(f"sudo -u {who} fccd doctor").exit_code == done.exit_code
-    assert guest.sh("uname --kernel-release").strip() in told["kernel"]
+    assert guest.sh("uname --kernel-release").strip() in output["kernel"]
     clock = "/sys/devices/system/clocksource/clocksource0/current_clocksource"
     assert guest.sh(f"cat {clock}").strip() in findings["clock_source"]["found"]
     # Only the unit gives these to who is not root.

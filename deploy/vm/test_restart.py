@@ -1,4 +1,4 @@
-"""What systemd does when the daemon hangs, is killed, or refuses to run."""
+"""What systemd does when the daemon hangs, is killed, or cannot start."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ UNIT_STARTED = "39f53479d3a045ac8e11786248231fbf"
 # Nominally less than one; an emulated machine takes two, and nine on a busy host.
 RESTART_S = 60.0
 
-# The same goes for how old a flight may be that is recovered, 10 s unless configured.
+# The same applies to the age of a flight to recover, 10 s by default.
 WARM = {"restart": {"mode": "warm", "max_age_s": 300.0}}
-# An altitude that was captured becomes surer for some seconds; what is kept is
-# a second old at most, and never further away than this.
+# The estimate of a captured altitude improves for some seconds; the stored one is at most a second
+# old and differs by less than this.
 KEPT_WITHIN_M = 0.3
 COLD = {"restart": {"mode": "cold"}}
 
@@ -67,9 +67,7 @@ def _assert_restarted_soon(service: Service, figures: list[str], what: str) -> N
     assert ended_s < scheduled_s <= starting_s < started_s < ended_s + RESTART_S
 
 
-def test_a_flight_that_was_killed_is_taken_up(
-    guest: Guest, tmp_path: Path, figures: list[str]
-) -> None:
+def test_a_killed_flight_is_recovered(guest: Guest, tmp_path: Path, figures: list[str]) -> None:
     with flight(guest, WARM) as (simulator, service):
         service.engage(simulator)
         # It is kept each second.
@@ -89,7 +87,7 @@ def test_a_flight_that_was_killed_is_taken_up(
     engaged = [record for record in taken_up if record.state.phase == ENGAGED]
     before_s = (engaged[0].woke_ns - taken_up[0].woke_ns) * 1e-9
     figures.append(f"killed: flight recovered {before_s:.2f} s after the new loop's first tick")
-    # It engages as it always does, and is told in the next tick what was flown.
+    # It engages as always, and gets the stored state in the next tick.
     last = killed[-1].setpoints
     for record in engaged[1:]:
         aims = record.setpoints
@@ -98,7 +96,7 @@ def test_a_flight_that_was_killed_is_taken_up(
         assert aims.altitude_m == pytest.approx(last.altitude_m, abs=KEPT_WITHIN_M)
 
 
-def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
+def test_after_a_killed_flight_it_stays_in_standby_if_configured(
     guest: Guest, tmp_path: Path
 ) -> None:
     with flight(guest, COLD) as (simulator, service):
@@ -116,7 +114,7 @@ def test_a_flight_that_was_killed_is_stood_by_after_if_that_is_wished(
     assert all(record.state.phase != ENGAGED for record in after)
 
 
-def test_who_gives_no_sign_of_life_is_ended_and_started_again(
+def test_a_daemon_without_watchdog_notifications_is_restarted(
     guest: Guest, figures: list[str]
 ) -> None:
     with flight(guest, COLD) as (simulator, service):
@@ -132,7 +130,7 @@ def test_who_gives_no_sign_of_life_is_ended_and_started_again(
         assert int(ended[-1]["EXIT_STATUS"]) == signal.SIGABRT
         _assert_restarted_soon(service, figures, "stopped, and ended by the watchdog")
         service.wait_until(lambda: not simulator.progress().overridden, "the helper releases")
-        # And it flies again, when somebody wants it to.
+        # It flies again after the switch goes on.
         service.engage_again(simulator)
 
 
@@ -151,7 +149,7 @@ def _no_right_to_real_time(guest: Guest) -> None:
     ("spoil", "exit_code"),
     [(_wrong_configuration, USAGE), (_no_right_to_real_time, REALTIME_REFUSED)],
 )
-def test_what_would_fail_again_is_not_tried_again(
+def test_a_start_that_would_fail_again_is_not_repeated(
     guest: Guest, spoil: Callable[[Guest], None], exit_code: int
 ) -> None:
     with flight(guest, {"realtime": {"strict": True}}) as (_, service):
@@ -168,7 +166,7 @@ def test_what_would_fail_again_is_not_tried_again(
             guest.sh(f"rm -rf {DROP_IN}; systemctl daemon-reload")
 
 
-def test_what_may_go_better_is_tried_again_for_ever(guest: Guest) -> None:
+def test_other_failures_are_restarted_without_limit(guest: Guest) -> None:
     """More often than systemd's own limit, which is five times in ten seconds."""
     with flight(guest) as (_, service):
         for _ in range(7):

@@ -1,4 +1,4 @@
-"""A flight by the unit, and what systemd and the kernel say while it goes on."""
+"""A flight of the service, and its state in systemd and the kernel."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Flying = tuple[StandInProcess, Service]
 def flying(guest: Guest) -> Iterator[Flying]:
     """Fly, from `systemctl enable --now` on, all tests of this module."""
     with flight(guest, AWAKE) as (simulator, service):
-        # It comes back when it is ready, and not before.
+        # It returns when the service is ready, and not before.
         assert service.status.startswith("standby")
         service.engage(simulator)
         yield simulator, service
@@ -41,7 +41,7 @@ def _status(service: Service, pid: int) -> dict[str, list[str]]:
     return {name: value.split() for name, _, value in (line.partition(":") for line in lines)}
 
 
-def test_systemd_knows_that_it_runs_and_how(flying: Flying) -> None:
+def test_systemd_has_its_state_and_status(flying: Flying) -> None:
     _, service = flying
     assert service.show("Type") == "notify"
     assert (service.show("ActiveState"), service.show("SubState")) == ("active", "running")
@@ -66,7 +66,7 @@ def test_the_loop_and_its_watchdog_are_real_time_threads_and_nothing_else(flying
     assert granted["fcc-watchdog"] == (SCHED_FIFO, WATCHDOG_PRIORITY)
 
 
-def test_it_may_do_nothing_but_fly(flying: Flying) -> None:
+def test_its_rights_are_limited(flying: Flying) -> None:
     """Of the daemon and of its release helper."""
     _, service = flying
     uid = service.guest.sh("id --user fccd").strip()
@@ -103,26 +103,26 @@ def test_its_folders_are_its_own(flying: Flying) -> None:
     for folder in ("/var/lib/fccd", "/var/lib/fccd/recordings", "/run/fccd"):
         owner = service.guest.sh(f"stat --format '%U:%G' {folder}").strip()
         assert owner == "fccd:fccd", folder
-    # What was flown is nobody else's business.
+    # Other users must not read recordings.
     modes = service.guest.sh("stat --format %a /var/lib/fccd/recordings/*.mcap").split()
     assert modes == ["640"]
 
 
-def test_nothing_was_refused(flying: Flying) -> None:
+def test_nothing_was_denied(flying: Flying) -> None:
     _, service = flying
-    said = [str(entry["MESSAGE"]) for entry in service.journal()]
-    assert any("recording to" in line for line in said)
+    log = [str(entry["MESSAGE"]) for entry in service.journal()]
+    assert any("recording to" in line for line in log)
     refused = re.compile("refused|not granted|denied|not permitted|EPERM|EACCES|failed", re.I)
-    assert [line for line in said if refused.search(line)] == []
-    # Nor has the kernel ended or noted anything for a system call.
+    assert [line for line in log if refused.search(line)] == []
+    # The kernel has not ended or logged anything because of a system call.
     assert "seccomp" not in service.guest.sh("dmesg")
 
 
 def test_little_is_exposed_and_nothing_is_wrong(flying: Flying) -> None:
     _, service = flying
-    told = service.guest.sh("systemd-analyze security --no-pager fccd")
-    found = re.search(r"Overall exposure level for fccd.service: ([\d.]+)", told)
-    assert found is not None, told
+    output = service.guest.sh("systemd-analyze security --no-pager fccd")
+    found = re.search(r"Overall exposure level for fccd.service: ([\d.]+)", output)
+    assert found is not None, output
     assert float(found[1]) <= MOST_EXPOSED
     verified = service.guest.try_sh("systemd-analyze verify fccd.service")
     assert (verified.exit_code, verified.out + verified.err) == (0, "")
@@ -130,11 +130,11 @@ def test_little_is_exposed_and_nothing_is_wrong(flying: Flying) -> None:
 
 def test_it_can_be_watched_as_the_manual_says(flying: Flying) -> None:
     _, service = flying
-    told = json.loads(service.guest.sh("sudo -u fccd fccd top --json"))
-    assert told["process_id"] == service.pid
-    assert told["tick"]["state"] == "engaged"
-    assert (told["policy"], told["priority"]) == ("SCHED_FIFO", LOOP_PRIORITY)
-    # On a terminal, until somebody types a q.
+    output = json.loads(service.guest.sh("sudo -u fccd fccd top --json"))
+    assert output["process_id"] == service.pid
+    assert output["tick"]["state"] == "engaged"
+    assert (output["policy"], output["priority"]) == ("SCHED_FIFO", LOOP_PRIORITY)
+    # On a terminal, until q is typed.
     screen = service.guest.sh(
         "cd $(mktemp -d); mkfifo keys; touch screen;"
         "TERM=xterm script --quiet --flush --return --command "
@@ -144,10 +144,8 @@ def test_it_can_be_watched_as_the_manual_says(flying: Flying) -> None:
     assert "Cessna" in screen or "X-Plane" in screen, screen
 
 
-def test_it_ends_when_told_and_its_flight_can_be_flown_again(
-    flying: Flying, tmp_path: Path
-) -> None:
-    """The last one: nobody flies any more."""
+def test_it_stops_on_request_and_its_flight_can_be_replayed(flying: Flying, tmp_path: Path) -> None:
+    """The last test: the service is stopped."""
     simulator, service = flying
     service.guest.sh("systemctl stop fccd")
     assert (service.show("ActiveState"), service.show("Result")) == ("inactive", "success")

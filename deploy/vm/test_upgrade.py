@@ -1,4 +1,4 @@
-"""An upgrade in flight, a removal in flight, and a purge: one story, told in its order."""
+"""An upgrade in flight, a removal in flight, and a purge, in sequence."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def newer(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @dataclass
 class Story:
-    """What was seen, at each step."""
+    """The results of each step."""
 
     flown_before: dict[str, str] = field(default_factory=dict)
     flown_after: dict[str, str] = field(default_factory=dict)
@@ -68,7 +68,7 @@ def _running(service: Service) -> dict[str, str]:
 
 
 def _program(service: Service) -> str:
-    """Return which file it runs, as the kernel knows it."""
+    """Return the file that it runs, according to the kernel."""
     return service.guest.sh(f"readlink /proc/{service.pid}/exe").strip()
 
 
@@ -77,7 +77,7 @@ Flying = tuple[StandInProcess, Service, Story]
 
 @pytest.fixture(scope="module")
 def upgraded(guest: Guest, newer: Path) -> Iterator[Flying]:
-    """Upgrade in flight, fly on, and restart by hand; then fly again."""
+    """Upgrade in flight, fly on, and restart the service; then fly again."""
     story = Story()
     with flight(guest) as (simulator, service):
         service.engage(simulator)
@@ -96,7 +96,7 @@ def upgraded(guest: Guest, newer: Path) -> Iterator[Flying]:
         yield simulator, service, story
 
 
-def test_an_upgrade_neither_stops_nor_restarts_what_flies(upgraded: Flying) -> None:
+def test_an_upgrade_neither_stops_nor_restarts_the_daemon(upgraded: Flying) -> None:
     _, service, story = upgraded
     version = service.guest.sh("dpkg-query --show --showformat '${Version}' fccd")
     assert version == NEWER
@@ -123,9 +123,9 @@ def test_no_tick_is_missing_of_a_flight_through_an_upgrade(
     assert (found["exit_code"], found["identity"]["differing"]) == (0, 0), found
 
 
-def test_the_new_one_flies_when_somebody_says_so(upgraded: Flying) -> None:
+def test_the_new_version_flies_after_a_restart(upgraded: Flying) -> None:
     _, _, story = upgraded
-    # systemd has read the new unit, without being told by anybody.
+    # systemd has read the new unit, without a command.
     assert story.needs_reload == "no"
     assert story.restarted_description.startswith("Newer ")
     assert story.restarted["ActiveState"] == "active"
@@ -133,13 +133,13 @@ def test_the_new_one_flies_when_somebody_says_so(upgraded: Flying) -> None:
     assert story.restarted_program == "/usr/bin/fccd"
 
 
-def test_the_configuration_is_the_one_that_somebody_wrote(upgraded: Flying) -> None:
+def test_the_edited_configuration_is_kept(upgraded: Flying) -> None:
     simulator, service, _ = upgraded
     assert f":{simulator.port}" in service.guest.sh(f"cat {CONFIG}")
 
 
 def test_removing_stops_it_and_purging_leaves_the_recordings(upgraded: Flying) -> None:
-    """The last one: nothing is left to fly."""
+    """The last test: the package is removed."""
     simulator, service, _ = upgraded
     service.engage_again(simulator)
     service.fly_on(simulator, 2.0)

@@ -13,12 +13,12 @@ from guest import Guest
 from service import ENGAGED, PERIOD_NS, Service, flight
 
 DAY_S = 86_400
-# Between two looks at a clock, on a machine that is emulated.
+# Between two readings of a clock, on an emulated machine.
 LATE_S = 60.0
 
 
 def _ahead_s(guest: Guest) -> float:
-    """Return the kernel's wall clock less the time since its boot."""
+    """Return the kernel's wall clock minus the time since its boot."""
     now, up = guest.sh("date +%s; cat /proc/uptime").split()[:2]
     return float(now) - float(up)
 
@@ -42,7 +42,7 @@ def test_a_wall_clock_that_is_set_changes_nothing(guest: Guest, tmp_path: Path) 
             assert service.status == "engaged"
             assert simulator.progress().overridden
         flown_s = float(guest.sh("cat /proc/uptime").split()[0]) - up_s
-        # Nor does the watchdog of systemd bite: it is the same process.
+        # systemd's watchdog does not fire either: it is the same process.
         assert service.show("ExecMainStartTimestampMonotonic") == started
         assert service.show("NRestarts") == "0"
         guest.sh("systemctl stop fccd")
@@ -54,11 +54,11 @@ def test_a_wall_clock_that_is_set_changes_nothing(guest: Guest, tmp_path: Path) 
     engaged = records[phases.index(ENGAGED) : -1]
     assert {record.state.phase for record in engaged} == {ENGAGED}
     assert all(record.faults == 0 for record in engaged)
-    # What the loop took for its time is what the kernel took for it.
+    # The loop's time is the kernel's.
     spent_s = (engaged[-1].woke_ns - engaged[0].woke_ns) * 1e-9
     assert flown_s < spent_s < flown_s + LATE_S
     assert all(a.woke_ns < b.woke_ns for a, b in itertools.pairwise(records))
-    # The wall clock is asked once, at the start.
+    # The wall clock is read once, at the start.
     seen = [m for m in in_sequence(tmp_path / Path(path).name) if m.topic == RECORD]
     assert (seen[-1].log_time_ns - seen[0].log_time_ns) * 1e-9 == pytest.approx(
         (records[-1].woke_ns - records[0].woke_ns) * 1e-9, abs=1.0

@@ -1,5 +1,4 @@
-//! Recordings: any file is read to where it makes no sense, and recovered or
-//! left alone.
+//! Recordings: any file is read as far as possible, and recovered or unchanged.
 //!
 //! The first byte chooses what the rest is: a file, changes to a good file, or
 //! the messages of one.
@@ -18,7 +17,7 @@ static FILE: LazyLock<PathBuf> =
     LazyLock::new(|| env::temp_dir().join(format!("fcc-fuzz-{}.mcap", process::id())));
 static GOOD: LazyLock<Vec<u8>> = LazyLock::new(|| written(&[&[8, 1], &[8, 2, 24, 1], &[]]));
 
-/// A file of ours with these messages, by turns records and events.
+/// A recording with these messages, alternately records and events.
 fn written(messages: &[&[u8]]) -> Vec<u8> {
     let options = mcap::WriteOptions::new()
         .profile("fcc")
@@ -72,7 +71,7 @@ libfuzzer_sys::fuzz_target!(|input: &[u8]| {
     fs::write(&*FILE, &file).expect("a temporary file");
     if let Ok(recording) = Recording::open(&*FILE) {
         let mut messages = recording.messages::<fcc_telemetry::FlightMessage>().expect("it was opened");
-        // No message is shorter than its head.
+        // Every message has at least its header.
         assert!(messages.by_ref().count() <= file.len() / 9);
         let cut = messages.cut().is_some();
         assert!(recording.is_whole() || cut || !messages.damages().is_empty());

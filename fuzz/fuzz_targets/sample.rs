@@ -1,5 +1,5 @@
-//! A whole sensor and actuator: ticks with any datagrams, from the simulator
-//! or a stranger, and beacons; only sane measurements come out.
+//! A whole sensor and actuator: ticks with any datagrams, from the simulator or
+//! another host, and beacons; only valid measurements result.
 #![no_main]
 
 use std::collections::VecDeque;
@@ -27,7 +27,7 @@ struct Flight {
 
 #[derive(Arbitrary, Debug)]
 struct Step {
-    /// Up to 16 s to the tick before.
+    /// Up to 16 s after the previous tick.
     later_ns: u32,
     datagrams: Vec<(bool, Message)>,
     beacons: Vec<Vec<u8>>,

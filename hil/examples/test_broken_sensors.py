@@ -1,4 +1,4 @@
-"""Sensors that go, err and stutter, in rough air: what must follow, and what must not."""
+"""Sensors that fail, are biased or lose samples, in turbulence."""
 
 import pytest
 
@@ -15,10 +15,10 @@ pytestmark = [
 @pytest.mark.parametrize(
     "sensor", ["attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude"]
 )
-def test_whichever_sensor_goes_the_wings_are_levelled_and_the_controls_released(
+def test_after_the_loss_of_any_sensor_the_wings_are_levelled_and_the_controls_released(
     flight: Flight, faults: Faults, sensor: str
 ) -> None:
-    """Not-a-number is as good as nothing: the last good value grows old."""
+    """NaN is rejected: the last valid value becomes too old."""
     flight.engages(by=3)
     flight.flies(5)
     gone = faults.nan(sensor)
@@ -27,8 +27,8 @@ def test_whichever_sensor_goes_the_wings_are_levelled_and_the_controls_released(
     flight.never(abs(bank) > 20)
 
 
-def test_an_altimeter_that_errs_is_followed(flight: Flight, faults: Faults) -> None:
-    """It shows 10 m too much, so the aircraft, by the truth, goes 10 m down."""
+def test_a_biased_altimeter_is_followed(flight: Flight, faults: Faults) -> None:
+    """It reads 10 m too high, so the aircraft descends 10 m."""
     flight.engages(by=3)
     faults.bias(altitude("m"), by=10)
     wrong_m = flight.captured.altitude_ft * 0.3048 - 10
@@ -38,8 +38,10 @@ def test_an_altimeter_that_errs_is_followed(flight: Flight, faults: Faults) -> N
 
 
 @pytest.mark.parametrize("fault", ["loss", "duplicate", "reorder"])
-def test_a_sensor_that_stutters_does_not_matter(flight: Flight, faults: Faults, fault: str) -> None:
-    """A fifth of what heading and airspeed say is lost, doubled or out of order."""
+def test_lost_duplicated_or_reordered_samples_have_no_effect(
+    flight: Flight, faults: Faults, fault: str
+) -> None:
+    """A fifth of the samples of heading and airspeed is lost, duplicated or reordered."""
     flight.engages(by=3)
     getattr(faults, fault)(heading, share=0.2)
     getattr(faults, fault)(airspeed, share=0.2)
@@ -47,10 +49,8 @@ def test_a_sensor_that_stutters_does_not_matter(flight: Flight, faults: Faults, 
     flight.never("failsafe")
 
 
-def test_a_simulator_that_is_silent_for_a_moment_is_waited_for(
-    flight: Flight, faults: Faults
-) -> None:
-    """200 ms of nothing are within what is allowed; half a second is not."""
+def test_a_short_silence_of_the_simulator_has_no_effect(flight: Flight, faults: Faults) -> None:
+    """A gap of 200 ms is permitted; half a second is not."""
     flight.engages(by=3)
     faults.loss("everything", after=1, lasts=0.2)
     flight.flies(3)

@@ -1,7 +1,7 @@
 """The real daemon in real time: `fccd run` against JSBSim behind X-Plane's protocol.
 
-With `--fccd HOST` it is the daemon on that host, whose configuration has to have the
-guidance of the mark below.
+With `--fccd HOST` it is the daemon on that host, whose configuration must have the guidance of the
+mark below.
 """
 
 import pytest
@@ -14,7 +14,7 @@ from fcc_hil.sensor_faults import Faults
 @pytest.mark.realtime
 @pytest.mark.autopilot(hold_s=2, leg_s=12, turn_deg=20, climb_ft=30, failsafe_hold_s=1)
 def test_a_link_that_breaks_in_flight(flight: Flight, faults: Faults) -> None:
-    """Bounds are wide: a machine that does other things besides is late now and then."""
+    """The limits are wide, because a busy machine is late now and then."""
     flight.engages(by=5)
     flight.flies(to=2)
     flight.settles(heading, within=3, by=10, for_=1)

@@ -1,6 +1,6 @@
-"""A flight, a broken sensor and what has to follow, in ten lines.
+"""A flight, a broken sensor and the required reaction, in ten lines.
 
-pytest hil/examples/test_ten_lines.py                   in lockstep, in a blink
+pytest hil/examples/test_ten_lines.py                   in lockstep, in a second
 pytest hil/examples/test_ten_lines.py --realtime        by the daemon, over UDP
 pytest hil/examples/test_ten_lines.py --fccd pi.local   by the daemon on a Pi
 """

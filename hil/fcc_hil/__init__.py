@@ -1,8 +1,7 @@
 """A JSBSim stand-in for X-Plane, and the flights that score `fccd` against it.
 
-The package has its own implementation of X-Plane's UDP protocol, written from
-the layouts and sharing nothing with the daemon's, so that the two ends check
-each other:
+The package has its own implementation of X-Plane's UDP protocol, written from the layouts and
+independent of the daemon's, so that the two check each other:
 
 - `plant` flies JSBSim in lockstep; `aircraft` says which aircraft and how fast;
 - `protocol` and `datarefs` are X-Plane's side of the wire; `standin` serves them

@@ -1,4 +1,4 @@
-"""Commands for people: `fcc COMMAND`, or `python -m fcc_hil COMMAND`."""
+"""The command line: `fcc COMMAND`, or `python -m fcc_hil COMMAND`."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from . import commands as flights
-from . import watched
+from . import watcher_load
 from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
 from .faults import Address, Faults
-from .fly import FlightError, Order, fly, peer_row, say_on_stderr, write_document
+from .fly import FlightError, Plan, fly, peer_row, print_progress, write_document
 from .pattern import TimedPattern
 from .peer import fly_peer
 from .plant import TrimError, Weather
@@ -96,7 +96,7 @@ def _simulator_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="as X-Plane reports it: 101500, 115501, 121000 (default %(default)s)",
     )
-    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="to begin with")
+    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="initial heading")
     parser.add_argument(
         "--variation",
         type=float,
@@ -119,9 +119,9 @@ def _simulator_options(parser: argparse.ArgumentParser) -> None:
     network = parser.add_argument_group("network faults, in both directions")
     for name, what in (
         ("loss", "lost"),
-        ("duplicate", "doubled"),
+        ("duplicate", "duplicated"),
         ("reorder", "overtaken by the next"),
-        ("truncate", "cut short"),
+        ("truncate", "truncated"),
     ):
         network.add_argument(
             f"--{name}", type=float, default=0.0, metavar="FRACTION", help=f"of datagrams {what}"
@@ -164,16 +164,16 @@ def _interrupt(*_: object) -> None:
 
 
 def _fly(options: argparse.Namespace) -> int:
-    # Ended from outside, it still has a daemon and a stand-in to end.
+    # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, _interrupt)
-    order = Order(command(options.fccd, options.config), _settings(options), options.legs)
-    flight = fly(order, say_on_stderr)
-    peer = peer_row(order)
+    plan = Plan(command(options.fccd, options.config), _settings(options), options.legs)
+    flight = fly(plan, print_progress)
+    peer = peer_row(plan)
     print(
         "\n"
         + table(
             [
-                (f"fccd, {order.settings.aircraft}", flight.figures),
+                (f"fccd, {plan.settings.aircraft}", flight.figures),
                 ("JSBSim's c172x autopilot", peer),
             ]
         )
@@ -190,10 +190,10 @@ def _fly(options: argparse.Namespace) -> int:
         plot_flight(
             options.plot,
             flight.truth,
-            order.pattern,
+            plan.pattern,
             flight.engaged_at_s,
-            order.legs,
-            f"fccd flies JSBSim's {order.settings.aircraft} through the timed pattern",
+            plan.legs,
+            f"fccd flies JSBSim's {plan.settings.aircraft} through the timed pattern",
         )
     for failure in flight.failures:
         print(f"failed: {failure}", file=sys.stderr)
@@ -260,11 +260,11 @@ def _bench(options: argparse.Namespace) -> int:
 
 
 def _bench_live(options: argparse.Namespace) -> int:
-    load = watched.Load(
+    load = watcher_load.Load(
         options.fccd, options.watcher, options.rounds, options.seconds, options.watchers
     )
     flights = []
-    for flight in watched.run(load):
+    for flight in watcher_load.run(load):
         flights.append(flight)
         print(
             f"{flight.watchers:5} watchers: late {flight.p99_us:6.1f} us at p99, "
@@ -272,7 +272,7 @@ def _bench_live(options: argparse.Namespace) -> int:
             f"{flight.ticks} ticks, {flight.missed} missed, {flight.dropped} records lost",
             flush=True,
         )
-    ratio = watched.ratio(flights)
+    ratio = watcher_load.ratio(flights)
     print(f"median p99.9 with watchers over that without: {ratio:.2f}")
     lost = any(flight.dropped or flight.exit_code for flight in flights)
     return 1 if lost else 0
@@ -293,10 +293,10 @@ def _parser() -> argparse.ArgumentParser:
     _simulator_options(flies)
     flies.set_defaults(run=_fly)
 
-    serves = commands.add_parser("standin", help="stand in for X-Plane until Ctrl-C")
+    serves = commands.add_parser("standin", help="run the stand-in for X-Plane until Ctrl-C")
     serves.add_argument("--beacon", action="store_true", help="send the beacon by multicast")
     serves.add_argument(
-        "--data-target", type=_address, metavar="HOST:PORT", help="where Data Output goes"
+        "--data-target", type=_address, metavar="HOST:PORT", help="target of Data Output"
     )
     serves.add_argument(
         "--data-rows", type=_rows, default=(), metavar="N,N", help="its rows, as in 3,17,20"
@@ -322,14 +322,14 @@ def _parser() -> argparse.ArgumentParser:
     peer.set_defaults(run=_peer)
 
     bench = commands.add_parser(
-        "bench", help="fly our autopilot and JSBSim's own in lockstep, side by side"
+        "bench", help="compare the autopilot with JSBSim's own, in lockstep"
     )
     bench.add_argument("--legs", type=int, default=8, help="(default %(default)s)")
     bench.add_argument("--json", action="store_true", help="print the scores as JSON")
     bench.set_defaults(run=_bench)
 
     bench_live = commands.add_parser(
-        "bench-live", help="fly with and without programs that watch, come, go and are killed"
+        "bench-live", help="fly with and without watchers that join, leave and are killed"
     )
     bench_live.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
     bench_live.add_argument("--watcher", type=Path, required=True, help="the example `watch`")
@@ -347,7 +347,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command; returns the exit code: 0 good, 1 failed, 2 asked wrongly."""
+    """Run a command; return the exit code: 0 success, 1 failure, 2 wrong usage."""
     options = _parser().parse_args(arguments)
     if getattr(options, "legs", 1) < 1:
         print("error: --legs: give at least 1", file=sys.stderr)
@@ -357,7 +357,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (
         FlightError,
         SoakError,
-        watched.FlightError,
+        watcher_load.FlightError,
         DaemonError,
         StandInError,
         TrimError,

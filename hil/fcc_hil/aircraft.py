@@ -1,7 +1,7 @@
-"""Which of JSBSim's aircraft fly here, and at what speed and altitude they are trimmed.
+"""JSBSim's aircraft used here, with the speed and the altitude at which they are trimmed.
 
-Speeds leave room to climb; retractable gear is up, without which half of these
-have not the power to hold the speed.
+The speeds leave a margin to climb; retractable gear is up, because half of these do not have the
+power to hold the speed with it down.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Aircraft:
-    """An aircraft of JSBSim's and its trimmed flight condition."""
+    """An aircraft of JSBSim and its trimmed flight condition."""
 
     name: str
     """JSBSim's name of the model."""
@@ -22,8 +22,8 @@ class Aircraft:
     retractable_gear: bool = False
     """Whether to raise the gear before trimming."""
     trims: bool = True
-    """Whether JSBSim's trim finds a state that lasts. Where it does not, the
-    aircraft is flown to its state in closed loop (see `settle`)."""
+    """Whether JSBSim's trim finds a steady state. If not, the aircraft is flown to it in closed
+    loop (see `settle`)."""
 
 
 _TABLE = (
@@ -49,7 +49,7 @@ AIRCRAFT: dict[str, Aircraft] = {aircraft.name: aircraft for aircraft in _TABLE}
 
 
 def by_name(name: str) -> Aircraft:
-    """Return the aircraft of that name, or raise ValueError with the names there are."""
+    """Return the aircraft of that name, or raise ValueError with the known names."""
     try:
         return AIRCRAFT[name]
     except KeyError:

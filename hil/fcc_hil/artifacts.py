@@ -1,4 +1,4 @@
-"""What a failed test leaves behind: a plot, the truth as CSV, the autopilot's recording."""
+"""Saves the artifacts of a failed test: a plot, the truth as CSV, the autopilot's recording."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ _CONTROLS = ("elevator", "aileron", "rudder", "throttle")
 def folder_of(root: Path, test: str) -> Path:
     """Return the folder of a test's artifacts, by its node id."""
     name = re.sub(r"[^\w.\-\[\]=]+", "_", test).strip("_")
-    # File systems take 255 bytes; what tells tests apart is at the end.
+    # File names are limited to 255 bytes; the end distinguishes tests.
     return root / name[-200:]
 
 
 def leave(flight: Flight, folder: Path) -> list[Path]:
-    """Leave all there is of a flight in a folder; return the files."""
+    """Save a flight in a folder; return the files."""
     folder.mkdir(parents=True, exist_ok=True)
     truth = flight.truth()
     left = [folder / "flight.png", folder / "truth.csv"]
     plot(left[0], flight, truth)
     table = np.column_stack([truth[name] for name in COLUMNS])
     np.savetxt(left[1], table, fmt="%.6g", delimiter=",", header=",".join(COLUMNS), comments="")
-    return left + flight.rig.leave_recording(folder / "recording.mcap")
+    return left + flight.rig.save_recording(folder / "recording.mcap")
 
 
 def plot(path: Path, flight: Flight, truth: Truth) -> None:
-    """Write a picture of a flight: what was flown and asked, faults and states."""
+    """Write a picture of a flight: flown and commanded values, faults and states."""
     time_s = truth["time_s"]
     figure, rows = plt.subplots(
         len(_PANELS) + 1, 1, figsize=(10, 11), sharex=True, layout="constrained"
@@ -113,7 +113,7 @@ def _mark(axes: Axes, flight: Flight, ends_s: float) -> None:
                 linewidth=0.0,
                 label=fault.words,
             )
-    for happening in flight.rig.happenings:
+    for happening in flight.rig.events:
         _, arrow, state = happening.text.partition(" -> ")
         if arrow:
             colour = _STATE_COLOURS.get(state.partition(":")[0], "#7f7f7f")

@@ -1,4 +1,4 @@
-"""The benchmark: our autopilot beside JSBSim's own on the same task, in one run."""
+"""The benchmark: the autopilot and JSBSim's own on the same task, in one run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TUNING_SEEDS = (
     *range(900, 910),
     *range(2026, 2031),
 )
-"""Seeds on which the gains were found; the benchmark flies others."""
+"""Seeds used for tuning; the benchmark uses others."""
 SEED = 11
 _TURBULENCE = Weather(turbulence_severity=3)
 

@@ -1,10 +1,9 @@
-"""What a client can set in the simulator: overrides, joystick, throttles, switches.
+"""Datarefs that a client can set in the simulator: overrides, joystick, throttles, switches.
 
-As in X-Plane, the joystick datarefs belong to the pilot until `override_joystick` is 1:
-a write before that is gone by the next frame. The pilot here holds the trimmed
-controls. DATA rows 8 and 25 set the same datarefs and obey the same overrides.
-Sources differ on whether X-Plane lets row 8 take the joystick over by itself; a client
-that sets the override first is right either way.
+As in X-Plane, the joystick datarefs belong to the pilot until `override_joystick` is 1: a value
+written before is lost by the next frame. The pilot here holds the trimmed controls. DATA rows 8 and
+25 set the same datarefs and obey the same overrides. Sources differ on whether row 8 alone
+overrides X-Plane's joystick; a client that sets the override first is right in either case.
 """
 
 from __future__ import annotations
@@ -35,10 +34,10 @@ _ELEMENT = re.compile(r"([^\[\]]+)(?:\[(\d{1,3})\])?")
 
 @dataclass(frozen=True)
 class Write:
-    """One write that reached the simulator."""
+    """A value that was written to the simulator."""
 
     time_s: float
-    """Simulated."""
+    """Simulated time."""
     path: str
     value: float
     took: bool
@@ -50,7 +49,7 @@ class Release:
     """An override that went from 1 to 0, and the controls at that moment."""
 
     time_s: float
-    """Simulated."""
+    """Simulated time."""
     path: str
     elevator: float
     aileron: float
@@ -58,20 +57,20 @@ class Release:
 
 
 Element = tuple[str, int]
-"""A dataref's name and which of its elements."""
+"""A dataref's name and the index of its element."""
 
 
 def split(path: str) -> Element | None:
-    """Return a dataref's name and element; without brackets the first element; None if garbled."""
+    """Return a dataref's name and element; the first element without brackets; None if invalid."""
     match = _ELEMENT.fullmatch(path)
     return None if match is None else (match[1], int(match[2] or 0))
 
 
 class Cockpit:
-    """The writable datarefs and what follows from them."""
+    """The writable datarefs and their effects."""
 
     def __init__(self, pilot: Controls, engines: int = 1) -> None:
-        """Give the controls that the pilot holds, and the number of engines."""
+        """Set the controls held by the pilot, and the number of engines."""
         self.pilot = pilot
         self.engines = engines
         self.journal: list[Write] = []
@@ -94,11 +93,11 @@ class Cockpit:
         return element if element in self._values else None
 
     def value(self, element: Element) -> float:
-        """Return the value of what `element` returned."""
+        """Return the value of an element."""
         return self._values[element]
 
     def read(self, path: str) -> float | None:
-        """Return a writable dataref's value, or None if there is none of that name."""
+        """Return a writable dataref's value, or None if there is none with that name."""
         element = self.element(path)
         return None if element is None else self._values[element]
 
@@ -108,7 +107,7 @@ class Cockpit:
         return value is not None and round(value) == 1
 
     def write(self, time_s: float, path: str, value: float) -> bool:
-        """Set a dataref. Returns whether that had an effect."""
+        """Set a dataref. Return whether that had an effect."""
         element = self.element(path)
         if element is None:
             return False
@@ -130,7 +129,7 @@ class Cockpit:
         return True
 
     def write_row(self, time_s: float, row: int, values: Sequence[float]) -> bool:
-        """Set the controls of DATA row 8 or 25, leaving columns of -999 as they are."""
+        """Set the controls of DATA row 8 or 25; columns of -999 are unchanged."""
         if row == _JOYSTICK_ROW:
             paths = list(YOKE)
         elif row == _THROTTLE_ROW:
@@ -145,7 +144,7 @@ class Cockpit:
         return any(took)
 
     def controls(self) -> Controls:
-        """Return what reaches the aircraft."""
+        """Return the controls in effect."""
         return Controls(
             elevator=self._values[YOKE_PITCH, 0],
             aileron=self._values[YOKE_ROLL, 0],

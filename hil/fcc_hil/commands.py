@@ -1,4 +1,4 @@
-"""The commands `suite`, `tune` and `soak`: what they are asked, and what they say."""
+"""The commands `suite`, `tune` and `soak`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LARGEST_SEEDS = 1_000
 
 @contextmanager
 def _bar(what: str, total: int) -> Iterator[Any]:
-    """Give a function that says how far it is; silent where nobody watches."""
+    """Yield a function that shows progress; without output if there is no terminal."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -33,10 +33,10 @@ def _bar(what: str, total: int) -> Iterator[Any]:
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task(what, total=total)
 
-        def say(done: int, doing: str) -> None:
+        def notify(done: int, doing: str) -> None:
             progress.update(task, completed=done, description=doing)
 
-        yield say
+        yield notify
 
 
 def seeds(text: str) -> tuple[int, ...]:
@@ -65,7 +65,7 @@ def _positive(text: str) -> int:
 def add(commands: Any) -> None:
     """Add these commands to a parser's."""
     suite = commands.add_parser(
-        "suite", help="fly many aircraft in all weathers and hold them to stated limits"
+        "suite", help="fly many aircraft in all conditions and check them against limits"
     )
     suite.add_argument(
         "--only", metavar="PATTERN", help="cases whose name matches, as in 'c172*noise*'"
@@ -90,7 +90,7 @@ def add(commands: Any) -> None:
         dest="given",
         type=Path,
         metavar="FILE",
-        help="configuration to begin with (the aircraft's own, or stock gains)",
+        help="initial configuration (the aircraft's own, or stock gains)",
     )
     tune.add_argument(
         "--cost",
@@ -118,12 +118,12 @@ def add(commands: Any) -> None:
     tune.set_defaults(run=_tune)
 
     soaks = commands.add_parser(
-        "soak", help="fly for long under stress, and compare with what the machine was late by"
+        "soak", help="fly for a long time under stress, and compare with the machine's own delays"
     )
     soaks.add_argument("--fccd", type=Path, required=True, help="the daemon's program")
     soaks.add_argument("--minutes", type=float, default=30.0, help="(default %(default)s)")
     soaks.add_argument("--rate", type=_positive, default=100, metavar="HZ", help="(%(default)s)")
-    soaks.add_argument("--idle", action="store_true", help="without stress-ng beside")
+    soaks.add_argument("--idle", action="store_true", help="without stress-ng")
     soaks.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     soaks.set_defaults(run=_soak)
 
@@ -144,12 +144,12 @@ def _suite(options: argparse.Namespace) -> int:
         names = "\n  ".join(case.name for case in cases())
         raise ValueError(f"--only '{options.only}' matches no case; there are:\n  {names}")
     flown = {}
-    with _bar("flying", len(chosen)) as say:
+    with _bar("flying", len(chosen)) as notify:
         for outcome in fly_all(chosen, options.workers):
             flown[outcome.case.name] = outcome
-            say(len(flown), outcome.case.name)
+            notify(len(flown), outcome.case.name)
     outcomes = [flown[case.name] for case in chosen]
-    # Alone, when the other processes have ended.
+    # Alone, after the other processes have ended.
     speed = measure(scenario_of("c172p"))
     print(report.text(outcomes, speed))
     if options.json:
@@ -165,7 +165,7 @@ def _suite(options: argparse.Namespace) -> int:
 def _tune(options: argparse.Namespace) -> int:
     from . import tuning  # noqa: PLC0415 - needs the module fcc
 
-    order = tuning.Order(
+    task = tuning.Task(
         aircraft=options.aircraft,
         config=options.given.read_text(encoding="utf-8") if options.given else None,
         keys=tuple(options.search.split(",")) if options.search else tuning.SCALE_KEYS,
@@ -175,26 +175,26 @@ def _tune(options: argparse.Namespace) -> int:
         legs=options.legs,
         turbulence=options.turbulence,
     )
-    # Hours of search must not end at a folder that is not there.
+    # A search of hours must not fail because of a missing folder.
     if not options.output.parent.is_dir():
         raise ValueError(f"{options.output}: there is no folder {options.output.parent}")
     workers = (
         tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
     )
-    with workers as fly_all, _bar("tuning", order.evaluations) as bar:
+    with workers as fly_all, _bar("tuning", task.evaluations) as bar:
 
-        def say(flown: int, least: float) -> None:
-            bar(min(flown, order.evaluations), f"cost {least:.3f}")
+        def notify(flown: int, least: float) -> None:
+            bar(min(flown, task.evaluations), f"cost {least:.3f}")
 
-        found = tuning.tune(order, fly_all, say)
+        found = tuning.tune(task, fly_all, notify)
     head = (
-        f"# Tuned for JSBSim's {order.aircraft}: cost '{order.cost.name}' {found.after:.3f}, was "
+        f"# Tuned for JSBSim's {task.aircraft}: cost '{task.cost.name}' {found.after:.3f}, was "
         f"{found.before:.3f};\n# {found.evaluations} candidates on seeds "
-        f"{', '.join(map(str, order.seeds))}.\n\n"
+        f"{', '.join(map(str, task.seeds))}.\n\n"
     )
     options.output.write_text(head + found.config, encoding="utf-8")
     print(
-        f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured answers, "
+        f"cost {found.before:.3f} as given, {found.guessed:.3f} by measured responses, "
         f"{found.after:.3f} found in {found.evaluations} candidates",
     )
     for key, value in found.values.items():
@@ -207,9 +207,9 @@ def _soak(options: argparse.Namespace) -> int:
     seconds = 60.0 * options.minutes
     if seconds <= 0.0:
         raise ValueError("--minutes: give more than 0")
-    order = Soak(options.fccd, seconds, options.rate, not options.idle)
+    task = Soak(options.fccd, seconds, options.rate, not options.idle)
     with _bar("flying", round(seconds)) as bar:
-        result = soak(order, lambda flown_s: bar(round(flown_s), "flying"))
+        result = soak(task, lambda flown_s: bar(round(flown_s), "flying"))
     late, machine = result.lateness_us, result.machine
     rows = {
         "ticks": f"{result.ticks}, {result.missed} missed, "
@@ -219,15 +219,15 @@ def _soak(options: argparse.Namespace) -> int:
         "within 2 %": f"{100.0 * result.within_2_percent:.3f} % of the periods",
         "page faults": f"{result.page_faults}"
         + ("" if result.memory_locked else "; the memory was not locked"),
-        "waits": f"{result.voluntary_switches_per_tick:.6f} a tick, the timer's being one; "
-        f"displaced {result.involuntary_switches} times",
+        "waits": f"{result.voluntary_switches_per_tick:.6f} a tick, one of them for the timer; "
+        f"preempted {result.involuntary_switches} times",
         "CPU": f"{result.cpu_percent:.2f} % of a core",
         "cyclictest": f"{machine.cycles} ticks, {machine.periods_lost} periods lost, "
         f"{machine.max_us:.0f} us late at most"
         + (
             ""
             if result.has_own_cpu
-            else f"; not on the loop's own CPU, which is any of {result.cpus}"
+            else f"; not bound to the loop's CPU, which is any of {result.cpus}"
         ),
     }
     for name, figures in rows.items():

@@ -20,7 +20,7 @@ class DaemonError(RuntimeError):
 
 
 def command(fccd: Path, config: Path | None) -> list[str]:
-    """Return the command line that runs the daemon against a simulator and reports in JSON."""
+    """Return the command line that runs the daemon against a simulator with a report in JSON."""
     words = [str(fccd), "run"]
     if config is not None:
         words += ["--config", str(config)]
@@ -28,18 +28,18 @@ def command(fccd: Path, config: Path | None) -> list[str]:
 
 
 class Daemon:
-    """A running daemon; a context manager that ends it on the way out."""
+    """A running daemon; a context manager that ends it."""
 
-    def __init__(self, words: Sequence[str], says_to: Path | None = None) -> None:
-        """Start it. What it says to people (stderr) goes to a file, or where ours goes."""
-        self._says_to = says_to
-        # A file, not a pipe: nobody has to read while it runs, and it never blocks.
+    def __init__(self, words: Sequence[str], log_to: Path | None = None) -> None:
+        """Start it. Its messages (stderr) go to a file, or to our stderr."""
+        self._log_to = log_to
+        # A file, not a pipe: it never blocks, and nothing has to read it meanwhile.
         self._output = tempfile.TemporaryFile()  # noqa: SIM115 - closed in __exit__
         try:
             with contextlib.ExitStack() as stack:
-                said = None if says_to is None else stack.enter_context(says_to.open("wb"))
+                log = None if log_to is None else stack.enter_context(log_to.open("wb"))
                 self._process = subprocess.Popen(
-                    list(words), stdout=self._output, stderr=said, stdin=subprocess.DEVNULL
+                    list(words), stdout=self._output, stderr=log, stdin=subprocess.DEVNULL
                 )
         except OSError as error:
             self._output.close()
@@ -71,12 +71,12 @@ class Daemon:
         return self._process.pid
 
     @property
-    def said(self) -> str:
-        """Return what it has said to people so far, if that goes to a file."""
-        return "" if self._says_to is None else self._says_to.read_text("utf-8", "replace")
+    def log(self) -> str:
+        """Return its messages so far, if they go to a file."""
+        return "" if self._log_to is None else self._log_to.read_text("utf-8", "replace")
 
     def stop(self, by: signal.Signals = signal.SIGTERM) -> int:
-        """Ask it to end and wait; after 5 s kill it. Returns its exit code."""
+        """Send a signal and wait; after 5 s kill it. Return its exit code."""
         if self._process.poll() is None:
             self._process.send_signal(by)
             try:
@@ -87,7 +87,7 @@ class Daemon:
         return self._process.returncode
 
     def report(self) -> dict[str, Any] | None:
-        """Return the JSON object on its standard output: all of it, or the last line that is one.
+        """Return the JSON object on its standard output: all of it, or the last line with one.
 
         None if there is none.
         """

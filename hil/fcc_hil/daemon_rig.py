@@ -15,7 +15,7 @@ from pathlib import Path
 from .daemon import Daemon, DaemonError
 from .marks import AutopilotMark
 from .process import StandInError, StandInProcess
-from .rig import FlightError, Happening
+from .rig import Event, FlightError
 from .standin import Progress, Settings
 from .standin_rig import StandInRig
 
@@ -28,12 +28,12 @@ _NOT_READY = "not ready"
 
 
 class DaemonRig(StandInRig):
-    """A daemon of its own against a stand-in of its own."""
+    """A daemon and its stand-in."""
 
     def __init__(
         self, fccd: Path, settings: Settings, autopilot: AutopilotMark, scratch: Path
     ) -> None:
-        """Start both. Raises FlightError in words if one cannot."""
+        """Start both. Raise FlightError if one cannot be started."""
         try:
             simulator = StandInProcess(replace(settings, port=0))
         except StandInError as error:
@@ -57,26 +57,26 @@ class DaemonRig(StandInRig):
                 raise FlightError(str(error)) from error
             undo.pop_all()
         self._heard = 0
-        # Simulated time less the daemon's: what was heard soonest knows best.
+        # Simulated time minus the daemon's: the message received soonest gives the best value.
         self._offset_s = math.inf
         self._is_ready = False
 
     def prepare(self) -> None:
-        """Wait until the daemon sees the aircraft and nothing keeps it from engaging."""
+        """Wait until the daemon sees the aircraft and can engage."""
         give_up_s = time.monotonic() + _READY_S
         while not self._is_ready:
             self._look()
             if time.monotonic() > give_up_s:
-                raise FlightError(f"the daemon is not ready to engage; it said:\n{self.said}")
+                raise FlightError(f"the daemon is not ready to engage; its messages:\n{self.log}")
             time.sleep(_LOOK_S)
 
     @property
-    def said(self) -> str:
-        """Return all that the daemon has said to people."""
-        return self.daemon.said
+    def log(self) -> str:
+        """Return all messages of the daemon."""
+        return self.daemon.log
 
-    def leave_recording(self, path: Path) -> list[Path]:
-        """End the daemon and move its recording to a path, or those of its parts beside it."""
+    def save_recording(self, path: Path) -> list[Path]:
+        """End the daemon and move its recording to a path, with further parts beside it."""
         self.truth()
         self.set_faults([])
         self.daemon.stop()
@@ -84,15 +84,15 @@ class DaemonRig(StandInRig):
         left = []
         for number, part in enumerate(parts, start=1):
             to = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
-            # The scratch folder may be on another file system.
+            # The temporary folder may be on another file system.
             to.write_bytes(part.read_bytes())
             left.append(to)
         return left
 
     def close(self) -> None:
-        """End the daemon, then the stand-in: it has to see the controls released."""
+        """End the daemon, then the stand-in, which must first see the controls released."""
         if not self._is_closed:
-            # A daemon that hears nothing waits long for the release to show.
+            # A daemon that receives nothing waits long for the release to be confirmed.
             with contextlib.suppress(StandInError):
                 self.set_faults([])
         self.daemon.__exit__(None, None, None)
@@ -107,17 +107,17 @@ class DaemonRig(StandInRig):
                 self._is_ready = text.startswith("standby  heading") and _NOT_READY not in text
             else:
                 at_s = min(progress.time_s, time_s + self._offset_s)
-                self.happenings.append(Happening(at_s, text))
+                self.events.append(Event(at_s, text))
         exit_code = self.daemon.exit_code
         if exit_code is not None and not self._is_closed:
             name = f" ({signal.Signals(-exit_code).name})" if exit_code < 0 else ""
-            raise FlightError(f"the daemon ended with {exit_code}{name}; it said:\n{self.said}")
+            raise FlightError(f"the daemon ended with {exit_code}{name}; its messages:\n{self.log}")
         return progress
 
     def _lines(self) -> Iterator[tuple[float, str]]:
-        """Yield the whole lines with a time that the daemon has said since the last call."""
-        said = self.said
-        for line in said[self._heard :].splitlines(keepends=True):
+        """Yield the new complete lines of the daemon that have a time."""
+        log = self.log
+        for line in log[self._heard :].splitlines(keepends=True):
             if not line.endswith("\n"):
                 return
             self._heard += len(line)

@@ -1,10 +1,9 @@
-"""The datarefs that can be read, each computed from the plant's state in X-Plane's units.
+"""The readable datarefs, each computed from the plant's state in X-Plane's units.
 
-X-Plane's local axes are x east, y up, z south. Its load factors are taken as those of
-the open autopilots that fly on them: `g_nrml` is +1 in level flight, `g_axil` positive
-when pushed forward, `g_side` positive when pushed to the right. Its `beta` is yaw
-against the flight path, positive with the nose to the right of it, which is
-aerodynamic sideslip with the other sign.
+X-Plane's local axes are x east, y up, z south. Its load factors are as in the open-source
+autopilots that use them: `g_nrml` is +1 in level flight, `g_axil` positive when pushed forward,
+`g_side` positive when pushed to the right. Its `beta` is yaw against the flight path, positive with
+the nose to the right of it: aerodynamic sideslip with the opposite sign.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ class Readout:
     """Everything that a dataref can be computed from, at one frame."""
 
     state: State
-    """As the sensors say, noise included."""
+    """As measured, noise included."""
     cockpit: Cockpit
     dialect: Dialect
     flight_time_s: float
     paused: bool
     frame_period_s: float
     origin_latitude_rad: float
-    """Of X-Plane's local axes."""
+    """Origin of X-Plane's local axes."""
     origin_longitude_rad: float
     magnetic_variation_deg: float
     """Positive where magnetic north lies east of true."""
@@ -94,7 +93,7 @@ class Readout:
         )
 
     def position(self) -> Position:
-        """Return what RPOS carries."""
+        """Return the content of RPOS."""
         s = self.state
         return Position(
             longitude_deg=math.degrees(s.longitude_rad),
@@ -186,8 +185,8 @@ _TELLS: dict[str, tuple[str, ...]] = {
     "airspeed_mps": (_P + "indicated_airspeed",),
     "altitude_m": ("sim/cockpit2/gauges/indicators/altitude_ft_pilot",),
 }
-"""Which datarefs go with a field of `state.State` when its sensor falls silent. Of the
-accelerations, told along the world's axes, any one takes all three."""
+"""The datarefs that are missing when the sensor for a field of `state.State` is silent.
+Accelerations are along the world's axes, so any missing one removes all three."""
 
 
 def withheld(missing: frozenset[str]) -> frozenset[str]:
@@ -196,7 +195,7 @@ def withheld(missing: frozenset[str]) -> frozenset[str]:
 
 
 def getter(path: str, cockpit: Cockpit, dialect: Dialect) -> Getter | None:
-    """Return what reads a dataref, or None if this version of X-Plane has none of that name."""
+    """Return the function that reads a dataref, or None if this version does not have it."""
     found = _READABLE.get(path)
     if found is None and dialect.major >= 12:
         found = _READABLE_SINCE_12.get(path)
@@ -209,5 +208,5 @@ def getter(path: str, cockpit: Cockpit, dialect: Dialect) -> Getter | None:
 
 
 def readable(dialect: Dialect) -> list[str]:
-    """Return the names of the datarefs that are computed from the plant."""
+    """Return the names of the datarefs computed from the plant."""
     return [*_READABLE, *(_READABLE_SINCE_12 if dialect.major >= 12 else ())]

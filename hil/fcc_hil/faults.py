@@ -1,4 +1,4 @@
-"""A network that loses, doubles, reorders, cuts and delays datagrams, by a seed."""
+"""A network that loses, duplicates, reorders, truncates and delays datagrams, seeded."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from typing import Generic, TypeVar
 Address = tuple[str, int]
 Item = TypeVar("Item")
 
-# A reordered datagram is held until the next one has passed it, or this long.
+# A reordered datagram is held until the next one has passed, or for this time.
 _HELD_AT_MOST_S = 0.2
 
 
 @dataclass(frozen=True)
 class Faults:
-    """How often each fault befalls a datagram, 0..1, and how late datagrams come."""
+    """The probability of each fault for a datagram, 0..1, and delays."""
 
     loss: float = 0.0
     duplicate: float = 0.0
     reorder: float = 0.0
     """Overtaken by the datagram after it."""
     truncate: float = 0.0
-    """Cut at a random length."""
+    """Truncated at a random length."""
     delay_s: float = 0.0
     """Of every datagram."""
     jitter_s: float = 0.0
@@ -42,7 +42,7 @@ class Faults:
 
 @dataclass
 class FaultCounts:
-    """What befell the datagrams of one direction."""
+    """Faults of the datagrams in one direction."""
 
     offered: int = 0
     lost: int = 0
@@ -52,9 +52,9 @@ class FaultCounts:
 
 
 class FaultyLink(Generic[Item]):
-    """One direction of the network: datagrams go in with `offer` and come out of `due`.
+    """One direction of the network: datagrams are put in with `offer` and taken out with `due`.
 
-    `Item` is where the datagram goes to, or comes from.
+    `Item` is the datagram's destination or source.
     """
 
     def __init__(self, faults: Faults, seed: int) -> None:
@@ -70,8 +70,7 @@ class FaultyLink(Generic[Item]):
         """Put a datagram on the link at a time in s."""
         faults, counts, draw = self.faults, self.counts, self._random.random
         counts.offered += 1
-        # All draws are made for every datagram: what befalls one does not shift
-        # the fate of the next.
+        # All random numbers are drawn for every datagram: a fault of one does not change the next.
         lose, double, hold, cut, where, late = (draw() for _ in range(6))
         if lose < faults.loss:
             counts.lost += 1

@@ -1,17 +1,16 @@
-"""A flight under test: flies, and holds what was flown against requirements.
+"""A flight under test: flies, and checks requirements on the flight.
 
     flight.engages(by=3)
     flight.flies(to=20)
     flight.settles(heading, within=2, by=17)
     flight.overshoots_less_than(heading, 1.5)
 
-An assertion looks at what was flown so far, and flies on where it speaks of later. It
-is judged by the aircraft's truth, never by what the sensors or the autopilot say. Times
-are simulated seconds: `to`, `from_` and `since` count from engagement, `by` from the
-event that it belongs to.
+An assertion checks the flight so far, and continues the flight if it concerns a later time. It uses
+the aircraft's true state, never the sensors or the autopilot. Times are simulated seconds: `to`,
+`from_` and `since` count from engagement, `by` from the event that it belongs to.
 
-In real time the simulator flies on while a test thinks. The flight is where the test has
-flown it to, so the same test asks the same questions either way.
+In real time the simulator continues while a test runs its own code. A test's flight ends where the
+test has flown it to, so the result is the same in either case.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ import numpy as np
 from .pattern import SetPoints, TimedPattern
 from .quantities import Condition, Quantity, Samples, finite, quantity_of
 from .requirements import Stretch, Verdict, never, overshoots_less_than, settles, stays
-from .rig import ENGAGED, FAILSAFE, RELEASED, FlightError, Happening, Rig
+from .rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError, Rig
 from .sensor_faults import Faults, SensorFault
 from .truth import TRUTH_HZ, Truth
 
@@ -37,7 +36,7 @@ _SET_POINTS = ("heading", "altitude", "airspeed")
 
 
 class RequirementError(AssertionError):
-    """A requirement is not met: what was required, and what was flown."""
+    """A requirement is not met: the requirement, and the flight."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Flight:
     """One flight of an aircraft by the autopilot."""
 
     def __init__(self, rig: Rig, pattern: TimedPattern | None, seed: int = 1) -> None:
-        """Fly on a rig; `pattern` is what the autopilot was told to fly, None to hold."""
+        """Fly on a rig; `pattern` is the autopilot's pattern, None to hold."""
         self.rig = rig
         self.pattern = pattern
         self.faults = Faults(lambda: rig.time_s, rig.set_faults, seed)
@@ -87,15 +86,15 @@ class Flight:
 
     @property
     def state(self) -> str:
-        """Return what the autopilot is doing: one of STATES."""
-        changes = [h.text for h in self.rig.happenings if " -> " in h.text]
+        """Return the autopilot's state: one of STATES."""
+        changes = [h.text for h in self.rig.events if " -> " in h.text]
         return changes[-1].partition(" -> ")[2].partition(":")[0] if changes else STATES[0]
 
     @property
     def engaged_at_s(self) -> float:
         """Return when it engaged, in s since the aircraft was set up."""
         if self._engaged_at_s is None:
-            raise FlightError("the autopilot is not engaged yet: flight.engages(by=3) comes first")
+            raise FlightError("the autopilot is not engaged yet: call flight.engages(by=3) first")
         return self._engaged_at_s
 
     @property
@@ -105,17 +104,17 @@ class Flight:
 
     @property
     def captured(self) -> SetPoints:
-        """Return what was flown at engagement, and became the set points."""
+        """Return the state at engagement, which gave the set points."""
         if self._captured is None:
             self._captured = self.rig.truth().captured_at(self.engaged_at_s)
         return self._captured
 
     def truth(self) -> Truth:
-        """Return what was truly flown so far, in s since the aircraft was set up."""
+        """Return the true state so far, in s since the aircraft was set up."""
         return self.rig.truth()
 
     def flies(self, seconds: float | None = None, *, to: float | None = None) -> None:
-        """Fly on for so many seconds, or to so many since engagement."""
+        """Fly for so many seconds, or until so many after engagement."""
         if (seconds is None) == (to is None):
             raise TypeError("give how long to fly, flies(20), or to when, flies(to=20)")
         if to is not None:
@@ -125,46 +124,46 @@ class Flight:
             self._fly_to(self._flown_to_s + _seconds("seconds", seconds))
 
     def switches_off(self) -> None:
-        """Throw the engage switch off, as a pilot does who takes over."""
-        self.rig.throw_switch(on=False)
+        """Switch the engage switch off."""
+        self.rig.set_switch(on=False)
 
     # What the autopilot does.
 
     def engages(self, *, by: float) -> None:
-        """Require that the autopilot takes over within `by` s of the switch being thrown."""
+        """Require that the autopilot engages within `by` s after the switch goes on."""
         __tracebackhide__ = True
         by = _seconds("by", by)
         self._prepare()
-        thrown_s = self.rig.time_s
-        self.rig.throw_switch(on=True)
-        found = self._await(ENGAGED, thrown_s, thrown_s + by)
-        flown = f"it is still {self.state} {by:g} s after the switch was thrown"
+        switched_s = self.rig.time_s
+        self.rig.set_switch(on=True)
+        found = self._await(ENGAGED, switched_s, switched_s + by)
+        flown = f"it is still {self.state} {by:g} s after the switch went on"
         if found is not None:
             self._engaged_at_s, self._captured = found.time_s, None
-            flown = f"it engages after {found.time_s - thrown_s:.2f} s"
-        is_met = found is not None and found.time_s <= thrown_s + by + _TOLERANCE_S
-        self._hold(f"the autopilot engages by {by:g} s", Verdict(is_met, flown), happenings=True)
+            flown = f"it engages after {found.time_s - switched_s:.2f} s"
+        is_met = found is not None and found.time_s <= switched_s + by + _TOLERANCE_S
+        self._hold(f"the autopilot engages by {by:g} s", Verdict(is_met, flown), events=True)
 
     def falls_into_failsafe(self, *, by: float, after: SensorFault | float | None = None) -> None:
-        """Require a failsafe within `by` s of a fault, of a time, or of now."""
+        """Require a failsafe within `by` s after a fault, a time, or now."""
         __tracebackhide__ = True
         by = _seconds("by", by)
         since_s, words = self._since(after)
         found = self._await(FAILSAFE, since_s, since_s + by, self.rig.failsafe_shows_after_s)
         required = f"the autopilot falls into failsafe by {by:g} s after {words}"
-        self._hold(required, self._judge(found, since_s, by), happenings=True)
+        self._hold(required, self._judge(found, since_s, by), events=True)
 
     def releases(self, *, by: float, after: SensorFault | float | None = None) -> None:
-        """Require that the controls are centred and given back within `by` s."""
+        """Require that the controls are centred and released within `by` s."""
         __tracebackhide__ = True
         by = _seconds("by", by)
         since_s, words = self._since(after)
         found = self._await(RELEASED, since_s, since_s + by)
         verdict = self._judge(found, since_s, by)
-        if verdict.is_met and self.rig.left_deflected:
-            verdict = Verdict(is_met=False, flown=self.rig.left_deflected)
+        if verdict.is_met and self.rig.not_centred:
+            verdict = Verdict(is_met=False, flown=self.rig.not_centred)
         required = f"the controls are centred and released by {by:g} s after {words}"
-        self._hold(required, verdict, happenings=True)
+        self._hold(required, verdict, events=True)
 
     # What the aircraft does.
 
@@ -178,10 +177,10 @@ class Flight:
         since: float | None = None,
         for_: float = 3.0,
     ) -> None:
-        """Require that it comes `within` so much of its set point, and stays there.
+        """Require that it comes within `within` of its set point, and stays there.
 
-        From `by` s after the set point last changed (or after `since`) on, for `for_` s
-        and for as long after as was flown. `at` takes the place of the set point.
+        From `by` s after the last change of the set point (or after `since`) on, for `for_` s and
+        until the end of the flight so far. `at` replaces the set point.
         """
         __tracebackhide__ = True
         quantity, within = quantity_of(quantity), _positive("within", within)
@@ -211,10 +210,9 @@ class Flight:
         from_: float = 0.0,
         to: float | None = None,
     ) -> None:
-        """Require that it is `within` so much of its set point from one time to another.
+        """Require that it stays within `within` of its set point from one time to another.
 
-        From engagement to where the flight is, unless said otherwise; `at` takes the
-        place of the set point.
+        By default from engagement until now; `at` replaces the set point.
         """
         __tracebackhide__ = True
         quantity, within = quantity_of(quantity), _positive("within", within)
@@ -229,7 +227,7 @@ class Flight:
     def overshoots_less_than(
         self, quantity: Quantity | str, limit: float, *, since: float | None = None
     ) -> None:
-        """Require that it goes less than `limit` past its set point since that changed."""
+        """Require that it goes less than `limit` past its set point since the last change."""
         __tracebackhide__ = True
         quantity, limit = quantity_of(quantity), _positive("limit", limit)
         leg = self._leg(self.time_s if since is None else _seconds("since", since))
@@ -242,13 +240,13 @@ class Flight:
         )
 
     def never(self, what: Condition | str, *, from_: float = 0.0, to: float | None = None) -> None:
-        """Require that a condition, `abs(bank) > 35`, or a state, "failsafe", never comes."""
+        """Require that a condition, `abs(bank) > 35`, or a state, "failsafe", never occurs."""
         __tracebackhide__ = True
         if isinstance(what, str):
             if what not in STATES:
                 raise ValueError(f"there is no state {what!r}; choose one of {', '.join(STATES)}")
             from_, to = self._span(from_, to)
-            came = [h for h in self._happenings(from_, to) if f" -> {what}" in h.text]
+            came = [h for h in self._events(from_, to) if f" -> {what}" in h.text]
             flown = f"{came[0].text} at {self._since_engaged(came[0]):.2f} s" if came else ""
             required = f"the autopilot is never in {what} from {from_:g} s to {to:g} s"
             self._hold(required, Verdict(not came, flown))
@@ -273,19 +271,19 @@ class Flight:
             self.rig.fly_to(time_s)
             self._flown_to_s = time_s
 
-    def _find(self, text: str, since_s: float) -> Happening | None:
-        for happening in self.rig.happenings:
+    def _find(self, text: str, since_s: float) -> Event | None:
+        for happening in self.rig.events:
             if happening.time_s >= since_s - _TOLERANCE_S and happening.text.startswith(text):
                 return happening
         return None
 
     def _await(
         self, text: str, since_s: float, until_s: float, later_s: float = 0.0
-    ) -> Happening | None:
-        """Fly on until something happens that begins with `text`, or it is too late."""
+    ) -> Event | None:
+        """Fly on until an event begins with `text`, or it is too late."""
         found = self._find(text, since_s)
         if found is None:
-            # What comes too late is still worth a word, and so is what is just seen.
+            # A late event is reported, too.
             self.rig.fly_to(until_s + later_s + 1.0, lambda: self._find(text, since_s) is not None)
             found = self._find(text, since_s)
         seen_s = until_s if found is None else found.time_s
@@ -300,7 +298,7 @@ class Flight:
         after = _seconds("after", after)
         return self.engaged_at_s + after, f"{after:g} s"
 
-    def _judge(self, found: Happening | None, since_s: float, by: float) -> Verdict:
+    def _judge(self, found: Event | None, since_s: float, by: float) -> Verdict:
         if found is None:
             return Verdict(is_met=False, flown=f"it is {self.state} {by:g} s later")
         after_s = found.time_s - since_s
@@ -308,11 +306,11 @@ class Flight:
         return Verdict(is_met, f"{found.text}, {after_s:.2f} s later")
 
     def _span(self, from_: object, to: object | None) -> tuple[float, float]:
-        """Return a span since engagement, flown to its end."""
+        """Return a span since engagement; fly to its end."""
         start_s = _seconds("from_", from_)
         end_s = self.time_s if to is None else _seconds("to", to)
         if end_s < start_s:
-            raise ValueError(f"from {start_s:g} s to {end_s:g} s: the end comes before the start")
+            raise ValueError(f"from {start_s:g} s to {end_s:g} s: the end is before the start")
         self._fly_to(self.engaged_at_s + end_s)
         return start_s, end_s
 
@@ -346,20 +344,20 @@ class Flight:
             targets = np.array([_set_point(quantity, point) for point in points])
         return Stretch(quantity, time_s[shown], values, targets)
 
-    def _since_engaged(self, happening: Happening) -> float:
+    def _since_engaged(self, happening: Event) -> float:
         return happening.time_s - self.engaged_at_s
 
-    def _happenings(self, from_s: float, to_s: float) -> list[Happening]:
-        return [h for h in self.rig.happenings if from_s < self._since_engaged(h) <= to_s]
+    def _events(self, from_s: float, to_s: float) -> list[Event]:
+        return [h for h in self.rig.events if from_s < self._since_engaged(h) <= to_s]
 
-    def _hold(self, required: str, verdict: Verdict, *, happenings: bool = False) -> None:
+    def _hold(self, required: str, verdict: Verdict, *, events: bool = False) -> None:
         __tracebackhide__ = True
         if verdict.is_met:
             return
         lines = [f"required: {required}", f"flown:    {verdict.flown}"]
-        if happenings:
-            said = [f"{h.time_s:.2f} s {h.text}" for h in self.rig.happenings]
-            lines.append("said:     " + ("; ".join(said[-_LAST_HAPPENINGS:]) or "nothing"))
+        if events:
+            log = [f"{h.time_s:.2f} s {h.text}" for h in self.rig.events]
+            lines.append("events:   " + ("; ".join(log[-_LAST_HAPPENINGS:]) or "nothing"))
         raise RequirementError("\n".join(lines))
 
 

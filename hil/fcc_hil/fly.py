@@ -1,9 +1,8 @@
 """A flight of the daemon through the timed pattern: stand-in, daemon, switch, score.
 
-The stand-in runs in a process of its own, the daemon in another; this one only
-watches. The switch is moved inside the simulator, as a person would, so no network
-fault can lose it. The score is made from JSBSim's truth and never from what the
-daemon says of itself.
+The stand-in and the daemon run in separate processes; this one only observes. The switch is moved
+inside the simulator, as by a person, so that no network fault can lose it. The score is computed
+from JSBSim's true state and never from the daemon's report.
 """
 
 from __future__ import annotations
@@ -32,17 +31,17 @@ _STEADY_S = 2.0
 _ENGAGE_S = 3.0
 _RELEASE_S = 3.0
 _LOOK_S = 0.05
-# Real time may run this much longer than the simulated flight before we give up.
+# Real time may exceed the simulated flight by this before giving up.
 _PATIENCE = 1.5
 
 
 class FlightError(RuntimeError):
-    """The flight could not be flown to its end."""
+    """The flight could not be completed."""
 
 
 @dataclass(frozen=True)
-class Order:
-    """What to fly."""
+class Plan:
+    """A flight to be flown."""
 
     daemon: Sequence[str]
     """The daemon's command line."""
@@ -54,23 +53,23 @@ class Order:
 
 @dataclass(frozen=True)
 class Flight:
-    """What came of it."""
+    """The result."""
 
-    order: Order
+    plan: Plan
     figures: Score
     truth: Truth
     engaged_at_s: float
     report: dict[str, Any] | None
-    """What the daemon said of itself."""
+    """The daemon's report."""
     exit_code: int
     standin: dict[str, Any]
     """The stand-in's status at the end."""
     failures: list[str]
-    """What went wrong, in words; empty after a good flight."""
+    """Failures, as text; empty after a good flight."""
 
     def document(self, peer: Score) -> dict[str, Any]:
-        """Return the flight as other tools read it."""
-        settings = self.order.settings
+        """Return the flight for other programs."""
+        settings = self.plan.settings
         report = self.report or {}
         return {
             "aircraft": settings.aircraft,
@@ -80,7 +79,7 @@ class Flight:
             "peer": peer,
             "events": report.get("events"),
             "conditions": {
-                "legs": self.order.legs,
+                "legs": self.plan.legs,
                 "noise": settings.noise,
                 "inbound": asdict(settings.inbound),
                 "outbound": asdict(settings.outbound),
@@ -93,21 +92,21 @@ class Flight:
         }
 
 
-def progress_line(order: Order, engaged_at_s: float, progress: Progress) -> str:
-    """Return one line that says where the flight stands."""
+def progress_line(plan: Plan, engaged_at_s: float, progress: Progress) -> str:
+    """Return one line with the state of the flight."""
     now = dict(zip(COLUMNS, progress.now, strict=True))
-    leg = min(order.legs, order.pattern.legs_begun(progress.time_s - engaged_at_s))
+    leg = min(plan.legs, plan.pattern.legs_begun(progress.time_s - engaged_at_s))
     return (
-        f"{progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {order.legs}  "
+        f"{progress.time_s - engaged_at_s:6.1f} s  leg {leg} of {plan.legs}  "
         f"altitude {now['altitude_ft']:7.1f} ft  heading {now['heading_deg']:5.1f}°  "
         f"airspeed {now['airspeed_kt']:5.1f} kt  bank {now['roll_deg']:5.1f}°"
     )
 
 
-def fly(order: Order, say: Callable[[str], None]) -> Flight:
-    """Fly an order in real time. Raises FlightError if it cannot be flown to its end."""
-    with StandInProcess(order.settings) as simulator, Daemon(order.daemon) as daemon:
-        say(f"{order.settings.aircraft} flies on UDP port {simulator.port}")
+def fly(plan: Plan, notify: Callable[[str], None]) -> Flight:
+    """Fly in real time. Raise FlightError if the flight cannot be completed."""
+    with StandInProcess(plan.settings) as simulator, Daemon(plan.daemon) as daemon:
+        notify(f"{plan.settings.aircraft} flies on UDP port {simulator.port}")
         _await(
             simulator,
             daemon,
@@ -122,19 +121,19 @@ def fly(order: Order, say: Callable[[str], None]) -> Flight:
             daemon,
             lambda progress: progress.time_s >= start_s + _STEADY_S,
             _STEADY_S + _ENGAGE_S,
-            "simulated time stands still",
+            "simulated time has stopped",
         )
-        engaged_at_s = simulator.write(order.engage_switch, 1.0)
+        engaged_at_s = simulator.write(plan.engage_switch, 1.0)
         _await(
             simulator,
             daemon,
             lambda progress: progress.overridden,
             _ENGAGE_S,
-            f"the daemon has not taken the controls {_ENGAGE_S:.0f} s after {order.engage_switch} "
+            f"the daemon has not taken the controls {_ENGAGE_S:.0f} s after {plan.engage_switch} "
             "went to 1; check the engage switch in its configuration",
         )
-        _watch(order, simulator, daemon, engaged_at_s, say)
-        failures = _switch_off(order, simulator, daemon)
+        _watch(plan, simulator, daemon, engaged_at_s, notify)
+        failures = _switch_off(plan, simulator, daemon)
         exit_code = daemon.stop()
         report = daemon.report()
         if exit_code != 0:
@@ -145,14 +144,14 @@ def fly(order: Order, say: Callable[[str], None]) -> Flight:
             missed = report.get("timing", {}).get("missed", 0)
             if missed:
                 failures.append(f"the loop missed {missed} ticks")
-        # The status first: handing the truth over takes longer than a frame.
+        # The status first: transferring the truth takes longer than a frame.
         status = simulator.status()
         truth = simulator.truth()
     figures = score(
         truth.trace(),
-        order.pattern.legs(order.legs, engaged_at_s, truth.captured_at(engaged_at_s)),
+        plan.pattern.legs(plan.legs, engaged_at_s, truth.captured_at(engaged_at_s)),
     )
-    return Flight(order, figures, truth, engaged_at_s, report, exit_code, status, failures)
+    return Flight(plan, figures, truth, engaged_at_s, report, exit_code, status, failures)
 
 
 def _await(
@@ -172,19 +171,19 @@ def _await(
 
 
 def _watch(
-    order: Order,
+    plan: Plan,
     simulator: StandInProcess,
     daemon: Daemon,
     engaged_at_s: float,
-    say: Callable[[str], None],
+    notify: Callable[[str], None],
 ) -> None:
-    duration_s = order.pattern.duration_s(order.legs)
+    duration_s = plan.pattern.duration_s(plan.legs)
     give_up_s = time.monotonic() + duration_s * _PATIENCE + _ENGAGE_S
     next_line_s = engaged_at_s
     while True:
         progress = simulator.progress()
         if progress.time_s >= next_line_s:
-            say(progress_line(order, engaged_at_s, progress))
+            notify(progress_line(plan, engaged_at_s, progress))
             next_line_s += 1.0
         # One more row than the last leg needs, so that it is complete.
         if progress.time_s > engaged_at_s + duration_s + _LOOK_S:
@@ -199,13 +198,13 @@ def _watch(
         time.sleep(_LOOK_S)
 
 
-def _switch_off(order: Order, simulator: StandInProcess, daemon: Daemon) -> list[str]:
-    """Move the switch back; return what is wrong with how the daemon let go."""
-    simulator.write(order.engage_switch, 0.0)
+def _switch_off(plan: Plan, simulator: StandInProcess, daemon: Daemon) -> list[str]:
+    """Switch off; return what is wrong with the release."""
+    simulator.write(plan.engage_switch, 0.0)
     deadline_s = time.monotonic() + _RELEASE_S
     while simulator.progress().overridden and time.monotonic() < deadline_s:
         if daemon.exit_code is not None:
-            # Its last words may still be on their way.
+            # Its last datagrams may still be under way.
             deadline_s = min(deadline_s, time.monotonic() + 0.5)
         time.sleep(_LOOK_S)
     return [
@@ -215,9 +214,9 @@ def _switch_off(order: Order, simulator: StandInProcess, daemon: Daemon) -> list
     ]
 
 
-def peer_row(order: Order) -> Score:
+def peer_row(plan: Plan) -> Score:
     """Return the score of JSBSim's own autopilot on the same pattern, in calm air."""
-    figures, _ = fly_peer(order.legs, order.settings.seed, order.pattern)
+    figures, _ = fly_peer(plan.legs, plan.settings.seed, plan.pattern)
     return figures
 
 
@@ -226,7 +225,7 @@ def write_document(path: Path, document: dict[str, Any]) -> None:
     path.write_text(json.dumps(document, indent=2) + "\n")
 
 
-def say_on_stderr(line: str) -> None:
-    """Show a line of progress: over the last one on a terminal, else below it."""
+def print_progress(line: str) -> None:
+    """Print a line of progress: over the last one on a terminal, otherwise below it."""
     end = "\r" if sys.stderr.isatty() else "\n"
     print(line.ljust(100) if end == "\r" else line, end=end, file=sys.stderr, flush=True)

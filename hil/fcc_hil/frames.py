@@ -1,4 +1,4 @@
-"""Frames at a steady rate: absolute deadlines on the monotonic clock, and how they were met."""
+"""Frames at a constant rate: absolute deadlines on the monotonic clock, and their statistics."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TypedDict
 
 import numpy as np
 
-# Further behind than this, frames are skipped instead of run one after another.
+# If further behind than this, frames are skipped instead of run one after another.
 _GIVE_UP_S = 0.25
 
 
@@ -21,14 +21,14 @@ class Spread(TypedDict):
 
 
 class FrameReport(TypedDict):
-    """How the frames kept their time."""
+    """Statistics of the frames."""
 
     frames: int
     rate_hz: float
     slipped: int
     """Frames begun more than one period late."""
     skipped: int
-    """Frames never run, because the loop had fallen too far behind."""
+    """Frames never run, because the loop was too far behind."""
     lateness_us: Spread
     """From the deadline to the frame's begin."""
     work_us: Spread
@@ -43,7 +43,7 @@ def _spread(values: array[float]) -> Spread:
 
 
 class FrameClock:
-    """Waits for each frame's deadline, and keeps the lateness and the work of each."""
+    """Waits for each frame's deadline, and records the lateness and the work of each."""
 
     def __init__(self, rate_hz: float) -> None:
         """Start at `rate_hz`; the first frame is one period from now."""
@@ -55,7 +55,7 @@ class FrameClock:
         self.set_rate(rate_hz)
 
     def set_rate(self, rate_hz: float) -> None:
-        """Change the rate and start over from now."""
+        """Change the rate and restart from now."""
         if not 1.0 <= rate_hz <= 1000.0:
             raise ValueError(f"frame rate {rate_hz:g} Hz: give 1 to 1000")
         self.rate_hz = rate_hz
@@ -80,11 +80,11 @@ class FrameClock:
             self._deadline_s += missed * self.period_s
 
     def done(self) -> None:
-        """Say that the frame's work is finished."""
+        """Mark the frame's work as done."""
         self._work_s.append(time.monotonic() - self._begun_s)
 
     def report(self) -> FrameReport:
-        """Return how the frames have kept their time since the start."""
+        """Return the statistics of the frames since the start."""
         return {
             "frames": len(self._lateness_s),
             "rate_hz": self.rate_hz,

@@ -1,8 +1,8 @@
 """The autopilot and JSBSim in lockstep: no clock, no network, as fast as both compute.
 
-The same autopilot as in the daemon, through the module `fcc`. Each tick reads the
-sensors, steps the autopilot, writes the controls and steps the plant; a delay of n
-ticks hands it the measurements of n ticks before.
+The same autopilot as in the daemon, through the module `fcc`. Each tick reads the sensors, steps
+the autopilot, writes the controls and steps the plant; with a delay of n ticks it gets the
+measurements of n ticks before.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import fcc
 
-from .beginning import Beginning, begin
+from .initial_state import InitialState, begin
 from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
@@ -26,23 +26,23 @@ _THESIS_PATTERN = TimedPattern()
 
 @dataclass(frozen=True)
 class Scenario:
-    """What is flown, and what is in its way."""
+    """A flight and its conditions."""
 
     aircraft: str = "c172p"
     legs: int = 8
     seed: int = 1
     noise: bool = False
     delay_ticks: int = 0
-    """Age of what the autopilot is told, in ticks of 25 ms."""
+    """Age of the measurements, in ticks of 25 ms."""
     weather: Weather = _CALM
     pattern: TimedPattern = _THESIS_PATTERN
     config: str = ""
-    """Text of a configuration; the gains as they stand if empty."""
-    beginning: Beginning = Beginning.TRIMMED
+    """Text of a configuration; the default gains if empty."""
+    initial_state: InitialState = InitialState.TRIMMED
 
 
 def measurements(state: State) -> fcc.Measurements:
-    """Return what faultless sensors say of a state."""
+    """Return the measurements of ideal sensors."""
     return fcc.Measurements(
         pitch_rad=state.pitch_rad,
         roll_rad=state.roll_rad,
@@ -71,7 +71,7 @@ class _Sensors:
 
 
 def fly(scenario: Scenario) -> tuple[Score, Truth]:
-    """Fly a scenario to its end; return its score and what was flown."""
+    """Fly a scenario to its end; return its score and the truth."""
     plant = Plant(scenario.aircraft, seed=scenario.seed, weather=scenario.weather)
     autopilot = fcc.Autopilot(scenario.config)
     sensors = _Sensors(scenario)
@@ -79,7 +79,7 @@ def fly(scenario: Scenario) -> tuple[Score, Truth]:
     def watch(state: State) -> None:
         autopilot.observe(sensors.read(state), 1 / TRUTH_HZ)
 
-    standing = begin(plant, scenario.beginning, scenario.config, measurements, watch)
+    standing = begin(plant, scenario.initial_state, scenario.config, measurements, watch)
     autopilot.engage(
         sensors.read(plant.state()),
         1 / TRUTH_HZ,

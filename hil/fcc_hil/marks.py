@@ -1,4 +1,4 @@
-"""What the marks `aircraft` and `autopilot` of a test ask for, checked."""
+"""The marks `aircraft` and `autopilot` of a test, checked."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ def aircraft_mark(
     noise: bool = False,
     heading: float = 0.0,
 ) -> Settings:
-    """Return the aircraft that is asked for; ValueError or TypeError says what is wrong.
+    """Return the aircraft of the mark; raise ValueError or TypeError for a wrong argument.
 
-    `name` is one of JSBSim's in the table; `wind` is from where (deg, true) and how
-    strong (kt); `turbulence` 0 calm, 3 light, 4 moderate, to 7; `seed` that of all
-    random sequences; `noise` that of a phone's sensors; `heading` to begin with (deg).
+    `name` is one of JSBSim's in the table; `wind` is direction (deg, true) and speed (kt);
+    `turbulence` 0 calm, 3 light, 4 moderate, to 7; `seed` is for all random sequences; `noise` is
+    that of a phone's sensors; `heading` is the initial one (deg).
     """
     if not isinstance(name, str):
         raise TypeError(f"aircraft is {name!r}: give the name of one")
@@ -71,10 +71,10 @@ def aircraft_mark(
 
 @dataclass(frozen=True)
 class AutopilotMark:
-    """What an autopilot is told; on another host, what the daemon there is told already."""
+    """The autopilot's settings; on another host, those that the daemon there already has."""
 
     pattern: TimedPattern | None
-    """None to hold what was captured."""
+    """None to hold the captured state."""
     failsafe_hold_s: float
     """How long failsafe holds the wings level before the controls are released."""
     config: str
@@ -104,11 +104,11 @@ def autopilot_mark(
     failsafe_hold_s: float = 5.0,
     config: str = "",
 ) -> AutopilotMark:
-    """Return the autopilot that is asked for; ValueError or TypeError says what is wrong.
+    """Return the autopilot of the mark; raise ValueError or TypeError for a wrong argument.
 
-    The timed pattern holds for `hold_s`, then turns `turn_deg` (right if positive) every
-    `leg_s` and climbs `climb_ft` on every odd leg, coming back on every even one.
-    `config` is the text of more sections: gains, limits, the loop's rate.
+    The timed pattern holds for `hold_s`, then turns by `turn_deg` (right if positive) every
+    `leg_s`, climbs `climb_ft` on every odd leg and descends on every even one. `config` is the text
+    of more sections: gains, limits, the loop's rate.
     """
     if mode not in MODES:
         raise ValueError(f"mode is {mode!r}: choose {' or '.join(MODES)}")

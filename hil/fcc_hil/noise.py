@@ -49,12 +49,12 @@ class SensorNoise:
     """Adds seeded noise to a state; one call is one sample of every sensor."""
 
     def __init__(self, seed: int = 1, levels: NoiseLevels | None = None) -> None:
-        """Start the random sequence that belongs to `seed`."""
+        """Start the random sequence of `seed`."""
         self._levels = levels or NoiseLevels()
         self._random = np.random.default_rng(seed)
 
     def apply(self, state: State) -> State:
-        """Return what the sensors say of `state`. Position and velocity are left as they are."""
+        """Return the measurements of `state`. Position and velocity are unchanged."""
         levels = self._levels
         n = self._random.standard_normal(_SIGMAS).tolist()
         altitude_m = state.altitude_m + levels.altitude_m * n[10]
@@ -71,7 +71,7 @@ class SensorNoise:
             specific_force_z_mps2=state.specific_force_z_mps2 + levels.specific_force_mps2 * n[8],
             airspeed_mps=max(0.0, state.airspeed_mps + levels.airspeed_mps * n[9]),
             altitude_m=altitude_m,
-            # The barometer is the same instrument: it errs by the same amount.
+            # The barometer is the same instrument: it has the same error.
             pressure_pa=state.pressure_pa
             * standard_pressure_pa(altitude_m)
             / standard_pressure_pa(state.altitude_m),

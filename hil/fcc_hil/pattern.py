@@ -1,8 +1,8 @@
-"""The timed pattern: what the aircraft should be doing at each moment since engagement.
+"""The timed pattern: the set points at each time since engagement.
 
-Hold what was captured for 20 s, then every 20 s turn 90 degrees right, climbing
-150 ft on every odd leg and coming back on every even one. Written apart from the
-daemon's, which has to arrive at the same set points by itself.
+Hold the captured state for 20 s, then turn right by 90 degrees every 20 s, climbing 150 ft on every
+odd leg and descending on every even one. Independent of the daemon's implementation, which must
+give the same set points.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .units import wrap_heading
 
 @dataclass(frozen=True)
 class SetPoints:
-    """What to fly."""
+    """Set points."""
 
     heading_deg: float
     """0..360."""
@@ -25,7 +25,7 @@ class SetPoints:
 
 @dataclass(frozen=True)
 class Leg:
-    """One stretch of a flight with constant set points, and those that it comes from.
+    """A stretch of a flight with constant set points, with those before it.
 
     It covers start_s <= time < end_s.
     """
@@ -49,7 +49,7 @@ class TimedPattern:
     turn_deg: float = 90.0
     """Per leg, positive to the right; less than 180 either way."""
     climb_ft: float = 150.0
-    """Gained on odd legs, given back on even ones."""
+    """Climbed on odd legs, descended on even ones."""
 
     def duration_s(self, legs: int) -> float:
         """Return the time from engagement to the end of the last leg."""

@@ -23,14 +23,14 @@ PEER_AIRCRAFT = "c172x"
 def fly_peer(
     legs: int = 8, seed: int = 1, pattern: TimedPattern | None = None
 ) -> tuple[Score, Truth]:
-    """Fly the pattern with JSBSim's autopilot in lockstep; return its score and what it flew."""
+    """Fly the pattern with JSBSim's autopilot in lockstep; return its score and the truth."""
     pattern = pattern or TimedPattern()
     plant = Plant(PEER_AIRCRAFT, seed=seed)
     rows = [row(plant.state(), plant.controls)]
     captured = Truth(rows).captured_at(plant.time_s)
     engaged_at_s = plant.time_s
     fdm = plant.fdm
-    # Its altitude is above the ground, which lies at sea level here.
+    # Its altitude is above the ground, which is at sea level here.
     above_ground_ft = (plant.state().height_m - plant.state().elevation_m) / FT_TO_M
     fdm["ap/heading_hold"] = 1
     fdm["ap/altitude_hold"] = 1

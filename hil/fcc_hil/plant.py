@@ -33,14 +33,14 @@ _SETTLING_MEAN_S = 5.0
 _MILSPEC_TURBULENCE = 3.0
 _TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
 
-# JSBSim greets on standard output and explains a failed trim there; the caller
-# gets the failure as a value.
+# JSBSim prints a banner and explains a failed trim on standard output; the caller gets the failure
+# as a value.
 jsbsim.set_logger(jsbsim.DefaultLogger(jsbsim.LogLevel.FATAL))
 
 
 @dataclass(frozen=True)
 class Weather:
-    """The air that the aircraft flies in."""
+    """The weather."""
 
     wind_from_deg: float = 0.0
     """Where the steady wind comes from, true."""
@@ -52,7 +52,7 @@ class Weather:
 
 
 class TrimError(RuntimeError):
-    """The aircraft could be neither trimmed nor flown to a steady state."""
+    """The aircraft could neither be trimmed nor flown to a steady state."""
 
 
 class Plant:
@@ -116,13 +116,13 @@ class Plant:
 
     @property
     def controls(self) -> Controls:
-        """What was last written."""
+        """The controls last written."""
         return self._controls
 
     def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
         """Command the controls; values beyond their range are clipped.
 
-        `throttles`, one for each engine, takes the place of the common throttle.
+        `throttles`, one for each engine, replace the common throttle.
         """
         clipped = Controls(
             elevator=min(1.0, max(-1.0, controls.elevator)),
@@ -140,7 +140,7 @@ class Plant:
         self._controls = clipped
 
     def step(self, steps: int = 1) -> None:
-        """Advance by `steps` of 1/120 s with the controls as they are."""
+        """Advance by `steps` of 1/120 s with the present controls."""
         run = self.fdm.run
         for _ in range(steps):
             run()
@@ -192,9 +192,9 @@ class Plant:
     def _set_wind(self, weather: Weather, heading_deg: float) -> None:
         """Set steady wind so that the aircraft starts at its airspeed with no sideslip.
 
-        JSBSim 1.3.3 mixes the wind up with an airspeed that is set beside it, so
-        the velocity over the ground is given outright and the wind comes last.
-        Its wind direction is where the wind blows to.
+        JSBSim 1.3.3 confuses the wind with an airspeed that is set together with it, so the
+        velocity over the ground is set directly and the wind last. Its wind direction is where the
+        wind blows to.
         """
         fdm = self.fdm
         air_fps = fdm["ic/vt-fps"]
@@ -221,8 +221,8 @@ class Plant:
             fdm["simulation/do_simple_trim"] = 1
         except jsbsim.TrimFailureError:
             return False
-        # The trim leaves the elevator in its trim property, but aileron and rudder
-        # in their commands, which the first write would wipe out.
+        # The trim leaves the elevator in its trim property, but aileron and rudder in their
+        # commands, which the first write would overwrite.
         self._move_to_trim("aileron", "roll")
         self._move_to_trim("rudder", "yaw")
         return True

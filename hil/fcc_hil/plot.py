@@ -25,7 +25,7 @@ _NAMES = ("altitude_ft", "airspeed_kt", "roll_deg", *_SURFACES, "throttle")
 
 def _asked(pattern: TimedPattern, since_s: Samples, captured: SetPoints) -> dict[str, Samples]:
     points = [pattern.set_points(max(0.0, float(t)), captured) for t in since_s]
-    # Counted on past north, so that the line has no jumps.
+    # Continuous past north, so that the line has no jumps.
     legs = np.array([pattern.legs_begun(max(0.0, float(t))) for t in since_s])
     return {
         "heading": captured.heading_deg + legs * pattern.turn_deg,
@@ -50,7 +50,7 @@ def plot_flight(
     legs: int,
     title: str,
 ) -> None:
-    """Write a picture of a flight, as PNG or whatever the file's name ends with."""
+    """Write a picture of a flight, as PNG or another format by the file's extension."""
     ends_s = engaged_at_s + pattern.duration_s(legs)
     shown = (truth["time_s"] >= engaged_at_s) & (truth["time_s"] < ends_s - 1e-6)
     column = {name: truth[name][shown] for name in ("time_s", "heading_deg", *_NAMES)}

@@ -1,4 +1,4 @@
-"""The stand-in in a process of its own, so that nothing else can hold a frame up.
+"""The stand-in in a separate process, so that nothing else delays a frame.
 
     with StandInProcess(Settings(port=0)) as simulator:
         simulator.port                                # fly against it
@@ -6,7 +6,7 @@
         simulator.set_mode(Mode.PAUSED)
         truth = simulator.truth()
 
-Orders and answers go through a pipe that the stand-in looks at once a frame.
+Commands and answers go through a pipe that the stand-in polls once per frame.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ _START_S = 30.0
 _ANSWER_S = 10.0
 _STOP_S = 5.0
 
-# Above everything that has no real-time wish, below any flight control computer.
+# Above everything without a real-time priority, below any flight control computer.
 _PRIORITY = 5
 
 
 class StandInError(RuntimeError):
-    """The stand-in's process could not start, or is gone."""
+    """The stand-in's process could not be started, or has ended."""
 
 
-class _Orders:
-    """What may be asked of the stand-in, by name, in its own process."""
+class _Commands:
+    """The stand-in's commands by name, in its own process."""
 
     def __init__(self, simulator: StandIn, scheduling: str) -> None:
         self.simulator = simulator
@@ -90,16 +90,16 @@ class _Orders:
 
 
 def request_real_time() -> str:
-    """Ask for a real-time priority; return what was granted."""
+    """Request a real-time priority; return what was granted."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
     except OSError as error:
-        return f"SCHED_OTHER (SCHED_FIFO refused: {error.strerror})"
+        return f"SCHED_OTHER (SCHED_FIFO denied: {error.strerror})"
     return f"SCHED_FIFO {_PRIORITY}"
 
 
 def _serve(settings: Settings, pipe: Connection) -> None:
-    # Ctrl-C reaches the whole group; whoever started this process ends it in order.
+    # Ctrl-C reaches the whole group; the starting process ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         simulator = StandIn(settings)
@@ -107,7 +107,7 @@ def _serve(settings: Settings, pipe: Connection) -> None:
         pipe.send(error)
         return
     pipe.send(simulator.port)
-    orders = _Orders(simulator, request_real_time())
+    orders = _Commands(simulator, request_real_time())
 
     def each_frame() -> bool:
         try:
@@ -121,8 +121,8 @@ def _serve(settings: Settings, pipe: Connection) -> None:
             return False
         return orders.running
 
-    # A collection in the middle of a flight would hold a frame up, and there is
-    # no garbage in cycles here to collect.
+    # A garbage collection in flight would delay a frame, and there are no reference cycles to
+    # collect.
     gc.freeze()
     gc.disable()
     simulator.run(each_frame)
@@ -130,10 +130,10 @@ def _serve(settings: Settings, pipe: Connection) -> None:
 
 
 class StandInProcess:
-    """A running stand-in; a context manager that stops it on the way out."""
+    """A running stand-in; a context manager that stops it."""
 
     def __init__(self, settings: Settings) -> None:
-        """Start it and wait until it listens. Raises StandInError in words if it cannot."""
+        """Start it and wait until it listens. Raise StandInError if it cannot."""
         self.settings = settings
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
@@ -160,23 +160,23 @@ class StandInProcess:
         self.stop()
 
     def read(self, path: str) -> float | None:
-        """Return a dataref as a client would see it now, without noise; None if unknown."""
+        """Return a dataref as a client would read it now, without noise; None if unknown."""
         return cast("float | None", self._ask("read", path))
 
     def write(self, path: str, value: float) -> float:
-        """Set a dataref from inside the simulator; returns the simulated time of it, s."""
+        """Set a dataref from inside the simulator; return the simulated time, s."""
         return cast(float, self._ask("write", path, value))
 
     def progress(self) -> Progress:
-        """Return how far the flight is."""
+        """Return the progress of the flight."""
         return cast(Progress, self._ask("progress"))
 
     def status(self) -> dict[str, Any]:
-        """Return who listens, what came in, what was refused and how the frames went."""
+        """Return clients, received messages, refused datagrams and the statistics of frames."""
         return cast("dict[str, Any]", self._ask("status"))
 
     def truth(self) -> Truth:
-        """Return what was flown so far, 40 rows to a second of simulated time."""
+        """Return the truth so far, 40 rows per second of simulated time."""
         return cast(Truth, self._ask("truth"))
 
     def rows(self, first: int) -> list[Row]:
@@ -184,7 +184,7 @@ class StandInProcess:
         return cast("list[Row]", self._ask("rows", first))
 
     def set_sensor_faults(self, faults: Sequence[SensorFault]) -> None:
-        """Put faults into the sensors in place of those that were."""
+        """Replace the faults of the sensors."""
         self._ask("set_sensor_faults", list(faults))
 
     def journal(self) -> list[Write]:
@@ -192,7 +192,7 @@ class StandInProcess:
         return cast("list[Write]", self._ask("journal"))
 
     def releases(self) -> list[Release]:
-        """Return every release of an override so far, with the controls at that moment."""
+        """Return every release of an override so far, with the controls at that time."""
         return cast("list[Release]", self._ask("releases"))
 
     def set_mode(self, mode: Mode) -> None:
@@ -204,7 +204,7 @@ class StandInProcess:
         self._ask("set_frame_rate", rate_hz)
 
     def restart_flight(self) -> None:
-        """Put the aircraft back to where it began."""
+        """Put the aircraft back to its start."""
         self._ask("restart_flight")
 
     def jump(self, seconds: float) -> None:
@@ -212,7 +212,7 @@ class StandInProcess:
         self._ask("jump", seconds)
 
     def stop(self) -> None:
-        """End it in order; does nothing if it is gone."""
+        """End it; does nothing if it has ended."""
         if self._process.is_alive():
             with contextlib.suppress(StandInError):
                 self._ask("stop")
@@ -220,7 +220,7 @@ class StandInProcess:
         self.kill()
 
     def kill(self) -> None:
-        """End it at once, as a crash does: not a word to its clients."""
+        """Kill it, as a crash does: its clients receive nothing."""
         if self._process.is_alive():
             self._process.kill()
         self._process.join(_STOP_S)
@@ -230,7 +230,7 @@ class StandInProcess:
         try:
             self._pipe.send((name, arguments))
         except OSError as error:
-            raise StandInError("the stand-in's process is gone") from error
+            raise StandInError("the stand-in's process has ended") from error
         return self._receive(_ANSWER_S)
 
     def _receive(self, timeout_s: float) -> object:
@@ -239,7 +239,7 @@ class StandInProcess:
                 raise StandInError(f"the stand-in has not answered for {timeout_s:.0f} s")
             answer = self._pipe.recv()
         except (EOFError, OSError) as error:
-            raise StandInError("the stand-in's process is gone") from error
+            raise StandInError("the stand-in's process has ended") from error
         if isinstance(answer, Exception):
             raise StandInError(str(answer)) from answer
         return cast(object, answer)

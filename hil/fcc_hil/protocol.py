@@ -1,9 +1,9 @@
-"""X-Plane's side of its UDP protocol: parse what comes in, build what goes out.
+"""X-Plane's side of its UDP protocol: parses received datagrams, builds replies.
 
-Every message begins with four letters and a fifth byte. To X-Plane that byte is NUL;
-from X-Plane it is for internal use and differs by version. All numbers are packed
-and little-endian. Parsing is as strict as X-Plane 12: a datagram of the wrong length
-is refused, and `ProtocolError` says in words what was wrong with it.
+Every message begins with four letters and a fifth byte. To X-Plane that byte is NUL; from X-Plane
+it is for internal use and differs by version. All numbers are packed and little-endian. Parsing is
+as strict as X-Plane 12: a datagram of the wrong length is refused, and `ProtocolError` states the
+reason.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MAX_PAIRS = 183
 LAST_ROW = 138
 """The highest row of the Data Output screen. Selecting a higher one crashes X-Plane."""
 UNUSED = -999.0
-"""In a DATA row: no value here, leave as is."""
+"""In a DATA row: no value, unchanged."""
 
 _SUBSCRIBE = struct.Struct("<ii")
 _FLOAT = struct.Struct("<f")
@@ -41,7 +41,7 @@ class ProtocolError(ValueError):
 
 @dataclass(frozen=True)
 class Subscribe:
-    """RREF: send a dataref's value so many times a second, under the caller's index."""
+    """RREF: send a dataref's value at this frequency, under the caller's index."""
 
     frequency_hz: int
     """0 ends the subscription."""
@@ -59,14 +59,14 @@ class WriteDataref:
 
 @dataclass(frozen=True)
 class WriteRows:
-    """DATA: set the columns of rows, other than those that hold -999."""
+    """DATA: set the columns of rows, except those with -999."""
 
     rows: tuple[tuple[int, tuple[float, ...]], ...]
 
 
 @dataclass(frozen=True)
 class RequestPosition:
-    """RPOS: send the position so many times a second; 0 ends it."""
+    """RPOS: send the position at this frequency; 0 ends it."""
 
     frequency_hz: int
 
@@ -142,7 +142,7 @@ def _parse_write(body: bytes) -> WriteDataref:
     (value,) = _FLOAT.unpack_from(body)
     path = _path(body[_FLOAT.size :], "DREF", terminated=True)
     if not math.isfinite(value):
-        raise ProtocolError(f"DREF: {path} = {value} is not a number to fly with")
+        raise ProtocolError(f"DREF: {path} = {value} is not a finite number")
     return WriteDataref(value, path)
 
 
@@ -182,7 +182,7 @@ def _parse_selection(body: bytes, *, on: bool) -> SelectRows:
 
 @dataclass(frozen=True)
 class Dialect:
-    """What differs between versions of X-Plane on the wire."""
+    """Differences between versions of X-Plane's protocol."""
 
     version: int
     """As X-Plane reports it: 115501 is 11.55 r1."""
@@ -218,7 +218,7 @@ def rref_replies(pairs: Sequence[tuple[int, float]], dialect: Dialect) -> list[b
 
 @dataclass(frozen=True)
 class Position:
-    """What RPOS carries, in the order and the units of the wire."""
+    """The content of RPOS, in the order and the units of the protocol."""
 
     longitude_deg: float
     latitude_deg: float

@@ -1,13 +1,13 @@
-"""The pytest plugin: fixtures that fly, and what a failed test leaves behind.
+"""The pytest plugin: fixtures that fly, and the artifacts of failed tests.
 
     def test_it_turns(flight):
         flight.engages(by=3)
         flight.flies(to=20)
         flight.settles(heading, within=2, by=17)
 
-A flight is in lockstep unless pytest is told `--realtime` (the daemon of this machine) or
-`--fccd HOST` (that of another), or the test is marked `realtime`. What flies is told by
-the marks `aircraft` and `autopilot`.
+A flight is in lockstep unless pytest has the option `--realtime` (the daemon of this machine) or
+`--fccd HOST` (that of another), or the test is marked `realtime`. The marks `aircraft` and
+`autopilot` configure it.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ _XPLANE_PORT = 49_000
 _FLIGHTS = pytest.StashKey[list[Flight]]()
 _LISTEN = pytest.StashKey[tuple[str, int]]()
 
-Wished = TypeVar("Wished")
+Made = TypeVar("Made")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Say how flights are flown, and where failed ones leave what there is."""
+    """Add the options: how flights are flown, and where artifacts are saved."""
     group = parser.getgroup("flight", "flights by the flight control computer")
     group.addoption(
         "--realtime",
@@ -70,16 +70,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--flight-artifacts",
         metavar="DIR",
         default=ARTIFACTS,
-        help="where failed tests leave plots and recordings (%(default)s)",
+        help="folder of the plots and recordings of failed tests (%(default)s)",
     )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Declare the marks, and check the options before anything flies."""
+    """Declare the marks, and check the options before any flight."""
     for line in (
-        "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): what flies",
+        "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): the aircraft",
         "autopilot(mode, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, config): "
-        "what the autopilot is told",
+        "the autopilot's settings",
         "realtime: always in real time",
     ):
         config.addinivalue_line("markers", line)
@@ -108,7 +108,7 @@ def _listen_at(listen: str | None, host: str) -> tuple[str, int]:
 def pytest_runtest_makereport(
     item: pytest.Item,
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Leave what there is of a failed test's flights, and say where."""
+    """Save the artifacts of a failed test's flights, and report where."""
     report = yield
     flights = item.stash.get(_FLIGHTS, [])
     if report.failed and report.when == "call" and flights:
@@ -121,14 +121,14 @@ def pytest_runtest_makereport(
             try:
                 lines += [str(path) for path in leave(flight, folder)]
             except (OSError, RuntimeError) as error:
-                lines.append(f"not all is left behind: {error}")
+                lines.append(f"not everything was saved: {error}")
         report.sections.append(("Flight", "\n".join(lines)))
     return report
 
 
 @pytest.fixture
 def aircraft(request: pytest.FixtureRequest) -> Plant:
-    """Return an aircraft of JSBSim's in trimmed flight, as the mark `aircraft` says."""
+    """Return an aircraft of JSBSim in trimmed flight, as configured by the mark `aircraft`."""
     settings = _settings(request)
     try:
         return Plant(
@@ -143,7 +143,7 @@ def aircraft(request: pytest.FixtureRequest) -> Plant:
 
 @pytest.fixture
 def autopilot(request: pytest.FixtureRequest) -> fcc.Machine:
-    """Return the daemon's loop, to be stepped by hand, as the mark `autopilot` says."""
+    """Return the daemon's loop, to be stepped by the test, configured by the mark `autopilot`."""
     try:
         import fcc  # noqa: PLC0415 - only flights in lockstep need it
     except ImportError:
@@ -179,7 +179,7 @@ def daemon(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[DaemonRig
 
 @pytest.fixture
 def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
-    """Return a flight: in lockstep, or in real time with --realtime, --fccd or so marked."""
+    """Return a flight: in lockstep, or in real time with --realtime, --fccd or the mark."""
     config, settings, mark = request.config, _settings(request), _autopilot(request)
     is_real_time = (
         config.getoption("--realtime")
@@ -206,7 +206,7 @@ def flight(request: pytest.FixtureRequest) -> Iterator[Flight]:
 
 @pytest.fixture
 def faults(flight: Flight) -> Faults:
-    """Return what breaks the flight's sensors."""
+    """Return the faults for the flight's sensors."""
     return flight.faults
 
 
@@ -218,7 +218,7 @@ def _autopilot(request: pytest.FixtureRequest) -> AutopilotMark:
     return _marked(request, "autopilot", autopilot_mark)
 
 
-def _marked(request: pytest.FixtureRequest, name: str, make: Callable[..., Wished]) -> Wished:
+def _marked(request: pytest.FixtureRequest, name: str, make: Callable[..., Made]) -> Made:
     mark = request.node.get_closest_marker(name)
     try:
         return make() if mark is None else make(*mark.args, **mark.kwargs)

@@ -1,11 +1,11 @@
-"""What a flight is measured by: each quantity with its units and where it is found.
+"""The quantities of a flight, with their units and where they are found.
 
     altitude                      in feet
     altitude("m")                 in metres
     abs(bank) > 35                a condition, for `flight.never(...)`
 
-A quantity has a column of the truth, by which requirements are judged, or channels of
-the sensors, in which faults are put, or both.
+A quantity has a column of the truth, for requirements, or channels of the sensors, for faults, or
+both.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _FRACTION = {"": 1.0}
 
 
 def finite(name: str, value: object) -> float:
-    """Return a number of an argument's, or raise TypeError or ValueError that names it."""
+    """Return an argument as a number, or raise TypeError or ValueError with its name."""
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise TypeError(f"{name} is {value!r}: give a number")
     number = float(value)
@@ -47,13 +47,13 @@ class Quantity:
     name: str
     unit: str
     units: Mapping[str, float]
-    """How much of each unit one of the first is."""
+    """The size of the first unit in each unit."""
     column: str | None = None
-    """Of the truth, in the first unit; None if it is no single number."""
+    """The column of the truth, in the first unit; None if it is not a single number."""
     channels: tuple[str, ...] = ()
-    """The fields of `state.State` in which sensors tell it; none if none does."""
+    """The fields of `state.State` measured by sensors; empty if there are none."""
     circle: float | None = None
-    """What a full turn is, in the first unit."""
+    """A full turn, in the first unit."""
     is_absolute: bool = False
     """Whether its magnitude is meant."""
 
@@ -86,12 +86,12 @@ class Quantity:
     def of(self, columns: Callable[[str], Samples]) -> Samples:
         """Return its values, by the columns of a truth."""
         if self.column is None:
-            raise ValueError(f"{self.name} is no single number: ask for one of its parts")
+            raise ValueError(f"{self.name} is not a single number: use one of its parts")
         values = columns(self.column) * self.units[self.unit]
         return np.abs(values) if self.is_absolute else values
 
     def difference(self, of: Samples, to: Samples | float) -> Samples:
-        """Return `of` less `to` in its unit, the short way round where it is a direction."""
+        """Return `of` minus `to` in its unit; for a direction, the shorter way."""
         off = np.asarray(of - to, dtype=np.float64)
         if self.circle is None:
             return off
@@ -99,7 +99,7 @@ class Quantity:
         return (off + circle / 2.0) % circle - circle / 2.0
 
     def words(self, value: float, digits: int = 1) -> str:
-        """Return a value of it as people write it."""
+        """Return a value with its unit, as text."""
         if not self.unit:
             digits += 1
         return f"{value:.{digits}f} {self.unit}".rstrip()
@@ -174,7 +174,7 @@ SENSORS: dict[str, tuple[str, ...]] = {
 
 
 def quantity_of(given: Quantity | str) -> Quantity:
-    """Return a quantity by itself or by its name; ValueError says which there are."""
+    """Return a quantity given by itself or by its name; ValueError lists the names."""
     if isinstance(given, Quantity):
         return given
     if isinstance(given, str) and given in QUANTITIES:

@@ -1,4 +1,4 @@
-"""A daemon on another host, flown by the stand-in on this one.
+"""A daemon on another host, flown against the stand-in on this one.
 
 That daemon runs already, with `[x-plane] simulator` set to this host. There is no shell
 and no live telemetry between the two: what is known of it is what it does to the
@@ -14,18 +14,18 @@ from dataclasses import replace
 
 from .marks import AutopilotMark
 from .process import StandInError, StandInProcess
-from .rig import ENGAGED, FAILSAFE, RELEASED, FlightError, Happening
+from .rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError
 from .standin import Progress, Settings
 from .standin_rig import StandInRig
 
 _SUBSCRIBE_S = 30.0
-"""A daemon asks again every 5 s, by default."""
+"""A daemon repeats its subscriptions every 5 s by default."""
 _SETTLE_S = 4.0
 _SEEN_LATE_S = 0.5
 
 
 def address_of(host: str) -> str:
-    """Return a host's IPv4 address, or raise ValueError in words."""
+    """Return a host's IPv4 address, or raise ValueError."""
     try:
         return socket.gethostbyname(host)
     except (OSError, UnicodeError) as error:
@@ -33,13 +33,13 @@ def address_of(host: str) -> str:
 
 
 def address_towards(host: str) -> str:
-    """Return this machine's address as `host` sees it, or raise ValueError in words."""
+    """Return this machine's address as `host` sees it, or raise ValueError."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            # Nothing is sent: the kernel only chooses the way.
+            # Nothing is sent: the kernel only selects the route.
             probe.connect((address_of(host), 9))
         except OSError as error:
-            raise ValueError(f"no way to the host '{host}': {error.strerror}") from error
+            raise ValueError(f"no route to the host '{host}': {error.strerror}") from error
         here: str = probe.getsockname()[0]
     return here
 
@@ -50,7 +50,7 @@ class RemoteRig(StandInRig):
     def __init__(
         self, host: str, listen: tuple[str, int], settings: Settings, autopilot: AutopilotMark
     ) -> None:
-        """Listen at an address of this host. Raises FlightError in words if it cannot."""
+        """Listen at an address of this host. Raise FlightError if that fails."""
         self.host = host
         self._daemon_at = address_of(host)
         try:
@@ -67,9 +67,9 @@ class RemoteRig(StandInRig):
         """Wait until that host's daemon subscribes, and let its navigation settle."""
         self._await_subscriptions(
             _SUBSCRIBE_S,
-            f"nobody subscribed to the stand-in at {self._here} for {_SUBSCRIBE_S:.0f} s: is fccd "
-            f'running on {self.host}, with [x-plane] simulator = "{self._here}", and does no '
-            "firewall stand between?",
+            f"no daemon subscribed to the stand-in at {self._here} for {_SUBSCRIBE_S:.0f} s: is "
+            f'fccd running on {self.host}, with [x-plane] simulator = "{self._here}", and is no '
+            "firewall in between?",
         )
         clients = [client.rpartition(":")[0] for client in self.simulator.status()["clients"]]
         strangers = [client for client in clients if client != self._daemon_at]
@@ -83,15 +83,15 @@ class RemoteRig(StandInRig):
     def _look(self) -> Progress:
         progress = super()._look()
         if progress.overridden and not self._was_held:
-            self.happenings.append(Happening(progress.time_s, ENGAGED))
+            self.events.append(Event(progress.time_s, ENGAGED))
         elif self._was_held and not progress.overridden:
             at_s = self.simulator.releases()[-1].time_s
             if self.switch_is_on:
                 began = f"{FAILSAFE}: by the release {self._hold_s:g} s later"
-                self.happenings.append(Happening(at_s - self._hold_s, began))
-                self.happenings.append(Happening(at_s, "failsafe -> standby"))
+                self.events.append(Event(at_s - self._hold_s, began))
+                self.events.append(Event(at_s, "failsafe -> standby"))
             else:
-                self.happenings.append(Happening(at_s, "engaged -> standby"))
-            self.happenings.append(Happening(at_s, RELEASED))
+                self.events.append(Event(at_s, "engaged -> standby"))
+            self.events.append(Event(at_s, RELEASED))
         self._was_held = progress.overridden
         return progress

@@ -1,7 +1,7 @@
-"""Requirements on what was flown, judged by the truth: pure functions without clocks.
+"""Requirements on a flight, checked against the truth: pure functions without clocks.
 
-Each takes samples and gives a verdict, with what was flown in words for people. Times
-are seconds since engagement.
+Each takes samples and returns a verdict with a description of the flight. Times are seconds since
+engagement.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _TIME_TOLERANCE_S = 1e-6
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a requirement is met, and what was flown."""
+    """Whether a requirement is met, and a description of the flight."""
 
     is_met: bool
     flown: str
@@ -26,7 +26,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Stretch:
-    """A stretch of a flight: its times, a quantity, and what that should have been."""
+    """A stretch of a flight: times, a quantity, and its target."""
 
     quantity: Quantity
     time_s: Samples
@@ -35,11 +35,11 @@ class Stretch:
 
     @property
     def errors(self) -> Samples:
-        """Return how far the values are off, in the quantity's unit."""
+        """Return the errors, in the quantity's unit."""
         return self.quantity.difference(self.values, self.targets)
 
     def at(self, index: int) -> str:
-        """Return in words what was flown at one sample, and how far off that is."""
+        """Describe one sample and its error."""
         quantity = self.quantity
         return (
             f"at {self.time_s[index]:.2f} s {quantity} is {quantity.words(self.values[index])}, "
@@ -48,7 +48,7 @@ class Stretch:
 
 
 def settles(stretch: Stretch, within: float, by_s: float) -> Verdict:
-    """Whether from `by_s` on nothing is more than `within` off."""
+    """Whether nothing is more than `within` off from `by_s` on."""
     is_outside = np.abs(stretch.errors) > within
     late = np.flatnonzero(is_outside & (stretch.time_s >= by_s - _TIME_TOLERANCE_S))
     outside = np.flatnonzero(is_outside)
@@ -79,7 +79,7 @@ def stays(stretch: Stretch, within: float) -> Verdict:
 def overshoots_less_than(stretch: Stretch, limit: float, change: float) -> Verdict:
     """Whether nothing is `limit` or more past the target, in the direction of its change.
 
-    Where the target did not change, past is either way.
+    If the target did not change, either direction counts.
     """
     errors = stretch.errors
     past = np.abs(errors) if change == 0.0 else errors * np.sign(change)
@@ -92,7 +92,7 @@ def overshoots_less_than(stretch: Stretch, limit: float, change: float) -> Verdi
 
 
 def never(condition: Condition, time_s: Samples, values: Samples) -> Verdict:
-    """Whether a condition holds at no sample."""
+    """Whether a condition is met at no sample."""
     quantity = condition.quantity
     extreme = int(np.argmax(values) if condition.side == "above" else np.argmin(values))
     most = f"{quantity.words(float(values[extreme]))} at {time_s[extreme]:.2f} s"

@@ -1,4 +1,4 @@
-"""What a flight under test is flown on: lockstep or real time, behind one set of calls.
+"""The interface of what a flight under test is flown on: lockstep or real time.
 
 All times are simulated ones, in s since the aircraft was set up.
 """
@@ -19,59 +19,59 @@ RELEASED = "actuators released"
 
 
 class FlightError(RuntimeError):
-    """The flight could not be flown as it was asked for: no verdict on the autopilot."""
+    """The flight could not be flown: no verdict on the autopilot."""
 
 
 @dataclass(frozen=True)
-class Happening:
-    """Something that the autopilot said, or showed, of itself."""
+class Event:
+    """An event that the autopilot reported or showed."""
 
     time_s: float
     text: str
 
 
 class Rig(Protocol):
-    """An aircraft with an autopilot, flown on when it is asked for."""
+    """An aircraft with an autopilot, flown on request."""
 
     name: str
-    """What flies, how: for titles."""
+    """Aircraft and method, for titles."""
 
     failsafe_shows_after_s: float
-    """How long after it a failsafe can be seen: 0 where its state is told."""
+    """How long after its beginning a failsafe can be detected: 0 if the state is reported."""
 
     @property
     def time_s(self) -> float:
-        """Where the flight is."""
+        """The time of the flight."""
 
     @property
-    def happenings(self) -> Sequence[Happening]:
-        """What happened so far."""
+    def events(self) -> Sequence[Event]:
+        """The events so far."""
 
     @property
     def holds_control(self) -> bool:
-        """Whether the autopilot holds the controls."""
+        """Whether the autopilot has control."""
 
     @property
-    def left_deflected(self) -> str:
-        """What was not centred when the controls were last released; empty if nothing."""
+    def not_centred(self) -> str:
+        """The surfaces not centred at the last release; empty if all were."""
 
     def prepare(self) -> None:
-        """Fly by hand until the autopilot is ready to take over."""
+        """Fly until the autopilot is ready to engage."""
 
-    def throw_switch(self, *, on: bool) -> None:
-        """Throw the engage switch."""
+    def set_switch(self, *, on: bool) -> None:
+        """Move the engage switch."""
 
     def fly_to(self, time_s: float, until: Callable[[], bool] | None = None) -> None:
-        """Fly on to a time, or until something holds."""
+        """Fly to a time, or until a condition is met."""
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
-        """Put faults into the sensors in place of those that were."""
+        """Replace the faults of the sensors."""
 
     def truth(self) -> Truth:
-        """Return what was flown so far."""
+        """Return the truth so far."""
 
-    def leave_recording(self, path: Path) -> list[Path]:
-        """Leave the autopilot's recording at a path, `.mcap`; return what there is."""
+    def save_recording(self, path: Path) -> list[Path]:
+        """Save the autopilot's recording under a path, `.mcap`; return the files."""
 
     def close(self) -> None:
         """End the flight; may be called again."""

@@ -1,4 +1,4 @@
-"""The rows of X-Plane's Data Output, for clients that take DATA instead of subscribing."""
+"""The rows of X-Plane's Data Output, for clients that use DATA instead of subscriptions."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ _ROWS: dict[int, Callable[[Readout], Sequence[float]]] = {
 
 
 def row_values(row: int, readout: Readout) -> tuple[float, ...] | None:
-    """Return the eight columns of a row, unused ones -999; None for a row not kept here."""
+    """Return the eight columns of a row, unused ones -999; None for a row not supported here."""
     build = _ROWS.get(row)
     if build is None:
         return None

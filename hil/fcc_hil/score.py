@@ -1,4 +1,4 @@
-"""How well a flight kept to its legs: a pure function of what was flown and what was asked.
+"""How closely a flight followed its legs: a pure function of the flight and the set points.
 
 Every figure is of one leg, over the samples with start_s <= time < end_s:
 
@@ -24,10 +24,9 @@ airspeed_error_kt
 lateral_acceleration_g
     Largest lateral specific force either way: how badly the turn is coordinated.
 
-Angles are compared the short way round. Times are compared with a tolerance of
-1 microsecond, so that a sample meant to lie on a leg's border counts once, to the
-leg that begins there. Samples need not be evenly spaced, but the root mean squares
-weigh each the same.
+Angles are compared the shorter way. Times are compared with a tolerance of 1 microsecond, so that a
+sample on a leg's border counts once, for the leg that begins there. Samples need not be evenly
+spaced, but the root mean squares weigh each the same.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ _TIME_TOLERANCE_S = 1e-6
 
 
 class LegScore(TypedDict):
-    """The figures of one leg, or the worst of each over all legs."""
+    """The score of one leg, or the worst of each value over all legs."""
 
     heading_settle_s: float | None
     heading_overshoot_deg: float
@@ -66,7 +65,7 @@ class LegScore(TypedDict):
 
 
 class Score(TypedDict):
-    """A flight's figures."""
+    """A flight's score."""
 
     legs: list[LegScore]
     worst: LegScore
@@ -74,7 +73,7 @@ class Score(TypedDict):
 
 @dataclass(frozen=True)
 class Trace:
-    """What was flown: columns of equal length, time ascending."""
+    """The flight: columns of equal length, time ascending."""
 
     time_s: Samples
     heading_deg: Samples
@@ -97,7 +96,7 @@ class Trace:
 
 
 def score(trace: Trace, legs: Sequence[Leg]) -> Score:
-    """Score a flight. Raises ValueError where a leg has no samples, or with no legs."""
+    """Score a flight. Raise ValueError if a leg has no samples, or there are no legs."""
     if not legs:
         raise ValueError("no legs to score; fly at least one")
     scores = [_score_leg(trace.between(leg.start_s, leg.end_s), leg) for leg in legs]
@@ -159,7 +158,7 @@ def _worst_settle(values: Sequence[float | None]) -> float | None:
 
 
 def worst(legs: Sequence[LegScore]) -> LegScore:
-    """Return the worst of each figure over legs, at least one."""
+    """Return the worst of each value over legs, at least one."""
     return {
         "heading_settle_s": _worst_settle([leg["heading_settle_s"] for leg in legs]),
         "heading_overshoot_deg": max(leg["heading_overshoot_deg"] for leg in legs),

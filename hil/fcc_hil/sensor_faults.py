@@ -1,11 +1,11 @@
-"""What breaks in the aircraft's sensors, told once and put in on either way of flying.
+"""Faults of the aircraft's sensors, defined once for both ways of flying.
 
-In lockstep it befalls the measurements that the autopilot is handed, in real time the
-values that the stand-in replies with: `FaultySensors.read` is called once a tick there
-and once a frame here, with the true state, and says what the sensors make of it.
+In lockstep they change the autopilot's measurements, in real time the values in the stand-in's
+replies: `FaultySensors.read` is called once per tick or frame with the true state, and returns the
+measured one.
 
-One draw is made for each sampling and fault, so the share of a loss is one of samplings:
-40 a second in lockstep, as many as frames in real time.
+One random number is drawn for each sample and fault, so the share of a loss is one of samples: 40 a
+second in lockstep, one per frame in real time.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .state import State
 from .units import wrap_heading_rad
 
 EVERYTHING = "everything"
-"""In place of a sensor: the simulator as a whole, its clock and its switch included."""
+"""In place of a sensor: the whole simulator, its clock and its switch included."""
 
 NOTHING_MISSING: frozenset[str] = frozenset()
 
@@ -31,24 +31,24 @@ _LONGEST_DELAY_S = 60.0
 
 
 class Kind(Enum):
-    """What befalls a sensor. They act in this order, as from the sensor to the autopilot."""
+    """The kinds of faults. They act in this order, from the sensor to the autopilot."""
 
     FREEZE = "freeze"
-    """It says what it said when the fault began."""
+    """It keeps the value of the fault's beginning."""
     BIAS = "bias"
-    """It is off by an amount."""
+    """A constant is added."""
     NOISE = "noise"
     """White noise is added; the amount is one standard deviation."""
     NAN = "nan"
-    """It says not-a-number."""
+    """It returns NaN."""
     DELAY = "delay"
-    """What it says comes so many seconds late; nothing comes until the first has."""
+    """Values are late by so many seconds; none until the first arrives."""
     DUPLICATE = "duplicate"
-    """A sample comes once more, after the next one."""
+    """A sample is repeated after the next one."""
     REORDER = "reorder"
     """A sample is overtaken by the next one."""
     LOSS = "loss"
-    """A sample does not come."""
+    """A sample is lost."""
 
 
 _ORDER = {kind: place for place, kind in enumerate(Kind)}
@@ -56,7 +56,7 @@ _ORDER = {kind: place for place, kind in enumerate(Kind)}
 
 @dataclass(frozen=True)
 class SensorFault:
-    """One fault of one sensor; times are simulated ones."""
+    """A fault of one sensor; times are simulated ones."""
 
     kind: Kind
     sensor: str
@@ -68,9 +68,9 @@ class SensorFault:
     amount: float = 0.0
     """Of bias and noise in SI units, of delay in s."""
     share: float = 1.0
-    """How many of the samples of a loss, duplication or reordering, 0..1."""
+    """The share of the samples of a loss, duplication or reordering, 0..1."""
     words: str = ""
-    """What people call it."""
+    """Its description."""
     seed: int = 0
 
     def is_active(self, time_s: float) -> bool:
@@ -79,38 +79,38 @@ class SensorFault:
 
 
 class FaultySensors:
-    """The sensors with their faults; one call of `read` is one sampling of all of them."""
+    """The sensors with their faults; one call of `read` is one sample of all of them."""
 
     def __init__(self) -> None:
-        """Start with none."""
+        """Start without faults."""
         self._running: dict[SensorFault, _Running] = {}
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
-        """Change the faults; those that stay go on where they were."""
+        """Replace the faults; those that stay continue."""
         ordered = sorted(faults, key=lambda fault: _ORDER[fault.kind])
         self._running = {fault: self._running.get(fault) or _Running(fault) for fault in ordered}
 
     def read(self, time_s: float, state: State) -> tuple[State | None, frozenset[str]]:
-        """Return what the sensors say of a state, and the channels of which nothing comes.
+        """Return the measured state, and the missing channels.
 
-        None for the state if nothing comes at all.
+        The state is None if everything is missing.
         """
         active = [run for fault, run in self._running.items() if fault.is_active(time_s)]
         if not active:
             return state, NOTHING_MISSING
-        said: dict[str, float | None] = {}
+        measured: dict[str, float | None] = {}
         everything = False
         for run in active:
             channels = run.fault.channels
             if run.fault.sensor == EVERYTHING:
                 everything |= run.draw()
                 continue
-            before = {name: said.get(name, getattr(state, name)) for name in channels}
-            said.update(run.sample(time_s, before))
+            before = {name: measured.get(name, getattr(state, name)) for name in channels}
+            measured.update(run.sample(time_s, before))
         if everything:
             return None, NOTHING_MISSING
-        came = {name: value for name, value in said.items() if value is not None}
-        return _with(state, came), frozenset(said.keys() - came.keys())
+        came = {name: value for name, value in measured.items() if value is not None}
+        return _with(state, came), frozenset(measured.keys() - came.keys())
 
 
 _Values = dict[str, float | None]
@@ -125,7 +125,7 @@ def _with(state: State, values: dict[str, float]) -> State:
 
 
 class _Running:
-    """A fault at work: what it remembers from one sampling to the next."""
+    """An active fault, with its memory."""
 
     def __init__(self, fault: SensorFault) -> None:
         self.fault = fault
@@ -135,11 +135,11 @@ class _Running:
         self._act: Callable[[float, _Values], _Values] = getattr(self, f"_{fault.kind.value}")
 
     def draw(self) -> bool:
-        """Return whether this sample is one of its share."""
+        """Return whether this sample belongs to its share."""
         return bool(self._random.random() < self.fault.share)
 
     def sample(self, time_s: float, values: _Values) -> _Values:
-        """Return what becomes of one sample of its channels."""
+        """Return one sample of its channels, changed."""
         return self._act(time_s, values)
 
     def _freeze(self, _time_s: float, values: _Values) -> _Values:
@@ -161,7 +161,7 @@ class _Running:
     def _delay(self, time_s: float, values: _Values) -> _Values:
         self._late.append((time_s + self.fault.amount, values))
         came: _Values = dict.fromkeys(values)
-        # A hair early: sums of ticks and of frames are not exact.
+        # Slightly early: sums of ticks and of frames are not exact.
         while self._late and self._late[0][0] <= time_s + 1e-6:
             came = self._late.popleft()[1]
         return came
@@ -190,11 +190,11 @@ def _add(channel: str, value: float | None, amount: float) -> float | None:
 
 
 class Faults:
-    """Breaks sensors, from now or from so many seconds on, for a while or for good.
+    """Adds faults to sensors, now or later, for a time or until the end.
 
-    Sensors go by quantities or their names: `heading`, `"airspeed"`, `attitude`; or
-    by `"everything"`, which is the simulator as a whole (loss only). Amounts are in
-    the quantity's unit: `faults.bias(altitude("m"), by=30)`.
+    Sensors are given as quantities or their names: `heading`, `"airspeed"`, `attitude`; or as
+    `"everything"`, the whole simulator (loss only). Amounts are in the quantity's unit:
+    `faults.bias(altitude("m"), by=30)`.
     """
 
     def __init__(
@@ -203,12 +203,12 @@ class Faults:
         put_in: Callable[[Sequence[SensorFault]], None],
         seed: int = 1,
     ) -> None:
-        """Take the simulated time from `now_s`, and hand all faults to `put_in`."""
+        """`now_s` gives the simulated time, `put_in` takes all faults."""
         self._now_s = now_s
         self._put_in = put_in
         self._seed = seed
         self.all: list[SensorFault] = []
-        """Every fault so far, those that are over included."""
+        """Every fault so far, also those that have ended."""
 
     def loss(
         self,
@@ -218,13 +218,13 @@ class Faults:
         after: float = 0.0,
         lasts: float | None = None,
     ) -> SensorFault:
-        """Lose a share of its samples, all by default."""
+        """Lose a share of its samples, by default all."""
         return self._add(Kind.LOSS, sensor, after, lasts, share=share)
 
     def delay(
         self, sensor: Quantity | str, *, by: float, after: float = 0.0, lasts: float | None = None
     ) -> SensorFault:
-        """Let what it says come `by` seconds late."""
+        """Delay its values by `by` seconds."""
         by = finite("by", by)
         if not 0.0 < by <= _LONGEST_DELAY_S:
             raise ValueError(f"by is {by:g} s: a delay is above 0 and at most 60 s")
@@ -238,7 +238,7 @@ class Faults:
         after: float = 0.0,
         lasts: float | None = None,
     ) -> SensorFault:
-        """Let a share of its samples come once more, after the next."""
+        """Repeat a share of its samples after the next one."""
         return self._add(Kind.DUPLICATE, sensor, after, lasts, share=share)
 
     def reorder(
@@ -249,25 +249,25 @@ class Faults:
         after: float = 0.0,
         lasts: float | None = None,
     ) -> SensorFault:
-        """Let a share of its samples be overtaken by the next."""
+        """Let a share of its samples be overtaken by the next one."""
         return self._add(Kind.REORDER, sensor, after, lasts, share=share)
 
     def freeze(
         self, sensor: Quantity | str, *, after: float = 0.0, lasts: float | None = None
     ) -> SensorFault:
-        """Let it say the same for ever."""
+        """Keep its present value."""
         return self._add(Kind.FREEZE, sensor, after, lasts)
 
     def nan(
         self, sensor: Quantity | str, *, after: float = 0.0, lasts: float | None = None
     ) -> SensorFault:
-        """Let it say not-a-number."""
+        """Return NaN."""
         return self._add(Kind.NAN, sensor, after, lasts)
 
     def bias(
         self, sensor: Quantity | str, *, by: float, after: float = 0.0, lasts: float | None = None
     ) -> SensorFault:
-        """Let it be off `by` so much, in its unit."""
+        """Add a constant, in its unit."""
         return self._add(Kind.BIAS, sensor, after, lasts, by=finite("by", by))
 
     def noise(
@@ -310,18 +310,18 @@ class Faults:
         if after < 0.0:
             raise ValueError(f"after is {after:g} s: a fault cannot begin in the past")
         if lasts is not None and finite("lasts", lasts) <= 0.0:
-            raise ValueError(f"lasts is {lasts:g} s: give more than 0, or leave it out")
+            raise ValueError(f"lasts is {lasts:g} s: give more than 0, or omit it")
         if not 0.0 < share <= 1.0:
             raise ValueError(f"share is {share:g}: give a fraction above 0 and up to 1")
         name, words = EVERYTHING, f"{kind.value} of {EVERYTHING}"
         channels: tuple[str, ...] = ()
         if sensor == EVERYTHING:
             if kind is not Kind.LOSS:
-                raise ValueError(f"{kind.value} of everything: only its loss can be told")
+                raise ValueError(f"{kind.value} of everything: only its loss is supported")
         else:
             quantity = quantity_of(sensor)
             if not quantity.channels:
-                raise ValueError(f"no sensor measures {quantity.name}: there is nothing to break")
+                raise ValueError(f"no sensor measures {quantity.name}: it cannot have a fault")
             name, channels = quantity.name, quantity.channels
             words = f"{kind.value} of {name}"
             if by is not None:

@@ -1,8 +1,8 @@
-"""A simple pilot who flies an aircraft to steady flight where JSBSim's trim fails.
+"""A simple pilot that flies an aircraft to a steady state if JSBSim's trim fails.
 
-Cascaded loops with modest gains, good enough to hold speed, height and wings
-level in calm air for any of the aircraft in the table. It is no autopilot under
-test: it hands over its mean controls as the trim and is not heard of again.
+Cascaded loops with low gains, sufficient to hold speed, height and wings level in calm air for any
+aircraft in the table. It is not the autopilot under test: its mean controls become the trim, and it
+is not used afterwards.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from .state import Controls, State
 from .units import STANDARD_GRAVITY_MPS2, wrap_degrees
 
-# Gains are for the airspeed that the aircraft is trimmed at; the surfaces' gains
-# fall with dynamic pressure, as the forces grow.
+# Gains are for the trimmed airspeed; the surfaces' gains decrease with dynamic pressure, as the
+# forces increase.
 _CLIMB_PER_ALTITUDE = 0.15  # 1/s
 _CLIMB_LIMIT_MPS = 4.0
 _PITCH_PER_CLIMB = 0.9  # flight-path angle to pitch, rad/rad
@@ -39,7 +39,7 @@ def _clamp(value: float, low: float, high: float) -> float:
 
 @dataclass
 class SettlingPilot:
-    """Holds the airspeed (m/s, calibrated), altitude (m) and heading (rad) that it is given."""
+    """Holds a given airspeed (m/s, calibrated), altitude (m) and heading (rad)."""
 
     airspeed_mps: float
     altitude_m: float

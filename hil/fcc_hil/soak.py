@@ -1,16 +1,16 @@
-"""A long flight under stress, with the machine's own lateness measured beside.
+"""A long flight under stress, with the machine's own delays measured at the same time.
 
-The daemon flies JSBSim over X-Plane's protocol with everything on (telemetry,
-recording, the early wake), while stress-ng works on every CPU and cyclictest runs
-at the same rate on the loop's own CPU. cyclictest tells what the machine itself was
-late by: a virtual machine that stands still for half a second does so for both.
+The daemon flies JSBSim over X-Plane's protocol with telemetry, recording and early wake, while
+stress-ng runs on every CPU and cyclictest runs at the same rate on the loop's own CPU. cyclictest
+measures the delays of the machine itself: a virtual machine that pauses for half a second affects
+both.
 
-That the loop never waited for anything but its timer is read from the kernel: a
-thread that waits for a lock, a file or a socket gives up its CPU, which the kernel
-counts as a voluntary context switch, and so it does once a tick, for the timer.
+The kernel's counts show that the loop waited only for its timer: a thread that waits for a lock, a
+file or a socket gives up its CPU, which the kernel counts as a voluntary context switch, and so it
+does once per tick, for the timer.
 
-What works beside is watched like the daemon: a flight "under stress" without any, or
-one that nobody measured, ends at once with the reason.
+The other programs are checked like the daemon: if the stress or cyclictest ends, the flight ends
+with the reason.
 """
 
 from __future__ import annotations
@@ -41,20 +41,20 @@ _SETTLE_S = 3.0
 _ENGAGE_S = 15.0
 _LOOK_S = 0.25
 _LONGEST_LATENESS_US = 1_000_000
-# The window that is watched begins and ends somewhere in a tick, and time is read
-# a moment away from the count.
+# The measured window begins and ends within a tick, and time is read shortly before or after the
+# counts.
 _SWITCHES_BESIDE_TICKS = 5
 _CYCLICTEST = "cyclictest"
 _STRESS = "stress-ng"
 
 
 class SoakError(RuntimeError):
-    """The flight could not be flown to its end."""
+    """The flight could not be completed."""
 
 
 @dataclass(frozen=True)
 class Soak:
-    """What to fly."""
+    """A flight to be flown."""
 
     fccd: Path
     seconds: float
@@ -64,19 +64,19 @@ class Soak:
 
 @dataclass(frozen=True)
 class Machine:
-    """What cyclictest saw beside: the machine's own lateness."""
+    """The machine's own lateness, measured by cyclictest."""
 
     cycles: int
     max_us: float
     periods_lost: int
-    """Whole periods that its wake-ups were late by, all together."""
+    """Whole periods that all wake-ups together were late by."""
     longest_periods: int
-    """Whole periods that the latest of its wake-ups was late by."""
+    """Whole periods that the latest wake-up was late by."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """What came of it."""
+    """The result."""
 
     ticks: int
     missed: int
@@ -92,7 +92,7 @@ class Result:
     cpu_percent: float
     exit_code: int
     cpus: str
-    """The CPUs that the loop may run on, as the kernel lists them: one if it was granted."""
+    """The CPUs that the loop may run on, in the kernel's notation: one if it was bound."""
     machine: Machine
 
     @property
@@ -101,15 +101,15 @@ class Result:
         return self.cpus.isdigit()
 
     def failures(self) -> list[str]:
-        """Return what is not as it should be, in words; empty after a good flight."""
+        """Return the failures, as text; empty after a good flight."""
         found = []
         if not self.memory_locked:
-            found.append("the memory was not locked: `fccd doctor` says what to allow")
+            found.append("the memory was not locked: `fccd doctor` prints what to allow")
         elif self.page_faults:
             found.append(f"{self.page_faults} page faults")
-        # Both see the same machine, but not at the same moments: what each of two
-        # counts of rare events may differ by is three times their root. One stop of
-        # the machine is one event, however many periods it takes.
+        # Both measure the same machine, but at different times: two counts of rare events may
+        # differ by three times their root. One pause of the machine is one event, however many
+        # periods it takes.
         lost, longest = self.machine.periods_lost, self.machine.longest_periods
         if self.missed > lost + 3.0 * max(math.sqrt(self.missed + lost), longest):
             found.append(f"{self.missed} ticks missed, where the machine lost {lost}")
@@ -122,37 +122,37 @@ class Result:
         return found
 
     def document(self) -> dict[str, Any]:
-        """Return the flight as other tools read it."""
+        """Return the flight for other programs."""
         return {**asdict(self), "failures": self.failures()}
 
 
 @dataclass(frozen=True)
 class _Watched:
-    """What the kernel counted of the loop's thread within a window."""
+    """The kernel's counts for the loop's thread within a window."""
 
     ticks: int
     waits: int
     displaced: int
 
 
-class _Beside:
-    """A program that works beside the flight until it is asked to end."""
+class _BackgroundProgram:
+    """A program that runs during the flight."""
 
     def __init__(self, words: list[str], name: str, folder: Path) -> None:
         self._name = name
-        self._said = folder / f"{name}.said"
-        with self._said.open("wb") as said:
-            self._process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=said)
+        self._log = folder / f"{name}.said"
+        with self._log.open("wb") as log:
+            self._process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=log)
 
     def look(self) -> None:
-        """Raise SoakError if it has ended by itself."""
+        """Raise SoakError if it has ended."""
         code = self._process.poll()
         if code is not None:
-            said = self._said.read_text("utf-8", "replace").strip()
-            raise SoakError(f"{self._name} ended with {code}: {said}")
+            log = self._log.read_text("utf-8", "replace").strip()
+            raise SoakError(f"{self._name} ended with {code}: {log}")
 
     def end(self) -> None:
-        # Asked and not killed: it ends its children, and writes what it measured.
+        # With a signal and not killed: it ends its children, and writes its result.
         self._process.terminate()
         try:
             self._process.wait(30.0)
@@ -164,57 +164,57 @@ class _Beside:
 def periods_lost(histogram: dict[str, int], max_us: float, period_us: float) -> int:
     """Return the whole periods in cyclictest's histogram of lateness, us to how often.
 
-    What was later than the histogram reaches is not in it: of that, `max_us` counts.
+    Lateness beyond the histogram is not in it; `max_us` accounts for that.
     """
     lost = sum(int(float(late) // period_us) * count for late, count in histogram.items())
     return lost + (int(max_us // period_us) if max_us >= _LONGEST_LATENESS_US else 0)
 
 
-def soak(order: Soak, say: Callable[[float], None]) -> Result:
-    """Fly; `say` hears how many seconds are flown. Raises SoakError."""
-    for name in (_CYCLICTEST, _STRESS) if order.stress else (_CYCLICTEST,):
+def soak(plan: Soak, notify: Callable[[float], None]) -> Result:
+    """Fly; `say` is called with the seconds flown. Raises SoakError."""
+    for name in (_CYCLICTEST, _STRESS) if plan.stress else (_CYCLICTEST,):
         if shutil.which(name) is None:
-            raise SoakError(f"{name} is not there: use `make soak`, which installs it")
+            raise SoakError(f"{name} is missing: use `make soak`, which installs it")
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         measured = folder / "cyclictest.json"
         with StandInProcess(Settings(port=0)) as simulator:
             config = folder / "fccd.toml"
-            config.write_text(_config(order, simulator.port, folder / "recordings"))
-            with Daemon(command(order.fccd, config), folder / "said") as daemon:
+            config.write_text(_config(plan, simulator.port, folder / "recordings"))
+            with Daemon(command(plan.fccd, config), folder / "said") as daemon:
                 _await(
                     lambda: simulator.progress().subscriptions > 0,
                     daemon,
                     partial(_look, daemon),
                     _SUBSCRIBE_S,
-                    "does not ask the simulator for anything",
+                    "does not subscribe to the simulator",
                 )
                 loop = _thread(daemon.pid)
                 cpus = _status(loop)["Cpus_allowed_list"]
-                # From before the controls are taken until the daemon has ended: what
-                # it missed and what the machine lost are of the same minutes.
-                with _company(order, cpus, measured) as company:
-                    look = partial(_look, daemon, *company)
+                # From before control is taken until the daemon has ended: missed ticks and lost
+                # periods are from the same time.
+                with _background(plan, cpus, measured) as background:
+                    look = partial(_look, daemon, *background)
                     _engage(simulator, daemon, look)
-                    watched = _watch(order, loop, look, say)
+                    watched = _watch(plan, loop, look, notify)
                     simulator.write(_SWITCH, 0.0)
                     time.sleep(1.0)
                     look()
                     exit_code = daemon.stop()
                 report = daemon.report()
                 if report is None:
-                    raise SoakError(f"the daemon printed no report; it said: {daemon.said}")
-        machine = _machine(measured, 1e6 / order.rate_hz)
+                    raise SoakError(f"the daemon printed no report; its messages: {daemon.log}")
+        machine = _machine(measured, 1e6 / plan.rate_hz)
     return _result(report, watched, exit_code, cpus, machine)
 
 
-def _config(order: Soak, port: int, recordings: Path) -> str:
+def _config(plan: Soak, port: int, recordings: Path) -> str:
     return f"""
 [x-plane]
 simulator = "127.0.0.1:{port}"
 engage_switch = "{_SWITCH}"
 [loop]
-rate_hz = {order.rate_hz}
+rate_hz = {plan.rate_hz}
 [loop.early_wake]
 enabled = true
 [realtime]
@@ -237,7 +237,7 @@ def _engage(simulator: StandInProcess, daemon: Daemon, look: Callable[[], None])
         daemon,
         look,
         _ENGAGE_S,
-        "does not take the controls",
+        "does not take control",
     )
 
 
@@ -253,39 +253,39 @@ def _await(
         look()
         if time.monotonic() > deadline_s:
             raise SoakError(
-                f"the daemon {otherwise} within {patience_s:.0f} s; it said: {daemon.said}"
+                f"the daemon {otherwise} within {patience_s:.0f} s; its messages: {daemon.log}"
             )
         time.sleep(_LOOK_S)
 
 
 def _fly(
-    seconds: float, look: Callable[[], None], say: Callable[[float], None] | None = None
+    seconds: float, look: Callable[[], None], notify: Callable[[float], None] | None = None
 ) -> None:
     began_s = time.monotonic()
     while (flown_s := time.monotonic() - began_s) < seconds:
         look()
-        if say is not None:
-            say(flown_s)
+        if notify is not None:
+            notify(flown_s)
         time.sleep(_LOOK_S)
 
 
-def _look(daemon: Daemon, *company: _Beside) -> None:
+def _look(daemon: Daemon, *background: _BackgroundProgram) -> None:
     """Raise SoakError if anything that is to run has ended."""
     if daemon.exit_code is not None:
-        raise SoakError(f"the daemon ended with {daemon.exit_code}; it said: {daemon.said}")
-    for beside in company:
+        raise SoakError(f"the daemon ended with {daemon.exit_code}; its messages: {daemon.log}")
+    for beside in background:
         beside.look()
 
 
 def _watch(
-    order: Soak, loop: Path, look: Callable[[], None], say: Callable[[float], None]
+    plan: Soak, loop: Path, look: Callable[[], None], notify: Callable[[float], None]
 ) -> _Watched:
     """Fly, and count what the loop's thread waited."""
     # Time is read outside of the counts: a reader that is held up between the two
     # must not find waits too many.
     began_s = time.monotonic()
     before = _status(loop)
-    _fly(order.seconds, look, say)
+    _fly(plan.seconds, look, notify)
     after = _status(loop)
     seconds = time.monotonic() - began_s
 
@@ -293,7 +293,7 @@ def _watch(
         return int(after[name]) - int(before[name])
 
     return _Watched(
-        ticks=max(round(seconds * order.rate_hz), 1),
+        ticks=max(round(seconds * plan.rate_hz), 1),
         waits=counted("voluntary_ctxt_switches"),
         displaced=counted("nonvoluntary_ctxt_switches"),
     )
@@ -312,7 +312,7 @@ def _status(task: Path) -> dict[str, str]:
 
 
 @contextmanager
-def _company(order: Soak, cpus: str, measured: Path) -> Iterator[list[_Beside]]:
+def _background(plan: Soak, cpus: str, measured: Path) -> Iterator[list[_BackgroundProgram]]:
     """Run cyclictest where the loop runs, under it, and the stress if it is wanted."""
     cyclictest = [
         _CYCLICTEST,
@@ -320,7 +320,7 @@ def _company(order: Soak, cpus: str, measured: Path) -> Iterator[list[_Beside]]:
         "--quiet",
         "--threads=1",
         f"--affinity={cpus}",
-        f"--interval={1e6 / order.rate_hz:.0f}",
+        f"--interval={1e6 / plan.rate_hz:.0f}",
         f"--priority={_PRIORITY - 1}",
         f"--histogram={_LONGEST_LATENESS_US}",
         f"--json={measured}",
@@ -328,14 +328,14 @@ def _company(order: Soak, cpus: str, measured: Path) -> Iterator[list[_Beside]]:
     # Nice to the simulator and to whoever sits there; to a real-time thread all
     # are alike.
     stress = f"nice -n 19 {_STRESS} --quiet --timeout 0 --cpu 0 --io 1 --vm 1 --vm-bytes 128M"
-    wanted = [(_CYCLICTEST, cyclictest), *([(_STRESS, stress.split())] if order.stress else [])]
+    wanted = [(_CYCLICTEST, cyclictest), *([(_STRESS, stress.split())] if plan.stress else [])]
     with ExitStack() as stack:
-        company = []
+        background = []
         for name, words in wanted:
-            beside = _Beside(words, name, measured.parent)
+            beside = _BackgroundProgram(words, name, measured.parent)
             stack.callback(beside.end)
-            company.append(beside)
-        yield company
+            background.append(beside)
+        yield background
 
 
 def _machine(measured: Path, period_us: float) -> Machine:

@@ -1,8 +1,8 @@
 """A stand-in for X-Plane: JSBSim behind X-Plane's UDP protocol, in real time.
 
-One thread, one frame after another, as X-Plane does it: take what has come in, step
-the flight model, send what is due. Frames keep absolute deadlines; within one, JSBSim
-takes its own steps of 1/120 s. What truly happened is kept in memory for the score.
+One thread runs one frame after another, as X-Plane does: read received datagrams, step the flight
+model, send replies. Frames have absolute deadlines; within one, JSBSim takes its own steps of 1/120
+s. The truth is kept in memory for the score.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from .subscriptions import Subscriptions
 from .truth import STEPS_PER_ROW, Row, row
 
 SLOWEST_TRUE_FPS = 20.0
-"""Below this frame rate X-Plane's time runs slower than the clock on the wall."""
+"""Below this frame rate X-Plane's time runs slower than the wall clock."""
 
 BEACON_GROUP: Address = ("239.255.1.1", 49707)
 PAUSE_TOGGLE = "sim/operation/pause_toggle"
@@ -52,61 +52,61 @@ _LAST_REFUSALS = 20
 
 
 class Mode(Enum):
-    """What the simulator is doing."""
+    """The simulator's state."""
 
     RUNNING = "running"
     PAUSED = "paused"
-    """Halted and saying so: sends on, `sim/time/paused` is 1."""
+    """Paused: continues to send, `sim/time/paused` is 1."""
     STALLED = "stalled"
-    """Its clock stands still, and it does not say so."""
+    """Its clock has stopped, without a report."""
     FROZEN = "frozen"
     """Hung: reads nothing, sends nothing."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How the stand-in is set up."""
+    """The settings of the stand-in."""
 
     aircraft: str = "c172p"
     seed: int = 1
     host: str = "127.0.0.1"
     """Of IPv4 or of IPv6."""
     port: int = 49_000
-    """0 takes any free port."""
+    """0 selects a free port."""
     frame_rate_hz: float = 60.0
     version: int = 115_501
-    """Of the X-Plane that it stands in for."""
+    """The version of X-Plane."""
     heading_deg: float = 0.0
     magnetic_variation_deg: float = 0.0
     """Positive where magnetic north lies east of true."""
     weather: Weather = field(default_factory=Weather)
     noise: bool = False
     inbound: Faults = field(default_factory=Faults)
-    """What befalls datagrams to the simulator."""
+    """Faults of datagrams to the simulator."""
     outbound: Faults = field(default_factory=Faults)
-    """What befalls datagrams from it, the beacon excepted."""
+    """Faults of datagrams from it, except the beacon."""
     shuffle: bool = True
-    """Whether the values in a reply come in random order."""
+    """Whether the values in a reply are in random order."""
     beacon: Address | None = None
-    """Where to send the beacon, BEACON_GROUP for all; None sends none."""
+    """Destination of the beacon, BEACON_GROUP for all; None sends none."""
     data_target: Address | None = None
-    """Where Data Output goes, as set in X-Plane's menus."""
+    """Destination of Data Output, as set in X-Plane's menus."""
     data_rows: tuple[int, ...] = ()
-    """The rows that are ticked there."""
+    """The rows selected there."""
     data_rate_hz: float = 20.0
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Where the flight stands."""
+    """The progress of the flight."""
 
     now: Row
     """The truth, in the columns of `truth.COLUMNS`."""
     mode: Mode
     subscriptions: int
-    """How many values are asked for, by all clients together."""
+    """Number of values subscribed to, by all clients."""
     overridden: bool
-    """Whether a client holds the joystick or the throttles."""
+    """Whether a client overrides the joystick or the throttles."""
 
     @property
     def time_s(self) -> float:
@@ -115,15 +115,15 @@ class Progress:
 
 
 class StandIn:
-    """The simulator. Not safe to use from two threads."""
+    """The simulator. Use it from one thread only."""
 
     def __init__(self, settings: Settings) -> None:
-        """Set the aircraft up in flight and open the port; OSError says in words why not."""
+        """Set the aircraft up in flight and open the port; raise OSError if that fails."""
         self.settings = settings
         self.dialect = Dialect(settings.version)
         self.mode = Mode.RUNNING
         self.messages: dict[str, int] = {}
-        """How many of each kind were accepted."""
+        """Number of accepted datagrams of each kind."""
         self.refused = 0
         self.last_refusals: list[str] = []
         """Why datagrams were refused, newest last."""
@@ -138,7 +138,7 @@ class StandIn:
         self._outbound: FaultyLink[Address] = FaultyLink(settings.outbound, settings.seed + 1)
         self._noise = SensorNoise(settings.seed) if settings.noise else None
         self.sensors = FaultySensors()
-        """What breaks on the way from the true state to what is sent."""
+        """The faults between the true state and the sent values."""
         self._frame_time_s = 0.0
         self._next_beacon_s = 0.0
         self._next_data_s = 0.0
@@ -164,7 +164,7 @@ class StandIn:
             self.clock.done()
 
     def frame(self) -> None:
-        """Run one frame, whatever the time is."""
+        """Run one frame, regardless of the time."""
         if self.mode is Mode.FROZEN:
             return
         self._frame_time_s += self.clock.period_s
@@ -173,20 +173,20 @@ class StandIn:
             self._advance()
         self._send()
 
-    # What a person in front of the simulator can do.
+    # Actions of a person at the simulator.
 
     def read(self, path: str) -> float | None:
-        """Return a dataref as a client would see it now, without sensor noise; None if unknown."""
+        """Return a dataref as a client would read it now, without sensor noise; None if unknown."""
         read = getter(path, self.cockpit, self.dialect)
         return None if read is None else read(self._readout(self.plant.state()))
 
     def write(self, path: str, value: float) -> float:
-        """Set a dataref from inside the simulator; returns the simulated time of it."""
+        """Set a dataref from inside the simulator; return the simulated time."""
         self.cockpit.write(self.plant.time_s, path, value)
         return self.plant.time_s
 
     def restart_flight(self) -> None:
-        """Put the aircraft back to where it began: the clock jumps back, overrides are off."""
+        """Put the aircraft back to its start: the clock jumps back, overrides are off."""
         self._set_up_aircraft()
 
     def jump(self, seconds: float) -> None:
@@ -194,7 +194,7 @@ class StandIn:
         self._time_offset_s += seconds
 
     def progress(self) -> Progress:
-        """Return how far the flight is; cheap enough to be asked every frame."""
+        """Return the progress of the flight; fast enough to be called every frame."""
         return Progress(
             now=row(self.plant.state(), self.cockpit.controls()),
             mode=self.mode,
@@ -204,7 +204,7 @@ class StandIn:
         )
 
     def status(self) -> dict[str, Any]:
-        """Return how it stands: who listens, what came in, how the frames went."""
+        """Return the status: clients, received messages, statistics of frames."""
         clients = self._subscriptions.paths()
         return {
             "mode": self.mode.value,
@@ -266,7 +266,7 @@ class StandIn:
             except BlockingIOError:
                 break
             except ConnectionError:
-                # A client is gone and the kernel says so; nothing is lost.
+                # The kernel reports that a client has ended; nothing is lost.
                 continue
             # Of IPv6 there are four parts.
             self._inbound.offer(now_s, sender[:2], datagram)
@@ -329,9 +329,9 @@ class StandIn:
         now_s = time.monotonic()
         state = self.plant.state()
         sensed = self._noise.apply(state) if self._noise else state
-        said, missing = self.sensors.read(self.plant.time_s, sensed)
-        if said is not None:
-            readout = self._readout(said)
+        measured, missing = self.sensors.read(self.plant.time_s, sensed)
+        if measured is not None:
+            readout = self._readout(measured)
             paths = withheld(missing)
             for client, datagram in self._subscriptions.due(self._frame_time_s, readout, paths):
                 self._outbound.offer(now_s, client, datagram)
@@ -357,5 +357,5 @@ class StandIn:
         try:
             self._socket.sendto(datagram, client)
         except OSError:
-            # No route, or a client that is gone: X-Plane sends on, and so does this.
+            # No route, or a client that has ended: X-Plane continues, and so does this.
             self.unsent += 1

@@ -1,7 +1,7 @@
-"""A daemon that flies the stand-in in real time: what is the same wherever it runs.
+"""A daemon that flies the stand-in in real time: the part common to this and another host.
 
-Everything here is known by the simulator itself. What a daemon tells of itself is known
-where it runs on this machine (`daemon_rig`), and not on another host (`remote_rig`).
+Everything here is observed in the simulator. The daemon's own messages are available on this
+machine (`daemon_rig`), and not from another host (`remote_rig`).
 """
 
 from __future__ import annotations
@@ -13,27 +13,27 @@ from pathlib import Path
 from .cockpit import OVERRIDE_JOYSTICK
 from .fly import ENGAGE_SWITCH
 from .process import StandInProcess
-from .rig import FlightError, Happening
+from .rig import Event, FlightError
 from .sensor_faults import SensorFault
 from .standin import Progress
 from .truth import Row, Truth
 
 _LOOK_S = 0.02
-# Real time may run so much longer than the simulated flight before we give up.
+# Real time may exceed the simulated flight by this before giving up.
 _PATIENCE = 2.0
 _PATIENCE_MORE_S = 20.0
 
 
 class StandInRig:
-    """A stand-in in a process of its own, flown by a daemon."""
+    """A stand-in in a separate process, flown by a daemon."""
 
     failsafe_shows_after_s = 0.0
 
     def __init__(self, simulator: StandInProcess, name: str) -> None:
-        """Watch a stand-in that runs."""
+        """Observe a running stand-in."""
         self.simulator = simulator
         self.name = name
-        self.happenings: list[Happening] = []
+        self.events: list[Event] = []
         self.switch_is_on = False
         self.progress: Progress = simulator.progress()
         self._rows: list[Row] = []
@@ -41,17 +41,17 @@ class StandInRig:
 
     @property
     def time_s(self) -> float:
-        """Return where the flight is now: it flies on by itself."""
+        """Return the present time of the flight, which runs by itself."""
         return self._look().time_s
 
     @property
     def holds_control(self) -> bool:
-        """Return whether the daemon holds the joystick or the throttles."""
+        """Return whether the daemon overrides the joystick or the throttles."""
         return self.progress.overridden
 
     @property
-    def left_deflected(self) -> str:
-        """Return in words what was not centred when the joystick was last released."""
+    def not_centred(self) -> str:
+        """Describe the surfaces that were not centred when the joystick was last released."""
         releases = [r for r in self.simulator.releases() if r.path == OVERRIDE_JOYSTICK]
         if not releases:
             return ""
@@ -60,13 +60,13 @@ class StandInRig:
         off = [f"{name} {value:+.2f}" for name, value in stand.items() if value != 0.0]
         return f"released with {', '.join(off)}" if off else ""
 
-    def throw_switch(self, *, on: bool) -> None:
-        """Throw the engage switch inside the simulator, as a person would."""
+    def set_switch(self, *, on: bool) -> None:
+        """Move the engage switch inside the simulator, as a person would."""
         self.switch_is_on = on
         self.simulator.write(ENGAGE_SWITCH, float(on))
 
     def fly_to(self, time_s: float, until: Callable[[], bool] | None = None) -> None:
-        """Wait until the flight is at a time, or something holds."""
+        """Wait until a time of the flight, or until a condition is met."""
         progress = self._look()
         give_up_s = (
             time.monotonic() + _PATIENCE * max(0.0, time_s - progress.time_s) + _PATIENCE_MORE_S
@@ -81,17 +81,17 @@ class StandInRig:
             progress = self._look()
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
-        """Put faults into what the stand-in replies."""
+        """Put faults into the stand-in's replies."""
         self.simulator.set_sensor_faults(faults)
 
     def truth(self) -> Truth:
-        """Return what was flown so far, 40 rows a second."""
+        """Return the truth so far, 40 rows a second."""
         if not self._is_closed:
             self._rows += self.simulator.rows(len(self._rows))
         return Truth(self._rows)
 
-    def leave_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
-        """Leave nothing: the recording is where the daemon is."""
+    def save_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
+        """Save nothing: the recording is on the daemon's host."""
         return []
 
     def close(self) -> None:
@@ -109,7 +109,7 @@ class StandInRig:
             time.sleep(_LOOK_S)
 
     def _look(self) -> Progress:
-        """Look at the simulator, and take note of what happened."""
+        """Query the simulator, and note events."""
         if not self._is_closed:
             self.progress = self.simulator.progress()
         return self.progress

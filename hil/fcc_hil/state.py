@@ -1,4 +1,4 @@
-"""What travels between the plant and whoever flies it: its state and its controls, in SI."""
+"""The values exchanged between the plant and its pilot: state and controls, in SI."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ class State:
     yaw_rate_radps: float
     """R, nose right."""
     specific_force_x_mps2: float
-    """What an accelerometer feels, forward."""
+    """Specific force, forward."""
     specific_force_y_mps2: float
     """To the right."""
     specific_force_z_mps2: float
     """Down: -9.81 in level flight."""
     airspeed_mps: float
-    """Calibrated airspeed: what a faultless indicator shows."""
+    """Calibrated airspeed: the reading of an ideal indicator."""
     true_airspeed_mps: float
     mach: float
     altitude_m: float
@@ -65,7 +65,7 @@ class State:
 
 @dataclass(slots=True)
 class Controls:
-    """What the pilot or the autopilot commands, in the project's own signs."""
+    """The commands of the pilot or the autopilot, with the project's signs."""
 
     elevator: float = 0.0
     """-1..1, positive raises the nose."""

@@ -1,8 +1,8 @@
-"""Who wants what, and how often: RREF and RPOS subscriptions by client.
+"""RREF and RPOS subscriptions by client.
 
-Output is bound to the frame: a value is sent on the first frame on which it is due, so
-never more often than the frame rate. All that is due to a client goes out together, in
-an order that is shuffled, because X-Plane fixes none.
+Output is bound to the frame: a value is sent on the first frame on which it is due, so at most once
+per frame. All values due to a client are sent together, in random order, because X-Plane guarantees
+none.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .datarefs import Getter, Readout, getter
 from .faults import Address
 from .protocol import Dialect, RequestPosition, Subscribe, rpos_reply, rref_replies
 
-# A hair less than a frame, so that rounding never pushes a value to the next one.
+# Slightly less than a frame, so that rounding never delays a value to the next one.
 _EPSILON_S = 1e-6
 
 
@@ -53,9 +53,9 @@ class Subscriptions:
     """The subscriptions of every client."""
 
     def __init__(self, dialect: Dialect, *, shuffle: bool, seed: int) -> None:
-        """Start with none."""
+        """Start without subscriptions."""
         self.unknown: dict[str, int] = {}
-        """Requests for datarefs that do not exist here, with how often; they get no answer."""
+        """Requests for unknown datarefs, with their number; they get no answer."""
         self._dialect = dialect
         self._clients: dict[Address, _Client] = {}
         self._shuffle = random.Random(seed).shuffle if shuffle else None
@@ -85,7 +85,7 @@ class Subscriptions:
         state.position = _Due(1.0 / frequency_hz, now_s) if frequency_hz else None
 
     def paths(self) -> dict[Address, list[str]]:
-        """Return what each client is subscribed to."""
+        """Return the subscriptions of each client."""
         listing = {}
         for client, state in self._clients.items():
             paths = [value.path for value in state.values.values()]
@@ -98,7 +98,7 @@ class Subscriptions:
     def due(
         self, now_s: float, readout: Readout, withheld: frozenset[str] = frozenset()
     ) -> list[tuple[Address, bytes]]:
-        """Return the datagrams that are due on this frame, without what is withheld."""
+        """Return the datagrams due on this frame, without withheld values."""
         datagrams = []
         for client, state in self._clients.items():
             pairs = [

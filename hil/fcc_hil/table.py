@@ -1,4 +1,4 @@
-"""Scores as a table for people: one row for each flight, mean and worst over its legs."""
+"""Scores as a table: one row for each flight, mean and worst over its legs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _cell(legs: Sequence[LegScore], name: str, digits: int) -> str:
 def table(flights: Sequence[tuple[str, Score]]) -> str:
     """Return the flights as a Markdown table; each cell is mean/worst over the legs.
 
-    A time to settle that not every leg has is given as the number of legs that have it.
+    If some leg has no time to settle, the number of legs that have one is given.
     """
     rows = [["mean/worst", *(title for _, title, _ in _COLUMNS)]]
     for name, flight in flights:

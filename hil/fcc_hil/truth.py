@@ -1,4 +1,4 @@
-"""What the plant truly did, one row per tick of a 40 Hz grid of simulated time."""
+"""The true state of the plant, one row per tick of a 40 Hz grid of simulated time."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Row = tuple[float, ...]
 
 
 def row(state: State, controls: Controls) -> Row:
-    """Return one row in the order of COLUMNS, in the units that people read."""
+    """Return one row in the order of COLUMNS, in the units of reports."""
     return (
         state.time_s,
         math.degrees(state.heading_rad),
@@ -57,7 +57,7 @@ class Truth:
     """The rows of a flight by column."""
 
     def __init__(self, rows: Sequence[Row]) -> None:
-        """Take rows as `row` makes them, at least one."""
+        """Take rows made by `row`, at least one."""
         self._table: npt.NDArray[np.float64] = np.array(rows, dtype=np.float64)
 
     def __getitem__(self, column: str) -> npt.NDArray[np.float64]:
@@ -69,11 +69,11 @@ class Truth:
         return self._table
 
     def trace(self) -> Trace:
-        """Return what the score looks at."""
+        """Return the columns for the score."""
         return Trace(*(self[name] for name in COLUMNS[:5]))
 
     def captured_at(self, time_s: float) -> SetPoints:
-        """Return what an autopilot that engages at `time_s` captures."""
+        """Return the set points that an autopilot captures when it engages at `time_s`."""
         index = min(int(np.searchsorted(self["time_s"], time_s)), len(self._table) - 1)
         return SetPoints(
             heading_deg=float(self["heading_deg"][index]),

@@ -1,4 +1,4 @@
-"""Conversions between SI, which everything here computes in, and the edges' units."""
+"""Conversions between SI, used everywhere here, and other units."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The programs that are tested, by their paths in the environment."""
+"""The programs under test, from environment variables."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-# How long an example takes says how busy the machine is, and nothing else.
+# The duration of an example depends on the machine's load only.
 hypothesis.settings.register_profile(
     "busy-machine", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
 )
 hypothesis.settings.load_profile("busy-machine")
 
 
-# Under nohup a hang-up is ignored, and whoever is started here inherits that.
+# Under nohup a hang-up is ignored, and the started programs inherit that.
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 

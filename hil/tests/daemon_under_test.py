@@ -1,4 +1,4 @@
-"""The real daemon beside a stand-in: start both, wait for its words, read its report.
+"""The real daemon and a stand-in: start both, wait for messages, read the report.
 
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
@@ -6,8 +6,8 @@
         daemon.wait_for("engaged -> failsafe")
         ending = daemon.end(signal.SIGTERM)
 
-Everything waits for what it needs and gives up only long after a healthy machine
-would have answered, so that a busy one makes a test slow and not wrong.
+All waits have limits far beyond a healthy machine's times, so that a busy machine makes a test slow
+and not wrong.
 """
 
 from __future__ import annotations
@@ -32,26 +32,26 @@ PATIENCE_S = 15.0
 _LOOK_S = 0.02
 
 NOT_READY = "not ready"
-"""In a status line: what keeps the daemon from engaging follows."""
+"""In a status line: followed by the engage inhibits."""
 
 
 @dataclass(frozen=True)
 class Ending:
-    """How a daemon ended."""
+    """The end of a daemon."""
 
     exit_code: int
     """Negative for a signal."""
     report: dict[str, Any]
     """Its JSON; empty if it printed none."""
-    said: str
-    """All that it said to people."""
+    log: str
+    """All of its messages."""
 
     @property
     def events(self) -> list[str]:
         return [event["text"] for event in self.report["events"]]
 
     def when(self, text: str) -> float:
-        """Return when it first said something, in seconds since the loop's first tick."""
+        """Return the time of the first event with this text, in s since the loop's first tick."""
         return next(
             float(event["time_s"]) for event in self.report["events"] if text in event["text"]
         )
@@ -63,7 +63,7 @@ class Ending:
 
 
 class DaemonUnderTest:
-    """A running `fccd`. What it prints goes to files: it never has to wait for a reader."""
+    """A running `fccd`. Its output goes to files, so that it never waits for a reader."""
 
     def __init__(
         self,
@@ -97,17 +97,17 @@ class DaemonUnderTest:
         return self._process.poll() is None
 
     @property
-    def said(self) -> str:
-        """Return what it has said to people so far."""
+    def log(self) -> str:
+        """Return its messages so far."""
         return self._err.read_text()
 
     def wait_for(self, text: str, within_s: float = PATIENCE_S) -> str:
         """Wait for a line with `text`, after the last one waited for, and return it."""
         deadline_s = time.monotonic() + within_s
         while True:
-            # It may say its last words between our looking and its end.
+            # It may print its last messages between our reading and its end.
             running = self.is_running
-            whole = self.said
+            whole = self.log
             for line in whole[self._heard :].splitlines(keepends=True):
                 if not line.endswith("\n"):
                     break
@@ -119,7 +119,7 @@ class DaemonUnderTest:
             time.sleep(_LOOK_S)
 
     def wait_until_ready(self) -> None:
-        """Wait for a status line that says it sees an aircraft and nothing is in the way."""
+        """Wait for a status line with an aircraft and without engage inhibits."""
         while NOT_READY in self.wait_for("standby  heading"):
             pass
 
@@ -134,13 +134,13 @@ class DaemonUnderTest:
         try:
             exit_code = self._process.wait(within_s)
         except subprocess.TimeoutExpired:
-            raise AssertionError(f"it does not end; it said:\n{self.said}") from None
+            raise AssertionError(f"it does not end; its messages:\n{self.log}") from None
         printed = self._out.read_text()
-        return Ending(exit_code, json.loads(printed) if printed else {}, self.said)
+        return Ending(exit_code, json.loads(printed) if printed else {}, self.log)
 
 
 def wait_until(holds: Callable[[], bool], what: str, within_s: float = PATIENCE_S) -> None:
-    """Wait until something holds; `what` says in words what was waited for."""
+    """Wait until a condition is met; `what` describes it."""
     deadline_s = time.monotonic() + within_s
     while not holds():
         assert time.monotonic() < deadline_s, f"not within {within_s:.0f} s: {what}"
@@ -179,7 +179,7 @@ def flight(
     others: str = "",
     environment: Mapping[str, str] | None = None,
 ) -> Iterator[tuple[StandInProcess, DaemonUnderTest]]:
-    """Start a stand-in on a port of its own, and the daemon against it."""
+    """Start a stand-in on a free port, and the daemon connected to it."""
     with StandInProcess(settings or Settings(port=0)) as simulator:
         config = write_config(scratch, simulator.port, x_plane, others)
         with start(fccd, scratch, config, environment) as daemon:
@@ -196,7 +196,7 @@ def engage(simulator: StandInProcess, daemon: DaemonUnderTest) -> None:
 
 
 def assert_released(simulator: StandInProcess) -> None:
-    """Both overrides have gone off, and the surfaces, deflected in flight, were centred before."""
+    """Both overrides are off, and the surfaces, deflected in flight, were centred before."""
     wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
     releases = simulator.releases()
     assert {release.path for release in releases} == {OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES}

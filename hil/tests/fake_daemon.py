@@ -1,8 +1,8 @@
-"""A flight control computer of a hundred lines, to try the stand-in and `fly` with.
+"""A minimal flight control computer, to test the stand-in and `fly`.
 
-It speaks the protocol from the layouts alone and shares no code with the package. It
-holds what it captured: wings level, heading, altitude; good enough to see that commands
-reach the aircraft and values come back.
+It implements the protocol from the layouts, independently of the package. It holds the captured
+state: wings level, heading, altitude. This is enough to test that commands reach the aircraft and
+values return.
 
     python fake_daemon.py PORT [--exit-after S | --never-engage | --keep-overrides | --mute]
 """

@@ -1,7 +1,7 @@
-"""Flights that something befalls, several at once, and what their recordings say of it.
+"""Flights with faults, several at once, and their recordings.
 
-How soon a fault was seen is asked of the recording, in the loop's own ticks: a busy
-machine makes a test slow and not wrong.
+The time of detection is taken from the recording, in the loop's own ticks: a busy machine makes a
+test slow and not wrong.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ AT_ONCE = 8
 """Flights in real time mostly wait."""
 
 STANDBY = 0
-"""The phase, as the recording calls it."""
+"""The phase in the recording."""
 ENGAGED = 1
 FAILSAFE = 2
 
 OVERRUN = 3
-"""Why the loop fell into failsafe, as the recording calls it."""
+"""The cause of the failsafe in the recording."""
 
 NS = 1e-9
 
 AT_ONCE_S = 3.0
-"""What takes a tick, on a machine that is busy with other things."""
+"""What takes a tick, on a busy machine."""
 
 
 def at_once(flights: dict[Key, Callable[[], Result]]) -> dict[Key, Result]:
-    """Run flights beside each other; the first that goes wrong is raised."""
+    """Run flights at the same time; raise the first failure."""
     with ThreadPoolExecutor(AT_ONCE) as pool:
         begun = {key: pool.submit(flight) for key, flight in flights.items()}
         return {key: future.result() for key, future in begun.items()}
@@ -47,7 +47,7 @@ def at_once(flights: dict[Key, Callable[[], Result]]) -> dict[Key, Result]:
 
 @dataclass(frozen=True)
 class Flown:
-    """A flight that is over."""
+    """A completed flight."""
 
     ending: Ending
     records: list[Any]
@@ -56,11 +56,11 @@ class Flown:
     """Decoded."""
     recording: Path
     injected_ns: int = 0
-    """When the fault was put in, by the loop's clock, which is the machine's monotonic one."""
+    """The time of the fault, by the loop's clock, which is the machine's monotonic one."""
 
     @classmethod
     def of(cls, ending: Ending, folder: Path, injected_ns: int = 0) -> Flown:
-        """Read what a flight left in a folder of recordings."""
+        """Read a flight's recording in a folder."""
         path = only_recording(folder)
         seen = in_sequence(path)
         return cls(
@@ -73,7 +73,7 @@ class Flown:
 
     @property
     def failsafes(self) -> list[int]:
-        """Return where in the records the loop fell into failsafe."""
+        """Return the indices of the records in which failsafe began."""
         phases = [record.state.phase for record in self.records]
         return [
             place
@@ -82,7 +82,7 @@ class Flown:
         ]
 
     def texts(self) -> list[str]:
-        """Return what happened, in words."""
+        """Return the texts of the events."""
         return [event.text for event in self.events]
 
     def replayed(self, fccd: Path) -> dict[str, Any]:
@@ -95,7 +95,7 @@ class Flown:
 
 
 def assert_flown_again(fccd: Path, flown: Flown) -> None:
-    """Every output comes out the same, to the last bit, from the recording."""
+    """Every output of the replay is identical to the last bit."""
     found = flown.replayed(fccd)
     assert found["exit_code"] == 0, found
     assert found["identity"]["differing"] == 0
@@ -108,14 +108,14 @@ def seconds(later: Any, earlier: Any) -> float:
 
 
 def assert_in_the_same_tick(flown: Flown, place: int, after_s: float) -> None:
-    """Assert that what a part does so long after engaging is answered in that very tick."""
+    """Assert that the reaction to a part's action is in the same tick."""
     engaged_ns = next(r.tick.woke_ns for r in flown.records if r.state.phase == ENGAGED)
     last, record = flown.records[place - 1 : place + 1]
     assert last.tick.woke_ns - engaged_ns < after_s / NS <= record.tick.woke_ns - engaged_ns
 
 
 def assert_regular(records: Iterable[Any], period_ns: int) -> None:
-    """No tick is left out but those said to be missed, and the phase never moved."""
+    """No tick is missing except the counted ones, and the phase is kept."""
     records = list(records)
     for last, record in itertools.pairwise(records):
         assert record.tick.number == last.tick.number + 1 + record.tick.missed

@@ -1,4 +1,4 @@
-"""Recordings as other programs see them: by PyPI's `mcap`, with decoded protobuf."""
+"""Recordings read by another program: PyPI's `mcap`, with decoded protobuf."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def ticks(messages: list[Seen]) -> list[int]:
 
 
 def is_in_log_time_order(messages: list[Seen]) -> bool:
-    """Return whether no message was logged before the one before it."""
+    """Return whether the messages are in order of log time."""
     times = [message.log_time_ns for message in messages]
     return times == sorted(times)
 

@@ -1,4 +1,4 @@
-"""A stand-in for systemd: hears what a service says of itself (sd_notify(3))."""
+"""A stand-in for systemd: receives a service's notifications (sd_notify(3))."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ class ServiceManager:
         self._folder.cleanup()
 
     def environment(self, watchdog_s: float) -> dict[str, str]:
-        """Return what systemd would put into the service's environment."""
+        """Return the environment that systemd would set."""
         return {"NOTIFY_SOCKET": self.path, "WATCHDOG_USEC": f"{watchdog_s * 1e6:.0f}"}
 
-    def hears(self, word: str, within_s: float = PATIENCE_S) -> bool:
-        """Whether a line that begins with `word` comes in time."""
+    def has_received(self, word: str, within_s: float = PATIENCE_S) -> bool:
+        """Return whether a line that begins with `word` arrives in time."""
         deadline_s = time.monotonic() + within_s
         while (left_s := deadline_s - time.monotonic()) > 0.0:
             lines = self._next(left_s)
@@ -43,7 +43,7 @@ class ServiceManager:
         return False
 
     def forget(self) -> None:
-        """Take all that has come so far."""
+        """Discard all received notifications."""
         while self._next(0.0):
             pass
 

@@ -1,7 +1,6 @@
-"""A way to the stand-in that can be cut in either direction, and says other values.
+"""A link to the stand-in that can be cut in either direction, and can change values.
 
-It is a process of its own, as the stand-in is and for the same reason: a busy test
-must not hold a datagram up.
+It is a separate process, like the stand-in, so that a busy test does not delay a datagram.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _STOP_S = 5.0
 
 
 class _Link:
-    """Forwards in its own process, until the other end of the pipe is gone."""
+    """Forwards in its own process, until the pipe is closed."""
 
     def __init__(self, simulator_port: int, pipe: Connection) -> None:
         self._pipe = pipe
@@ -56,7 +55,7 @@ class _Link:
             selector.register(self._pipe, selectors.EVENT_READ, self._obey)
             while not self._over:
                 for key, _ in selector.select():
-                    # Whoever is gone, at either end, is no fault of the link.
+                    # An ended program, at either end, is not an error of the link.
                     try:
                         key.data()
                     except ConnectionError:
@@ -102,7 +101,7 @@ def _serve(simulator_port: int, pipe: Connection) -> None:
 
 
 class TamperedLink:
-    """Stands between one daemon and a stand-in; a context manager."""
+    """Between a daemon and a stand-in; a context manager."""
 
     def __init__(self, simulator_port: int) -> None:
         context = multiprocessing.get_context("spawn")
@@ -113,7 +112,7 @@ class TamperedLink:
         self._process.start()
         theirs.close()
         self.port: int = self._answer()
-        """The port that the daemon is to be told."""
+        """The port for the daemon."""
 
     def __enter__(self) -> TamperedLink:
         return self
@@ -125,18 +124,18 @@ class TamperedLink:
             self._process.kill()
 
     def cut(self, *, to_simulator: bool = False, from_simulator: bool = False) -> None:
-        """Let nothing through in these directions, and everything in the others."""
-        self._order({"to": to_simulator, "from": from_simulator}, {})
+        """Cut these directions, and restore the others."""
+        self._command({"to": to_simulator, "from": from_simulator}, {})
 
-    def say(self, values: Mapping[str, float]) -> None:
-        """Say this of these datarefs, whatever they are; nothing is cut."""
-        self._order({"to": False, "from": False}, dict(values))
+    def replace_values(self, values: Mapping[str, float]) -> None:
+        """Replace the values of these datarefs; nothing is cut."""
+        self._command({"to": False, "from": False}, dict(values))
 
-    def mend(self) -> None:
-        """Let everything through as it is."""
-        self.say({})
+    def restore(self) -> None:
+        """Forward everything unchanged."""
+        self.replace_values({})
 
-    def _order(self, cut: dict[str, bool], says: dict[str, float]) -> None:
+    def _command(self, cut: dict[str, bool], says: dict[str, float]) -> None:
         self._pipe.send((cut, says))
         self._answer()
 

@@ -1,4 +1,4 @@
-"""Overrides: whose the controls are, and what is left when they are let go."""
+"""Overrides: who has control, and the controls after a release."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from fcc_hil.state import Controls
 TRIMMED = Controls(throttle=0.7)
 
 
-def test_yoke_is_the_pilots_until_it_is_overridden() -> None:
+def test_the_yoke_belongs_to_the_pilot_until_overridden() -> None:
     cockpit = Cockpit(TRIMMED)
     assert not cockpit.write(0.0, YOKE_PITCH, 0.5)
     assert cockpit.controls() == TRIMMED
@@ -29,7 +29,7 @@ def test_yoke_is_the_pilots_until_it_is_overridden() -> None:
     assert cockpit.controls() == Controls(elevator=0.5, throttle=0.7)
 
 
-def test_throttles_are_the_pilots_until_they_are_overridden() -> None:
+def test_the_throttles_belong_to_the_pilot_until_overridden() -> None:
     cockpit = Cockpit(TRIMMED, engines=2)
     assert not cockpit.write(0.0, f"{THROTTLE_USE}[0]", 0.2)
     # The joystick's override does not give the throttles.
@@ -40,7 +40,7 @@ def test_throttles_are_the_pilots_until_they_are_overridden() -> None:
     assert cockpit.throttles() == [0.2, 0.7]
 
 
-def test_release_gives_the_trimmed_controls_back_and_remembers_what_was_held() -> None:
+def test_a_release_restores_the_trimmed_controls_and_is_recorded() -> None:
     cockpit = Cockpit(TRIMMED)
     for path in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES):
         cockpit.write(1.0, path, 1.0)
@@ -52,12 +52,12 @@ def test_release_gives_the_trimmed_controls_back_and_remembers_what_was_held() -
     assert cockpit.controls() == TRIMMED
     assert cockpit.releases[0] == Release(2.0, OVERRIDE_JOYSTICK, 0.0, -0.4, 0.3)
     assert [release.path for release in cockpit.releases] == [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES]
-    # Letting go of what is not held is no release.
+    # Clearing an override that is not set is not a release.
     cockpit.write(3.0, OVERRIDE_JOYSTICK, 0.0)
     assert len(cockpit.releases) == 2
 
 
-def test_values_are_clipped_to_the_levers_travel() -> None:
+def test_values_are_clipped_to_the_range() -> None:
     cockpit = Cockpit(TRIMMED)
     for path in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES):
         cockpit.write(0.0, path, 1.0)
@@ -91,7 +91,7 @@ def test_switches_and_unknown_datarefs() -> None:
     assert not cockpit.write(0.0, "sim/flightmodel/position/theta", 1.0)
 
 
-def test_the_journal_keeps_what_had_no_effect_too() -> None:
+def test_the_journal_contains_writes_without_effect() -> None:
     cockpit = Cockpit(TRIMMED)
     cockpit.write(0.5, YOKE_PITCH, 0.25)
     cockpit.write(0.6, OVERRIDE_JOYSTICK, 1.0)

@@ -1,4 +1,4 @@
-"""`fccd check`: what is wrong in a configuration, in which line, at which key, what is right."""
+"""`fccd check`: problems of a configuration with line, key and permitted values."""
 
 from __future__ import annotations
 
@@ -129,17 +129,17 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("text", "line", "key", "right"), WRONG.values(), ids=WRONG.keys())
-def test_what_is_wrong_where_and_what_would_be_right(
+def test_a_problem_is_reported_with_its_place_and_the_permitted_values(
     fccd: Path, tmp_path: Path, text: str, line: int | None, key: str | None, right: str
 ) -> None:
     file = tmp_path / "wrong.toml"
     file.write_text(text)
     ended = run([fccd, "check", file])
     assert ended.returncode == 2
-    (said,) = ended.stderr.splitlines()
+    (log,) = ended.stderr.splitlines()
     place = f"{file}:{line}: " if line else f"{file}: "
-    assert said.startswith(place + (f"{key}: " if key else ""))
-    assert right in said
+    assert log.startswith(place + (f"{key}: " if key else ""))
+    assert right in log
 
     as_json = run([fccd, "check", file, "--json"])
     assert as_json.returncode == 2
@@ -151,7 +151,7 @@ def test_what_is_wrong_where_and_what_would_be_right(
     assert right in problem["message"]
 
 
-def test_every_problem_is_named_in_the_order_of_the_file(fccd: Path, tmp_path: Path) -> None:
+def test_every_problem_is_reported_in_the_order_of_the_file(fccd: Path, tmp_path: Path) -> None:
     file = tmp_path / "wrong.toml"
     file.write_text("[x-plane]\nengines = 9\nrate_hz = 0\n[failsafe]\nhold_s = -1\n")
     ended = run([fccd, "check", file])
@@ -164,7 +164,7 @@ def test_every_problem_is_named_in_the_order_of_the_file(fccd: Path, tmp_path: P
 
 
 def test_one_problem_hides_no_other(fccd: Path, tmp_path: Path) -> None:
-    """Of syntax, of keys, of types, of choices, of ranges, and of what belongs together."""
+    """Problems of syntax, keys, types, choices, ranges and combinations."""
     file = tmp_path / "wrong.toml"
     file.write_text(
         "[x-plane]\n"
@@ -190,7 +190,7 @@ def test_one_problem_hides_no_other(fccd: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("what", ["folder", "pipe", "device", "huge"])
-def test_what_is_no_configuration_file_is_refused_at_once(
+def test_a_file_that_is_not_a_configuration_is_refused(
     fccd: Path, tmp_path: Path, what: str
 ) -> None:
     path = tmp_path / what
@@ -210,7 +210,7 @@ def test_what_is_no_configuration_file_is_refused_at_once(
         assert says in ended.stderr
 
 
-def test_a_switch_that_is_left_to_the_default_is_named(fccd: Path, tmp_path: Path) -> None:
+def test_the_default_of_the_switch_is_reported(fccd: Path, tmp_path: Path) -> None:
     file = tmp_path / "right.toml"
     file.write_text("[x-plane]\n")
     ended = run([fccd, "check", file])
@@ -223,7 +223,7 @@ def test_a_switch_that_is_left_to_the_default_is_named(fccd: Path, tmp_path: Pat
     assert json.loads(run([fccd, "check", file, "--json"]).stdout)["remarks"] == []
 
 
-def test_what_is_no_text(fccd: Path, tmp_path: Path) -> None:
+def test_invalid_utf_8(fccd: Path, tmp_path: Path) -> None:
     file = tmp_path / "latin-1.toml"
     file.write_bytes("[x-plane]\n# für\n".encode("latin-1"))
     ended = run([fccd, "check", file])
@@ -232,7 +232,7 @@ def test_what_is_no_text(fccd: Path, tmp_path: Path) -> None:
     assert "UTF-8" in ended.stderr
 
 
-def test_what_is_not_there(fccd: Path, tmp_path: Path) -> None:
+def test_a_missing_file(fccd: Path, tmp_path: Path) -> None:
     file = tmp_path / "missing.toml"
     ended = run([fccd, "check", file])
     assert ended.returncode == 2
@@ -243,7 +243,7 @@ def test_what_is_not_there(fccd: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("section", ["x-plane", "built-in"])
-def test_what_is_right(fccd: Path, tmp_path: Path, section: str) -> None:
+def test_a_valid_file(fccd: Path, tmp_path: Path, section: str) -> None:
     file = tmp_path / "right.toml"
     file.write_text(f"[{section}]\n")
     ended = run([fccd, "check", file])

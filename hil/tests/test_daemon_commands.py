@@ -1,4 +1,4 @@
-"""The daemon's commands as other tools and shells see them: JSON, exit codes, completions."""
+"""The daemon's command line as used by programs: JSON, exit codes, completions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-# What other tools will read; these names are a promise.
+# Keys for other programs; they must not change.
 TIMING = {
     "rate_hz",
     "timer",
@@ -86,7 +86,7 @@ def test_timing_as_json(fccd: Path, timer: str) -> None:
 
 
 @pytest.mark.parametrize("when", ["auto", "on", "off"])
-def test_timing_wakes_early_where_it_may(fccd: Path, when: str) -> None:
+def test_timing_wakes_early_if_permitted(fccd: Path, when: str) -> None:
     words: list[str | Path] = [
         fccd,
         "timing",
@@ -130,7 +130,7 @@ def test_fly_as_json(fccd: Path) -> None:
     assert report["ending"] == "stop requested"
 
 
-def test_fly_says_how_it_goes_each_second_and_is_quiet_if_asked(fccd: Path) -> None:
+def test_fly_prints_a_status_each_second_unless_quiet(fccd: Path) -> None:
     aloud = run([fccd, "fly", "--seconds", "5", "--lockstep"])
     lines = [line for line in aloud.stderr.splitlines() if "altitude" in line]
     assert len(lines) == 2 + 5 + 1, "2 s before engaging, 5 after, both ends counted"
@@ -138,7 +138,7 @@ def test_fly_says_how_it_goes_each_second_and_is_quiet_if_asked(fccd: Path) -> N
     assert "altitude" not in quiet.stderr
 
 
-def test_lockstep_prints_no_times_and_what_it_scored(fccd: Path) -> None:
+def test_lockstep_prints_the_score_and_no_timing(fccd: Path) -> None:
     ended = run([fccd, "fly", "--seconds", "45", "--lockstep", "--quiet"])
     assert ended.returncode == 0, ended.stderr
     assert "Missed" not in ended.stdout, "no time passes that could be kept"
@@ -149,9 +149,7 @@ def test_lockstep_prints_no_times_and_what_it_scored(fccd: Path) -> None:
     assert "Missed" in in_real_time.stdout
 
 
-def test_a_flight_that_was_not_recorded_does_not_end_as_if_it_was(
-    fccd: Path, tmp_path: Path
-) -> None:
+def test_a_flight_that_was_not_recorded_has_its_own_exit_code(fccd: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way of a folder")
     ended = run([fccd, "fly", "--seconds", "1", "--lockstep", "--recordings", tmp_path / "file"])
     assert ended.returncode == NOT_RECORDED, ended.stderr
@@ -170,7 +168,7 @@ def test_a_flight_that_was_not_recorded_does_not_end_as_if_it_was(
         ([], "Usage"),
     ],
 )
-def test_what_is_typed_wrong_is_said_in_words(fccd: Path, words: list[str], says: str) -> None:
+def test_a_wrong_command_line_gives_a_message(fccd: Path, words: list[str], says: str) -> None:
     ended = run([fccd, *words])
     assert ended.returncode == 2
     assert says in ended.stderr
@@ -181,8 +179,8 @@ def test_help_names_the_exit_codes(fccd: Path) -> None:
     ended = run([fccd, "--help"])
     assert ended.returncode == 0
     assert "3  the flight fell into failsafe" in ended.stdout
-    assert "12  another program has the simulator" in ended.stdout
-    assert "14  the flight went as it should, but was not recorded" in ended.stdout
+    assert "12  another program uses the simulator" in ended.stdout
+    assert "14  the flight succeeded, but was not recorded" in ended.stdout
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

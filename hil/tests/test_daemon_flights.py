@@ -1,4 +1,4 @@
-"""Flights of the daemon under conditions that are not the best, scored from JSBSim's truth."""
+"""Flights of the daemon under bad conditions, scored from JSBSim's true state."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from daemon_under_test import assert_released, engage, flight, write_config
 
 from fcc_hil.daemon import command
 from fcc_hil.faults import Faults
-from fcc_hil.fly import Order, fly
+from fcc_hil.fly import Plan, fly
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.standin import Settings
 
 HARSH = Faults(loss=0.02, duplicate=0.01, reorder=0.01)
-# Twice what is asked of a good network; a leg has no more than 20 s to settle in.
+# Twice the limits for a good network; a leg has at most 20 s to settle.
 WORST_HEADING_OVERSHOOT_DEG = 2 * 1.5
 WORST_ALTITUDE_OVERSHOOT_FT = 2 * 4.0
 WORST_ALTITUDE_RMS_FT = 2 * 2.0
@@ -39,14 +39,14 @@ def test_a_harsh_network_and_noisy_sensors(fccd: Path, tmp_path: Path) -> None:
         tmp_path, port, guidance=f'mode = "timed-pattern"\nhold_s = {pattern.hold_s}'
     )
     settings = Settings(port=port, noise=True, inbound=HARSH, outbound=HARSH)
-    flown = fly(Order(command(fccd, config), settings, legs=2, pattern=pattern), print)
+    flown = fly(Plan(command(fccd, config), settings, legs=2, pattern=pattern), print)
     assert flown.failures == []
     assert flown.report is not None
     events = [event["text"] for event in flown.report["events"]]
     states = [text for text in events if " -> " in text]
     assert states == ["standby -> engaged", "engaged -> standby", "standby -> stopped"]
     assert "missed" in flown.report["timing"]
-    # The faults did strike.
+    # The faults occurred.
     assert flown.standin["inbound"]["lost"] > 0
     assert flown.standin["outbound"]["reordered"] > 0
     for leg in flown.figures["legs"]:

@@ -1,4 +1,4 @@
-"""The plugin with the real daemon: on this machine, and as if it were on another host."""
+"""The plugin with the real daemon: on this machine, and as if on another host."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_the_same_test_in_lockstep_and_in_real_time(pytester: pytest.Pytester, f
     _run(pytester, FLIES, "--realtime", "--fccd-program", str(fccd)).assert_outcomes(passed=1)
 
 
-def test_the_same_test_by_a_daemon_that_runs_elsewhere(
+def test_the_same_test_with_a_daemon_started_separately(
     pytester: pytest.Pytester, fccd: Path, tmp_path: Path
 ) -> None:
     """It was started by somebody else, and is only known by what it does."""
@@ -75,7 +75,7 @@ def test_a_failed_test_in_real_time_leaves_the_daemons_recording(
     assert any(message.topic == RECORD for message in by_index(left[-1]))
 
 
-def test_a_daemon_that_does_not_start_is_said_in_its_own_words(
+def test_a_daemon_that_does_not_start_is_reported_with_its_message(
     pytester: pytest.Pytester, fccd: Path
 ) -> None:
     text = (
@@ -88,7 +88,7 @@ def test_a_daemon_that_does_not_start_is_said_in_its_own_words(
     result.stdout.fnmatch_lines(["E *FlightError: the daemon ended with 2*", "E *loop.rate_hz*"])
 
 
-def test_a_host_from_which_nobody_comes_is_said(
+def test_a_host_without_a_daemon_is_reported(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(remote_rig, "_SUBSCRIBE_S", 0.5)
@@ -96,11 +96,11 @@ def test_a_host_from_which_nobody_comes_is_said(
     result = _run(pytester, FLIES, "--fccd", "127.0.0.1", "--fccd-listen", at)
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        [f'E *FlightError: nobody subscribed*is fccd running on 127.0.0.1*simulator = "{at}"*']
+        [f'E *FlightError: no daemon subscribed*is fccd running on 127.0.0.1*simulator = "{at}"*']
     )
 
 
-def test_a_daemon_of_a_third_host_is_not_mistaken_for_it(
+def test_a_daemon_of_a_third_host_is_refused(
     pytester: pytest.Pytester, fccd: Path, tmp_path: Path
 ) -> None:
     port = _free_port()
@@ -110,7 +110,7 @@ def test_a_daemon_of_a_third_host_is_not_mistaken_for_it(
     result.stdout.fnmatch_lines(["E *FlightError: 127.0.0.1 subscribed *not only 127.0.0.2*"])
 
 
-def test_a_port_that_is_taken_is_said(pytester: pytest.Pytester) -> None:
+def test_a_port_in_use_is_reported(pytester: pytest.Pytester) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         at = f"127.0.0.1:{taken.getsockname()[1]}"
@@ -119,7 +119,7 @@ def test_a_port_that_is_taken_is_said(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines([f"*cannot listen on {at}*"])
 
 
-def test_a_daemon_that_dies_in_flight_is_said(pytester: pytest.Pytester, fccd: Path) -> None:
+def test_a_daemon_killed_in_flight_is_reported(pytester: pytest.Pytester, fccd: Path) -> None:
     text = """
         import os, signal
 

@@ -1,4 +1,4 @@
-"""A flight of JSBSim, recorded by the daemon and flown again from its file."""
+"""A flight of JSBSim, recorded by the daemon and replayed from its file."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def replay(fccd: Path, *words: str | Path) -> tuple[int, dict[str, Any]]:
     return done.returncode, json.loads(done.stdout) if done.stdout else {}
 
 
-def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Path) -> None:
-    """All that happens to a flight: the pattern, a switch, a silent simulator, a signal."""
+def test_a_replay_of_a_flight_is_identical(fccd: Path, tmp_path: Path) -> None:
+    """With the pattern, a switch, a silent simulator and a signal."""
     recordings = tmp_path / "recordings"
     with StandInProcess(Settings(port=0)) as simulator:
         config = write_config(
@@ -65,7 +65,7 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
     assert found["ticks"] == ending.report["timing"]["ticks"] > 400
     assert found["identity"]["outputs"] == found["ticks"] * OUTPUTS_PER_TICK
 
-    # The configuration that was given is the one that was recorded; another is not.
+    # The recorded configuration is identical; another is not.
     exit_code, found = replay(fccd, recording, "--config", config)
     assert exit_code == SUCCESS
     assert all(quantity["differing"] == 0 for quantity in found["deviation"]["quantities"])
@@ -76,7 +76,7 @@ def test_a_recorded_flight_is_the_same_when_flown_again(fccd: Path, tmp_path: Pa
     assert differing == {"commanded elevator"}
 
 
-def test_a_file_that_is_no_recording_is_refused(fccd: Path, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_recording_is_refused(fccd: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.mcap"
     other.write_bytes(b"not a recording")
     assert replay(fccd, other) == (NOT_REPLAYED, {})

@@ -1,7 +1,7 @@
 """A daemon that is killed in flight and started again: asserted on the aircraft.
 
-What is killed is the daemon alone; the simulator flies on, its engage switch still on, and
-the release helper releases the controls to a pilot who leaves them as they were.
+Only the daemon is killed; the simulator continues, its engage switch still on, and the release
+helper releases the controls to a pilot who does not move them.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ SUCCESS = 0
 RECOVERED_S = 3.0
 """Nominally 0.7 s; machines are busy with other things."""
 WARM = '[restart]\nmode = "warm"\n'
-# Half a minute to each leg: killed early in the first, the aircraft is far from where
-# it is to go, and a recovered flight cannot be mistaken for a new capture.
+# Long legs: killed early in the first, the aircraft is far from its set points, and a recovered
+# flight differs clearly from a new capture.
 PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 60.0\nturn_deg = 90.0\nclimb_ft = 150.0'
 
 _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) ft.*→ +([\d.]+) kt")
@@ -48,7 +48,7 @@ _AIMS = re.compile(r"heading +\d+° → +(\d+)°.*altitude +-?\d+ → +(-?\d+) f
 
 @dataclass(frozen=True)
 class Aims:
-    """What the daemon aims for, in the words of its status line."""
+    """The set points in the daemon's status line."""
 
     heading_deg: float
     altitude_ft: float
@@ -62,7 +62,7 @@ class Aims:
 
 
 class Cockpit:
-    """A simulator in flight, and one daemon after the other."""
+    """A simulator in flight, and successive daemons."""
 
     def __init__(self, fccd: Path, scratch: Path, simulator: StandInProcess) -> None:
         self.fccd = fccd
@@ -81,7 +81,7 @@ class Cockpit:
             yield daemon
 
     def fly_and_kill(self, others: str, guidance: str = PATTERN) -> Aims:
-        """Fly into the first turn, and kill; return what was aimed for."""
+        """Fly into the first turn, and kill the daemon; return its set points."""
         with self.daemon(others, guidance) as daemon:
             captured = self.engage(daemon)
             aims = captured
@@ -115,7 +115,7 @@ def cockpit(fccd: Path, tmp_path: Path) -> Iterator[Cockpit]:
         yield Cockpit(fccd, tmp_path, simulator)
 
 
-def test_a_warm_restart_goes_on_with_what_was_flown(
+def test_a_warm_restart_continues_the_flight(
     cockpit: Cockpit, record_property: Callable[[str, object], None]
 ) -> None:
     simulator = cockpit.simulator
@@ -157,7 +157,7 @@ def test_a_warm_restart_goes_on_with_what_was_flown(
     assert not cockpit.state_file.exists(), "a flight that ended regularly is not recovered"
 
 
-def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
+def test_a_cold_restart_stays_in_standby_and_reports_it(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill("")
     with cockpit.daemon("") as again:
         assert "staying in standby" in again.wait_for('restart.mode is "cold"')
@@ -165,7 +165,7 @@ def test_a_cold_restart_stands_by_and_says_so(cockpit: Cockpit) -> None:
         again.wait_until_ready()
         assert "standby" in again.wait_for("heading")
         assert not cockpit.simulator.progress().overridden
-        # And flies when somebody wants it to.
+        # It flies after the switch goes on.
         cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
         again.wait_until_ready()
         cockpit.engage(again)
@@ -192,7 +192,7 @@ def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 
-def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
+def test_a_switch_that_went_off_since_prevents_recovery(cockpit: Cockpit) -> None:
     cockpit.fly_and_kill(WARM)
     cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
     with cockpit.daemon(WARM) as again:
@@ -201,7 +201,7 @@ def test_who_switched_off_since_has_the_last_word(cockpit: Cockpit) -> None:
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 
 
-def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> None:
+def test_a_flight_that_ended_regularly_is_not_recovered(cockpit: Cockpit) -> None:
     with cockpit.daemon(WARM) as daemon:
         cockpit.engage(daemon)
         wait_until(cockpit.state_file.exists, "the state of the flight is stored")
@@ -211,7 +211,7 @@ def test_a_flight_that_ended_as_it_should_is_not_taken_up(cockpit: Cockpit) -> N
         again.wait_until_ready()
         ending = again.end(signal.SIGTERM)
     assert ending.states == ["standby -> stopped"]
-    assert "was interrupted" not in ending.said
+    assert "was interrupted" not in ending.log
 
 
 def test_a_helper_that_still_releases_is_ended(fccd: Path) -> None:

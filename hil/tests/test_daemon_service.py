@@ -1,4 +1,4 @@
-"""What systemd hears of a flight, and what it does to one that hangs."""
+"""Notifications to systemd during a flight, and what it does if the loop hangs."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ WATCHDOG_S = 1.0
 SILENCE_S = 3.0
 
 
-def test_systemd_hears_of_the_start_the_states_and_the_end(fccd: Path, tmp_path: Path) -> None:
+def test_systemd_is_notified_of_start_states_and_end(fccd: Path, tmp_path: Path) -> None:
     with (
         ServiceManager() as manager,
         flight(fccd, tmp_path, environment=manager.environment(WATCHDOG_S)) as (simulator, daemon),
     ):
-        assert manager.hears("READY=1")
+        assert manager.has_received("READY=1")
         assert manager.status.startswith("standby")
         for _ in range(3):
-            assert manager.hears("WATCHDOG=1")
+            assert manager.has_received("WATCHDOG=1")
         engage(simulator, daemon)
-        assert manager.hears("STATUS=engaged")
+        assert manager.has_received("STATUS=engaged")
         for _ in range(3):
-            assert manager.hears("WATCHDOG=1")
+            assert manager.has_received("WATCHDOG=1")
         daemon.send(signal.SIGTERM)
-        assert manager.hears("STOPPING=1")
+        assert manager.has_received("STOPPING=1")
         ending = daemon.end()
-        assert not manager.hears("WATCHDOG=1", within_s=0.5)
+        assert not manager.has_received("WATCHDOG=1", within_s=0.5)
     assert ending.exit_code == SUCCESS
 
 
-def test_a_systemd_that_does_not_listen_holds_nothing_up(fccd: Path, tmp_path: Path) -> None:
+def test_a_systemd_that_does_not_read_delays_nothing(fccd: Path, tmp_path: Path) -> None:
     with (
         ServiceManager() as manager,
         flight(fccd, tmp_path, environment=manager.environment(watchdog_s=0.1)) as (
@@ -43,7 +43,7 @@ def test_a_systemd_that_does_not_listen_holds_nothing_up(fccd: Path, tmp_path: P
         ),
     ):
         engage(simulator, daemon)
-        # Long enough to fill every queue there is.
+        # Long enough to fill all queues.
         for _ in range(5):
             daemon.wait_for("engaged ")
         ending = daemon.end(signal.SIGTERM)
@@ -52,7 +52,7 @@ def test_a_systemd_that_does_not_listen_holds_nothing_up(fccd: Path, tmp_path: P
     assert ending.report["records_dropped"] == 0
 
 
-def test_a_loop_that_hangs_gives_no_sign_and_is_cleaned_up_after(
+def test_a_loop_that_hangs_sends_no_notification_and_is_released(
     faulty_fccd: Path, tmp_path: Path
 ) -> None:
     with ServiceManager() as manager:
@@ -60,9 +60,9 @@ def test_a_loop_that_hangs_gives_no_sign_and_is_cleaned_up_after(
         with flight(faulty_fccd, tmp_path, environment=environment) as (simulator, daemon):
             engage(simulator, daemon)
             manager.forget()
-            assert manager.hears("WATCHDOG=1")
+            assert manager.has_received("WATCHDOG=1")
             wait_until(
-                lambda: not manager.hears("WATCHDOG=1", within_s=SILENCE_S),
+                lambda: not manager.has_received("WATCHDOG=1", within_s=SILENCE_S),
                 "the watchdog's sign stops",
                 within_s=60.0,
             )
@@ -74,6 +74,6 @@ def test_a_loop_that_hangs_gives_no_sign_and_is_cleaned_up_after(
 
 
 def _children(pid: int) -> list[int]:
-    """Return the processes that this one has started, and none of them has ended."""
+    """Return the child processes that are still running."""
     listed = (task.read_text().split() for task in Path(f"/proc/{pid}/task").glob("*/children"))
     return [int(child) for children in listed for child in children]

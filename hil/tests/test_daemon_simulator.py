@@ -1,4 +1,4 @@
-"""What simulators do to a flight control computer: die, pause, hang, reload, not listen."""
+"""Faults of simulators: end, pause, hang, reload, ignore writes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
-from deaf_simulator import DeafSimulator
 from fault_flights import AT_ONCE_S, NS, Flown
+from read_only_simulator import ReadOnlySimulator
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
@@ -22,13 +22,13 @@ FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
 MAX_AGE_S = 0.25
-"""What is older is lost, unless configured."""
+"""The default; older readings are lost."""
 SAID_AFTER_S = 1.5
 """Silent after half a second, and for another second."""
 ASKED_EVERY_S = 1.0
-"""A simulator that sends nothing is asked to, so often."""
+"""Interval of requests to a silent simulator."""
 AGAIN_AFTER_S = 0.25
-"""Between one release and the next, until it shows."""
+"""Interval between releases, until confirmed."""
 PAUSED = 1
 """The plant's state, as the recording calls it."""
 SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
@@ -44,17 +44,17 @@ def test_an_engage_switch_that_x_plane_does_not_have_is_named(fccd: Path, tmp_pa
     mistyped = "sim/cockpit2/switches/generic_light_switch[0]"
     with flight(fccd, tmp_path, x_plane=f'engage_switch = "{mistyped}"') as (_, daemon):
         assert mistyped in daemon.wait_for("answers")
-        # The stand-in lacks another dataref too, one that nothing depends on.
+        # The stand-in also lacks another dataref, which nothing depends on.
         words = daemon.wait_for("does not send x-plane.engage_switch")
         assert f'"{mistyped}"' in words
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
-    said = [text for text in ending.events if "does not send x-plane.engage_switch" in text]
-    assert len(said) == 1, said
+    log = [text for text in ending.events if "does not send x-plane.engage_switch" in text]
+    assert len(log) == 1, log
 
 
 @pytest.mark.parametrize(("host", "written"), [("::1", "[::1]"), ("127.0.0.1", "localhost")])
-def test_it_is_flown_by_ipv6_and_by_its_host_name(
+def test_the_simulator_is_reached_by_ipv6_and_by_host_name(
     fccd: Path, tmp_path: Path, host: str, written: str
 ) -> None:
     with StandInProcess(Settings(host=host, port=0)) as simulator:
@@ -69,9 +69,7 @@ def test_it_is_flown_by_ipv6_and_by_its_host_name(
     assert ending.report["released"] is True
 
 
-def test_a_killed_daemon_that_flew_by_ipv6_leaves_a_guard_that_releases(
-    fccd: Path, tmp_path: Path
-) -> None:
+def test_a_killed_daemon_on_ipv6_leaves_a_helper_that_releases(fccd: Path, tmp_path: Path) -> None:
     with StandInProcess(Settings(host="::1", port=0)) as simulator:
         config = write_config(tmp_path, simulator.port)
         config.write_text(config.read_text().replace('"127.0.0.1:', '"[::1]:'))
@@ -81,7 +79,7 @@ def test_a_killed_daemon_that_flew_by_ipv6_leaves_a_guard_that_releases(
             assert_released(simulator)
 
 
-def test_a_host_name_without_an_address_is_said_before_the_flight(
+def test_a_host_name_without_an_address_is_reported_before_the_flight(
     fccd: Path, tmp_path: Path
 ) -> None:
     config = write_config(tmp_path, 49_000)
@@ -89,8 +87,8 @@ def test_a_host_name_without_an_address_is_said_before_the_flight(
     with start(fccd, tmp_path, config) as daemon:
         ending = daemon.end()
     assert ending.exit_code == FAILURE
-    assert "cannot find X-Plane at sim.invalid:49000" in ending.said
-    assert "IP address" in ending.said
+    assert "cannot find X-Plane at sim.invalid:49000" in ending.log
+    assert "IP address" in ending.log
 
 
 def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
@@ -137,14 +135,14 @@ def test_a_killed_simulator_and_its_return(fccd: Path, tmp_path: Path) -> None:
     assert (recovered_ns[0] - back_ns) * NS < ASKED_EVERY_S + AT_ONCE_S
 
 
-def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
+def test_a_release_lost_by_a_hung_simulator_is_repeated_until_confirmed(
     fccd: Path, tmp_path: Path
 ) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.set_mode(Mode.FROZEN)
         daemon.wait_for("engaged -> failsafe")
-        # What is written to it now piles up until nothing more fits.
+        # Writes to it now fill the socket's buffer.
         time.sleep(2.0)
         daemon.send(signal.SIGTERM)
         daemon.wait_for("failsafe -> stopped")
@@ -159,9 +157,7 @@ def test_a_release_that_a_hung_simulator_loses_is_sent_until_it_shows(
     assert ending.report["released"] is True
 
 
-def test_a_killed_simulator_ends_the_program_where_that_is_wanted(
-    fccd: Path, tmp_path: Path
-) -> None:
+def test_a_killed_simulator_ends_the_program_if_configured(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE + 'then = "stop"') as (simulator, daemon):
         engage(simulator, daemon)
         simulator.kill()
@@ -217,8 +213,8 @@ def test_a_simulator_that_hangs_or_jumps_is_a_failsafe(fccd: Path, tmp_path: Pat
     assert 0.0 < (flown.records[jumped].tick.woke_ns - jumped_ns) * NS < AT_ONCE_S
 
 
-def test_a_flight_that_is_loaded_anew_is_not_flown_on(fccd: Path, tmp_path: Path) -> None:
-    """The switch comes back off and the clock at zero; either is a reason to let go."""
+def test_a_reloaded_flight_is_not_continued(fccd: Path, tmp_path: Path) -> None:
+    """The switch is off and the clock at zero again; either causes a release."""
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.restart_flight()
@@ -231,45 +227,45 @@ def test_a_flight_that_is_loaded_anew_is_not_flown_on(fccd: Path, tmp_path: Path
         daemon.end(signal.SIGTERM)
 
 
-def test_writes_that_never_arrive_are_said_with_the_setting_to_change(
+def test_writes_that_never_arrive_are_reported_with_the_setting_to_change(
     fccd: Path, tmp_path: Path
 ) -> None:
     with (
         StandInProcess(Settings(port=0)) as simulator,
-        DeafSimulator(simulator.port) as deaf,
-        start(fccd, tmp_path, write_config(tmp_path, deaf.port)) as daemon,
+        ReadOnlySimulator(simulator.port) as read_only,
+        start(fccd, tmp_path, write_config(tmp_path, read_only.port)) as daemon,
     ):
         daemon.wait_until_ready()
         simulator.write(ENGAGE_SWITCH, 1.0)
         daemon.wait_for("standby -> engaged")
-        said = daemon.wait_for("Accept incoming connections")
-        assert "have no effect" in said
-        assert str(deaf.port) in said
+        log = daemon.wait_for("Accept incoming connections")
+        assert "have no effect" in log
+        assert str(read_only.port) in log
         assert not simulator.progress().overridden
-        assert deaf.dropped > 0
+        assert read_only.dropped > 0
         simulator.write(ENGAGE_SWITCH, 0.0)
         daemon.wait_for("engaged -> standby")
         ending = daemon.end(signal.SIGTERM)
     assert any(text.startswith("actuator X-Plane: ") for text in ending.events)
-    assert "works again" not in ending.said, "nobody knows that"
+    assert "works again" not in ending.log, "nobody knows that"
 
 
-def test_without_a_simulator_it_waits_and_says_so(fccd: Path, tmp_path: Path) -> None:
+def test_without_a_simulator_it_waits_and_reports_it(fccd: Path, tmp_path: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
         nobody.bind(("127.0.0.1", 0))
         port = nobody.getsockname()[1]
         with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
-            daemon.wait_for("no aircraft yet")
-            said = daemon.wait_for("does not answer")
-            assert "X-Plane" in said
-            assert str(port) in said
-            assert "Accept incoming connections" in said
+            daemon.wait_for("no measurements yet")
+            log = daemon.wait_for("does not answer")
+            assert "X-Plane" in log
+            assert str(port) in log
+            assert "Accept incoming connections" in log
             ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
     assert ending.states == ["standby -> stopped"]
 
 
-def test_the_beacon_shows_the_way(fccd: Path, tmp_path: Path) -> None:
+def test_the_beacon_gives_the_address(fccd: Path, tmp_path: Path) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
         config = tmp_path / "fccd.toml"
         config.write_text(

@@ -1,8 +1,8 @@
-"""What the loop asks of the kernel while it flies: its timer, its socket, its page faults.
+"""The loop's system calls in flight: its timer, its socket, its page faults.
 
-The daemon runs under `strace`, engaged against the stand-in. Between the first and the
-last wake-up of the loop's thread every system call is looked at: an allocation that
-grows the heap, a lock that waits, a log line or a file would show.
+The daemon runs under `strace`, engaged with the stand-in. Every system call between the first and
+the last wake-up of the loop's thread is checked: an allocation that grows the heap, a lock that
+waits, a log line or a file would appear.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ def traced_flight(
                 _START_S,
             )
             found = loop_thread(traced.pid)
-            assert found, f"no thread to trace: {traced.said}"
+            assert found, f"no thread to trace: {traced.log}"
             daemon, thread = found
             path = Path(f"{trace}.{thread}")
             try:
@@ -151,10 +151,10 @@ def traced_flight(
                 os.kill(daemon, signal.SIGTERM)
                 ending = traced.end()
             finally:
-                # Killing strace alone would leave the daemon flying.
+                # If only strace were killed, the daemon would continue.
                 if traced.is_running:
                     os.kill(daemon, signal.SIGKILL)
-    assert ending.exit_code == 0, ending.said
+    assert ending.exit_code == 0, ending.log
     assert ending.states == ["standby -> engaged", "engaged -> stopped"]
     return [
         (call[1], call[2]) for line in path.read_text().splitlines() if (call := _CALL.match(line))
@@ -177,7 +177,7 @@ class WakeCounter:
 def loop_thread(tracer: int) -> tuple[int, int] | None:
     """Return process and thread of the loop that `tracer` traces, if it runs yet."""
     for status in Path("/proc").glob("[0-9]*/task/[0-9]*/status"):
-        # Processes come and go while we look.
+        # Processes start and end meanwhile.
         with contextlib.suppress(OSError):
             fields = dict(
                 line.split(":\t", 1) for line in status.read_text().splitlines() if ":\t" in line

@@ -1,4 +1,4 @@
-"""What surrounds a flight and breaks: disk, terminal, watchers, configuration, a second daemon."""
+"""Faults of a flight's environment: disk, terminal, watchers, configuration, a second daemon."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-import live
+import fcc
 import pytest
 from daemon_under_test import (
     DaemonUnderTest,
@@ -44,14 +44,14 @@ TAKEN = 12
 NORMAL_HZ = 40
 FAST_HZ = 1_000
 RING_S = 4.2
-"""The loop's ring has room for so much of a flight at 1 kHz."""
+"""The capacity of the loop's ring at 1 kHz, s."""
 WRITTEN_EVERY_S = 0.7
-"""What has gathered goes to the disk so often."""
+"""Interval of commits, s."""
 BEACON_PERIOD_S = 1.0
 """As X-Plane sends it."""
 
 HOLD = '[guidance]\nmode = "hold"\n'
-EXAMPLE = Path(live.__file__)
+WATCH = "import fcc, sys\nfor record in fcc.Watcher(sys.argv[1]): print(record, flush=True)"
 UNTIL_STOPPED = ["--seconds", "3600"]
 
 
@@ -89,7 +89,7 @@ def a_full_disk(fccd: Path, scratch: Path) -> Ending:
 
 
 def a_changed_configuration(fccd: Path, scratch: Path) -> Flown:
-    """Fly while somebody writes nonsense, and then nothing, over the configuration."""
+    """Fly while the configuration is overwritten with invalid text, and then emptied."""
     recordings = scratch / "recordings"
     with fly(fccd, scratch, "[telemetry]\nenabled = false\n", "--recordings", recordings) as daemon:
         daemon.wait_for("standby -> engaged")
@@ -112,7 +112,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
     with fly(fccd, scratch, f"[loop]\nrate_hz = {FAST_HZ}\n", *words) as daemon:
         daemon.wait_for("standby -> engaged")
         watcher = subprocess.Popen(
-            [sys.executable, EXAMPLE, instance],
+            [sys.executable, "-c", WATCH, instance],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
@@ -123,8 +123,8 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
             # More than fit into its buffer of 1,024 records.
             for _ in range(3):
                 assert "engaged" in daemon.wait_for("heading")
-            # Who comes now sees the newest all the same.
-            assert live.Watcher(instance).info.process_id == daemon.pid
+            # A new watcher still gets the newest record.
+            assert fcc.Watcher(instance).info["process_id"] == daemon.pid
             return Flown.of(daemon.end(signal.SIGTERM), recordings)
         finally:
             watcher.kill()
@@ -132,7 +132,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
 
 
 def a_full_ring(faulty_fccd: Path, scratch: Path) -> Flown:
-    """Fly at 1 kHz, and let nobody fetch until what waits finds no room."""
+    """Fly at 1 kHz without reading the ring until it overflows."""
     recordings = scratch / "recordings"
     config = f"[loop]\nrate_hz = {FAST_HZ}\n[telemetry]\nenabled = false\n"
     paused = {"FCCD_PAUSE_AT_S": "3", "FCCD_PAUSE_S": str(2 * RING_S)}
@@ -186,7 +186,7 @@ def test_a_configuration_that_changes_in_flight_changes_nothing(
     assert_flown_again(fccd, flown)
 
 
-def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> None:
+def test_a_watcher_that_hangs_loses_no_record_of_others(flights: dict[str, object]) -> None:
     flown = flights["watcher"]
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == SUCCESS
@@ -195,7 +195,7 @@ def test_a_watcher_that_hangs_costs_no_record(flights: dict[str, object]) -> Non
     assert_regular(flown.records, 1_000_000_000 // FAST_HZ)
 
 
-def test_a_full_ring_drops_counts_and_flies_on(flights: dict[str, object]) -> None:
+def test_a_full_ring_drops_and_counts_records(flights: dict[str, object]) -> None:
     flown = flights["ring"]
     assert isinstance(flown, Flown)
     assert flown.ending.exit_code == NOT_RECORDED
@@ -223,12 +223,12 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
         assert time.monotonic() - begun_s < AT_ONCE_S
         assert refused.exit_code == TAKEN
         assert f"another fccd on this machine flies X-Plane at 127.0.0.1:{simulator.port}" in (
-            refused.said
+            refused.log
         )
         assert simulator.progress().overridden, "the first flies on"
         daemon.send(signal.SIGKILL)
         daemon.end()
-        # What was killed leaves nothing behind that is in the way.
+        # A killed daemon leaves nothing that blocks the next.
         third_scratch = tmp_path / "third"
         third_scratch.mkdir()
         with start(fccd, third_scratch, write_config(third_scratch, simulator.port)) as third:
@@ -239,7 +239,7 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
 
 
 @pytest.mark.parametrize(("first", "second"), [("address", "beacon"), ("beacon", "address")])
-def test_a_beacon_does_not_lead_where_another_daemon_flies(
+def test_a_beacon_does_not_lead_to_a_simulator_under_control(
     fccd: Path, tmp_path: Path, first: str, second: str
 ) -> None:
     with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
@@ -261,9 +261,9 @@ def test_a_beacon_does_not_lead_where_another_daemon_flies(
             took_s = time.monotonic() - begun_s
             assert took_s < AT_ONCE_S + (BEACON_PERIOD_S if second == "beacon" else 0.0)
             assert refused.exit_code == TAKEN
-            assert f"another fccd on this machine flies X-Plane at {address}" in refused.said
+            assert f"another fccd on this machine flies X-Plane at {address}" in refused.log
             # It saw the switch on, and has not touched the controls.
-            assert "engaged" not in refused.said
+            assert "engaged" not in refused.log
             assert simulator.progress().overridden
             assert simulator.releases() == []
             assert "engaged" in flies.wait_for("heading")
@@ -271,8 +271,8 @@ def test_a_beacon_does_not_lead_where_another_daemon_flies(
         assert_released(simulator)
 
 
-def test_a_local_port_that_another_program_has_is_told_apart(fccd: Path, tmp_path: Path) -> None:
-    """By the exit code: who starts the daemon again for ever would do so in vain."""
+def test_a_local_port_in_use_has_its_own_exit_code(fccd: Path, tmp_path: Path) -> None:
+    """It has its own exit code, so that a service manager does not restart it in vain."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("0.0.0.0", 0))
         port = other.getsockname()[1]
@@ -280,4 +280,4 @@ def test_a_local_port_that_another_program_has_is_told_apart(fccd: Path, tmp_pat
         with start(fccd, tmp_path, config) as daemon:
             refused = daemon.end()
     assert refused.exit_code == TAKEN
-    assert f"cannot receive on UDP port {port}" in refused.said
+    assert f"cannot receive on UDP port {port}" in refused.log

@@ -1,4 +1,4 @@
-"""What becomes of a flight when the way to the simulator is cut, or the simulator is slow."""
+"""Flights with a link to the simulator that is cut, or a slow simulator."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SLOW_FPS = 10.0
 
 
 def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
-    """Cut the way from the simulator: what is sent to it still gets there."""
+    """Cut the link from the simulator: datagrams to it still arrive."""
     scratch.mkdir()
     with (
         StandInProcess(Settings(port=0)) as simulator,
@@ -42,7 +42,7 @@ def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
         assert "attitude is missing or too old" in daemon.wait_for("engaged -> failsafe")
         daemon.wait_for("failsafe -> standby")
         assert_released(simulator)
-        link.mend()
+        link.restore()
         simulator.write(ENGAGE_SWITCH, 0.0)
         engage(simulator, daemon)
         ending = daemon.end(signal.SIGTERM)
@@ -50,7 +50,7 @@ def nothing_arrives(fccd: Path, scratch: Path) -> Flown:
 
 
 def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
-    """Cut the way to the simulator: it flies on with what it was told last."""
+    """Cut the link to the simulator: it keeps the last controls."""
     scratch.mkdir()
     with (
         StandInProcess(Settings(port=0)) as simulator,
@@ -59,11 +59,11 @@ def nothing_gets_there(fccd: Path, scratch: Path) -> Flown:
     ):
         engage(simulator, daemon)
         link.cut(to_simulator=True)
-        # Somebody else lets go of the override, and the daemon cannot set it again.
+        # Another program clears the override, and the daemon cannot set it again.
         cut_ns = time.monotonic_ns()
         simulator.write(OVERRIDE_JOYSTICK, 0.0)
         assert "have no effect" in daemon.wait_for("Accept incoming connections")
-        link.mend()
+        link.restore()
         daemon.wait_for("take effect")
         ending = daemon.end(signal.SIGTERM)
         wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
@@ -120,7 +120,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
     )
 
 
-def test_nothing_from_the_simulator_is_failsafe_and_a_release_that_gets_there(
+def test_nothing_from_the_simulator_is_failsafe_and_the_release_arrives(
     flights: dict[str, Flown],
 ) -> None:
     flown = flights["from"]
@@ -130,7 +130,9 @@ def test_nothing_from_the_simulator_is_failsafe_and_a_release_that_gets_there(
     assert MAX_AGE_S < age_s < 2 * MAX_AGE_S
 
 
-def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]) -> None:
+def test_nothing_to_the_simulator_is_reported_and_the_flight_continues(
+    flights: dict[str, Flown],
+) -> None:
     flown = flights["to"]
     faults = [
         event
@@ -141,16 +143,16 @@ def test_nothing_to_the_simulator_is_said_and_flown_on(flights: dict[str, Flown]
     recovered = [
         event for event in flown.events if event.kind.WhichOneof("kind") == "actuator_recovered"
     ]
-    # A second after it shows.
+    # A second after the difference appears.
     assert 0.0 < (faults[0].time_ns - flown.injected_ns) * NS < 1.0 + AT_ONCE_S
-    # And a second later in words, for people.
+    # And a second later as a message.
     said_s = flown.ending.when("Accept incoming connections")
     assert 0.0 < said_s - flown.ending.when("actuator X-Plane: ") < 1.0 + AT_ONCE_S
     assert recovered
     assert flown.ending.report["released"] is True
 
 
-def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) -> None:
+def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -> None:
     flown = flights["slow"]
     assert flown.ending.exit_code == SUCCESS
     assert flown.failsafes == []
@@ -164,7 +166,7 @@ def test_a_slow_simulator_is_flown_at_its_own_pace(flights: dict[str, Flown]) ->
 
 
 @pytest.mark.parametrize("name", ["from", "to", "slow", "two"])
-def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
 
 

@@ -1,6 +1,6 @@
-"""What a machine and a controller do to the loop itself: late, stopped, slow, hung.
+"""Faults of the loop itself: late, stopped, slow, hung.
 
-All flights of the built-in aircraft, side by side, and then asked.
+All flights are of the built-in aircraft, at the same time, and checked afterwards.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def missed(flight: Flown) -> list[Any]:
 
 
 @pytest.mark.parametrize(("name", "least"), [("late by one", 1), ("late by many", 10)])
-def test_a_late_timer_is_counted_told_and_flown_through(
+def test_a_late_timer_is_counted_and_reported(
     flights: dict[str, Flown], name: str, least: int
 ) -> None:
     flight = flights[name]
@@ -161,7 +161,7 @@ def test_a_late_timer_is_counted_told_and_flown_through(
     assert_regular(flight.records, PERIOD_NS)
 
 
-def test_as_many_missed_as_half_a_second_has_are_failsafe(flights: dict[str, Flown]) -> None:
+def test_half_a_second_of_missed_periods_is_failsafe(flights: dict[str, Flown]) -> None:
     flight = flights["late by far too many"]
     assert flight.ending.exit_code == FAILSAFE_HAPPENED
     (place,) = flight.failsafes
@@ -178,7 +178,7 @@ def test_overruns_in_a_row_are_failsafe(flights: dict[str, Flown]) -> None:
     place = flight.failsafes[0]
     record = flight.records[place]
     assert record.state.cause == OVERRUN
-    # Told once, of the stage, and each counted: in its own record.
+    # Reported once, with the stage, and each counted in its own record.
     told = [
         event.kind.overrun for event in flight.events if event.kind.WhichOneof("kind") == "overrun"
     ]
@@ -206,8 +206,8 @@ def test_a_stage_that_overruns_is_named(flights: dict[str, Flown]) -> None:
     assert flight.records[flight.failsafes[0]].state.cause == OVERRUN
 
 
-def test_a_process_that_was_stopped_goes_on_where_it_is(flights: dict[str, Flown]) -> None:
-    """Its own watchdog was stopped with it, and takes nobody's life for that."""
+def test_a_stopped_process_continues(flights: dict[str, Flown]) -> None:
+    """Its own watchdog was stopped too, and does not fire."""
     flight = flights["stopped"]
     assert flight.ending.exit_code == SUCCESS
     assert max(record.tick.missed for record in flight.records) >= 1.5 * RATE_HZ
@@ -231,7 +231,7 @@ def test_a_wall_clock_that_is_set_is_not_noticed(flights: dict[str, Flown]) -> N
 
 
 @pytest.mark.parametrize("name", ["control hangs", "a sensor blocks"])
-def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
+def test_a_loop_that_hangs_is_ended_and_its_recording_is_finished(
     flights: dict[str, Flown], name: str
 ) -> None:
     flight = flights[name]
@@ -240,9 +240,9 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
     assert flight.ending.report["released"] is True
     last = flight.events[-1]
     assert last.kind.WhichOneof("kind") == "hung"
-    # It looks ten times in that time, and counts two looks at most for one.
+    # It checks ten times in that time, and counts at most two checks for one.
     assert HANG_AFTER_NS <= last.kind.hung.silent_ns < 1.2 * HANG_AFTER_NS
-    assert "the watchdog released the controls" in flight.ending.said
+    assert "the watchdog released the controls" in flight.ending.log
     # All up to the tick that hangs, which has no end and so no record.
     assert [record.tick.number for record in flight.records][-1] == last.tick
     assert flight.records[-1].state.phase == ENGAGED
@@ -252,7 +252,7 @@ def test_a_loop_that_hangs_is_ended_and_its_recording_is_whole(
 def test_a_loop_that_hangs_is_ended_though_the_main_thread_hangs_too(
     faulty_fccd: Path, tmp_path: Path
 ) -> None:
-    """It can end nothing in good order."""
+    """It cannot finish the recording."""
     environment = {"FCCD_HANG_AT_S": "2", "FCCD_PAUSE_AT_S": "3"}
     with fly(faulty_fccd, tmp_path / "both", environment, QUICK_WATCHDOG) as daemon:
         ending = daemon.end(within_s=60.0)
@@ -261,7 +261,7 @@ def test_a_loop_that_hangs_is_ended_though_the_main_thread_hangs_too(
 
 
 @pytest.mark.parametrize("name", ["overruns", "late by far too many", "stopped", "control hangs"])
-def test_it_is_the_same_when_flown_again(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
 
 

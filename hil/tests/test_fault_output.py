@@ -1,4 +1,4 @@
-"""Output that cannot be written: readers that leave, full disks, terminals that are gone."""
+"""Output that cannot be written: ended readers, full disks, closed terminals."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SUCCESS = 0
 RATE_HZ = 1_000
 ENGAGE_AT_S = 1.5
 RING_TICKS = 4_096
-"""So many wait to be fetched at most: a main thread that waited would lose the rest."""
+"""The ring's capacity: a main thread that waited would lose the rest."""
 FLOWN_S = 2.0 * RING_TICKS / RATE_HZ
 PATIENCE_S = 60.0
 
@@ -93,7 +93,7 @@ def ended(process: subprocess.Popen[bytes], scratch: Path) -> Flown:
 def unwritable(
     fccd: Path, scratch: Path, output: Output, spoil: Callable[[Output], object]
 ) -> Flown:
-    """Fly, and let the output break once control is taken."""
+    """Fly, and let the output fail once engaged."""
     with flying(fly(fccd, scratch, output.theirs, FLOWN_S)) as process:
         os.close(output.theirs)
         wait_until(lambda: b"standby -> engaged" in output.hear(), "it is engaged")
@@ -109,7 +109,7 @@ def a_full_disk(fccd: Path, scratch: Path) -> Flown:
 
 
 def a_held_terminal(fccd: Path, scratch: Path) -> Flown:
-    """Nobody reads, and the output is full: what is printed into it waits."""
+    """Fly with a full output that is not read, so that printing blocks."""
     ours, theirs = os.pipe()
     fcntl.fcntl(theirs, fcntl.F_SETPIPE_SZ, 4_096)
     output = Output(ours, theirs)
@@ -122,7 +122,7 @@ def a_held_terminal(fccd: Path, scratch: Path) -> Flown:
                 os.write(filling, b".")
         os.close(filling)
         os.close(theirs)
-        # Until it is over; then somebody reads again, and it can end.
+        # Until the flight has ended; then the output is read, and the program can end.
         time.sleep(FLOWN_S)
 
         def is_over() -> bool:
@@ -139,7 +139,7 @@ def _terminal_of_its_own() -> None:
 
 
 def _as_by_nohup() -> None:
-    """Do as nohup does, but for the output, which it would send to a file."""
+    """As nohup does, except for the output, which it would redirect to a file."""
     _terminal_of_its_own()
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
@@ -199,7 +199,7 @@ def assert_whole(flown: Flown) -> None:
         "hung up under nohup",
     ],
 )
-def test_output_that_cannot_be_written_costs_the_flight_nothing(
+def test_output_that_cannot_be_written_has_no_effect_on_the_flight(
     flights: dict[str, Flown], name: str
 ) -> None:
     flown = flights[name]
@@ -210,7 +210,7 @@ def test_output_that_cannot_be_written_costs_the_flight_nothing(
     assert len(engaged) + missed >= FLOWN_S * RATE_HZ
 
 
-def test_a_terminal_that_hangs_up_ends_the_flight_in_good_order(
+def test_a_terminal_that_hangs_up_ends_the_flight_properly(
     flights: dict[str, Flown],
 ) -> None:
     assert_whole(flights["hung up"])

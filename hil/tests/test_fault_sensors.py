@@ -1,7 +1,7 @@
-"""What single sensors do to a flight: fall silent, freeze, lie, jump, come late.
+"""Faults of single sensors: silent, frozen, wrong, jumping, late.
 
-One flight for each of the six quantities that control needs, all six at once. In each
-the faults follow one another: engaged, broken, seen, mended, engaged again.
+One flight for each of the six quantities that control needs, all at the same time. In each the
+faults follow one another: engaged, fault, detected, restored, engaged again.
 """
 
 from __future__ import annotations
@@ -35,12 +35,11 @@ from fcc_hil.sensor_faults import Kind, SensorFault
 from fcc_hil.standin import Settings
 
 MAX_AGE_S = 0.6
-"""Older readings are a loss of their sensor; more than the default, for a busy machine
-lets all of them come late now and then."""
+"""Older readings are lost; more than the default, because a busy machine is late now and then."""
 FROZEN_S = 2.0
-"""The daemon's default: the same for so long, while the aircraft moves, is frozen."""
+"""The daemon's default: constant for this time, while the aircraft moves, is frozen."""
 
-# A pattern that turns and climbs soon after engaging: what is frozen shows in motion.
+# A pattern that turns and climbs soon after engaging, so that a frozen sensor is detected.
 PATTERN = 'mode = "timed-pattern"\nhold_s = 1.0\nleg_s = 20.0'
 PATIENT = f"[failsafe]\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
 FLOWN_THROUGH_S = 3.0
@@ -52,10 +51,10 @@ P = "sim/flightmodel/position/"
 
 @dataclass(frozen=True)
 class Sensor:
-    """One of the quantities, and what can be made of it that no aircraft does."""
+    """A quantity, and its implausible values."""
 
     missing: str
-    """What the daemon says if nothing comes that can be used."""
+    """The daemon's message without valid readings."""
     frozen: str
     value: Callable[[Any], tuple[float, ...]]
     """Of a record."""
@@ -136,7 +135,7 @@ def test_the_sensors_are_those_that_control_needs() -> None:
 
 
 class Breaking:
-    """A flight in which one sensor breaks, in one way after the other."""
+    """A flight with one fault of a sensor after the other."""
 
     def __init__(
         self, name: str, simulator: StandInProcess, link: TamperedLink, daemon: DaemonUnderTest
@@ -149,9 +148,9 @@ class Breaking:
     def put_in(self, fault: str) -> None:
         sensor = SENSED[self.name]
         if fault == "out of range":
-            self.link.say(sensor.impossible)
+            self.link.replace_values(sensor.impossible)
         elif fault == "infinite":
-            self.link.say(sensor.infinite)
+            self.link.replace_values(sensor.infinite)
         else:
             made = {
                 "silent": (Kind.LOSS, 0.0),
@@ -167,7 +166,7 @@ class Breaking:
             share = 0.5 if kind is Kind.REORDER else 1.0
             begins_s, ends_s = 0.0, math.inf
             if fault == "a short jump":
-                # Far enough ahead that it is told in time.
+                # Far enough ahead that it is received in time.
                 begins_s = self.simulator.progress().time_s + 1.0
                 ends_s = begins_s + SHORT_S
             channels = SENSORS[self.name]
@@ -175,8 +174,8 @@ class Breaking:
                 [SensorFault(kind, self.name, channels, begins_s, ends_s, amount, share)]
             )
 
-    def mend(self) -> None:
-        self.link.mend()
+    def restore(self) -> None:
+        self.link.restore()
         self.simulator.set_sensor_faults([])
 
     def engage(self) -> None:
@@ -205,17 +204,17 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
             flight.put_in(fault)
             began_s = simulator.progress().time_s
             while simulator.progress().time_s < began_s + FLOWN_THROUGH_S:
-                assert "engaged" in daemon.wait_for("heading"), daemon.said
+                assert "engaged" in daemon.wait_for("heading"), daemon.log
             flight.disengage()
-            flight.mend()
+            flight.restore()
         for fault in FAULTS:
             flight.engage()
             flight.put_in(fault)
             words = SENSED[name].frozen if fault == "frozen" else SENSED[name].missing
-            said = daemon.wait_for("engaged -> ", within_s=40.0)
-            assert "failsafe" in said, said
-            assert words in said, f"{fault}: {said}"
-            flight.mend()
+            log = daemon.wait_for("engaged -> ", within_s=40.0)
+            assert "failsafe" in log, log
+            assert words in log, f"{fault}: {log}"
+            flight.restore()
             flight.disengage()
         return daemon.end(signal.SIGTERM)
 
@@ -237,7 +236,7 @@ def failsafe_of(flown: Flown, fault: str) -> int:
 
 
 def last_good(flown: Flown, name: str, fault: str) -> int:
-    """Return where in the records the last value is that a fault left good."""
+    """Return the index of the last record with a valid value before a fault."""
     sensor = SENSED[name]
     place = failsafe_of(flown, fault)
     present = sensor.value(flown.records[place])
@@ -290,12 +289,12 @@ def test_a_frozen_sensor_is_failsafe_once_the_aircraft_moves(
     assert after_s + 0.1 >= FROZEN_S
     # A second of hold, a bank within three, a climb within ten.
     assert after_s < 15.0
-    # It came all the time: by its age nothing is wrong with it.
+    # Its readings arrived all the time: its age is fine.
     assert (last.tick.woke_ns - _taken_ns(last, name)) * 1e-9 < MAX_AGE_S
 
 
 @pytest.mark.parametrize("name", SENSED)
-def test_what_is_reordered_or_a_little_late_is_flown_through(
+def test_reordered_or_slightly_late_samples_have_no_effect(
     flown: dict[str, Flown], name: str
 ) -> None:
     states = [text for text in flown[name].texts() if " -> " in text]
@@ -337,5 +336,5 @@ def test_every_failsafe_ends_in_a_release(flown: dict[str, Flown], name: str) ->
 
 
 @pytest.mark.parametrize("name", SENSED)
-def test_it_is_the_same_when_flown_again(fccd: Path, flown: dict[str, Flown], name: str) -> None:
+def test_a_replay_is_identical(fccd: Path, flown: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flown[name])

@@ -1,4 +1,4 @@
-"""The table of faults: every fault that must be in it is, and every row names a test there is."""
+"""The table of faults contains every required fault, and every row names an existing test."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 DOCUMENT = ROOT / "docs" / "faults.md"
-# What needs a machine of its own is tested by `make test-vm`.
+# Tests that need a whole machine run in `make test-vm`.
 FOLDERS = (ROOT / "hil" / "tests", ROOT / "deploy" / "vm")
 SHOWN_BY = re.compile(r"`(test_\w+\.py)::(test_\w+)`")
 COLUMNS = 5
@@ -36,7 +36,7 @@ REQUIRED = (
     "disk full",
     "ring full",
     "telemetry reader hung",
-    "configuration changed",
+    "configuration file changed",
     "second instance started",
     "SIGTERM",
     "SIGKILL",
@@ -58,7 +58,7 @@ ROWS = rows()
 
 
 @pytest.mark.parametrize("row", ROWS, ids=[row[0] for row in ROWS])
-def test_a_row_is_whole_and_names_a_test_there_is(row: list[str]) -> None:
+def test_a_row_is_complete_and_names_an_existing_test(row: list[str]) -> None:
     assert len(row) == COLUMNS
     assert all(row)
     shown = SHOWN_BY.findall(row[-1])
@@ -70,5 +70,5 @@ def test_a_row_is_whole_and_names_a_test_there_is(row: list[str]) -> None:
 
 
 @pytest.mark.parametrize("fault", REQUIRED)
-def test_a_fault_that_must_be_there_is(fault: str) -> None:
+def test_a_required_fault_is_in_the_table(fault: str) -> None:
     assert any(row[0].startswith(fault) for row in ROWS)

@@ -1,4 +1,4 @@
-"""The faulty network: how often each fault strikes, and that nothing else does."""
+"""The faulty network: the rate of each fault, and no other changes."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def test_a_good_network_changes_nothing() -> None:
 
 
 # 20,000 draws: three sigma of a 2 % count is 59, of a 1 % count 42.
-def test_loss_strikes_as_often_as_asked() -> None:
+def test_the_rate_of_losses() -> None:
     arrived, link = through(Faults(loss=0.02))
     assert 20_000 - len(arrived) == link.counts.lost == pytest.approx(400, abs=60)
     assert arrived == sorted(set(arrived))
 
 
-def test_duplicates_come_as_often_as_asked() -> None:
+def test_the_rate_of_duplicates() -> None:
     arrived, link = through(Faults(duplicate=0.01))
     assert len(arrived) - 20_000 == link.counts.duplicated == pytest.approx(200, abs=42)
     assert set(arrived) == set(range(20_000))
@@ -49,7 +49,7 @@ def test_a_reordered_datagram_is_overtaken_by_the_next_and_not_lost() -> None:
     assert all(arrived[number + 1] == number for number in late)
 
 
-def test_a_held_datagram_comes_by_itself_when_no_other_does() -> None:
+def test_a_held_datagram_is_sent_if_no_other_follows() -> None:
     link: FaultyLink[str] = FaultyLink(Faults(reorder=1.0), seed=1)
     link.offer(0.0, "client", b"only")
     assert link.due(0.1) == []
@@ -64,7 +64,7 @@ def test_delay_and_jitter() -> None:
         assert link.due(number + 0.0351) == [("client", b"x")]
 
 
-def test_truncation_cuts() -> None:
+def test_truncation_shortens() -> None:
     link: FaultyLink[str] = FaultyLink(Faults(truncate=1.0), seed=1)
     for _ in range(100):
         link.offer(0.0, "client", bytes(509))

@@ -1,10 +1,9 @@
-"""Whatever is given to the module `fcc`, it answers or raises, and says what was wrong."""
+"""Any argument to the module `fcc` gives a result or an exception with a message."""
 
 from __future__ import annotations
 
 import math
 import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 HOLD = '[guidance]\nmode = "hold"\n'
+WIDTH = len(fcc.MEASUREMENTS)
 LEVEL = fcc.BuiltInAircraft().step(None)
 
 numbers = st.one_of(
@@ -43,7 +43,7 @@ ALLOWED = (fcc.Error, ValueError, TypeError, OverflowError)
 
 
 def answers(call: Callable[[], Any]) -> None:
-    """Answer or raise one of the allowed exceptions, in words."""
+    """Return, or raise one of the permitted exceptions with a message."""
     words = "answered"
     try:
         call()
@@ -73,7 +73,7 @@ ONE: dict[str, Callable[..., Any]] = {
     "Machine.step switch": lambda given: fcc.Machine().step(LEVEL, switch=given),
     "BuiltInAircraft": fcc.BuiltInAircraft,
     "BuiltInAircraft.step dt": lambda dt: fcc.BuiltInAircraft().step(None, dt),
-    "Measurements": lambda given: fcc.Measurements(pitch_rad=given),  # type: ignore[call-arg]
+    "Measurements": lambda given: fcc.Measurements(pitch_rad=given),
     "Measurements.from_array": fcc.Measurements.from_array,
     "Config": fcc.Config,
     "Config.load": fcc.Config.load,
@@ -100,7 +100,7 @@ ONE: dict[str, Callable[..., Any]] = {
     "Watcher": fcc.Watcher,
     "Commander": fcc.Commander,
 }
-"""What is called with one argument."""
+"""Functions of one argument."""
 TWO: dict[str, Callable[..., Any]] = {
     "Autopilot.observe": lambda a, b: engaged().observe(a, b),
     "Autopilot.observe_series": lambda a, b: engaged().observe_series(a, b),
@@ -134,20 +134,20 @@ TWO: dict[str, Callable[..., Any]] = {
     "Timer": fcc.Timer,
     "replay": fcc.replay,
 }
-"""What is called with two."""
+"""Functions of two arguments."""
 
 
 @pytest.mark.parametrize("name", ONE)
 @settings(max_examples=60, deadline=None)
 @given(thing=things)
-def test_anything_is_answered_or_refused_in_words(name: str, thing: object) -> None:
+def test_any_argument_gives_a_result_or_an_error(name: str, thing: object) -> None:
     answers(lambda: ONE[name](thing))
 
 
 @pytest.mark.parametrize("name", TWO)
 @settings(max_examples=60, deadline=None)
 @given(a=things, b=things)
-def test_any_two_are_answered_or_refused_in_words(name: str, a: object, b: object) -> None:
+def test_any_two_arguments_give_a_result_or_an_error(name: str, a: object, b: object) -> None:
     answers(lambda: TWO[name](a, b))
 
 
@@ -156,46 +156,50 @@ FINITE = ["LowPass.step", "Pid.step", "RateLimit.step", "wrap_pi", "pressure_pa"
 
 @pytest.mark.parametrize("name", FINITE)
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_is_named(name: str, value: float) -> None:
+def test_an_argument_that_is_not_finite_is_named(name: str, value: float) -> None:
     with pytest.raises(ValueError, match=r"is (NaN|-?inf)"):
         ONE[name](value) if name in ONE else TWO[name](value, 0.025)
 
 
-@given(shape=st.tuples(st.integers(0, 5), st.integers(0, 14)).filter(lambda shape: shape[1] != 11))
-def test_a_wrong_shape_is_said_with_the_right_one(shape: tuple[int, int]) -> None:
-    words = rf"measurements is of shape \({shape[0]}, {shape[1]}\): give \(n, 11\)"
+@given(
+    shape=st.tuples(st.integers(0, 5), st.integers(0, 20)).filter(lambda shape: shape[1] != WIDTH)
+)
+def test_a_wrong_shape_is_reported_with_the_right_one(shape: tuple[int, int]) -> None:
+    words = rf"measurements is of shape \({shape[0]}, {shape[1]}\): give \(n, {WIDTH}\)"
     with pytest.raises(ValueError, match=words):
         engaged().fly(np.zeros(shape))
     with pytest.raises(ValueError, match="one for each of the 2 autopilots"):
-        fcc.Fleet([HOLD, HOLD]).step(np.zeros((3, 11)))
+        fcc.Fleet([HOLD, HOLD]).step(np.zeros((3, WIDTH)))
 
 
 @given(dt=numbers.filter(lambda dt: not 0 < dt <= 1))
-def test_a_wrong_step_is_said(dt: float) -> None:
+def test_a_wrong_step_is_refused(dt: float) -> None:
     for call in (engaged().step, engaged().observe):
         with pytest.raises((ValueError, OverflowError)):
             call(LEVEL, dt)
 
 
-def test_ranges_are_said() -> None:
-    said: dict[Callable[[], object], str] = {
+def test_ranges_are_reported() -> None:
+    log: dict[Callable[[], object], str] = {
         (lambda: fcc.pressure_pa(30_000.0)): "altitude_m is 30000: choose -500 to 20000",
         (lambda: fcc.pressure_altitude_m(-1.0)): "pressure_pa is -1: choose 1000 to 120000",
         (lambda: fcc.Timer(0.0)): "period_s is 0: choose 0.00001 to 3600",
         (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
-        (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 0 to 1",
+        (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 1.2: choose 0 to 1",
         (lambda: engaged().command(altitude_m=9e9)): "altitude_m is 9000000000: choose",
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",
         (lambda: fcc.Machine().step(None, missing=["tail"])): "there is no sensor 'tail'",
+        (lambda: setattr(LEVEL, "pitch_rad", "up")): "pitch_rad: must be real number, not str",
+        (lambda: fcc.Surfaces(flaps=1.0)): "has no 'flaps': choose of throttle, elevator",  # type: ignore[call-arg]
     }
-    for call, words in said.items():
-        with pytest.raises(ValueError, match=words):
+    for call, words in log.items():
+        with pytest.raises((ValueError, TypeError), match=words):
             call()
 
 
-def test_a_bad_configuration_is_told_in_the_daemons_own_words(fccd: Path, tmp_path: Path) -> None:
+def test_an_invalid_configuration_gives_the_daemons_message(fccd: Path, tmp_path: Path) -> None:
     bad = tmp_path / "bad.toml"
     for text in (
         "[built-in]\nseed = -1\n",
@@ -205,10 +209,10 @@ def test_a_bad_configuration_is_told_in_the_daemons_own_words(fccd: Path, tmp_pa
         "",
     ):
         bad.write_text(text)
-        said = subprocess.run([fccd, "check", bad], capture_output=True, text=True, check=False)
+        log = subprocess.run([fccd, "check", bad], capture_output=True, text=True, check=False)
         with pytest.raises(fcc.ConfigError) as refused:
             fcc.Config.load(bad)
-        assert str(refused.value) == said.stderr.strip()
+        assert str(refused.value) == log.stderr.strip()
     with pytest.raises(fcc.ConfigError, match="cannot be read"):
         fcc.Config.load(tmp_path / "none.toml")
     assert issubclass(fcc.ConfigError, ValueError)
@@ -216,7 +220,7 @@ def test_a_bad_configuration_is_told_in_the_daemons_own_words(fccd: Path, tmp_pa
 
 @settings(max_examples=60, deadline=None)
 @given(head=st.sampled_from([b"", b"\x89MCAP0\r\n"]), tail=st.binary(max_size=200))
-def test_any_bytes_are_no_recording_and_no_crash(head: bytes, tail: bytes) -> None:
+def test_any_bytes_are_refused_without_a_crash(head: bytes, tail: bytes) -> None:
     content = head + tail
     with tempfile.NamedTemporaryFile(suffix=".mcap") as file:
         file.write(content)
@@ -226,7 +230,7 @@ def test_any_bytes_are_no_recording_and_no_crash(head: bytes, tail: bytes) -> No
                 read(file.name)
 
 
-def test_a_file_that_cannot_be_read_is_said(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
     for call in (fcc.Recording, fcc.recover, fcc.report, fcc.replay):
         with pytest.raises(fcc.RecordingError, match="cannot be read"):
             call(tmp_path / "none.mcap")
@@ -238,19 +242,3 @@ def test_every_exception_is_an_error_of_the_module() -> None:
     for name in ("Config", "Engage", "Flight", "Recording", "Telemetry", "Command", "Timer"):
         assert issubclass(getattr(fcc, f"{name}Error"), fcc.Error)
     assert fcc.Error.__module__ == "fcc"
-
-
-def test_the_stubs_say_what_the_module_has(tmp_path: Path) -> None:
-    allowed = tmp_path / "allowed"
-    # The binary beside the package, the list of its names, and a slot that is no attribute.
-    allowed.write_text("fcc\\.fcc\nfcc\\.__all__\nfcc\\.Truth\\.__getattr__\n")
-    checked = subprocess.run(
-        [
-            *(sys.executable, "-m", "mypy.stubtest", "fcc"),
-            *("--ignore-disjoint-bases", "--allowlist", allowed),
-        ],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert checked.returncode == 0, checked.stdout

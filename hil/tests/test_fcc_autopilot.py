@@ -1,4 +1,4 @@
-"""The autopilot by hand, in series, in fleets, and in the daemon's loop around a plant."""
+"""The autopilot step by step, in series, in fleets, and in the daemon's loop around a plant."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def flown(seconds: float, loop: fcc.Machine, aircraft: fcc.BuiltInAircraft) -> N
 
 
 def series(seconds: float = 10.0) -> np.ndarray:
-    """Return what sensors measure in trimmed flight, hands off."""
+    """Return the measurements of trimmed flight without control."""
     aircraft = fcc.BuiltInAircraft()
     return np.array([aircraft.step(None).to_array() for _ in range(round(seconds * 40))])
 
@@ -38,7 +38,7 @@ def test_a_series_is_its_steps_to_the_last_bit() -> None:
     rows = measured[101:]
     steps = [one.step(fcc.Measurements.from_array(row)).to_array() for row in rows]
     assert np.array_equal(other.fly(rows), steps)
-    assert other.fly(np.empty((0, 11))).shape == (0, 4)
+    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, 4)
 
 
 def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
@@ -56,7 +56,7 @@ def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:
     assert fleet.setpoints.shape == (2, 6)
 
 
-def test_the_loop_engages_by_its_switch_and_holds_what_it_found() -> None:
+def test_the_loop_engages_by_its_switch_and_holds_the_captured_state() -> None:
     loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
     flown(40.0, loop, aircraft)
     assert loop.state == "engaged"
@@ -71,7 +71,7 @@ def test_the_loop_engages_by_its_switch_and_holds_what_it_found() -> None:
     assert np.array_equal(records["tick"], np.arange(1, 1_601))
 
 
-def test_orders_turn_it() -> None:
+def test_commands_change_the_set_points() -> None:
     loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
     flown(5.0, loop, aircraft)
     loop.command(heading_rad=1.0, altitude_m=930.0)
@@ -101,7 +101,7 @@ def test_a_sensor_that_breaks_leads_to_failsafe_after_its_age() -> None:
     assert surfaces is None
 
 
-def test_sensors_that_say_nothing_are_told() -> None:
+def test_missing_sensors_are_reported() -> None:
     loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
     flown(10.0, loop, aircraft)
     for _ in range(10):
@@ -112,7 +112,7 @@ def test_sensors_that_say_nothing_are_told() -> None:
     assert "sensor-fault" in [event.kind for event in loop.events()]
 
 
-def test_a_stop_is_for_good() -> None:
+def test_a_stop_is_final() -> None:
     loop = fcc.Machine(HOLD)
     loop.stop()
     assert loop.step(None) is None
@@ -120,7 +120,7 @@ def test_a_stop_is_for_good() -> None:
     assert loop.step(None) is None
 
 
-def test_engaging_is_refused_in_words() -> None:
+def test_engaging_is_refused_with_the_reason() -> None:
     loop = fcc.Machine()
     loop.engage()
     loop.step(None)

@@ -42,7 +42,7 @@ def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:
     assert one.truth.tobytes() != other.truth.tobytes()
 
 
-def test_the_gil_is_free_meanwhile() -> None:
+def test_the_gil_is_released() -> None:
     """Another thread counts on while a flight of hours is flown."""
     over = threading.Event()
     counted = 0
@@ -60,7 +60,7 @@ def test_the_gil_is_free_meanwhile() -> None:
     thread.join()
 
 
-def test_a_controller_in_python_flies_and_a_warning_says_what_that_is() -> None:
+def test_a_controller_in_python_flies_with_a_warning() -> None:
     asked = []
 
     def controller(
@@ -98,7 +98,7 @@ def test_a_sensor_in_python_breaks_another() -> None:
     assert failed_at_s == pytest.approx(10.25, abs=0.06)
 
 
-def test_what_python_raises_in_the_loop_is_raised() -> None:
+def test_an_exception_in_the_loop_is_raised() -> None:
     def sensor(time_s: float, measurements: fcc.Measurements) -> None:
         del measurements
         if time_s > 1.0:
@@ -124,7 +124,7 @@ def test_in_real_time_time_passes() -> None:
     assert flight.timing["ticks"] + flight.timing["missed"] >= 150
 
 
-def test_x_planes_aircraft_is_not_here() -> None:
+def test_x_planes_aircraft_is_refused() -> None:
     x_plane = "[x-plane]\n"
     with pytest.raises(fcc.FlightError, match="x-plane"):
         fcc.fly(x_plane)

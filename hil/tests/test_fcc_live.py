@@ -43,7 +43,7 @@ def command(fccd: Path, instance: str, *words: str) -> subprocess.CompletedProce
     )
 
 
-def test_records_events_and_status_come(fccd: Path, tmp_path: Path, instance: str) -> None:
+def test_records_events_and_status_arrive(fccd: Path, tmp_path: Path, instance: str) -> None:
     with fly(fccd, tmp_path, instance) as daemon:
         daemon.wait_for("standby -> engaged")
         watcher = fcc.Watcher(instance)
@@ -77,7 +77,7 @@ def test_records_events_and_status_come(fccd: Path, tmp_path: Path, instance: st
         assert not watcher.is_alive
 
 
-def test_orders_are_carried_out_or_refused_with_the_reason(
+def test_commands_are_carried_out_or_refused_with_the_reason(
     fccd: Path, tmp_path: Path, instance: str
 ) -> None:
     with fly(fccd, tmp_path, instance) as daemon:
@@ -117,7 +117,7 @@ def test_orders_are_carried_out_or_refused_with_the_reason(
         commander.engage()
 
 
-def test_a_daemon_that_takes_no_orders_says_so(fccd: Path, tmp_path: Path, instance: str) -> None:
+def test_a_daemon_without_commands_is_reported(fccd: Path, tmp_path: Path, instance: str) -> None:
     with fly(fccd, tmp_path, instance, "[telemetry]\ncommands = false\n") as daemon:
         daemon.wait_for("standby -> engaged")
         with pytest.raises(fcc.TelemetryError, match="accepts no commands"):
@@ -126,7 +126,7 @@ def test_a_daemon_that_takes_no_orders_says_so(fccd: Path, tmp_path: Path, insta
         assert fcc.Watcher(instance).is_alive
 
 
-def test_without_a_daemon_all_say_so(fccd: Path, instance: str) -> None:
+def test_without_a_daemon_each_raises_an_error(fccd: Path, instance: str) -> None:
     for connect in (fcc.Watcher, fcc.Commander):
         with pytest.raises(fcc.TelemetryError, match=f"no fccd named '{instance}' runs here"):
             connect(instance)
@@ -137,15 +137,13 @@ def test_without_a_daemon_all_say_so(fccd: Path, instance: str) -> None:
     assert f"no fccd named '{instance}'" in refused.stderr
 
 
-def test_an_engagement_that_is_refused_says_what_blocks_it(
-    fccd: Path, tmp_path: Path, instance: str
-) -> None:
+def test_a_refused_engagement_gives_the_inhibits(fccd: Path, tmp_path: Path, instance: str) -> None:
     path = tmp_path / "fccd.toml"
     # Nobody is there to be flown.
     path.write_text('[x-plane]\nsimulator = "127.0.0.1:9"\n')
     words: list[str | Path] = [fccd, "run", "--config", path, "--instance", instance, "--json"]
     with DaemonUnderTest([*words, "--recordings", tmp_path], tmp_path) as daemon:
-        daemon.wait_for("no aircraft yet")
+        daemon.wait_for("no measurements yet")
         commander = fcc.Commander(instance)
         with pytest.raises(fcc.CommandError, match="attitude is missing or too old"):
             commander.engage()

@@ -28,7 +28,7 @@ def recording(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return only_recording(folder)
 
 
-def test_every_number_is_what_another_reader_finds(recording: Path) -> None:
+def test_every_number_agrees_with_another_reader(recording: Path) -> None:
     messages = by_index(recording)
     expected = [message.content for message in messages if message.topic == RECORD]
     found = fcc.Recording(recording)
@@ -58,7 +58,7 @@ def test_columns_are_views_of_one_memory(recording: Path) -> None:
     assert found.records.itemsize == fcc.RECORD.itemsize
 
 
-def test_what_is_known_of_the_flight(recording: Path) -> None:
+def test_the_metadata_of_the_flight(recording: Path) -> None:
     found = fcc.Recording(str(recording))
     assert found.about["rate_hz"] == 40.0
     assert found.about["sensors"] == ["built-in aircraft"]
@@ -81,7 +81,7 @@ def test_a_table_of_pandas(recording: Path) -> None:
     assert frame["north_mps"].isna().to_numpy().tolist() == never.tolist()
 
 
-def test_a_flight_flown_again_is_the_same(recording: Path) -> None:
+def test_a_replay_is_identical(recording: Path) -> None:
     again = fcc.replay(recording)
     assert again["identical"] is True
     assert again["ticks"] == len(fcc.Recording(recording))
@@ -102,9 +102,7 @@ def test_a_report(recording: Path, tmp_path: Path) -> None:
     assert set(fcc.RECORD.names or ()) <= set(lines[0].split(","))
 
 
-def test_a_file_that_is_cut_off_is_read_to_its_cut_and_made_whole(
-    recording: Path, tmp_path: Path
-) -> None:
+def test_an_unfinished_file_is_read_and_recovered(recording: Path, tmp_path: Path) -> None:
     cut = tmp_path / "cut.mcap"
     whole = recording.read_bytes()
     cut.write_bytes(whole[: len(whole) * 2 // 3])

@@ -13,7 +13,7 @@ KINDS = ["timerfd", "posix", "nanosleep"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_deadline_is_served_early_and_each_is_counted(kind: str) -> None:
+def test_no_wake_up_is_early_and_each_deadline_is_counted(kind: str) -> None:
     timer = fcc.Timer(0.005, kind)
     began_ns = time.monotonic_ns()
     served = list(itertools.islice(timer, 20))
@@ -34,7 +34,7 @@ def test_no_deadline_is_served_early_and_each_is_counted(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_deadlines_that_pass_are_told(kind: str) -> None:
+def test_missed_deadlines_are_reported(kind: str) -> None:
     timer = fcc.Timer(0.01, kind)
     timer.start()
     first = timer.wait()
@@ -44,7 +44,7 @@ def test_deadlines_that_pass_are_told(kind: str) -> None:
     assert late.number == first.number + late.missed + 1
 
 
-def test_others_run_while_it_waits() -> None:
+def test_other_threads_run_while_it_waits() -> None:
     timer = fcc.Timer(0.3)
     timer.start()
     waited = threading.Event()
@@ -87,6 +87,6 @@ def test_one_thread_waits_at_a_time() -> None:
     assert "another thread waits" in refused[0]
 
 
-def test_a_timer_that_was_not_started_says_so() -> None:
+def test_a_timer_that_was_not_started_raises_an_error() -> None:
     with pytest.raises(fcc.TimerError, match="was not started"):
         fcc.Timer(0.01).wait()

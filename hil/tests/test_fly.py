@@ -14,7 +14,7 @@ import pytest
 from fcc_hil.__main__ import main
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.daemon import Daemon, DaemonError, command
-from fcc_hil.fly import FlightError, Order, fly, peer_row, write_document
+from fcc_hil.fly import FlightError, Plan, fly, peer_row, write_document
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.plot import plot_flight
 from fcc_hil.process import StandInError, StandInProcess
@@ -31,15 +31,15 @@ def free_port() -> int:
         return port
 
 
-def order(*options: str, pattern: TimedPattern = SHORT) -> Order:
+def plan(*options: str, pattern: TimedPattern = SHORT) -> Plan:
     port = free_port()
     words = [sys.executable, str(FAKE), str(port), *options]
-    return Order(words, Settings(port=port), legs=1, pattern=pattern)
+    return Plan(words, Settings(port=port), legs=1, pattern=pattern)
 
 
 def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     lines: list[str] = []
-    flight = fly(order(), lines.append)
+    flight = fly(plan(), lines.append)
     assert flight.failures == []
     assert flight.exit_code == 0
     (leg,) = flight.figures["legs"]
@@ -49,7 +49,7 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert len([line for line in lines if "heading" in line]) == pytest.approx(4, abs=1)
 
     document_path = tmp_path / "flight.json"
-    write_document(document_path, flight.document(peer_row(flight.order)))
+    write_document(document_path, flight.document(peer_row(flight.plan)))
     document = json.loads(document_path.read_text())
     assert document["timing"]["rate_hz"] == 40.0
     assert document["aircraft"] == "c172p"
@@ -61,26 +61,24 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_a_daemon_that_dies_is_said_in_words() -> None:
+def test_a_daemon_that_ends_is_reported() -> None:
     with pytest.raises(FlightError, match="ended with exit code 3"):
-        fly(order("--exit-after", "4"), lambda _: None)
+        fly(plan("--exit-after", "4"), lambda _: None)
 
 
-def test_a_daemon_that_never_engages_is_said_in_words() -> None:
+def test_a_daemon_that_never_engages_is_reported() -> None:
     with pytest.raises(FlightError, match="has not taken the controls"):
-        fly(order("--never-engage"), lambda _: None)
+        fly(plan("--never-engage"), lambda _: None)
 
 
 def test_overrides_left_behind_are_a_failure() -> None:
     brief = TimedPattern(hold_s=0.2, leg_s=0.5, turn_deg=0.0, climb_ft=0.0)
-    flight = fly(order("--keep-overrides", pattern=brief), lambda _: None)
+    flight = fly(plan("--keep-overrides", pattern=brief), lambda _: None)
     assert len(flight.failures) == 1
     assert OVERRIDE_JOYSTICK in flight.failures[0]
 
 
-def test_a_missing_daemon_is_said_in_words(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_missing_daemon_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code = main(["fly", "--fccd", str(tmp_path / "fccd"), "--port", "0"])
     assert code == 1
     assert "cannot start" in capsys.readouterr().err
@@ -104,7 +102,7 @@ def test_command_line_of_the_daemon() -> None:
         ("", None),
     ],
 )
-def test_the_daemons_report_is_found_in_what_it_printed(
+def test_the_daemons_report_is_found_in_its_output(
     printed: str, found: dict[str, object] | None
 ) -> None:
     with Daemon(["/bin/sh", "-c", f"printf %s {shlex.quote(printed)}"]) as daemon:
@@ -113,7 +111,7 @@ def test_the_daemons_report_is_found_in_what_it_printed(
         assert daemon.report() == found
 
 
-def test_the_stand_ins_process_takes_orders_and_can_be_killed() -> None:
+def test_the_stand_ins_process_takes_commands_and_can_be_killed() -> None:
     simulator = StandInProcess(Settings(port=0))
     simulator.set_mode(Mode.PAUSED)
     before = simulator.progress()
@@ -125,12 +123,12 @@ def test_the_stand_ins_process_takes_orders_and_can_be_killed() -> None:
     assert simulator.read("sim/time/paused") == 0.0
     assert simulator.read("sim/no/such") is None
     simulator.kill()
-    with pytest.raises(StandInError, match="is gone"):
+    with pytest.raises(StandInError, match="has ended"):
         simulator.progress()
     simulator.stop()
 
 
-def test_a_port_in_use_is_said_by_the_process_too() -> None:
+def test_a_port_in_use_is_reported_by_the_process() -> None:
     with (
         StandInProcess(Settings(port=0)) as simulator,
         pytest.raises(StandInError, match="cannot listen"),

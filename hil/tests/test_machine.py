@@ -1,4 +1,4 @@
-"""The daemon's own loop from Python: its states, what it says, its recording."""
+"""The daemon's own loop from Python: states, messages, recording."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ bad_numbers = st.sampled_from([math.nan, math.inf, -math.inf])
 
 @pytest.fixture(scope="module")
 def level() -> fcc.Measurements:
-    """Return what sensors say of a trimmed Cessna."""
+    """Return the measurements of a trimmed Cessna."""
     return measurements(Plant("c172p").state())
 
 
@@ -36,7 +36,7 @@ def _texts(machine: fcc.Machine) -> list[str]:
     return [event.text for event in machine.events()]
 
 
-def test_it_engages_by_the_switch_and_gives_back_by_it(level: fcc.Measurements) -> None:
+def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     assert (machine.state, machine.tick, machine.time_s) == ("standby", 0, 0.0)
     _watch(machine, level, 2.0)
@@ -52,7 +52,7 @@ def test_it_engages_by_the_switch_and_gives_back_by_it(level: fcc.Measurements) 
     assert _texts(machine) == [], "each is told once"
 
 
-def test_what_blocks_engaging_is_said(level: fcc.Measurements) -> None:
+def test_engage_inhibits_are_reported(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     machine.engage()
     assert machine.step(level) is None
@@ -81,7 +81,7 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
     assert (machine.state, machine.holds_control) == ("standby", False)
 
 
-def test_nothing_at_all_is_a_silent_sensor(level: fcc.Measurements) -> None:
+def test_no_measurements_are_a_silent_sensor(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
     machine.step(level, standing=STANDING, switch=True)
@@ -94,7 +94,7 @@ def test_nothing_at_all_is_a_silent_sensor(level: fcc.Measurements) -> None:
     ]
 
 
-def test_orders_move_the_set_points(level: fcc.Measurements) -> None:
+def test_commands_set_the_set_points(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
     machine.engage()
@@ -123,9 +123,9 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     messages = by_index(files[0])
     assert sum(message.topic == RECORD for message in messages) == 81
     assert sum(message.topic == EVENT for message in messages) == 1
-    said = metadata(files[0])
-    assert said["fcc.recording"]["aircraft"] == "a Cessna"
-    assert said["fcc.end"]["ending"] == "enough"
+    log = metadata(files[0])
+    assert log["fcc.recording"]["aircraft"] == "a Cessna"
+    assert log["fcc.end"]["ending"] == "enough"
 
 
 def test_a_folder_that_cannot_be_written_to_is_an_error(level: fcc.Measurements) -> None:
@@ -136,7 +136,7 @@ def test_a_folder_that_cannot_be_written_to_is_an_error(level: fcc.Measurements)
 
 
 @given(value=bad_numbers, name=st.sampled_from(["airspeed_mps", "heading_rad", "altitude_m"]))
-def test_orders_that_are_no_numbers_are_refused(value: float, name: str) -> None:
+def test_commands_that_are_not_finite_are_refused(value: float, name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} is .*finite"):
         fcc.Machine(HOLD).command(**{name: value})
 
@@ -146,11 +146,11 @@ def test_orders_that_are_no_numbers_are_refused(value: float, name: str) -> None
         lambda s: not (0.0 <= s[0] <= 1.0 and all(-1.0 <= value <= 1.0 for value in s[1:]))
     )
 )
-def test_controls_that_cannot_stand_so_are_refused(
+def test_impossible_controls_are_refused(
     standing: tuple[float, float, float, float],
 ) -> None:
     machine = fcc.Machine(HOLD)
-    with pytest.raises(ValueError, match="throttle is 0 to 1"):
+    with pytest.raises(ValueError, match=r"is .*: choose -?[01] to 1"):
         machine.step(standing=standing)
     assert machine.tick == 0, "no half a tick"
 

@@ -1,4 +1,4 @@
-"""The marks of a test: what they ask for, and what is refused."""
+"""The marks of a test: their effect, and wrong arguments."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from fcc_hil.pattern import TimedPattern
 from fcc_hil.plant import Weather
 
 
-def test_an_aircraft_as_it_is_asked_for() -> None:
+def test_the_aircraft_of_a_mark() -> None:
     settings = aircraft_mark("c172x", wind=(270, 10), turbulence=3, seed=7, noise=True, heading=90)
     assert (settings.aircraft, settings.seed, settings.noise) == ("c172x", 7, True)
     assert settings.heading_deg == 90.0
     assert settings.weather == Weather(270.0, 10.0, 3)
 
 
-def test_an_autopilot_as_it_is_asked_for() -> None:
+def test_the_autopilot_of_a_mark() -> None:
     mark = autopilot_mark(hold_s=5, leg_s=15, turn_deg=-45, climb_ft=0, failsafe_hold_s=2)
     assert mark.pattern == TimedPattern(5.0, 15.0, -45.0, 0.0)
     assert autopilot_mark("hold").pattern is None
@@ -37,7 +37,7 @@ def test_an_autopilot_as_it_is_asked_for() -> None:
     climb_ft=st.floats(-5_000.0, 5_000.0),
     failsafe_hold_s=st.floats(0.0, 600.0),
 )
-def test_whatever_a_mark_takes_the_daemon_takes(mode: str, **others: float) -> None:
+def test_the_daemon_accepts_what_a_mark_accepts(mode: str, **others: float) -> None:
     fcc.Machine(autopilot_mark(mode, **others).toml())  # type: ignore[arg-type]
 
 
@@ -49,30 +49,30 @@ BAD: st.SearchStrategy[Any] = st.sampled_from(
 @given(
     name=st.sampled_from(["hold_s", "leg_s", "turn_deg", "climb_ft", "failsafe_hold_s"]), value=BAD
 )
-def test_an_autopilot_that_cannot_be_is_refused_by_name(name: str, value: float) -> None:
+def test_an_impossible_autopilot_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises((TypeError, ValueError), match=f"^{name} is "):
         autopilot_mark(**{name: value})  # type: ignore[arg-type]
 
 
 @given(name=st.sampled_from(["wind", "turbulence", "seed", "heading"]), value=BAD)
-def test_an_aircraft_that_cannot_be_is_refused_by_name(name: str, value: float) -> None:
+def test_an_impossible_aircraft_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises((TypeError, ValueError), match=f"^{name} is "):
         aircraft_mark(**{name: value})  # type: ignore[arg-type]
 
 
 @given(wind=st.tuples(BAD, BAD))
-def test_a_wind_that_cannot_blow_is_refused(wind: tuple[float, float]) -> None:
+def test_an_impossible_wind_is_refused(wind: tuple[float, float]) -> None:
     with pytest.raises((TypeError, ValueError), match=r"^wind from is "):
         aircraft_mark(wind=wind)
 
 
 @given(name=st.text().filter(lambda name: name not in AIRCRAFT))
-def test_an_aircraft_that_is_not_there_is_refused(name: str) -> None:
+def test_an_unknown_aircraft_is_refused(name: str) -> None:
     with pytest.raises(ValueError, match="choose one of: c172p"):
         aircraft_mark(name)
 
 
-def test_other_nonsense_is_refused() -> None:
+def test_other_wrong_arguments_are_refused() -> None:
     with pytest.raises(ValueError, match=r"timed-pattern or hold"):
         autopilot_mark("loops")
     with pytest.raises(TypeError, match=r"^config is"):

@@ -40,7 +40,7 @@ def test_levels_are_those_of_the_table() -> None:
     assert np.std(wrapped) == pytest.approx(math.radians(0.4), rel=0.06)
 
 
-def test_barometer_errs_with_the_altitude() -> None:
+def test_the_barometer_has_the_altitudes_error() -> None:
     # Near 3,000 ft pressure falls 11.0 Pa a metre (standard atmosphere).
     truth = Plant("c172p").state()
     noise = SensorNoise(seed=2)

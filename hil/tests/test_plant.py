@@ -53,7 +53,7 @@ def test_positive_deflection_turns_the_positive_way(
     assert math.copysign(1.0, deflection) * getattr(plant.state(), rate) > 0.02
 
 
-def test_level_flight_feels_one_g_downwards() -> None:
+def test_specific_force_is_one_g_in_level_flight() -> None:
     state = Plant("c172p").state()
     assert state.specific_force_z_mps2 == pytest.approx(-9.8, abs=0.05)
     assert state.specific_force_y_mps2 == pytest.approx(0.0, abs=0.05)
@@ -66,7 +66,7 @@ def test_atmosphere_is_the_standard_one() -> None:
     assert state.temperature_k - 273.15 == pytest.approx(9.056, abs=0.05)
 
 
-def test_wind_blows_from_where_it_is_said_to() -> None:
+def test_wind_blows_from_its_direction() -> None:
     plant = Plant("c172p", heading_deg=30.0, weather=Weather(wind_from_deg=270.0, wind_kt=20.0))
     plant.step(5 * 120)
     state = plant.state()

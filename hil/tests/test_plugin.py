@@ -1,4 +1,4 @@
-"""The plugin as those who write tests see it: what fails says why, and leaves a flight."""
+"""The plugin as used in tests: messages of failures, and artifacts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ import fcc_hil.lockstep_rig  # noqa: F401
 
 IMPORTS = "import pytest\nfrom fcc_hil import airspeed, altitude, bank, heading\n"
 NOWHERE = "/proc/none"
-"""A folder that cannot be: plots take longer than flights."""
+"""A folder that cannot be created, because plots take longer than flights."""
 
 FAILING = """
 @pytest.mark.aircraft("c172p", turbulence=3, seed=4)
@@ -39,7 +39,7 @@ def _left(result: pytest.RunResult) -> list[Path]:
     return [path for path in lines if path.suffix in {".png", ".csv", ".mcap"}]
 
 
-def test_a_failed_requirement_says_what_was_required_and_flown(
+def test_a_failed_requirement_prints_required_and_flown_values(
     pytester: pytest.Pytester,
 ) -> None:
     result = _run(pytester, FAILING, "--flight-artifacts", NOWHERE)
@@ -54,7 +54,7 @@ def test_a_failed_requirement_says_what_was_required_and_flown(
     assert "flight.py" not in result.stdout.str().partition("short test summary")[0]
 
 
-def test_a_failed_test_leaves_a_plot_the_truth_and_a_recording(
+def test_a_failed_test_saves_a_plot_the_truth_and_a_recording(
     pytester: pytest.Pytester,
 ) -> None:
     result = _run(pytester, FAILING)
@@ -67,13 +67,13 @@ def test_a_failed_test_leaves_a_plot_the_truth_and_a_recording(
     ticks = [message for message in by_index(recording) if message.topic == RECORD]
     assert len(ticks) == len(rows) - 1
     assert (
-        plot.parent.name == "test_a_failed_test_leaves_a_plot_the_truth_and_a_recording"
+        plot.parent.name == "test_a_failed_test_saves_a_plot_the_truth_and_a_recording"
         ".py_test_too_strict"
     )
     assert plot.parent.parent == pytester.path / ".flight-artifacts"
 
 
-def test_the_daemon_opens_and_flies_again_what_lockstep_recorded(
+def test_the_daemon_reports_on_and_replays_a_lockstep_recording(
     pytester: pytest.Pytester, fccd: Path
 ) -> None:
     recording = _left(_run(pytester, FAILING))[-1]
@@ -88,21 +88,21 @@ def test_the_folder_for_them_is_an_option(pytester: pytest.Pytester, tmp_path: P
     assert {path.parent.parent for path in _left(result)} == {tmp_path / "here"}
 
 
-def test_a_folder_that_cannot_be_made_is_said_and_hides_nothing(
+def test_a_folder_that_cannot_be_created_is_reported_after_the_failure(
     pytester: pytest.Pytester,
 ) -> None:
     result = _run(pytester, FAILING, "--flight-artifacts", NOWHERE)
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*RequirementError: required:*", "not all is left behind: *"])
+    result.stdout.fnmatch_lines(["*RequirementError: required:*", "not everything was saved: *"])
 
 
-def test_a_passed_test_leaves_nothing(pytester: pytest.Pytester) -> None:
+def test_a_passed_test_saves_nothing(pytester: pytest.Pytester) -> None:
     result = _run(pytester, "def test_it(flight):\n    flight.engages(by=3)\n")
     result.assert_outcomes(passed=1)
     assert not (pytester.path / ".flight-artifacts").exists()
 
 
-def test_aircraft_and_autopilot_can_be_stepped_by_hand(pytester: pytest.Pytester) -> None:
+def test_aircraft_and_autopilot_can_be_stepped_by_a_test(pytester: pytest.Pytester) -> None:
     result = _run(
         pytester,
         """
@@ -137,7 +137,7 @@ def test_aircraft_and_autopilot_can_be_stepped_by_hand(pytester: pytest.Pytester
         ('autopilot(config="[loop]\\nrate_hz = 50\\n")', "*50 Hz does not fit*20, 40, 60 or 120*"),
     ],
 )
-def test_marks_that_are_wrong_are_said(pytester: pytest.Pytester, mark: str, words: str) -> None:
+def test_wrong_marks_are_reported(pytester: pytest.Pytester, mark: str, words: str) -> None:
     result = _run(pytester, f"@pytest.mark.{mark}\ndef test_it(flight):\n    pass\n")
     result.assert_outcomes(errors=1)
     result.stdout.fnmatch_lines([words])
@@ -153,7 +153,9 @@ def test_marks_that_are_wrong_are_said(pytester: pytest.Pytester, mark: str, wor
         ("faults.loss('engine')", "*no quantity 'engine'; choose one of heading*"),
     ],
 )
-def test_what_a_test_asks_wrongly_is_said(pytester: pytest.Pytester, call: str, words: str) -> None:
+def test_wrong_arguments_of_a_test_are_reported(
+    pytester: pytest.Pytester, call: str, words: str
+) -> None:
     text = f"def test_it(flight, faults):\n    flight.engages(by=3)\n    {call}\n"
     result = _run(pytester, text, "--flight-artifacts", NOWHERE)
     result.assert_outcomes(failed=1)
@@ -168,7 +170,7 @@ def test_what_a_test_asks_wrongly_is_said(pytester: pytest.Pytester, call: str, 
         (("--fccd-listen", "127.0.0.1"), "*give --fccd HOST*"),
     ],
 )
-def test_options_that_are_wrong_end_the_run_before_it_begins(
+def test_wrong_options_end_the_run_before_it_begins(
     pytester: pytest.Pytester, options: tuple[str, ...], words: str
 ) -> None:
     result = _run(pytester, "def test_it():\n    pass\n", *options)
@@ -176,7 +178,7 @@ def test_options_that_are_wrong_end_the_run_before_it_begins(
     result.stderr.fnmatch_lines([words])
 
 
-def test_a_daemon_that_is_not_there_is_said(pytester: pytest.Pytester) -> None:
+def test_a_missing_program_is_reported(pytester: pytest.Pytester) -> None:
     text = "def test_it(flight):\n    pass\n"
     result = _run(pytester, text, "--realtime", "--fccd-program", "/none/fccd")
     result.assert_outcomes(errors=1)
@@ -193,7 +195,7 @@ def test_the_same_test_twice_is_the_same_to_the_last_bit(pytester: pytest.Pytest
     assert records[0] == records[1]
 
 
-def test_without_the_module_fcc_it_is_said_how_to_get_it(
+def test_without_the_module_fcc_the_message_says_how_to_install_it(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytester.makepyfile(IMPORTS + "def test_it(flight):\n    pass\n")

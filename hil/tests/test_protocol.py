@@ -75,7 +75,7 @@ def test_good_datagrams(datagram: bytes, message: object) -> None:
         (WRITE[:9] + b"x" * 500, "no NUL"),
         (WRITE[:9] + bytes(500), "empty"),
         (WRITE[:9] + padded(b"sim/\xff", 500), "ASCII"),
-        (WRITE[:5] + b"\0\0\xc0\x7f" + WRITE[9:], "not a number"),
+        (WRITE[:5] + b"\0\0\xc0\x7f" + WRITE[9:], "not a finite number"),
         (b"DATA\0", r"5 \+ n x 36"),
         (b"DATA\0" + ROW_8[:-1], r"5 \+ n x 36"),
         (b"DATA\0" + b"\x8b\0\0\0" + ROW_8[4:], "row 139"),
@@ -120,13 +120,13 @@ paths = st.from_regex(r"sim/[a-z_/]{1,60}(\[[0-9]{1,2}\])?", fullmatch=True)
 
 
 @given(finite, paths)
-def test_writes_survive_the_wire(value: float, path: str) -> None:
+def test_writes_are_read_back(value: float, path: str) -> None:
     datagram = b"DREF\0" + struct.pack("<f500s", value, path.encode())
     assert parse(datagram) == WriteDataref(value, path)
 
 
 @given(st.integers(0, 1000), st.integers(-(2**31), 2**31 - 1), paths)
-def test_subscriptions_survive_the_wire(frequency: int, index: int, path: str) -> None:
+def test_subscriptions_are_read_back(frequency: int, index: int, path: str) -> None:
     datagram = b"RREF\0" + struct.pack("<ii400s", frequency, index, path.encode())
     assert parse(datagram) == Subscribe(frequency, index, path)
 

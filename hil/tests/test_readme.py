@@ -1,4 +1,4 @@
-"""The README's test runs as it is printed, and is as short as it says."""
+"""The README's test runs as printed, and has ten lines."""
 
 from __future__ import annotations
 

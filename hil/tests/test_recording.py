@@ -138,7 +138,7 @@ def test_a_killed_flight_loses_a_second_at_most(fccd: Path, tmp_path: Path) -> N
         assert run([fccd, "recover", path, "--json"])["was_whole"]
 
 
-def test_the_next_flight_repairs_what_the_last_left(fccd: Path, tmp_path: Path) -> None:
+def test_the_next_flight_repairs_the_last_recording(fccd: Path, tmp_path: Path) -> None:
     config = write_config(tmp_path, 40)
     words: Words = [fccd, "fly", "--config", config, "--recordings", tmp_path]
     with DaemonUnderTest([*words, "--quiet"], tmp_path) as daemon:
@@ -201,7 +201,9 @@ def test_a_full_disk_ends_the_recording_and_not_the_flight(
         assert numbers == list(range(1, recording["ticks"] + 1))
 
 
-def test_a_read_only_folder_is_said_and_the_flight_goes_on(fccd: Path, tmp_path: Path) -> None:
+def test_a_read_only_folder_is_reported_and_the_flight_continues(
+    fccd: Path, tmp_path: Path
+) -> None:
     with a_small_disk(tmp_path) as (disk, _):
         subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
         words: Words = [fccd, "fly", *IN_LOCKSTEP, "--recordings", disk, "--seconds", "10"]
@@ -210,7 +212,7 @@ def test_a_read_only_folder_is_said_and_the_flight_goes_on(fccd: Path, tmp_path:
     assert outcome["timing"]["ticks"] >= 400
 
 
-def test_nothing_is_recorded_where_nobody_wants_it(fccd: Path, tmp_path: Path) -> None:
+def test_recording_can_be_disabled(fccd: Path, tmp_path: Path) -> None:
     words: Words = [fccd, "fly", *IN_LOCKSTEP, "--seconds", "1"]
     assert run([*words, "--no-recording"], cwd=tmp_path)["recording"] is None
     assert list(tmp_path.iterdir()) == []

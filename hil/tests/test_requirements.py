@@ -1,4 +1,4 @@
-"""Requirements on flights that are known to the last sample: a rig that replays a table."""
+"""Requirements on flights with known samples: a rig that replays functions."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fcc_hil import airspeed, altitude, attitude, bank, heading, throttle
 from fcc_hil.flight import Flight, RequirementError
 from fcc_hil.pattern import TimedPattern
 from fcc_hil.quantities import QUANTITIES, Quantity
-from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, FlightError, Happening
+from fcc_hil.rig import ENGAGED, FAILSAFE, RELEASED, Event, FlightError
 from fcc_hil.sensor_faults import SensorFault
 from fcc_hil.truth import COLUMNS, Row, Truth
 
@@ -25,31 +25,31 @@ Flown = Callable[[float], float]
 
 
 class TableRig:
-    """Flies what a test says, as functions of the time since engagement."""
+    """Flies functions of the time since engagement."""
 
     name = "a table"
     failsafe_shows_after_s = 0.0
     holds_control = True
 
-    def __init__(self, coming: Sequence[Happening] = (), **flown: Flown) -> None:
+    def __init__(self, coming: Sequence[Event] = (), **flown: Flown) -> None:
         self.time_s = 0.0
-        self.happenings: list[Happening] = []
-        self.left_deflected = ""
-        self._coming = [Happening(ENGAGED_AT_S, ENGAGED), *coming]
+        self.events: list[Event] = []
+        self.not_centred = ""
+        self._coming = [Event(ENGAGED_AT_S, ENGAGED), *coming]
         self._flown = flown
         self._rows: list[Row] = [self._row()]
 
     def prepare(self) -> None:
         self.fly_to(0.5)
 
-    def throw_switch(self, *, on: bool) -> None:
+    def set_switch(self, *, on: bool) -> None:
         pass
 
     def fly_to(self, time_s: float, until: Callable[[], bool] | None = None) -> None:
         while self.time_s < time_s - 1e-6 and not (until is not None and until()):
             self.time_s = round((self.time_s + 0.025) * 40.0) / 40.0
             self._rows.append(self._row())
-            self.happenings = [h for h in self._coming if h.time_s <= self.time_s]
+            self.events = [h for h in self._coming if h.time_s <= self.time_s]
 
     def set_faults(self, faults: Sequence[SensorFault]) -> None:
         pass
@@ -57,7 +57,7 @@ class TableRig:
     def truth(self) -> Truth:
         return Truth(self._rows)
 
-    def leave_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
+    def save_recording(self, path: Path) -> list[Path]:  # noqa: ARG002
         return []
 
     def close(self) -> None:
@@ -74,7 +74,7 @@ class TableRig:
         return tuple(columns[name](since_s) if name in columns else 0.0 for name in COLUMNS)
 
 
-def _flight(*coming: Happening, pattern: TimedPattern | None = PATTERN, **flown: Flown) -> Flight:
+def _flight(*coming: Event, pattern: TimedPattern | None = PATTERN, **flown: Flown) -> Flight:
     flight = Flight(TableRig(coming, **flown), pattern)
     flight.engages(by=1.0)
     return flight
@@ -89,7 +89,7 @@ def _turn(t: float) -> float:
     return 90.0 + (4.0 * math.sin(math.pi * (t - 16.0) / 2.0) if t < 18.0 else 0.0)
 
 
-def test_a_heading_settles_when_it_is_inside_to_stay() -> None:
+def test_a_heading_settles_when_it_stays_inside() -> None:
     flight = _flight(heading_deg=_turn)
     flight.flies(to=10)
     # 4 sin(pi/2 (t - 16)) is 2 at 16 1/3 s and at 17 2/3 s.
@@ -103,7 +103,7 @@ def test_a_heading_settles_when_it_is_inside_to_stay() -> None:
     ]
 
 
-def test_what_leaves_again_has_not_settled() -> None:
+def test_a_value_that_leaves_again_has_not_settled() -> None:
     flight = _flight(heading_deg=lambda t: 90.0 if 11.0 < t < 18.0 else 0.0)
     flight.flies(to=10)
     flight.settles(heading, within=2, by=2, for_=1)
@@ -165,11 +165,11 @@ def test_never_is_never() -> None:
     flight.never(abs(bank) > 30, to=6)
 
 
-def test_states_are_awaited_and_judged_by_when_they_came() -> None:
+def test_states_are_awaited_and_judged_by_their_time() -> None:
     flight = _flight(
-        Happening(4.0, f"{FAILSAFE}: airspeed is missing or too old"),
-        Happening(6.0, "failsafe -> standby"),
-        Happening(6.0, RELEASED),
+        Event(4.0, f"{FAILSAFE}: airspeed is missing or too old"),
+        Event(6.0, "failsafe -> standby"),
+        Event(6.0, RELEASED),
     )
     flight.flies(to=2.5)
     fault = flight.faults.loss(airspeed)
@@ -183,7 +183,7 @@ def test_states_are_awaited_and_judged_by_when_they_came() -> None:
     assert str(refused.value).splitlines() == [
         "required: the autopilot falls into failsafe by 0.4 s after loss of airspeed at 2.50 s",
         "flown:    engaged -> failsafe: airspeed is missing or too old, 0.50 s later",
-        "said:     1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
+        "events:   1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
         "too old; 6.00 s failsafe -> standby; 6.00 s actuators released",
     ]
     with pytest.raises(RequirementError, match=r"failsafe: airspeed .* at 3\.00 s"):
@@ -192,11 +192,11 @@ def test_states_are_awaited_and_judged_by_when_they_came() -> None:
         flight.falls_into_failsafe(by=1)
 
 
-def test_controls_that_are_let_go_deflected_are_not_released() -> None:
-    rig = TableRig([Happening(3.0, RELEASED)])
+def test_controls_released_while_deflected_are_a_failure() -> None:
+    rig = TableRig([Event(3.0, RELEASED)])
     flight = Flight(rig, None)
     flight.engages(by=1)
-    rig.left_deflected = "released with elevator +0.20"
+    rig.not_centred = "released with elevator +0.20"
     with pytest.raises(RequirementError, match=r"elevator \+0\.20"):
         flight.releases(by=5)
 
@@ -207,22 +207,22 @@ def test_an_autopilot_that_does_not_engage_in_time() -> None:
     assert str(refused.value).splitlines() == [
         "required: the autopilot engages by 0.4 s",
         "flown:    it engages after 0.50 s",
-        "said:     1.00 s standby -> engaged",
+        "events:   1.00 s standby -> engaged",
     ]
 
 
-def test_what_cannot_be_asked_is_said() -> None:
+def test_invalid_requirements_are_refused() -> None:
     flight = Flight(TableRig(), PATTERN)
     with pytest.raises(FlightError, match="engages"):
         flight.settles(heading, within=1, by=1)
     flight.engages(by=1)
     with pytest.raises(ValueError, match="sets no bank: give at="):
         flight.stays(bank, within=1)
-    with pytest.raises(ValueError, match="no single number"):
+    with pytest.raises(ValueError, match="not a single number"):
         flight.stays(attitude, within=1, at=0)
     with pytest.raises(ValueError, match="change again 10 s"):
         flight.settles(heading, within=1, by=11)
-    with pytest.raises(ValueError, match="comes before the start"):
+    with pytest.raises(ValueError, match="is before the start"):
         flight.stays(heading, within=1, from_=5, to=4)
     with pytest.raises(ValueError, match="no state 'panic'"):
         flight.never("panic")
@@ -257,7 +257,7 @@ nonsense: st.SearchStrategy[object] = st.one_of(
         ]
     ),
 )
-def test_arguments_that_are_no_sizes_are_refused_by_name(
+def test_invalid_amounts_are_refused_by_name(
     value: object, ask: tuple[str, Callable[[Flight, object], None]]
 ) -> None:
     name, call = ask
@@ -276,6 +276,6 @@ def test_units_that_are_not_its_own_are_refused(quantity: Quantity, unit: str) -
 
 
 @given(limit=st.sampled_from([math.nan, math.inf, "3", None]))
-def test_limits_that_are_no_numbers_are_refused(limit: float) -> None:
+def test_limits_that_are_not_finite_are_refused(limit: float) -> None:
     with pytest.raises((TypeError, ValueError), match=r"^limit is "):
         _ = bank > limit

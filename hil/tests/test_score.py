@@ -168,7 +168,7 @@ def test_worst_is_per_column_and_null_where_any_leg_is() -> None:
     assert worst["altitude_rms_ft"] == pytest.approx(150.0)
 
 
-def test_a_flight_that_ended_early_is_refused_in_words() -> None:
+def test_a_flight_that_ended_early_is_refused() -> None:
     t = since_start(RIGHT_AND_UP)
     trace = flown(RIGHT_AND_UP, np.zeros_like(t), np.zeros_like(t))
     beyond = replace(RIGHT_AND_UP, start_s=40.0, end_s=60.0)

@@ -1,4 +1,4 @@
-"""What the faults do to a sensor, sample by sample: a sensor that counts."""
+"""The effect of faults on a sensor, sample by sample."""
 
 from __future__ import annotations
 
@@ -55,7 +55,9 @@ def _said(level: State, break_it: Break, samples: int = 6) -> list[float | None]
         (lambda f: (f.loss(altitude), f.end()), [0, 1, 2, 3, 4, 5]),
     ],
 )
-def test_what_becomes_of_a_count(level: State, break_it: Break, said: list[float | None]) -> None:
+def test_the_effect_on_a_sensor_that_counts(
+    level: State, break_it: Break, said: list[float | None]
+) -> None:
     assert _said(level, break_it) == pytest.approx(said)
 
 
@@ -73,7 +75,7 @@ def test_everything_is_everything(level: State) -> None:
     assert sensors.read(1.0, level)[0] is None
 
 
-def test_a_share_is_about_so_many_and_the_same_each_time(level: State) -> None:
+def test_a_share_is_met_and_repeatable(level: State) -> None:
     """Of 2,000 draws at 0.3, five standard deviations are 0.051."""
     once = _said(level, lambda f: f.loss(altitude, share=0.3), samples=2_000)
     again = _said(level, lambda f: f.loss(altitude, share=0.3), samples=2_000)
@@ -98,7 +100,7 @@ def test_a_heading_stays_a_heading(level: State) -> None:
 
 
 @pytest.mark.parametrize("sensor", SENSORS)
-def test_every_sensor_has_datarefs_that_fall_silent(sensor: str) -> None:
+def test_every_sensor_has_datarefs_to_withhold(sensor: str) -> None:
     assert len(withheld(frozenset(SENSORS[sensor]))) >= len(SENSORS[sensor])
 
 
@@ -142,7 +144,7 @@ def test_sensors_that_do_not_exist_are_refused(kind: str, name: str) -> None:
         _make(kind, name)
 
 
-def test_what_no_sensor_measures_cannot_break() -> None:
+def test_quantities_without_a_sensor_have_no_faults() -> None:
     with pytest.raises(ValueError, match="no sensor measures climb"):
         _make("loss", climb)
     with pytest.raises(ValueError, match="only its loss"):

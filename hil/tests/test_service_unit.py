@@ -1,4 +1,4 @@
-"""The systemd unit: free of faults, closed where it can be, and open enough to fly."""
+"""The systemd unit: valid, restricted, and with the rights needed to fly."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ def settings(name: str) -> list[str]:
     return re.findall(rf"^{name}=(.*)$", UNIT.read_text(), re.MULTILINE)
 
 
-def test_systemd_finds_nothing_wrong(fccd: Path, tmp_path: Path) -> None:
+def test_systemd_verifies_the_unit(fccd: Path, tmp_path: Path) -> None:
     unit = tmp_path / UNIT.name
     unit.write_text(UNIT.read_text().replace("/usr/bin/fccd", str(fccd)))
     assert analyze("verify", "--man=no", unit).strip() == ""
 
 
 def test_little_is_exposed() -> None:
-    said = analyze("security", "--offline=true", UNIT)
-    found = re.search(r"Overall exposure level for \S+: ([\d.]+)", said)
-    assert found is not None, said
+    log = analyze("security", "--offline=true", UNIT)
+    found = re.search(r"Overall exposure level for \S+: ([\d.]+)", log)
+    assert found is not None, log
     assert float(found[1]) <= MOST_EXPOSED
 
 
-def test_it_may_call_what_it_calls(fccd: Path, tmp_path: Path) -> None:
+def test_the_system_calls_of_a_flight_are_permitted(fccd: Path, tmp_path: Path) -> None:
     """Every system call of a flight, by the unit's own filter."""
     strace = shutil.which("strace")
     assert strace, "there is no strace: apt-get install strace"
@@ -83,7 +83,7 @@ def _calls(group: str) -> set[str]:
     ("name", "values"),
     [
         ("Type", ["notify"]),
-        # Who watches is not in a world of their own.
+        # Watchers need the same shared memory.
         ("RemoveIPC", ["no"]),
         ("LimitMEMLOCK", ["infinity"]),
         ("LimitRTPRIO", ["99"]),
@@ -93,5 +93,5 @@ def _calls(group: str) -> set[str]:
         ("User", ["fccd"]),
     ],
 )
-def test_what_flying_needs_is_granted(name: str, values: list[str]) -> None:
+def test_required_settings(name: str, values: list[str]) -> None:
     assert settings(name) == values

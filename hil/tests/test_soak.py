@@ -1,4 +1,4 @@
-"""The soak: what it counts, and a short one in real time."""
+"""The soak: its counts, and a short one in real time."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def test_whole_periods_of_lateness_are_lost_ones() -> None:
     assert periods_lost(histogram, 516_576.0, 10_000.0) == 2 + 2 + 51
 
 
-def test_what_the_histogram_does_not_reach_is_lost_too() -> None:
-    # cyclictest leaves it out of its JSON, but for the maximum.
+def test_periods_beyond_the_histogram_are_counted() -> None:
+    # cyclictest omits it from its JSON, except for the maximum.
     assert periods_lost({"17": 3}, 2_345_678.0, 10_000.0) == 234
 
 
@@ -55,13 +55,13 @@ def test_what_the_histogram_does_not_reach_is_lost_too() -> None:
         (replace(GOOD, exit_code=9), "exit code 9"),
     ],
 )
-def test_what_is_not_as_it_should_be_is_said(wrong: Result, words: str) -> None:
+def test_failures_are_described(wrong: Result, words: str) -> None:
     assert GOOD.failures() == []
     (failure,) = wrong.failures()
     assert words in failure
 
 
-def test_what_the_machine_lost_too_is_no_failure() -> None:
+def test_periods_that_the_machine_lost_are_no_failure() -> None:
     machine = replace(GOOD.machine, periods_lost=50)
     assert replace(GOOD, missed=55, machine=machine).failures() == []
     assert replace(GOOD, missed=90, machine=machine).failures() != []
@@ -110,7 +110,7 @@ def test_a_short_soak_never_waits_for_anything_but_the_timer(
     written = tmp_path / "soak.json"
     main(["soak", "--fccd", str(fccd), "--minutes", "0.05", "--idle", "--json", str(written)])
     figures = json.loads(written.read_text())
-    # How late it was is the machine's affair; that it did not wait is ours.
+    # Lateness depends on the machine; waiting does not.
     assert figures["ticks"] > 200
     assert figures["watched_ticks"] >= 300
     if figures["memory_locked"]:
@@ -127,7 +127,7 @@ def test_a_short_soak_never_waits_for_anything_but_the_timer(
 
 
 @pytest.mark.parametrize("refused", ["cyclictest", "stress-ng"])
-def test_no_flight_goes_on_without_what_belongs_beside_it(
+def test_a_flight_ends_if_a_background_program_ends(
     fccd: Path, programs: Callable[[str, str], None], refused: str
 ) -> None:
     for name in ("cyclictest", "stress-ng"):
@@ -139,7 +139,7 @@ def test_no_flight_goes_on_without_what_belongs_beside_it(
 @pytest.mark.parametrize(
     ("there", "missing"), [("stress-ng", "cyclictest"), ("cyclictest", "stress-ng")]
 )
-def test_a_program_that_is_not_there_is_named_before_the_flight(
+def test_a_missing_program_is_reported_before_the_flight(
     programs: Callable[[str, str], None],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -150,5 +150,5 @@ def test_a_program_that_is_not_there_is_named_before_the_flight(
     # Found by its name, although it is `nice` that starts it.
     programs("nice", _CYCLICTEST)
     monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(SoakError, match=f"{missing} is not there"):
+    with pytest.raises(SoakError, match=f"{missing} is missing"):
         soak(Soak(Path("fccd"), 600.0, 100, stress=True), lambda _: None)

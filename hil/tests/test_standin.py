@@ -80,7 +80,7 @@ def bench() -> Iterator[Bench]:
     made.close()
 
 
-def test_subscribed_values_come_to_the_sender_under_its_index(bench: Bench) -> None:
+def test_subscribed_values_arrive_under_the_senders_index(bench: Bench) -> None:
     bench.client.subscribe(17, TIME)
     bench.client.subscribe(-4, "sim/flightmodel/position/indicated_airspeed")
     values = bench.frames(60)
@@ -114,7 +114,7 @@ def test_unknown_dataref_gets_no_answer_and_is_counted(bench: Bench) -> None:
     assert bench.simulator.status()["unknown_datarefs"] == {"sim/no/such": 1}
 
 
-def test_more_than_a_datagram_holds_comes_in_several(bench: Bench) -> None:
+def test_long_replies_are_split_into_datagrams(bench: Bench) -> None:
     for index in range(200):
         bench.client.subscribe(index, TIME)
         if index % 50 == 0:
@@ -190,7 +190,7 @@ def test_position(bench: Bench) -> None:
     assert bench.client.datagrams() == []
 
 
-def test_pause_says_so_and_time_stands(bench: Bench) -> None:
+def test_a_pause_is_reported_and_stops_time(bench: Bench) -> None:
     bench.client.subscribe(1, TIME)
     bench.client.subscribe(2, PAUSED)
     before = bench.frames(10)
@@ -202,7 +202,7 @@ def test_pause_says_so_and_time_stands(bench: Bench) -> None:
     assert bench.frames(60)[1] == pytest.approx(before[1] + 1.0, abs=1e-4)
 
 
-def test_stall_does_not_say_so_and_freeze_says_nothing(bench: Bench) -> None:
+def test_a_stall_is_not_reported_and_a_freeze_sends_nothing(bench: Bench) -> None:
     bench.client.subscribe(1, TIME)
     bench.client.subscribe(2, PAUSED)
     before = bench.frames(10)
@@ -243,7 +243,7 @@ def test_truth_is_kept_on_a_40_hz_grid(bench: Bench) -> None:
     assert times == pytest.approx([i / 40.0 for i in range(41)])
 
 
-def test_noise_is_on_the_wire_and_not_in_the_truth() -> None:
+def test_noise_is_in_replies_and_not_in_the_truth() -> None:
     bench = Bench(noise=True)
     bench.client.subscribe(1, ROLL)
     rolls = [bench.frames(1)[1] for _ in range(60)]
@@ -288,7 +288,7 @@ def test_beacon_names_the_port() -> None:
     listener.close()
 
 
-def test_a_client_that_is_gone_disturbs_nobody(bench: Bench) -> None:
+def test_a_client_that_has_ended_disturbs_no_other(bench: Bench) -> None:
     gone = Client(bench.simulator.port)
     gone.subscribe(1, TIME)
     bench.client.subscribe(1, TIME)
@@ -297,12 +297,12 @@ def test_a_client_that_is_gone_disturbs_nobody(bench: Bench) -> None:
     assert bench.frames(60)[1] == pytest.approx(62.0 / 60.0, abs=1e-3)
 
 
-def test_a_port_in_use_is_said_in_words(bench: Bench) -> None:
+def test_a_port_in_use_is_reported(bench: Bench) -> None:
     with pytest.raises(OSError, match=r"cannot listen on 127\.0\.0\.1.*--port"):
         StandIn(Settings(port=bench.simulator.port))
 
 
-def test_a_broken_sensor_is_broken_on_the_wire_and_not_in_flight(bench: Bench) -> None:
+def test_a_sensor_fault_changes_replies_and_not_the_flight(bench: Bench) -> None:
     altimeter = "sim/cockpit2/gauges/indicators/altitude_ft_pilot"
     airspeed = "sim/flightmodel/position/indicated_airspeed"
     bench.client.subscribe(1, altimeter)

@@ -1,4 +1,4 @@
-"""The flight suite: its quick part flown and held to its limits, and how it judges."""
+"""The flight suite: its quick part flown and checked against limits, and its judgement."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ def test_another_seed_is_another_flight() -> None:
     assert fly_case(noisy).digest != fly_case(replace(noisy, seeds=(2,))).digest
 
 
-def test_what_is_beyond_a_limit_is_said() -> None:
+def test_exceeded_limits_are_described() -> None:
     asked = limits(altitude_rms_ft=0.9, heading_settle_s=16.6, turn_loss_ft=1.0)
     figures = {"altitude_rms_ft": 0.91, "heading_settle_s": None, "turn_loss_ft": 1.0}
     words = broken(figures, asked)
     assert words == [
-        "altitude_rms_ft: 0.91 is beyond 0.9 ft",
+        "altitude_rms_ft: 0.91 exceeds 0.9 ft",
         "heading_settle_s: some leg never settles; the limit is 16.6 s",
     ]
     assert broken({"turn_loss_ft": float("nan")}, limits(turn_loss_ft=1.0))
@@ -79,7 +79,7 @@ def test_what_is_beyond_a_limit_is_said() -> None:
         limits(speed=1.0)
 
 
-def test_a_flight_that_fails_breaks_its_case_and_not_the_suite() -> None:
+def test_a_flight_that_fails_fails_its_case_only() -> None:
     calm = scenario_of("c172p")
     wrong = Case("wrong", "", replace(calm, config="[autopilot]\nbank = 3\n"), limits())
     outcome = fly_case(wrong)
@@ -93,9 +93,9 @@ def test_the_command_writes_table_json_and_picture(
     figures, picture = tmp_path / "suite.json", tmp_path / "suite.png"
     asked = ["suite", "--only", "c172p: calm", "--workers", "1"]
     assert commands.main([*asked, "--json", str(figures), "--picture", str(picture)]) == 0
-    said = capsys.readouterr().out
-    assert "c172p: calm" in said
-    assert "times real time" in said
+    log = capsys.readouterr().out
+    assert "c172p: calm" in log
+    assert "times real time" in log
     document = json.loads(figures.read_text(encoding="utf-8"))
     assert len(document["cases"][0]["legs"]) == 8
     assert picture.read_bytes().startswith(b"\x89PNG")

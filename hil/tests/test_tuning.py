@@ -1,4 +1,4 @@
-"""Tuning: what a flight costs, what the search finds, and where it may fly."""
+"""Tuning: the cost of a flight, the search, and the workers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fcc_hil import __main__ as commands
 from fcc_hil.configurations import value_of
 from fcc_hil.score import LegScore, Score
 from fcc_hil.truth import Truth
-from fcc_hil.tuning import COSTS, SCALE_KEYS, Order, cost_of, local_workers, on_dask, tune
+from fcc_hil.tuning import COSTS, SCALE_KEYS, Task, cost_of, local_workers, on_dask, tune
 from fcc_hil.tuning.cost import NOT_FLOWN, weighed
 from fcc_hil.tuning.identify import first_guess
 from fcc_hil.tuning.search import scenarios
@@ -24,10 +24,10 @@ from fcc_hil.tuning.workers import Flight
 
 ELEVATOR = "autopilot.scale.elevator"
 LIMP = "[autopilot.scale]\nelevator = 0.15\n"
-"""An elevator that is moved too little: the aircraft wallows after its altitude."""
+"""An elevator with too little gain: altitude oscillates slowly."""
 
 
-def _order(**changes: object) -> Order:
+def _task(**changes: object) -> Task:
     wanted: dict[str, object] = {
         "aircraft": "c172p",
         "config": LIMP,
@@ -36,7 +36,7 @@ def _order(**changes: object) -> Order:
         "evaluations": 14,
         "legs": 1,
     }
-    return Order(**{**wanted, **changes})  # type: ignore[arg-type]
+    return Task(**{**wanted, **changes})  # type: ignore[arg-type]
 
 
 def _leg(**changes: float | None) -> LegScore:
@@ -73,7 +73,7 @@ def test_a_leg_that_never_settles_counts_as_two_legs() -> None:
     assert weighed(flown, STILL, 20.0, {"heading_settle_s": 1.0}) == pytest.approx(2.0)
 
 
-def test_surfaces_that_shake_cost() -> None:
+def test_oscillating_surfaces_increase_the_cost() -> None:
     """0.1 to and fro at 40 Hz is 4 a second, of one surface of three."""
     rows = [(0.0,) * 8 + (0.1 * (n % 2), 0.0, 0.0, 0.5) for n in range(41)]
     cost = weighed(_flown(_leg()), Truth(rows), 20.0, {"movement": 1.0})
@@ -82,7 +82,7 @@ def test_surfaces_that_shake_cost() -> None:
 
 @settings(deadline=None)
 @given(st.text(max_size=40))
-def test_a_cost_is_known_or_refused_in_words(text: str) -> None:
+def test_an_unknown_cost_is_refused(text: str) -> None:
     try:
         cost = cost_of(text)
     except ValueError as error:
@@ -104,30 +104,28 @@ def test_costs_by_name_and_by_weights() -> None:
             cost_of(wrong)
 
 
-def test_it_finds_the_elevator_that_was_spoilt_and_finds_it_again(
-    fccd: Path, tmp_path: Path
-) -> None:
-    told = []
+def test_the_search_finds_a_wrong_elevator_scale_repeatably(fccd: Path, tmp_path: Path) -> None:
+    calls = []
     with local_workers(1) as fly_all:
-        found = tune(_order(), fly_all, lambda flown, least: told.append((flown, least)))
-        again = tune(_order(), fly_all)
+        found = tune(_task(), fly_all, lambda flown, least: calls.append((flown, least)))
+        again = tune(_task(), fly_all)
     assert found.after < 0.8 * found.before
     assert found.values[ELEVATOR] > 0.2
     assert found == again
-    assert told[-1] == (found.evaluations, found.after)
+    assert calls[-1] == (found.evaluations, found.after)
     file = tmp_path / "found.toml"
     file.write_text(found.config, encoding="utf-8")
     checked = subprocess.run([fccd, "check", file], capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stderr
 
 
-def test_it_is_never_worse_than_what_was_given() -> None:
+def test_the_result_is_never_worse_than_the_given_configuration() -> None:
     with local_workers(1) as fly_all:
-        found = tune(_order(config="[autopilot.scale]\npace = 1.0\n", evaluations=3), fly_all)
+        found = tune(_task(config="[autopilot.scale]\npace = 1.0\n", evaluations=3), fly_all)
     assert found.after <= found.before
 
 
-def test_the_reference_aircraft_answers_like_itself() -> None:
+def test_the_reference_aircraft_has_a_scale_of_one() -> None:
     guess = first_guess("c172p")
     for key in SCALE_KEYS[:-1]:
         assert value_of(guess, key, 0.0) == 1.0
@@ -135,16 +133,16 @@ def test_the_reference_aircraft_answers_like_itself() -> None:
     fcc.Autopilot(guess)
 
 
-def test_a_flight_that_cannot_be_flown_costs_the_most() -> None:
-    order = _order()
-    bad = [Flight(s, order.cost.weights) for s in scenarios(order, "[autopilot]\nbank = 3\n")]
+def test_a_flight_that_cannot_be_flown_has_the_highest_cost() -> None:
+    task = _task()
+    bad = [Flight(s, task.cost.weights) for s in scenarios(task, "[autopilot]\nbank = 3\n")]
     with local_workers(1) as fly_all:
         assert list(fly_all(bad)) == [NOT_FLOWN]
 
 
 def test_a_cluster_and_processes_fly_the_same() -> None:
-    order = _order(seeds=(1, 2))
-    flights = [Flight(scenario, order.cost.weights) for scenario in scenarios(order, LIMP)]
+    task = _task(seeds=(1, 2))
+    flights = [Flight(scenario, task.cost.weights) for scenario in scenarios(task, LIMP)]
     with local_workers(2) as fly_all:
         here = list(fly_all(flights))
     with (
@@ -158,13 +156,13 @@ def test_a_cluster_and_processes_fly_the_same() -> None:
     assert here[0] != here[1]
 
 
-def test_without_dask_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_dask_the_message_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(ValueError, match="pip install"), on_dask("tcp://127.0.0.1:1"):
         pass
 
 
-def test_a_cluster_that_is_not_there_is_said() -> None:
+def test_a_missing_cluster_is_reported() -> None:
     with (
         pytest.raises(ValueError, match="no Dask scheduler"),
         on_dask("tcp://127.0.0.1:9", timeout_s=1.0),
@@ -182,9 +180,9 @@ def test_a_cluster_that_is_not_there_is_said() -> None:
         ({"config": "[autopilot"}, "configuration"),
     ],
 )
-def test_orders_that_cannot_be_carried_out(changes: dict[str, object], match: str) -> None:
+def test_invalid_tasks_are_refused(changes: dict[str, object], match: str) -> None:
     with local_workers(1) as fly_all, pytest.raises(ValueError, match=match):
-        tune(_order(**changes), fly_all)
+        tune(_task(**changes), fly_all)
 
 
 def test_the_command_writes_a_configuration(

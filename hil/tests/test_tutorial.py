@@ -1,4 +1,4 @@
-"""The tests that docs/tutorial.md has its reader write, as they are printed there."""
+"""The tests in docs/tutorial.md, as printed there."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ TUTORIAL = (Path(__file__).parents[2] / "docs/tutorial.md").read_text()
 FIRST, SECOND = re.findall(r"```python\n(.*?)```", TUTORIAL, re.DOTALL)
 
 
-def test_the_first_fails_with_the_words_that_are_printed(pytester: pytest.Pytester) -> None:
+def test_the_first_test_fails_with_the_printed_message(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(test_first=FIRST)
     result = pytester.runpytest_subprocess()
     result.assert_outcomes(failed=1)
@@ -22,7 +22,7 @@ def test_the_first_fails_with_the_words_that_are_printed(pytester: pytest.Pytest
     result.stdout.fnmatch_lines(printed)
 
 
-def test_corrected_and_with_the_second_all_pass(pytester: pytest.Pytester) -> None:
+def test_the_corrected_and_the_second_test_pass(pytester: pytest.Pytester) -> None:
     assert "by=10" in FIRST
     pytester.makepyfile(test_first=FIRST.replace("by=10", "by=17"), test_airspeed=SECOND)
     pytester.runpytest_subprocess().assert_outcomes(passed=2)

@@ -1,5 +1,5 @@
-//! How many instructions a tick takes, and each of its stages, and how often
-//! they touch memory: the same on every run. The kernel's are not counted.
+//! Instructions and memory accesses of a tick and of each of its stages: the
+//! same on every run. The kernel's are not counted.
 #![expect(missing_docs, reason = "gungraun's macros make what has none")]
 
 use bench_tick::{Flight, Stages};

@@ -1,12 +1,12 @@
-//! How long a tick takes, and each of its stages, on this machine. The reading
-//! of the clock around each call, about 50 ns, is in every figure.
+//! Duration of a tick and of each of its stages, on this machine. Each includes
+//! reading the clock around each call, about 50 ns.
 
 use std::time::{Duration, Instant};
 
 use bench_tick::{Flight, Stages};
 use criterion::{Criterion, criterion_group, criterion_main};
 
-/// Time of `act` alone, `times` over, with `prepare` before each.
+/// Time of `act` alone, called `times` times, with `prepare` before each.
 fn timed<T>(of: &mut T, times: u64, prepare: impl Fn(&mut T), act: impl Fn(&mut T)) -> Duration {
     let mut total = Duration::ZERO;
     for _ in 0..times {

@@ -12,11 +12,11 @@ use nix::time::{ClockId, clock_gettime};
 use crate::PERIOD;
 use crate::support::FakeXPlane;
 
-/// The autopilot engages after navigation has watched for a second.
+/// The autopilot engages after navigation has settled for a second.
 const TICKS_TO_SETTLE: u32 = 80;
 
-/// The whole loop, engaged, and the simulator at the other end of its socket.
-/// Nothing waits: the simulator sends a frame when told to, and then a tick is
+/// The whole loop, engaged, and the simulator on the other side of its socket.
+/// Nothing waits: each call to the simulator sends a frame, and then a tick is
 /// due.
 pub struct Flight {
     pub(crate) simulator: FakeXPlane,
@@ -28,7 +28,7 @@ impl Flight {
     /// Engaged, with warm caches.
     ///
     /// # Panics
-    /// When it cannot be put together or does not engage.
+    /// When it cannot be assembled or does not engage.
     pub fn engaged() -> Self {
         let simulator = FakeXPlane::new();
         let (sensor, actuator) = XPlane::open(&simulator.config()).expect("no sockets");
@@ -36,7 +36,8 @@ impl Flight {
             timer: Box::new(Unwaiting(ManualTimer::new(PERIOD).expect("a fair period"))),
             sensors: vec![Box::new(sensor)],
             controller: Autopilot::new(AutopilotConfig {
-                // The simulator's values stand still, which is no fault here.
+                // The simulator's values are constant, which must not be a
+                // fault here.
                 frozen_after: Duration::ZERO,
                 ..AutopilotConfig::default()
             }),
@@ -64,8 +65,8 @@ impl Flight {
         flight
     }
 
-    /// What happens between two ticks: the simulator takes what came and sends
-    /// a frame, and somebody fetches the loop's messages.
+    /// Between two ticks: the simulator reads datagrams and sends a frame, and
+    /// the loop's messages are fetched.
     pub fn frame(&mut self) {
         self.simulator.writes.clear();
         self.simulator.live(PERIOD.as_secs_f32());
@@ -84,8 +85,8 @@ impl Flight {
     }
 }
 
-/// Ticks at once, and still asks the kernel's clock for the time of each
-/// stage, as a timer that waits does; the ticks' time is its own.
+/// Ticks without waiting, but reads the kernel's clock for the time of each
+/// stage, as a timer that waits does; the ticks' times are computed.
 struct Unwaiting(ManualTimer);
 
 impl Timer for Unwaiting {
@@ -102,7 +103,7 @@ impl Timer for Unwaiting {
     }
 
     fn now_ns(&self) -> i64 {
-        // Read and not used: it is its cost that counts.
+        // Read and not used: only its cost matters.
         let _ = std::hint::black_box(clock_gettime(ClockId::CLOCK_MONOTONIC));
         self.0.now_ns()
     }

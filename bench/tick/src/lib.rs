@@ -1,14 +1,13 @@
-//! What a tick costs. This library puts together what is measured: a whole
-//! loop that flies a simulated X-Plane over loopback ([`Flight`]), and its
-//! stages by themselves ([`Stages`]). The benches take the time and count the
-//! instructions, the programs count system calls and bytes of memory, and
-//! follow a datagram there and back. `make bench` runs them all;
-//! `docs/benchmarks.md` says what they gave.
+//! The cost of a tick. This library assembles what is measured: a whole loop
+//! that flies a simulated X-Plane over loopback ([`Flight`]), and its single
+//! stages ([`Stages`]). The benches measure time and count instructions; the
+//! programs count system calls and bytes of memory, and measure the latency.
+//! `make bench` runs them all; `docs/benchmarks.md` has the results.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
     clippy::panic,
-    reason = "a benchmark that cannot be set up has nothing to tell"
+    reason = "a benchmark that cannot be set up ends"
 )]
 
 mod flight;

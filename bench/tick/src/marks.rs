@@ -1,4 +1,4 @@
-//! Marks that a tracer sees: what is between them is the tick's.
+//! Marks for a tracer: what is between them belongs to the tick.
 
 /// A tick begins. To `strace` it is a `getppid`, to a trace of instructions
 /// the call of this function.
@@ -10,6 +10,6 @@ pub extern "C" fn begin() {
 /// A tick ends.
 #[inline(never)]
 pub extern "C" fn end() {
-    // Not what `begin` does, so that the two are not folded into one.
+    // Different from `begin`, so that the compiler does not merge the two.
     std::hint::black_box(std::os::unix::process::parent_id() + 1);
 }

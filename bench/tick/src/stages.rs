@@ -1,4 +1,4 @@
-//! The stages of a tick by themselves, without a socket.
+//! The single stages of a tick, without a socket.
 
 use std::collections::VecDeque;
 use std::hint::black_box;
@@ -13,11 +13,11 @@ use std::net::SocketAddr;
 use crate::support::{FLIGHT_TIME, FakeXPlane, Scripted, position_reply};
 use crate::{Flight, PERIOD};
 
-/// Enough for sensor and actuator to have settled.
+/// Enough for sensor and actuator to settle.
 const WARM_UP_TICKS: u32 = 100;
 
-/// Each stage of a tick, to be called by itself, in any order. Between two
-/// calls, [`next`](Self::next) moves on to the next tick.
+/// The stages of a tick, to be called separately and in any order.
+/// [`next`](Self::next) advances to the next tick.
 pub struct Stages {
     simulator: FakeXPlane,
     wire: Arc<Scripted>,
@@ -39,7 +39,7 @@ impl Stages {
     /// Of a loop that is engaged.
     ///
     /// # Panics
-    /// When it cannot be put together.
+    /// When it cannot be assembled.
     pub fn engaged() -> Self {
         let flight = Flight::engaged();
         let simulator = flight.simulator;
@@ -76,7 +76,7 @@ impl Stages {
         stages
     }
 
-    /// Moves on to the next tick: time passes, a frame comes, the ring is
+    /// Advances to the next tick: time passes, a frame arrives, the ring is
     /// emptied.
     ///
     /// # Panics
@@ -114,25 +114,25 @@ impl Stages {
     /// A frame's datagrams become measurements.
     #[inline(never)]
     pub fn sensors(&mut self) {
-        // What it says is of no interest here, as long as it is said.
+        // The result is not used.
         let _ = black_box(self.sensor.sample(&self.tick, &mut self.sampled));
     }
 
-    /// Measurements become where we are and how we move.
+    /// Measurements become position and motion.
     #[inline(never)]
     pub fn navigation(&mut self) {
         self.autopilot
             .estimate(&self.tick, black_box(&self.measurements));
     }
 
-    /// Where to go next.
+    /// Set points.
     #[inline(never)]
     pub fn guidance(&mut self) {
         self.autopilot
             .guide(&self.tick, black_box(&self.measurements));
     }
 
-    /// Which surfaces and what throttle, and whether they are valid.
+    /// Surfaces and throttle, and whether they are valid.
     #[inline(never)]
     pub fn control(&mut self) {
         self.outputs = self

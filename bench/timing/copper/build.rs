@@ -1,4 +1,4 @@
-//! What copper's macros ask of a crate that uses them.
+//! Required by copper's macros.
 
 fn main() {
     cu29_build::setup();

@@ -1,5 +1,5 @@
-//! What [`Actuator`] promises. Each promise is one function, and panics where
-//! it is broken.
+//! Requirements of [`Actuator`]. Each is one function, which panics if it is
+//! not met.
 
 use core::fmt::Debug;
 use std::thread;
@@ -8,50 +8,50 @@ use fcc_core::framework::{Actuator, ActuatorFault, Tick};
 
 use crate::{Ticks, allocator_calls, waiting, waits};
 
-/// An actuator on a bench: as a loop gets it, beside the plant that it moves.
+/// An actuator under test: as a loop gets it, together with its plant.
 pub trait ActuatorBench: Sized + Send {
-    /// What the loop puts out.
+    /// The loop's outputs.
     type Outputs: Copy + Debug;
 
-    /// An actuator that holds nothing, and its plant, which is there.
+    /// An actuator without control, and its connected plant.
     fn new() -> Self;
 
     /// The actuator.
     fn actuator(&mut self) -> &mut dyn Actuator<Self::Outputs>;
 
-    /// Outputs that the loop may send: others for each number, and none that
-    /// are those of a plant at rest.
+    /// Valid outputs: different for each number, and different from those of a
+    /// plant at rest.
     fn outputs(number: u32) -> Self::Outputs;
 
-    /// The plant lives until this tick; a sensor that belongs to the actuator
-    /// is sampled. Not counted: it may allocate and wait.
+    /// Runs the plant until this tick; samples a sensor that belongs to the
+    /// actuator. Not counted: it may allocate and wait.
     fn live(&mut self, _tick: &Tick) {}
 
-    /// Whether the plant, by all that it was sent, is held by the actuator.
+    /// Whether the actuator has control of the plant, by all messages sent.
     fn is_held(&mut self) -> bool;
 
-    /// Whether the plant does as these outputs say.
+    /// Whether the plant follows these outputs.
     fn follows(&mut self, outputs: &Self::Outputs) -> bool;
 
-    /// How many messages the plant got so far; 0 where there are none.
+    /// Number of messages that the plant received; 0 if there are no messages.
     fn messages(&mut self) -> u64 {
         0
     }
 }
 
-/// A plant that can be unplugged, switched off or cut off, and keeps what it
-/// was last told.
+/// A plant that can be unplugged, switched off or disconnected, and keeps its
+/// last outputs.
 pub trait VanishingPlant: ActuatorBench {
-    /// Ticks of driving a plant that is away that are no fault yet.
+    /// Ticks of driving an absent plant that are not yet a fault.
     const PATIENCE: usize;
 
-    /// Ticks until a plant that is back does as it is told.
+    /// Ticks until a plant that returned follows the outputs.
     const BACK_AFTER: usize;
 
     /// From now on nothing reaches the plant.
     fn vanish(&mut self);
 
-    /// The plant is there again, and still as it was last told to be.
+    /// The plant is connected again, with its last outputs.
     fn come_back(&mut self);
 }
 
@@ -63,7 +63,7 @@ pub(crate) struct Run<B: ActuatorBench> {
 }
 
 impl<B: ActuatorBench> Run<B> {
-    /// One whose plant has lived a while.
+    /// A run whose plant has settled.
     pub(crate) fn new() -> Self {
         let mut run = Self {
             bench: B::new(),
@@ -74,7 +74,7 @@ impl<B: ActuatorBench> Run<B> {
         run
     }
 
-    /// One whose actuator has control.
+    /// A run whose actuator has control.
     pub(crate) fn holding() -> Self {
         let mut run = Self::new();
         for _ in 0..20 {
@@ -91,19 +91,19 @@ impl<B: ActuatorBench> Run<B> {
         }
     }
 
-    /// A tick in which other outputs than before are applied.
+    /// A tick with other outputs than before.
     pub(crate) fn apply(&mut self) -> (Result<(), ActuatorFault>, B::Outputs) {
         let tick = self.ticks.next_tick();
         self.bench.live(&tick);
         self.number += 1;
         let outputs = B::outputs(self.number);
-        // Without effect: every promise holds with a warm-up as without.
+        // Without effect: every requirement is met with and without a warm-up.
         let others = B::outputs(self.number + 1);
         self.bench.actuator().warm_up(&tick, &others);
         (self.bench.actuator().apply(&tick, &outputs), outputs)
     }
 
-    /// With other outputs than were applied, and without a tick between.
+    /// With other outputs than applied, and without a tick between.
     fn warm_up(&mut self, times: u32) {
         let before = self.bench.messages();
         let tick = self.ticks.next_tick();
@@ -117,22 +117,22 @@ impl<B: ActuatorBench> Run<B> {
     pub(crate) fn assert_applies(&mut self) {
         let (applied, outputs) = self.apply();
         assert_eq!(applied, Ok(()));
-        assert!(self.bench.follows(&outputs), "does not do as {outputs:?}");
+        assert!(self.bench.follows(&outputs), "does not follow {outputs:?}");
     }
 
     pub(crate) fn release(&mut self) -> Result<(), ActuatorFault> {
         self.bench.actuator().release()
     }
 
-    /// Now, and after the plant has lived a while.
+    /// Now, and after some ticks.
     fn assert_released(&mut self) {
         assert!(!self.bench.is_held(), "is still held");
         self.live(40);
         assert!(!self.bench.is_held(), "is held again");
     }
 
-    /// What `count` counts: a release, then applies, two releases, and that
-    /// again.
+    /// The sum of `count` over a release, several applies and two releases,
+    /// twice.
     fn total(&mut self, count: Count<B>) -> u64 {
         let mut total = 0;
         for number in 0..120 {
@@ -152,7 +152,7 @@ impl<B: ActuatorBench> Run<B> {
     }
 }
 
-/// What the actuator does in a call that is counted.
+/// A counted call of the actuator.
 type Call<'a, B> = &'a mut dyn FnMut(&mut dyn Actuator<<B as ActuatorBench>::Outputs>);
 type Count<B> = fn(&mut B, Call<'_, B>) -> u64;
 
@@ -166,8 +166,8 @@ fn allocated<B: ActuatorBench>(bench: &mut B, call: Call<'_, B>) -> u64 {
     allocator_calls(|| call(actuator)).1
 }
 
-/// Control is free until the first apply, and taken by it; each apply is done
-/// at once.
+/// Control is free until the first apply, which takes it; the plant follows
+/// each apply.
 pub fn the_first_apply_takes_control_and_each_is_followed<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
     assert!(!run.bench.is_held(), "held before the first apply");
@@ -177,7 +177,7 @@ pub fn the_first_apply_takes_control_and_each_is_followed<B: ActuatorBench>() {
     }
 }
 
-/// A warm-up takes no control, and sends the plant nothing.
+/// A warm-up takes no control, and sends nothing to the plant.
 pub fn a_warm_up_has_no_effect<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
     run.warm_up(100);
@@ -190,14 +190,14 @@ pub fn a_warm_up_has_no_effect<B: ActuatorBench>() {
     assert!(run.bench.follows(&outputs), "a warm-up moves the plant");
 }
 
-/// A release gives control back for good.
+/// A release gives up control, and it stays released.
 pub fn release_gives_control_back<B: ActuatorBench>() {
     let mut run = Run::<B>::holding();
     assert_eq!(run.release(), Ok(()));
     run.assert_released();
 }
 
-/// The second of two releases works, and the plant hears nothing of it.
+/// The second of two releases succeeds and sends nothing.
 pub fn a_second_release_does_nothing<B: ActuatorBench>() {
     let mut run = Run::<B>::holding();
     assert_eq!(run.release(), Ok(()));
@@ -209,7 +209,7 @@ pub fn a_second_release_does_nothing<B: ActuatorBench>() {
     }
 }
 
-/// A release of what was never taken works, and the plant hears nothing of it.
+/// A release without control succeeds and sends nothing.
 pub fn a_release_before_any_apply_does_nothing<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
     let before = run.bench.messages();
@@ -218,8 +218,8 @@ pub fn a_release_before_any_apply_does_nothing<B: ActuatorBench>() {
     run.assert_released();
 }
 
-/// A release is no end: the next apply takes control anew. Also right after
-/// it, while the plant has not yet shown that it is free.
+/// The next apply after a release takes control again, also directly after it,
+/// while the plant has not yet confirmed the release.
 pub fn an_apply_after_a_release_takes_control_again<B: ActuatorBench>() {
     let mut run = Run::<B>::holding();
     for pause in [0, 1, 40] {
@@ -244,7 +244,7 @@ pub fn applying_and_releasing_allocate_nothing<B: ActuatorBench>() {
     assert_eq!(Run::<B>::new().total(allocated), 0);
 }
 
-/// An actuator made here and driven there, as the loop's is.
+/// An actuator created in one thread and driven in another, like the loop's.
 pub fn an_actuator_runs_in_a_thread_it_was_not_made_in<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
     let there = thread::scope(|scope| {
@@ -258,7 +258,7 @@ pub fn an_actuator_runs_in_a_thread_it_was_not_made_in<B: ActuatorBench>() {
     run.assert_released();
 }
 
-/// An actuator has one name, on one line.
+/// An actuator's name is constant and has one line.
 pub fn its_name_stays<B: ActuatorBench>() {
     let mut run = Run::<B>::new();
     let name = run.bench.actuator().name();
@@ -267,8 +267,8 @@ pub fn its_name_stays<B: ActuatorBench>() {
     assert_eq!(run.bench.actuator().name(), name);
 }
 
-/// Driving a plant that is away is a fault after [`VanishingPlant::PATIENCE`]
-/// ticks; once it is back, it does as it is told again. As often as it likes.
+/// Driving an absent plant is a fault after [`VanishingPlant::PATIENCE`] ticks;
+/// when it returns, it follows the outputs again, however often.
 pub fn a_plant_that_vanished_is_a_fault_until_it_is_back<B: VanishingPlant>() {
     let mut run = Run::<B>::holding();
     for _ in 0..3 {
@@ -277,7 +277,7 @@ pub fn a_plant_that_vanished_is_a_fault_until_it_is_back<B: VanishingPlant>() {
             let _ = run.apply().0;
         }
         for _ in 0..20 {
-            assert!(run.apply().0.is_err(), "a plant that is away is no fault");
+            assert!(run.apply().0.is_err(), "an absent plant is no fault");
         }
         run.bench.come_back();
         for _ in 0..B::BACK_AFTER {
@@ -290,9 +290,9 @@ pub fn a_plant_that_vanished_is_a_fault_until_it_is_back<B: VanishingPlant>() {
     }
 }
 
-/// A release that did not reach the plant says so, and works once called
-/// again, or is repeated by the adapter's own means: either way control is
-/// given back after the plant's return.
+/// A release that did not reach the plant is an error, and succeeds when called
+/// again, or is repeated by the adapter itself: in either case control is
+/// released after the plant's return.
 pub fn a_release_that_a_vanished_plant_missed_is_made_up_for<B: VanishingPlant>() {
     for releases_while_away in [0, 1, 2] {
         let mut run = Run::<B>::holding();
@@ -308,14 +308,14 @@ pub fn a_release_that_a_vanished_plant_missed_is_made_up_for<B: VanishingPlant>(
         }
         run.live(B::BACK_AFTER);
         run.assert_released();
-        // And nothing is left over that would keep it from being taken.
+        // Nothing is left that would prevent taking control.
         for _ in 0..20 {
             run.assert_applies();
         }
     }
 }
 
-/// The same for a plant that is away and comes back.
+/// The same for a plant that is disconnected and returns.
 pub fn driving_what_vanished_never_waits_nor_allocates<B: VanishingPlant>() {
     let scenario = |count: Count<B>| {
         let mut run = Run::<B>::holding();

@@ -5,8 +5,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    // Const and without a destructor, so that counting does not allocate; by
-    // thread, because the test harness has threads of its own.
+    // Const and without a destructor, so that counting does not allocate; per
+    // thread, because the test harness has other threads.
     static CALLS: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -19,7 +19,7 @@ fn count() {
     CALLS.set(CALLS.get() + 1);
 }
 
-// SAFETY: every call is handed on to the system's allocator as it came.
+// SAFETY: every call is passed on unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -46,8 +46,8 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// What `work` gives, and how often the calling thread allocated, reallocated
-/// or freed meanwhile.
+/// The result of `work`, and how often the calling thread allocated,
+/// reallocated or freed meanwhile.
 ///
 /// ```
 /// let ((), calls) = fcc_conformance::allocator_calls(|| drop(std::hint::black_box(Box::new(1))));

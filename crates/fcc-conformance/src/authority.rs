@@ -1,8 +1,8 @@
-//! What [`ControlAuthority`] promises. Each promise is one function, and panics
-//! where it is broken.
+//! Requirements of [`ControlAuthority`]. Each is one function, which panics if
+//! it is not met.
 #![allow(
     clippy::expect_used,
-    reason = "every function here is a test: it panics when the promise is broken"
+    reason = "every function here is a test: it panics if the requirement is not met"
 )]
 
 use std::time::Duration;
@@ -11,13 +11,14 @@ use fcc_core::framework::{ControlAuthority, PlantId, Released};
 
 use crate::actuator::{ActuatorBench, Run};
 
-/// An actuator on a bench whose control is seen from outside the loop as well.
+/// An actuator under test whose control is observed from outside the loop as
+/// well.
 pub trait AuthorityBench: ActuatorBench {
-    /// Who has control of the plant that the actuator drives.
+    /// The authority for the plant that the actuator drives.
     fn authority(&self) -> &dyn ControlAuthority;
 
-    /// Gives control back from outside, as
-    /// [`release`](ControlAuthority::release) does, while the plant lives.
+    /// Releases control from outside, as [`release`](ControlAuthority::release)
+    /// does, while the plant runs.
     fn release_from_outside(&mut self, plant: &PlantId) -> Released;
 }
 
@@ -36,7 +37,7 @@ pub fn what_is_held_is_known_outside<B: AuthorityBench>() {
     assert_eq!(run.bench.authority().held(), None);
 }
 
-/// Where permission is required nothing is taken without it.
+/// If permission is required, no control is taken without it.
 pub fn without_permission_nothing_is_taken<B: AuthorityBench>() {
     let mut run = Run::<B>::new();
     let plant = run.bench.authority().plant().expect("a plant is there");
@@ -53,8 +54,8 @@ pub fn without_permission_nothing_is_taken<B: AuthorityBench>() {
     assert_eq!(run.bench.authority().held(), Some(plant));
 }
 
-/// Control is given back from outside without the actuator, which may hang, and
-/// once more where it is back already.
+/// Control is released from outside without the actuator, which may hang, and
+/// again if it is released already.
 pub fn a_release_from_outside_is_confirmed<B: AuthorityBench>() {
     let mut run = Run::<B>::holding();
     let plant = run.bench.authority().plant().expect("a plant is there");
@@ -65,7 +66,7 @@ pub fn a_release_from_outside_is_confirmed<B: AuthorityBench>() {
     }
 }
 
-/// A release that is called off before it begins sends nothing.
+/// A release that is cancelled before it begins sends nothing.
 pub fn a_cancelled_release_sends_nothing<B: AuthorityBench>() {
     let mut run = Run::<B>::holding();
     let plant = run.bench.authority().plant().expect("a plant is there");
@@ -79,7 +80,7 @@ pub fn a_cancelled_release_sends_nothing<B: AuthorityBench>() {
     assert!(run.bench.is_held());
 }
 
-/// A plant that is none of this adapter's is refused.
+/// A plant of another adapter is refused.
 pub fn a_plant_of_another_kind_is_refused<B: AuthorityBench>() {
     let bench = B::new();
     let other = PlantId::new(format_args!("no plant of this kind")).expect("it is short");
@@ -91,7 +92,7 @@ pub fn a_plant_of_another_kind_is_refused<B: AuthorityBench>() {
     assert_eq!(bench.authority().unique(&other), other);
 }
 
-/// A plant has one name for all programs, and that is its own.
+/// A plant has one name for all programs.
 pub fn the_unique_name_is_its_own<B: AuthorityBench>() {
     let run = Run::<B>::new();
     let authority = run.bench.authority();
@@ -100,7 +101,7 @@ pub fn the_unique_name_is_its_own<B: AuthorityBench>() {
     assert!(!unique.as_str().is_empty());
 }
 
-/// What has not changed is not reported again.
+/// Unchanged problems are not reported again.
 pub fn what_has_not_changed_is_not_reported_again<B: AuthorityBench>() {
     let run = Run::<B>::new();
     let mut reported = Vec::new();

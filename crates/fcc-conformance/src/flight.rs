@@ -3,8 +3,8 @@
 use fcc_core::flight::Measurements;
 use fcc_core::framework::Time;
 
-/// When each reading was taken, all twelve; an adapter that gives fewer names
-/// its own in [`SensorBench::taken`](crate::SensorBench::taken).
+/// The times of all twelve readings; an adapter with fewer lists its own in
+/// [`SensorBench::taken`](crate::SensorBench::taken).
 pub fn flight_times(measured: &Measurements) -> Vec<Time> {
     vec![
         measured.attitude.taken,

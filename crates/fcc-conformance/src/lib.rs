@@ -1,12 +1,13 @@
-//! What the traits [`Sensor`] and [`Actuator`] promise, as tests that every
-//! adapter runs. For tests only: no crate depends on this one outside them.
+//! The requirements of the traits [`Sensor`] and [`Actuator`], as tests that
+//! every adapter runs. For tests only: no crate depends on this one outside
+//! them.
 //!
 //! [`Sensor`]: fcc_core::framework::Sensor
 //! [`Actuator`]: fcc_core::framework::Actuator
 //!
-//! An adapter's test file describes its device by [`SensorBench`] or
+//! An adapter's test file describes its device with [`SensorBench`] or
 //! [`ActuatorBench`], and [`sensor_conformance!`] or [`actuator_conformance!`]
-//! makes one test of each promise:
+//! generates one test for each requirement:
 //!
 //! ```
 //! use fcc_conformance::{SensorBench, VanishingSource};
@@ -62,7 +63,7 @@
 //! a thread gave up its CPU because it had to wait ([`waits`]).
 #![allow(
     clippy::missing_panics_doc,
-    reason = "every function here is a test: it panics when the promise is broken"
+    reason = "every function here is a test: it panics if the requirement is not met"
 )]
 
 pub mod actuator;
@@ -83,9 +84,9 @@ pub use sensor::{SensorBench, VanishingSource};
 pub use ticks::Ticks;
 pub use waiting::waits;
 
-/// Makes a module with one test for each promise of
-/// [`Sensor`](fcc_core::framework::Sensor), asked of a [`SensorBench`]; with
-/// `, vanishes` those of a [`VanishingSource`] as well.
+/// Generates a module with one test for each requirement of
+/// [`Sensor`](fcc_core::framework::Sensor), for a [`SensorBench`]; with `,
+/// vanishes` those for a [`VanishingSource`] as well.
 #[macro_export]
 macro_rules! sensor_conformance {
     ($name:ident: $bench:ty) => {
@@ -113,9 +114,9 @@ macro_rules! sensor_conformance {
     };
 }
 
-/// Makes a module with one test for each promise of
-/// [`Actuator`](fcc_core::framework::Actuator), asked of an [`ActuatorBench`];
-/// with `, vanishes` those of a [`VanishingPlant`] as well.
+/// Generates a module with one test for each requirement of
+/// [`Actuator`](fcc_core::framework::Actuator), for an [`ActuatorBench`]; with
+/// `, vanishes` those for a [`VanishingPlant`] as well.
 #[macro_export]
 macro_rules! actuator_conformance {
     ($name:ident: $bench:ty) => {
@@ -145,8 +146,8 @@ macro_rules! actuator_conformance {
     };
 }
 
-/// Makes a module with one test for each promise of
-/// [`ControlAuthority`](fcc_core::framework::ControlAuthority), asked of an
+/// Generates a module with one test for each requirement of
+/// [`ControlAuthority`](fcc_core::framework::ControlAuthority), for an
 /// [`AuthorityBench`].
 #[macro_export]
 macro_rules! authority_conformance {
@@ -163,18 +164,18 @@ macro_rules! authority_conformance {
     };
 }
 
-/// One module with a test for each promise.
+/// A module with a test for each requirement.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! promises {
-    ($kind:ident $name:ident $bench:ty: $($promise:ident)*) => {
+    ($kind:ident $name:ident $bench:ty: $($requirement:ident)*) => {
         mod $name {
             #[allow(unused_imports, reason = "for the bench's name")]
             use super::*;
             $(
                 #[test]
-                fn $promise() {
-                    $crate::$kind::$promise::<$bench>();
+                fn $requirement() {
+                    $crate::$kind::$requirement::<$bench>();
                 }
             )*
         }

@@ -1,5 +1,5 @@
-//! What [`Sensor`] promises. Each promise is one function, and panics where it
-//! is broken.
+//! Requirements of [`Sensor`]. Each is one function, which panics if it is not
+//! met.
 
 use core::fmt::Debug;
 use std::thread;
@@ -8,49 +8,49 @@ use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
 use crate::{Ticks, allocator_calls, waiting, waits};
 
-/// A sensor on a bench: as a loop gets it, beside the source that it reads.
+/// A sensor under test: as a loop gets it, together with its source.
 pub trait SensorBench: Sized + Send {
-    /// What the loop measures.
+    /// The loop's measurements.
     type Measurements: Copy + Default + PartialEq + Debug;
 
-    /// Ticks with something provided until every reading has come: more than
-    /// one where the source must be asked first.
+    /// Ticks with data provided until every reading has arrived: more than one
+    /// if the source must first be asked.
     const CONNECTED_AFTER: usize = 1;
 
-    /// Whether sampling alone makes new values, as of a plant that is computed
+    /// Whether sampling alone gives new values, as for a plant that is computed
     /// by its sensor.
     const MEASURES_UNASKED: bool = false;
 
-    /// A sensor that was not sampled yet, and its source, which is there.
+    /// A sensor that has not been sampled yet, and its connected source.
     fn new() -> Self;
 
     /// The sensor.
     fn sensor(&mut self) -> &mut dyn Sensor<Self::Measurements>;
 
-    /// The source gives its next values, for the next sample to find. Not
-    /// counted: it may allocate and wait.
+    /// The source provides its next values for the next sample. Not counted: it
+    /// may allocate and wait.
     fn provide(&mut self);
 
-    /// When each reading that this sensor gives was taken.
+    /// The times of the readings that this sensor provides.
     fn taken(measurements: &Self::Measurements) -> Vec<Time>;
 }
 
 /// A source that can be unplugged, switched off or killed.
 pub trait VanishingSource: SensorBench {
-    /// Ticks of silence that are no fault yet.
+    /// Ticks of silence that are not yet a fault.
     const PATIENCE: usize = 0;
 
-    /// Ticks until every reading comes again from a source that is back.
+    /// Ticks until every reading arrives again from a source that returned.
     const BACK_AFTER: usize = Self::CONNECTED_AFTER;
 
-    /// From now on the source gives nothing, whatever is provided.
+    /// From now on the source provides nothing.
     fn vanish(&mut self);
 
-    /// The source is there again, and may know nothing of before.
+    /// The source is connected again, possibly without its former state.
     fn come_back(&mut self);
 }
 
-/// A bench, its clock and what the loop has measured.
+/// A bench, its clock and the loop's measurements.
 struct Run<B: SensorBench> {
     bench: B,
     ticks: Ticks,
@@ -66,7 +66,7 @@ impl<B: SensorBench> Run<B> {
         }
     }
 
-    /// One whose readings have all come.
+    /// A run whose readings have all arrived.
     fn connected() -> Self {
         let mut run = Self::new();
         run.connect(B::CONNECTED_AFTER);
@@ -76,7 +76,7 @@ impl<B: SensorBench> Run<B> {
     fn connect(&mut self, ticks: usize) {
         for _ in 0..ticks {
             self.bench.provide();
-            // A fault as long as the source has not been heard of.
+            // A fault until the source has been received.
             let _ = self.sample();
         }
         self.bench.provide();
@@ -89,7 +89,7 @@ impl<B: SensorBench> Run<B> {
     }
 
     fn sample_at(&mut self, tick: &Tick) -> Result<(), SensorFault> {
-        // Without effect: every promise holds with a warm-up as without.
+        // Without effect: every requirement is met with and without a warm-up.
         self.bench.sensor().warm_up(tick);
         self.bench.sensor().sample(tick, &mut self.measured)
     }
@@ -98,7 +98,7 @@ impl<B: SensorBench> Run<B> {
         B::taken(&self.measured)
     }
 
-    /// What `count` counts in samples of every kind: before the first value,
+    /// The sum of `count` over samples of every kind: before the first value,
     /// with new ones, without, late, and after missed ticks.
     fn total(&mut self, mut count: impl FnMut(&mut Self, Tick) -> u64) -> u64 {
         let mut total = 0;
@@ -124,8 +124,8 @@ fn allocated<B: SensorBench>(run: &mut Run<B>, tick: Tick) -> u64 {
     allocator_calls(|| run.sample_at(&tick)).1
 }
 
-/// Every reading comes within [`SensorBench::CONNECTED_AFTER`] ticks and goes
-/// on coming; no time ever lies ahead or goes back.
+/// Every reading arrives within [`SensorBench::CONNECTED_AFTER`] ticks and
+/// continues to; no time is in the future or goes back.
 pub fn every_reading_comes_and_none_is_of_the_future<B: SensorBench>() {
     let mut run = Run::<B>::connected();
     let first = run.taken();
@@ -153,8 +153,8 @@ fn fault(fault: SensorFault) {
     assert_eq!(Err(fault), none);
 }
 
-/// Where the source gives nothing new, values and times stay as they are: what
-/// others wrote, too.
+/// Without new data from the source, values and times do not change, also those
+/// of other sensors.
 pub fn a_source_with_nothing_new_changes_no_value<B: SensorBench>() {
     if B::MEASURES_UNASKED {
         return;
@@ -167,7 +167,8 @@ pub fn a_source_with_nothing_new_changes_no_value<B: SensorBench>() {
     }
 }
 
-/// The tick after missed ones brings what came meanwhile, and no fault.
+/// The tick after missed ones gets the data that arrived meanwhile, without a
+/// fault.
 pub fn a_tick_after_missed_ones_is_sampled_like_any<B: SensorBench>() {
     let mut run = Run::<B>::connected();
     let before = run.taken();
@@ -179,7 +180,7 @@ pub fn a_tick_after_missed_ones_is_sampled_like_any<B: SensorBench>() {
     }
 }
 
-/// No sample waits, be there something to read or not.
+/// No sample waits, whether there is data or not.
 pub fn sampling_never_waits<B: SensorBench>() {
     waiting::assert_never_waits(|| Run::<B>::new().total(waited));
 }
@@ -189,7 +190,7 @@ pub fn sampling_allocates_nothing<B: SensorBench>() {
     assert_eq!(Run::<B>::new().total(allocated), 0);
 }
 
-/// A sensor made here and sampled there, as the loop's is.
+/// A sensor created in one thread and sampled in another, like the loop's.
 pub fn a_sensor_runs_in_a_thread_it_was_not_made_in<B: SensorBench>() {
     let mut run = Run::<B>::connected();
     let there = thread::scope(|scope| {
@@ -205,7 +206,7 @@ pub fn a_sensor_runs_in_a_thread_it_was_not_made_in<B: SensorBench>() {
     assert!(matches!(there, Ok(Ok(()))), "{there:?}");
 }
 
-/// A sensor has one name, on one line.
+/// A sensor's name is constant and has one line.
 pub fn its_name_stays<B: SensorBench>() {
     let mut run = Run::<B>::new();
     let name = run.bench.sensor().name();
@@ -214,8 +215,8 @@ pub fn its_name_stays<B: SensorBench>() {
     assert_eq!(run.bench.sensor().name(), name);
 }
 
-/// Nothing is made up while the source is away, and what others have measured
-/// is left as it is.
+/// There is no reading while the source is absent, and other sensors'
+/// measurements are unchanged.
 pub fn nothing_is_measured_before_the_source_is_there<B: VanishingSource>() {
     let others = Run::<B>::connected().measured;
     for before in [B::Measurements::default(), others] {
@@ -230,7 +231,7 @@ pub fn nothing_is_measured_before_the_source_is_there<B: VanishingSource>() {
     }
 }
 
-/// What was measured before the source vanished keeps its value and its time.
+/// A measurement from before the source vanished keeps its value and its time.
 pub fn an_old_value_stays_old<B: VanishingSource>() {
     let mut run = Run::<B>::connected();
     run.bench.vanish();
@@ -243,8 +244,8 @@ pub fn an_old_value_stays_old<B: VanishingSource>() {
 }
 
 /// A source that vanishes is a fault after [`VanishingSource::PATIENCE`] ticks,
-/// and as long as it is away; once it is back, so is every reading. As often
-/// as it likes.
+/// as long as it is absent; when it returns, so does every reading, however
+/// often.
 pub fn silence_is_reported_and_ends<B: VanishingSource>() {
     let mut run = Run::<B>::connected();
     for _ in 0..3 {
@@ -256,9 +257,9 @@ pub fn silence_is_reported_and_ends<B: VanishingSource>() {
         }
         for _ in 0..50 {
             run.bench.provide();
-            let said = run.sample();
-            let told = matches!(said, Err(SensorFault::Silent | SensorFault::Io { .. }));
-            assert!(told, "a source that is away is said to be: {said:?}");
+            let result = run.sample();
+            let is_fault = matches!(result, Err(SensorFault::Silent | SensorFault::Io { .. }));
+            assert!(is_fault, "an absent source must be a fault: {result:?}");
         }
         run.bench.come_back();
         run.connect(B::BACK_AFTER);
@@ -268,7 +269,7 @@ pub fn silence_is_reported_and_ends<B: VanishingSource>() {
     }
 }
 
-/// The same for a source that is away and comes back.
+/// The same for a source that is disconnected and returns.
 pub fn sampling_what_vanished_never_waits_nor_allocates<B: VanishingSource>() {
     let scenario = |count: fn(&mut Run<B>, Tick) -> u64| {
         let mut run = Run::<B>::connected();

@@ -1,4 +1,4 @@
-//! A clock of ticks on which no time passes but the test's.
+//! A clock of ticks without real time.
 
 use std::time::Duration;
 
@@ -6,8 +6,8 @@ use fcc_core::framework::{Tick, Time};
 
 const PERIOD: Duration = Duration::from_millis(25);
 
-/// Ticks at 40 Hz, on a clock of the test's own: minutes pass in milliseconds,
-/// and nothing depends on how fast this machine is.
+/// Ticks at 40 Hz on a computed clock: minutes pass in milliseconds, and
+/// nothing depends on the machine's speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Ticks {
     number: u64,

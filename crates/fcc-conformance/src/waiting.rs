@@ -1,9 +1,9 @@
-//! Whether a thread waits, as the kernel counts it.
+//! Whether a thread waits, as counted by the kernel.
 
 use nix::sys::resource::{UsageWho, getrusage};
 
-/// What `work` gives, and how often the calling thread gave up its CPU
-/// meanwhile because it had to wait: for a datagram, a lock, a disk, a moment.
+/// The result of `work`, and how often the calling thread gave up its CPU
+/// meanwhile because it had to wait: for a datagram, a lock, a disk, a time.
 /// Being preempted does not count.
 ///
 /// ```
@@ -20,15 +20,15 @@ pub fn waits<T>(work: impl FnOnce() -> T) -> (T, u64) {
 
 fn voluntary_switches() -> u64 {
     let usage = getrusage(UsageWho::RUSAGE_THREAD);
-    assert!(usage.is_ok(), "the kernel does not tell of threads");
+    assert!(usage.is_ok(), "the kernel has no usage of threads");
     usage.map_or(0, |usage| usage.voluntary_context_switches() as u64)
 }
 
-/// A kernel that is short of memory, or another thread that maps some, makes
-/// a thread wait now and then for nothing it did itself.
+/// If memory is short, or another thread maps memory, the kernel occasionally
+/// makes a thread wait without its own action.
 const TRIALS: usize = 5;
 
-/// Asserts that `trial`, which says how often it waited, can be done without.
+/// Asserts that `trial`, which returns how often it waited, can return 0.
 pub(crate) fn assert_never_waits(mut trial: impl FnMut() -> u64) {
     let mut least = u64::MAX;
     for _ in 0..TRIALS {

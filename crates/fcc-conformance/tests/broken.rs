@@ -1,5 +1,5 @@
-//! A device that keeps every promise passes; one that breaks a promise fails
-//! the test of that promise.
+//! A device that meets every requirement passes; one that violates a
+//! requirement fails its test.
 #![cfg(test)]
 
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -9,7 +9,7 @@ use fcc_conformance::{ActuatorBench, SensorBench, VanishingPlant, VanishingSourc
 use fcc_conformance::{actuator_conformance, sensor_conformance};
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Tick, Time};
 
-/// What is wrong with a device: a number, so that each is a type of its own.
+/// The defect of a device: a number, so that each is a separate type.
 mod defect {
     pub(crate) const NONE: u8 = 0;
     pub(crate) const WAITS: u8 = 1;
@@ -30,7 +30,7 @@ mod defect {
     pub(crate) const TAKES_IN_A_WARM_UP: u8 = 16;
 }
 
-/// What runs between a device and what it is connected to.
+/// The link between a device and its counterpart.
 #[derive(Default)]
 struct Wire {
     is_cut: bool,
@@ -54,7 +54,7 @@ impl<const DEFECT: u8> Device<DEFECT> {
         self.wire.lock().unwrap()
     }
 
-    /// What costs nobody a value.
+    /// A system call without effect.
     fn call() {
         match DEFECT {
             defect::WAITS => std::thread::sleep(Duration::from_micros(10)),
@@ -234,7 +234,7 @@ impl<const DEFECT: u8> VanishingPlant for Device<DEFECT> {
 sensor_conformance!(whole_sensor: Device<{ defect::NONE }>, vanishes);
 actuator_conformance!(whole_actuator: Device<{ defect::NONE }>, vanishes);
 
-/// A test for each defect: the promise that it breaks, and with what words.
+/// A test for each defect: the violated requirement, and the message.
 macro_rules! broken {
     ($($defect:ident $kind:ident $promise:ident $words:literal)*) => {
         mod broken {
@@ -256,16 +256,16 @@ broken! {
     ALLOCATES sensor sampling_allocates_nothing "left: 400"
     GIVES_THE_LAST_VALUE_A_NEW_TIME sensor an_old_value_stays_old "left == right"
     IS_AHEAD_OF_TIME sensor every_reading_comes_and_none_is_of_the_future "of the future"
-    SAYS_NOTHING_OF_SILENCE sensor silence_is_reported_and_ends "is said to be: Ok"
+    SAYS_NOTHING_OF_SILENCE sensor silence_is_reported_and_ends "must be a fault: Ok"
     STAYS_AWAY sensor silence_is_reported_and_ends "Err(Silent)"
     SETS_BACK_TO_NOTHING sensor nothing_is_measured_before_the_source_is_there "left == right"
     FAILS_AFTER_A_MISSED_TICK sensor a_tick_after_missed_ones_is_sampled_like_any "Err(Silent)"
     TAKES_IN_A_WARM_UP sensor every_reading_comes_and_none_is_of_the_future "Err(Silent)"
     SENDS_IN_A_WARM_UP actuator a_warm_up_has_no_effect "a warm-up sends"
-    DOES_NOTHING actuator the_first_apply_takes_control_and_each_is_followed "does not do as 2.0"
+    DOES_NOTHING actuator the_first_apply_takes_control_and_each_is_followed "does not follow 2.0"
     HOLDS_ON actuator release_gives_control_back "is still held"
     RELEASES_WHAT_IT_NEVER_TOOK actuator a_release_before_any_apply_does_nothing "left == right"
-    TAKES_ONCE actuator an_apply_after_a_release_takes_control_again "does not do as"
+    TAKES_ONCE actuator an_apply_after_a_release_takes_control_again "does not follow"
     WRITES_TO_NOBODY actuator a_plant_that_vanished_is_a_fault_until_it_is_back "is no fault"
     FORGETS_A_RELEASE actuator a_release_that_a_vanished_plant_missed_is_made_up_for "still held"
 }

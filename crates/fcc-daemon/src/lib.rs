@@ -3,7 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
-//! | [`doctor`] | says what the machine offers a real-time loop, and what it lacks |
+//! | [`doctor`] | checks whether the machine suits a real-time loop |
 //! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
 //! | `output` | prints, and never panics where that fails |
 //!

@@ -51,7 +51,7 @@ pub struct PublisherOf<C: Telemetry> {
     /// Dropped records, for the next status.
     left_out: Arc<AtomicU64>,
     thread: JoinHandle<()>,
-    words: Receiver<String>,
+    texts: Receiver<String>,
     commands: Option<Ends>,
     over: bool,
 }
@@ -85,7 +85,7 @@ impl<C: Telemetry> PublisherOf<C> {
         let (ring, items) = RingBuffer::new(waiting.max(1));
         let (started, start) = mpsc::sync_channel::<Started>(1);
         // More than the thread ever reports between two polls.
-        let (say, words) = mpsc::sync_channel(16);
+        let (reports, texts) = mpsc::sync_channel(16);
         let (commands, rings) = takes_commands.then(CommandServer::rings).unzip();
         let owned = instance.clone();
         let left_out = Arc::new(AtomicU64::new(0));
@@ -93,14 +93,14 @@ impl<C: Telemetry> PublisherOf<C> {
         let thread = std::thread::Builder::new()
             .name(thread::NAME.to_owned())
             .stack_size(thread::STACK_BYTES)
-            .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &say))
+            .spawn(move || thread::publish(&owned, rings, items, &seen, &started, &reports))
             .map_err(|error| PublishError::NoSharedMemory(error.to_string()))?;
         match start.recv_timeout(PATIENCE) {
             Ok(Ok(())) => Ok(Self {
                 ring,
                 left_out,
                 thread,
-                words,
+                texts,
                 commands,
                 over: false,
             }),
@@ -164,8 +164,8 @@ impl<C: Telemetry> PublisherOf<C> {
 
     /// A new failure, or its end, as text; none if there is nothing new.
     pub fn poll(&mut self) -> Option<String> {
-        if let Ok(words) = self.words.try_recv() {
-            return Some(words);
+        if let Ok(text) = self.texts.try_recv() {
+            return Some(text);
         }
         if self.ring.is_abandoned() && !self.over {
             self.over = true;

@@ -46,7 +46,7 @@ pub(super) fn publish<C: Telemetry>(
     mut items: Consumer<Item<C>>,
     left_out: &AtomicU64,
     started: &SyncSender<Started>,
-    say: &SyncSender<String>,
+    reports: &SyncSender<String>,
 ) {
     let mut thread = match Publishing::<C>::open(instance, commands) {
         Ok(thread) => thread,
@@ -65,7 +65,7 @@ pub(super) fn publish<C: Telemetry>(
         let over = items.is_abandoned();
         if let Some(words) = thread.look_for_room() {
             // Full only if the daemon does not read its messages.
-            let _ = say.try_send(words);
+            let _ = reports.try_send(words);
         }
         while let Ok(item) = items.pop() {
             thread.take(&item);

@@ -1,8 +1,7 @@
 //! Something that happened once.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{EventKind, Time};
-use fcc_telemetry::{FlightEvent, describe_event};
+use fcc_core::framework::{Controller, EventKind, EventOf, Time};
+use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
 
 /// Something that happened once: the number of its tick, when that tick woke
@@ -34,13 +33,17 @@ impl PyEvent {
 
 impl PyEvent {
     /// An event, its sensors and actuators called by their names.
-    pub(crate) fn of(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> Self {
+    pub(crate) fn of<C: Controller>(
+        event: &EventOf<C>,
+        sensors: &[String],
+        actuators: &[String],
+    ) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
-            kind: kind_of(event),
-            text: describe_event::<Autopilot>(event, sensors, actuators),
+            kind: kind_of(&event.kind),
+            text: describe_event::<C>(event, sensors, actuators),
         }
     }
 }
@@ -50,8 +53,8 @@ pub(crate) fn seconds(time: Time) -> f64 {
     time.as_nanos().max(0) as f64 * 1e-9
 }
 
-fn kind_of(event: &FlightEvent) -> &'static str {
-    match event.kind {
+fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
+    match kind {
         EventKind::StateChanged { .. } => "state-changed",
         EventKind::CommandReceived(_) => "ordered",
         EventKind::StopRequested => "told-to-stop",

@@ -31,13 +31,17 @@ mod formulas;
 mod json;
 #[cfg(feature = "live")]
 mod live;
+#[macro_use]
 mod machine;
 mod recordings;
 mod stepped;
 mod structured;
 mod timers;
+#[macro_use]
 mod values;
 
+use fcc_sim::Truth;
+use fcc_telemetry::FlightRecord;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -46,25 +50,24 @@ use pyo3::types::PyTuple;
 #[pymodule]
 fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    structured::prepare(py)?;
     errors::register(module)?;
 
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("MEASUREMENTS", PyTuple::new(py, values::COLUMNS)?)?;
-    module.add("SURFACES", PyTuple::new(py, values::SURFACE_COLUMNS)?)?;
-    module.add("TRUTH", PyTuple::new(py, fcc_sim::Truth::NAMES)?)?;
+    module.add("MEASUREMENTS", columns::<values::PyMeasurements>(py)?)?;
+    module.add("SURFACES", columns::<values::PySurfaces>(py)?)?;
+    module.add("TRUTH", columns::<values::PyTruth>(py)?)?;
     module.add(
         "STATES",
         PyTuple::new(py, ["standby", "engaged", "failsafe", "stopped"])?,
     )?;
-    module.add("RECORD", structured::record_dtype(py)?)?;
-    module.add("TRUTH_RECORD", structured::truth_dtype(py)?)?;
+    module.add("RECORD", structured::dtype::<FlightRecord>(py)?)?;
+    module.add("TRUTH_RECORD", structured::dtype::<Truth>(py)?)?;
 
-    module.add_class::<values::PyMeasurements>()?;
-    module.add_class::<values::PySurfaces>()?;
-    module.add_class::<values::PySetpoints>()?;
-    module.add_class::<values::PyEstimate>()?;
-    module.add_class::<values::PyTruth>()?;
+    values::register::<values::PyMeasurements>(module)?;
+    values::register::<values::PySurfaces>(module)?;
+    values::register::<values::PySetpoints>(module)?;
+    values::register::<values::PyEstimate>(module)?;
+    values::register::<values::PyTruth>(module)?;
     module.add_class::<events::PyEvent>()?;
     module.add_class::<config::PyConfig>()?;
     module.add_class::<autopilot::PyAutopilot>()?;
@@ -105,4 +108,9 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add_class::<live::PyCommander>()?;
     }
     Ok(())
+}
+
+/// The names of a class's values.
+fn columns<V: values::Values>(py: Python<'_>) -> PyResult<Bound<'_, PyTuple>> {
+    PyTuple::new(py, values::names::<V>().collect::<Vec<_>>())
 }

@@ -63,16 +63,16 @@ impl<C: Recorded> RecorderOf<C> {
         settings: RecorderSettings,
     ) -> io::Result<Self> {
         let (feed, fed) = mpsc::sync_channel(settings.capacity.max(1));
-        let (tell, notices) = mpsc::channel();
+        let (sender, notices) = mpsc::channel();
         let board = Board::default();
         let pace = settings.pace;
         let on_the_thread = board.clone();
         let write = move || {
-            let (seen, say) = (on_the_thread.clone(), tell.clone());
-            let writing = Writing::<C>::new(disk, about, settings, on_the_thread, tell);
+            let (seen, report) = (on_the_thread.clone(), sender.clone());
+            let writing = Writing::<C>::new(disk, about, settings, on_the_thread, sender);
             // The file stays as it was when last committed.
             if panic::catch_unwind(AssertUnwindSafe(|| writing.run(&fed))).is_err() {
-                give_up(&seen, &say);
+                give_up(&seen, &report);
             }
         };
         let thread = thread::Builder::new()
@@ -156,11 +156,11 @@ impl<C: Recorded> RecorderOf<C> {
         if self.lost.is_none() {
             return true;
         }
-        let told = self.send(Feed::Message(Box::new(self.lost.event(Some(next)))));
-        if told {
+        let reported = self.send(Feed::Message(Box::new(self.lost.event(Some(next)))));
+        if reported {
             self.lost = Lost::default();
         }
-        told
+        reported
     }
 
     fn lose(&mut self, message: &MessageOf<C>) {
@@ -170,14 +170,14 @@ impl<C: Recorded> RecorderOf<C> {
 }
 
 /// Reports that the recorder itself failed and has ended.
-fn give_up(board: &Board, say: &Sender<Notice>) {
+fn give_up(board: &Board, report: &Sender<Notice>) {
     let text = "the recorder panicked; `fccd recover` saves what is there";
     board.update(|status| {
         status.file = None;
         status.stopped = Some(text.to_owned());
     });
     // The flight may have ended already.
-    let _ = say.send(Notice {
+    let _ = report.send(Notice {
         text: format!("recording stopped: {text}"),
         is_trouble: true,
     });

@@ -32,7 +32,7 @@ pub struct BoxPlot {
 const REACH: f64 = 1.5;
 
 impl BoxPlot {
-    /// Of values in ascending command, each with how often it was counted; none
+    /// Of values in ascending order, each with how often it was counted; none
     /// if there are none.
     pub fn of(counts: &[(f64, u64)]) -> Option<Self> {
         let (min, max) = (counts.first()?.0, counts.last()?.0);

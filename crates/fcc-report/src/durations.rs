@@ -1,99 +1,81 @@
 //! What takes time in a tick, and how old the measurements are.
 
-use std::time::Duration;
-
-use fcc_core::flight::Measurements;
-use fcc_core::framework::{StageTimes, Time};
+use fcc_core::framework::{Readings, Record, Stage};
 use serde::Serialize;
 
 use super::spread::{Percentiles, Spread};
-use fcc_telemetry::FlightRecord;
 
 /// Percentiles of one stage's time or of one measurement's age.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct NamedPercentiles {
     /// Which stage or measurement.
-    pub name: &'static str,
+    pub name: String,
     /// Its times or ages.
     #[serde(flatten)]
     pub of: Percentiles,
 }
 
-type StageTime = fn(&StageTimes) -> u64;
-
 /// In the order of a tick.
-const STAGES: [(&str, StageTime); 6] = [
-    ("sensors", |stages| stages.sensors_ns),
-    ("estimate", |stages| stages.estimate_ns),
-    ("guide", |stages| stages.guide_ns),
-    ("control", |stages| stages.control_ns),
-    ("actuators", |stages| stages.actuators_ns),
-    ("whole tick", |stages| stages.total_ns),
+const STAGES: [Stage; 6] = [
+    Stage::Sensors,
+    Stage::Estimate,
+    Stage::Guide,
+    Stage::Control,
+    Stage::Actuators,
+    Stage::Tick,
 ];
 
-type Taken = fn(&Measurements) -> Time;
-
-/// In the order of a record.
-const MEASUREMENTS: [(&str, Taken); 12] = [
-    ("attitude", |m| m.attitude.taken),
-    ("heading", |m| m.heading_rad.taken),
-    ("body rates", |m| m.body_rates.taken),
-    ("specific force", |m| m.specific_force.taken),
-    ("airspeed", |m| m.airspeed_mps.taken),
-    ("altitude", |m| m.altitude_m.taken),
-    ("angle of attack", |m| m.angle_of_attack_rad.taken),
-    ("position", |m| m.position.taken),
-    ("ground velocity", |m| m.velocity.taken),
-    ("surfaces", |m| m.surfaces.taken),
-    ("engage switch", |m| m.engage_switch.taken),
-    ("simulator's clock", |m| m.plant.taken),
-];
-
-/// Counts the times of all stages and the ages of all measurements.
+/// Counts the times of all stages and the ages of all readings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Durations {
     stages: [Spread; STAGES.len()],
-    ages: [Spread; MEASUREMENTS.len()],
+    ages: Vec<Spread>,
 }
 
 impl Durations {
-    pub(super) fn record(&mut self, record: &FlightRecord) {
-        for ((_, time_ns), spread) in STAGES.iter().zip(&mut self.stages) {
-            let time_ns = time_ns(&record.stages);
-            // A stage that was left out took no time, and tells nothing.
+    pub(super) fn record<M: Readings, E, S, O>(&mut self, record: &Record<M, E, S, O>) {
+        for (stage, spread) in STAGES.into_iter().zip(&mut self.stages) {
+            let time_ns = record.stages.of(stage);
+            // A stage that was left out took no time.
             if time_ns > 0 {
                 spread.record(time_ns);
             }
         }
-        for ((_, taken), spread) in MEASUREMENTS.iter().zip(&mut self.ages) {
-            let taken = taken(&record.measurements);
-            if !taken.is_never() {
-                let age: Duration = record.tick.woke.since(taken);
-                spread.record(u64::try_from(age.as_nanos()).unwrap_or(u64::MAX));
+        self.ages.resize_with(M::NAMES.len(), Spread::default);
+        let mut ages = self.ages.iter_mut();
+        record.measurements.each_source(&mut |_, taken| {
+            if let Some(age) = ages.next().filter(|_| !taken.is_never()) {
+                let age_ns = record.tick.woke.since(taken).as_nanos();
+                age.record(u64::try_from(age_ns).unwrap_or(u64::MAX));
             }
-        }
+        });
     }
 
     /// Of the stages that were timed, in the order of a tick.
     pub(super) fn stages(&self) -> Vec<NamedPercentiles> {
-        named(STAGES.iter().map(|(name, _)| *name), &self.stages)
+        named(&self.stages, |place| match STAGES.get(place) {
+            Some(Stage::Tick) | None => "whole tick".to_owned(),
+            Some(stage) => stage.to_string(),
+        })
     }
 
     /// Of what was ever measured: how old it was when the loop woke.
-    pub(super) fn ages(&self) -> Vec<NamedPercentiles> {
-        named(MEASUREMENTS.iter().map(|(name, _)| *name), &self.ages)
+    pub(super) fn ages(&self, names: &[&str]) -> Vec<NamedPercentiles> {
+        named(&self.ages, |place| {
+            names.get(place).copied().unwrap_or_default().to_owned()
+        })
     }
 }
 
-fn named<'a>(
-    names: impl Iterator<Item = &'static str>,
-    spreads: impl IntoIterator<Item = &'a Spread>,
-) -> Vec<NamedPercentiles> {
-    names
-        .zip(spreads)
-        .filter_map(|(name, spread)| {
+fn named(spreads: &[Spread], name: impl Fn(usize) -> String) -> Vec<NamedPercentiles> {
+    let spreads = spreads.iter().enumerate();
+    spreads
+        .filter_map(|(place, spread)| {
             let of = spread.percentiles()?;
-            Some(NamedPercentiles { name, of })
+            Some(NamedPercentiles {
+                name: name(place),
+                of,
+            })
         })
         .collect()
 }

@@ -1,12 +1,10 @@
-//! What happened in a flight, numbered to be found in the plots.
+//! What happened, numbered to be found in the plots.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::framework::{EventKind, State};
+use fcc_core::framework::{Controller, EventKind, EventOf};
 use serde::Serialize;
 
 use super::origin::Origin;
-use fcc_telemetry::{FlightEvent, describe_event};
+use fcc_telemetry::describe_event;
 
 /// As many events are kept; the rest are counted.
 const MOST_EVENTS: usize = 2_000;
@@ -47,10 +45,9 @@ pub(super) struct Events {
 }
 
 impl Events {
-    pub(super) fn take(&mut self, time_s: f64, event: &FlightEvent, origin: &Origin) {
-        self.push(time_s, event.tick, weight(event.kind), || {
-            describe_event::<Autopilot>(event, &origin.sensors, &origin.actuators)
-                .replace("->", "\u{2192}")
+    pub(super) fn take<C: Controller>(&mut self, time_s: f64, event: &EventOf<C>, origin: &Origin) {
+        self.push(time_s, event.tick, weight(&event.kind), || {
+            describe_event::<C>(event, &origin.sensors, &origin.actuators).replace("->", "\u{2192}")
         });
     }
 
@@ -83,7 +80,7 @@ impl Events {
     }
 }
 
-fn weight(kind: EventKind<AutopilotCommand>) -> Weight {
+fn weight<T>(kind: &EventKind<T>) -> Weight {
     match kind {
         EventKind::StateChanged { .. }
         | EventKind::Panicked
@@ -99,23 +96,4 @@ fn weight(kind: EventKind<AutopilotCommand>) -> Weight {
         EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Asked,
         _ => Weight::Minor,
     }
-}
-
-/// Whether a command to the autopilot itself, which ends a pattern.
-pub(super) fn is_autopilot_command(kind: EventKind<AutopilotCommand>) -> bool {
-    matches!(
-        kind,
-        EventKind::CommandReceived(fcc_core::framework::LoopCommand::Controller(_))
-    )
-}
-
-/// Whether the loop fell into failsafe.
-pub(super) fn is_failsafe(kind: EventKind<AutopilotCommand>) -> bool {
-    matches!(
-        kind,
-        EventKind::StateChanged {
-            to: State::Failsafe(_),
-            ..
-        }
-    )
 }

@@ -1,16 +1,17 @@
 //! What is worth saying of a recording in words, before any table.
 
-use super::Report;
+use super::RunReport;
 use super::origin::FileEnd;
 use super::states::{Phase, time_in};
 
 /// The sentences, the gravest first.
-pub(super) fn findings(report: &Report) -> Vec<String> {
+pub(super) fn findings(report: &RunReport) -> Vec<String> {
     let mut said = Vec::new();
     if report.continuity.ticks == 0 {
-        said.push(
-            "There is no tick in this recording: nothing can be said of the flight.".to_owned(),
-        );
+        let run = report.words.run;
+        said.push(format!(
+            "There is no tick in this recording: nothing can be said of the {run}."
+        ));
         said.extend(end(report));
         said.extend(damages(report));
         return said;
@@ -24,7 +25,7 @@ pub(super) fn findings(report: &Report) -> Vec<String> {
     said
 }
 
-fn end(report: &Report) -> Option<String> {
+fn end(report: &RunReport) -> Option<String> {
     match &report.end {
         FileEnd::Cut(words) => Some(format!(
             "The recording was not finished: {words}. What is shown is what came before."
@@ -36,7 +37,7 @@ fn end(report: &Report) -> Option<String> {
 /// As many damages are named one by one.
 const MOST_DAMAGES: usize = 5;
 
-fn damages(report: &Report) -> Vec<String> {
+fn damages(report: &RunReport) -> Vec<String> {
     let mut said: Vec<String> = report
         .damages
         .iter()
@@ -52,7 +53,7 @@ fn damages(report: &Report) -> Vec<String> {
     said
 }
 
-fn gaps(report: &Report) -> Vec<String> {
+fn gaps(report: &RunReport) -> Vec<String> {
     let continuity = &report.continuity;
     let mut said = Vec::new();
     let missing_before = continuity.first_tick.saturating_sub(1);
@@ -100,11 +101,11 @@ fn gaps(report: &Report) -> Vec<String> {
     said
 }
 
-fn timing(report: &Report) -> Option<String> {
+fn timing(report: &RunReport) -> Option<String> {
     let timing = report.timing.as_ref()?;
     if timing.is_lockstep() {
         return Some(
-            "Every wake-up was exactly at its deadline: this was flown in lockstep, and its \
+            "Every wake-up was exactly at its deadline: the loop ran in lockstep, and its \
              timing tells nothing of a machine."
                 .to_owned(),
         );
@@ -128,8 +129,9 @@ fn timing(report: &Report) -> Option<String> {
         .or_else(|| Some("There is only one tick: it has no period.".to_owned()))
 }
 
-fn states(report: &Report) -> Vec<String> {
+fn states(report: &RunReport) -> Vec<String> {
     let mut said = Vec::new();
+    let controller = report.words.controller;
     let engaged_s = time_in(&report.states, Phase::Engaged);
     let engagements = report
         .states
@@ -137,9 +139,9 @@ fn states(report: &Report) -> Vec<String> {
         .filter(|span| span.phase == Phase::Engaged)
         .count();
     if engagements == 0 {
-        said.push(
-            "The autopilot was never engaged: there are no set points to compare with.".to_owned(),
-        );
+        said.push(format!(
+            "The {controller} was never engaged: there are no set points to compare with."
+        ));
     } else {
         let times = if engagements > 1 {
             format!(", in {}", plural(engagements as u64, "engagement"))
@@ -147,7 +149,7 @@ fn states(report: &Report) -> Vec<String> {
             String::new()
         };
         said.push(format!(
-            "The autopilot was engaged for {engaged_s:.1} s of {:.1} s{times}.",
+            "The {controller} was engaged for {engaged_s:.1} s of {:.1} s{times}.",
             report.duration_s
         ));
     }
@@ -165,11 +167,8 @@ fn states(report: &Report) -> Vec<String> {
     said
 }
 
-fn missing(report: &Report) -> Vec<String> {
+fn missing(report: &RunReport) -> Vec<String> {
     let mut said = Vec::new();
-    if let Some(why) = &report.not_scored {
-        said.push(format!("A part of the flight could not be scored: {why}."));
-    }
     if report.event_count > report.events.len() {
         said.push(format!(
             "Only the first {} of {} events are shown.",
@@ -179,9 +178,6 @@ fn missing(report: &Report) -> Vec<String> {
     }
     if !report.sensor_ages.is_empty() && !report.has_ages() {
         said.push("Every measurement was taken at the very tick that used it.".to_owned());
-    }
-    if report.track.is_empty() {
-        said.push("No position was measured: there is no ground track.".to_owned());
     }
     said
 }

@@ -1,19 +1,18 @@
-//! After the flight: what a recording tells, for people, for tools and for
-//! paper.
+//! After a run: what a recording says, for people, for tools and for paper.
 //!
 //! ```text
 //! messages ─► Survey ─► Report ─► tables, JSON, one HTML page
 //!        └──► CsvFolder
 //! ```
 //!
-//! A [`Survey`] goes over the messages once, in memory that does not grow with
-//! the recording: lines are thinned to what a plot can show, durations are
-//! counted in histograms, and a flight is scored leg by leg. Everything that
-//! it was told is in the [`Report`]; nothing of it is asserted that was not
-//! recorded.
+//! A [`Survey`] reads the messages once, in memory that does not grow with the
+//! recording: lines are thinned to what a plot can show, and durations are
+//! counted in histograms. It works for every controller whose values are
+//! declared; what only one plant has, as the score of a flight, is its
+//! [`Addition`].
 //!
-//! Inside is SI; a report is for people and speaks feet, knots and degrees,
-//! with the unit in every name.
+//! Inside is SI; a report has the units that people read, with the unit in
+//! every name.
 
 mod box_plot;
 mod continuity;
@@ -21,12 +20,14 @@ mod csv;
 mod durations;
 mod events;
 mod findings;
-mod lines;
+#[cfg(feature = "flight")]
+mod flight;
 mod log_histogram;
 mod origin;
 mod page;
 mod plot;
-mod scoring;
+mod plots;
+mod reported;
 mod spread;
 mod states;
 mod survey;
@@ -34,8 +35,9 @@ mod table;
 mod text;
 mod thesis;
 mod trace;
-mod track;
 mod turns;
+
+use std::ops::Deref;
 
 use serde::Serialize;
 
@@ -44,25 +46,47 @@ pub use continuity::{Continuity, Gap};
 pub use csv::CsvFolder;
 pub use durations::NamedPercentiles;
 pub use events::EventLine;
+#[cfg(feature = "flight")]
+pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
-pub use plot::PlotError;
+pub use plot::{Figure, PlotError};
+pub use plots::{Panel, Plot, Quantities, ValueRange};
+pub use reported::{Addition, Reported, Words};
 pub use spread::Percentiles;
 pub use states::StateSpan;
 pub use survey::Survey;
-pub use table::{flight_table, recordings_table, timing_table};
+pub use table::{recordings_table, timing_table};
 pub use thesis::ThesisFigures;
 
 use fcc_record::Damage;
-use fcc_telemetry::{FlightScore, TimingReport};
-use lines::Lines;
-use track::TrackPoint;
+use fcc_telemetry::TimingReport;
+use plots::Curve;
 
-/// All that is said of a recorded flight. Serialized, it is every statistic
-/// in it; the plots are in the page.
+/// All that is said of a recorded run. Serialized, it is every statistic in it;
+/// the plots are in the page.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// Where the flight comes from.
+pub struct Report<A> {
+    /// What every loop's recording says.
+    #[serde(flatten)]
+    pub run: RunReport,
+    /// What only this plant's recording says.
+    #[serde(flatten)]
+    pub addition: A,
+}
+
+impl<A> Deref for Report<A> {
+    type Target = RunReport;
+
+    fn deref(&self) -> &RunReport {
+        &self.run
+    }
+}
+
+/// What is said of a recorded run, whatever the plant.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunReport {
+    /// Where the recording comes from.
     pub origin: Origin,
     /// How the file ends.
     pub end: FileEnd,
@@ -88,18 +112,19 @@ pub struct Report {
     pub events: Vec<EventLine>,
     /// How many events there were.
     pub event_count: usize,
-    /// How well the timed pattern was flown, by what was measured; none
-    /// without a whole leg.
-    pub flight: Option<FlightScore>,
-    /// Why a part of the flight has no score.
-    pub not_scored: Option<String>,
+    /// What measurements, set points and outputs ranged over; empty for a
+    /// plant whose results say it better.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<ValueRange>,
     #[serde(skip)]
-    lines: Lines,
+    words: Words,
     #[serde(skip)]
-    track: Vec<TrackPoint>,
+    plots: Vec<Plot>,
+    #[serde(skip)]
+    lateness: Curve,
 }
 
-impl Report {
+impl RunReport {
     /// Whether all that was recorded could be read.
     pub fn is_complete(&self) -> bool {
         self.damages.is_empty() && !matches!(self.end, FileEnd::Cut(_))

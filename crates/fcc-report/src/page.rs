@@ -6,22 +6,23 @@ use std::{fs, io};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::durations::NamedPercentiles;
-use super::plot::{Figure, PlotError, figures};
-use super::{Report, Timing};
-use fcc_telemetry::{FlightScore, LegScore};
+use super::plot::{Detail, Figure, Figures, PlotError, figures};
+use super::reported::Addition;
+use super::text::VALUE_COLUMNS;
+use super::{Report, RunReport, Timing};
 
 const STYLE: &str = include_str!("page.css");
 /// Lets plots be zoomed; without it, the page is the same, and still.
 const SCRIPT: &str = include_str!("page.js");
 
-impl Report {
+impl<A: Addition> Report<A> {
     /// The page: HTML with everything in it, plots as SVG; nothing is fetched
     /// when it is opened.
     ///
     /// # Errors
     /// When a plot cannot be drawn.
     pub fn to_html(&self) -> Result<String, PlotError> {
-        let figures = figures(self)?;
+        let figures = self.figures(Detail::WhenZoomed)?;
         let title = self.title();
         let page = html! {
             (DOCTYPE)
@@ -41,10 +42,11 @@ impl Report {
                         }
                     }
                     @for figure in &figures.timeline { (figure_markup(figure)) }
-                    @if !figures.flight.is_empty() {
-                        h2 { "Flight" }
-                        @for figure in &figures.flight { (figure_markup(figure)) }
-                        @if let Some(flight) = &self.flight { (flight_table(flight)) }
+                    @if !figures.values.is_empty() {
+                        h2 { (capitalized(self.words.run)) }
+                        @for figure in &figures.values { (figure_markup(figure)) }
+                        (self.values_table())
+                        (PreEscaped(self.addition.html()))
                     }
                     @if let Some(timing) = &self.timing {
                         h2 { "Timing" }
@@ -72,11 +74,41 @@ impl Report {
     /// # Errors
     /// When a plot cannot be drawn.
     pub fn to_svgs(&self) -> Result<Vec<(String, String)>, PlotError> {
+        let Figures {
+            timeline,
+            values,
+            timing,
+        } = self.figures(Detail::None)?;
         let named = |figure: Figure| {
-            let name = figure.title.to_lowercase().replace(' ', "-");
+            let name = figure.title.to_lowercase().replace([' ', '\''], "-");
             (format!("{name}.svg"), figure.svg)
         };
-        Ok(figures(self)?.into_all().map(named).collect())
+        let figures = timeline.into_iter().chain(values).chain(timing);
+        Ok(figures.map(named).collect())
+    }
+
+    fn figures(&self, detail: Detail) -> Result<Figures, PlotError> {
+        let mut figures = figures(&self.run, detail)?;
+        if !figures.values.is_empty() {
+            figures.values.extend(self.addition.figures(&self.run)?);
+        }
+        Ok(figures)
+    }
+
+    /// Writes the page into a file, which must not be the recording itself.
+    ///
+    /// # Errors
+    /// What could not be drawn or written.
+    pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
+        let refused = |why: String| format!("{}: {why}", path.display());
+        if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
+            && page == recording
+        {
+            let why = "is the recording itself: give the page another name";
+            return Err(refused(why.to_owned()));
+        }
+        let page = self.to_html().map_err(|error| error.to_string())?;
+        fs::write(path, page).map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
     /// Writes each plot into a file of its own, in a folder that is made if it
@@ -94,19 +126,19 @@ impl Report {
         }
         Ok(())
     }
+}
 
+impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
-        let of = if origin.aircraft.is_empty() {
-            "Flight".to_owned()
-        } else {
-            format!("Flight of {}", origin.aircraft)
-        };
-        if origin.started.is_empty() {
-            of
-        } else {
-            format!("{of}, {}", self.started())
+        let mut title = capitalized(self.words.run);
+        if !origin.aircraft.is_empty() {
+            title = format!("{title} of {}", origin.aircraft);
         }
+        if !origin.started.is_empty() {
+            title = format!("{title}, {}", self.started());
+        }
+        title
     }
 
     fn header_table(&self) -> Markup {
@@ -115,6 +147,31 @@ impl Report {
                 @for (name, value) in self.header() {
                     div { dt { (name) } dd { (value) } }
                 }
+            }
+        }
+    }
+
+    fn values_table(&self) -> Markup {
+        html! {
+            @if !self.values.is_empty() {
+                div.wide { table {
+                    thead {
+                        tr {
+                            @for (n, name) in VALUE_COLUMNS.iter().enumerate() {
+                                th.words[n == 0] { (name) }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for value in &self.values {
+                            tr {
+                                @for (n, cell) in value.cells().iter().enumerate() {
+                                    td.words[n == 0] { (cell) }
+                                }
+                            }
+                        }
+                    }
+                } }
             }
         }
     }
@@ -136,6 +193,17 @@ impl Report {
             } }
         }
     }
+}
+
+/// With a capital first letter.
+pub(crate) fn capitalized(words: &str) -> String {
+    let mut letters = words.chars();
+    let first: String = letters
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .collect();
+    first + letters.as_str()
 }
 
 fn figure_markup(figure: &Figure) -> Markup {
@@ -170,43 +238,6 @@ fn timing_table(timing: &Timing) -> Markup {
                 }
             } }
             figcaption { "The thesis' table (6.1 to 6.3), and below it what it did not measure." }
-        }
-    }
-}
-
-fn flight_table(flight: &FlightScore) -> Markup {
-    let rows = flight
-        .legs
-        .iter()
-        .enumerate()
-        .map(|(number, leg)| ((number + 1).to_string(), leg))
-        .chain(flight.worst.iter().map(|worst| ("worst".to_owned(), worst)));
-    html! {
-        figure {
-            h3 { "Legs of the timed pattern" }
-            div.wide {
-                table {
-                    thead {
-                        tr {
-                            @for name in crate::table::LEG_COLUMNS { th { (name) } }
-                        }
-                    }
-                    tbody { @for (name, leg) in rows { (leg_row(name, leg)) } }
-                }
-            }
-            figcaption {
-                "By what was measured: time until the heading stays within 2° and the altitude \
-                 within 10 ft of the set point, how far each goes past it, and the root mean \
-                 square of what is left; largest errors of a whole leg."
-            }
-        }
-    }
-}
-
-fn leg_row(name: String, leg: &LegScore) -> Markup {
-    html! {
-        tr.worst[name == "worst"] {
-            @for cell in crate::table::leg_cells(name, leg) { td { (cell) } }
         }
     }
 }

@@ -1,33 +1,35 @@
 //! One pass over a recording, in memory that does not grow with it.
 
+use std::path::Path;
 use std::time::Duration;
 
-use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_core::framework::{Message, Tick, Time};
+use fcc_core::framework::{
+    EventKind, EventOf, LoopCommand, Message, MessageOf, Readings, RecordOf, State, Tick, Time,
+};
 use fcc_timer::{Expiry, TimerError, TimingStats};
 
 use super::box_plot::BoxPlot;
 use super::continuity::{Continuity, Follows};
+use super::csv::CsvFolder;
 use super::durations::Durations;
-use super::events::{self, Events};
+use super::events::Events;
 use super::findings::findings;
-use super::lines::Lines;
 use super::log_histogram::log_histogram;
 use super::origin::{FileEnd, Origin};
-use super::scoring::Scoring;
+use super::plots::{Curve, Moment, Panel, Plot, Quantities};
+use super::reported::{Addition, Reported};
 use super::states::States;
 use super::thesis::ThesisFigures;
-use super::track::Track;
-use super::{Report, Timing};
-use fcc_record::{Damage, Item, Remark};
-use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord, TimingReport};
+use super::{Report, RunReport, Timing};
+use fcc_record::{Damage, Item, Recording, Remark};
+use fcc_telemetry::TimingReport;
+use fcc_telemetry::schema::Leaves;
 
-/// Takes the messages of a flight in the order they were recorded, and keeps
-/// what a report shows.
-#[derive(Debug)]
-pub struct Survey {
+/// Takes the messages of a recording in their order, and keeps what a report
+/// shows.
+pub struct Survey<C: Reported> {
     origin: Origin,
-    scoring: Option<Scoring>,
+    addition: C::Addition,
     /// When the first tick was due: the report counts from there.
     began_ns: Option<i64>,
     timing: Option<TimingStats>,
@@ -38,18 +40,21 @@ pub struct Survey {
     events: Events,
     damages: Vec<Damage>,
     failsafes: u64,
-    lines: Lines,
-    track: Track,
+    plots: Vec<Plot>,
+    lateness: Curve,
+    values: Leaves,
     last_s: f64,
 }
 
-impl Survey {
-    /// A survey of a flight from `origin`, scored if it is to be along a
-    /// timed pattern.
-    pub fn new(origin: Origin, pattern: Option<TimedPatternConfig>) -> Self {
+/// Messages between two reports of progress.
+const PROGRESS_EVERY: u64 = 4_096;
+
+impl<C: Reported> Survey<C> {
+    /// A survey of a recording from `origin`.
+    pub fn new(origin: Origin, addition: C::Addition) -> Self {
         Self {
             origin,
-            scoring: pattern.map(Scoring::new),
+            addition,
             began_ns: None,
             timing: None,
             page_faults: 0,
@@ -59,10 +64,57 @@ impl Survey {
             events: Events::default(),
             damages: Vec::new(),
             failsafes: 0,
-            lines: Lines::default(),
-            track: Track::default(),
+            plots: C::plots(&Quantities::of::<RecordOf<C>>()),
+            lateness: Curve::default(),
+            values: Leaves::default(),
             last_s: 0.0,
         }
+    }
+
+    /// Reads a recording, once, and reports on it. With a folder `csv`, each
+    /// tick and event is written into tables there. `progress` receives how
+    /// many bytes were read.
+    ///
+    /// # Errors
+    /// When the file cannot be read or a table cannot be written.
+    pub fn read(
+        recording: &Recording,
+        addition: C::Addition,
+        csv: Option<&Path>,
+        mut progress: impl FnMut(u64),
+    ) -> Result<Report<C::Addition>, String> {
+        let origin = Origin::of(recording);
+        let folder = csv.unwrap_or(Path::new(""));
+        let not_written =
+            |error: std::io::Error| format!("{}: cannot be written: {error}", folder.display());
+        let mut tables = csv
+            .map(|folder| CsvFolder::<C>::create(folder, &origin))
+            .transpose()
+            .map_err(not_written)?;
+        let mut survey = Self::new(origin, addition);
+        let mut items = recording.items().map_err(|error| error.to_string())?;
+        let mut count = 0_u64;
+        while let Some(item) = items.next() {
+            survey
+                .take_item(&item)
+                .map_err(|error| format!("{}: {error}", recording.path().display()))?;
+            if let Some(tables) = &mut tables {
+                match &item {
+                    Item::Message(message) => tables.take(message),
+                    Item::Remark(remark) => tables.take_remark(remark),
+                    Item::Damage(damage) => tables.take_remark(&damage.remark()),
+                }
+                .map_err(not_written)?;
+            }
+            count += 1;
+            if count.is_multiple_of(PROGRESS_EVERY) {
+                progress(items.bytes_read());
+            }
+        }
+        if let Some(tables) = tables {
+            tables.finish().map_err(not_written)?;
+        }
+        Ok(survey.finish(FileEnd::of(recording, items.cut())))
     }
 
     /// Takes a message.
@@ -70,7 +122,7 @@ impl Survey {
     /// # Errors
     /// When the rate is beyond what a loop can have: the file is no recording
     /// of one.
-    pub fn take(&mut self, message: &FlightMessage) -> Result<(), TimerError> {
+    pub fn take(&mut self, message: &MessageOf<C>) -> Result<(), TimerError> {
         match message {
             Message::Tick(record) => self.take_record(record),
             Message::Event(event) => {
@@ -80,11 +132,7 @@ impl Survey {
         }
     }
 
-    /// Takes the record of a tick.
-    ///
-    /// # Errors
-    /// As for [`take`](Self::take).
-    pub fn take_record(&mut self, record: &FlightRecord) -> Result<(), TimerError> {
+    fn take_record(&mut self, record: &RecordOf<C>) -> Result<(), TimerError> {
         let tick = &record.tick;
         let scheduled_ns = tick.scheduled.as_nanos();
         let began_ns = *self.began_ns.get_or_insert(scheduled_ns);
@@ -98,13 +146,25 @@ impl Survey {
             Some(timing) => timing,
             None => self.timing.insert(TimingStats::new(period(tick))?),
         };
-        if follows == Follows::AfterGap {
-            timing.interrupt();
-            self.lines.cut();
+        let panels = self.plots.iter_mut().flat_map(|plot| &mut plot.panels);
+        self.values.take(record);
+        let moment = Moment::of(record, time_s);
+        let is_after_gap = follows == Follows::AfterGap;
+        for panel in panels {
+            if is_after_gap {
+                panel.cut();
+            }
+            panel.take(self.values.as_slice(), &moment);
         }
+        if is_after_gap {
+            timing.interrupt();
+            self.lateness.trace.cut();
+        }
+        let lateness_us = tick.lateness().as_secs_f64() * 1e6;
+        self.lateness.trace.push(time_s, Some(lateness_us));
         timing.record(&Expiry {
             number: tick.number,
-            scheduled_ns: tick.scheduled.as_nanos(),
+            scheduled_ns,
             woke_ns: tick.woke.as_nanos(),
             missed: tick.missed,
             early_wake_ns: record.early_wake_ns,
@@ -113,44 +173,30 @@ impl Survey {
         self.page_faults = self.page_faults.max(record.page_faults);
         self.durations.record(record);
         self.states.take(time_s, record.state.state());
-        self.lines.take(record, time_s);
-        let position = &record.measurements.position;
-        if !position.is_never() {
-            self.track.push(time_s, &position.value);
-        }
-        if let Some(scoring) = &mut self.scoring {
-            scoring.take(record, time_s);
-        }
+        C::take(&mut self.addition, record, time_s);
         Ok(())
     }
 
-    /// Takes whatever is in a recording.
+    /// Takes an item of a recording.
     ///
     /// # Errors
     /// As for [`take`](Self::take).
-    pub fn take_item(&mut self, item: &Item<FlightMessage>) -> Result<(), TimerError> {
+    pub fn take_item(&mut self, item: &Item<MessageOf<C>>) -> Result<(), TimerError> {
+        let tick = self.continuity.last_tick;
         match item {
             Item::Message(message) => self.take(message)?,
-            Item::Remark(remark) => self.take_remark(remark),
-            Item::Damage(damage) => self.take_damage(damage),
+            Item::Remark(Remark { time, text }) => {
+                self.events.remark(self.seconds(*time), tick, text);
+            }
+            // No line leads across it: the ticks in it are missing.
+            Item::Damage(damage) => {
+                let remark = damage.remark();
+                let time_s = self.seconds(remark.time);
+                self.events.damage(time_s, tick, &remark.text);
+                self.damages.push(damage.clone());
+            }
         }
         Ok(())
-    }
-
-    /// Takes what is damaged in the recording: no line leads across.
-    pub fn take_damage(&mut self, damage: &Damage) {
-        let remark = damage.remark();
-        let time_s = self.seconds(remark.time);
-        self.events
-            .damage(time_s, self.continuity.last_tick, &remark.text);
-        self.damages.push(damage.clone());
-    }
-
-    /// Takes words that are no event of the loop.
-    pub fn take_remark(&mut self, remark: &Remark) {
-        let time_s = self.seconds(remark.time);
-        let tick = self.continuity.last_tick;
-        self.events.remark(time_s, tick, &remark.text);
     }
 
     /// When something happened; before the first tick, or in it, is at 0.
@@ -161,32 +207,33 @@ impl Survey {
         }
     }
 
-    /// Takes an event.
-    pub fn take_event(&mut self, event: &FlightEvent) {
-        let time_s = self.seconds(event.time);
-        if events::is_autopilot_command(event.kind)
-            && let Some(scoring) = &mut self.scoring
-        {
-            scoring.ordered();
+    fn take_event(&mut self, event: &EventOf<C>) {
+        match event.kind {
+            EventKind::CommandReceived(LoopCommand::Controller(_)) => {
+                self.addition.command_received();
+            }
+            EventKind::StateChanged {
+                to: State::Failsafe(_),
+                ..
+            } => self.failsafes += 1,
+            _ => {}
         }
-        self.failsafes += u64::from(events::is_failsafe(event.kind));
-        self.events.take(time_s, event, &self.origin);
+        let time_s = self.seconds(event.time);
+        self.events.take::<C>(time_s, event, &self.origin);
     }
 
     /// The report, once the file has ended.
-    pub fn finish(self, end: FileEnd) -> Report {
+    pub fn finish(mut self, end: FileEnd) -> Report<C::Addition> {
         let (events, event_count) = self.events.into_lines();
-        let (flight, not_scored) = match self.scoring {
-            Some(scoring) => {
-                let (score, failed) = scoring.finish();
-                (Some(score).filter(|score| !score.legs.is_empty()), failed)
-            }
-            None => (None, None),
-        };
         let timing = self
             .timing
             .map(|stats| timing(&stats, self.page_faults, &self.origin));
-        let mut report = Report {
+        self.addition.finish();
+        let panels = self.plots.iter().flat_map(|plot| &plot.panels);
+        let values = panels
+            .filter(|_| C::TABLE_OF_VALUES)
+            .flat_map(Panel::ranges);
+        let mut run = RunReport {
             origin: self.origin,
             end,
             damages: self.damages,
@@ -195,18 +242,24 @@ impl Survey {
             continuity: self.continuity,
             timing,
             stages: self.durations.stages(),
-            sensor_ages: self.durations.ages(),
+            sensor_ages: self.durations.ages(C::Measurements::NAMES),
             states: self.states.into_spans(),
             failsafes: self.failsafes,
             events,
             event_count,
-            flight,
-            not_scored,
-            lines: self.lines,
-            track: self.track.into_places(),
+            values: values.collect(),
+            words: C::WORDS,
+            plots: self.plots,
+            lateness: self.lateness,
         };
-        report.findings = findings(&report);
-        report
+        run.findings = findings(&run);
+        if run.continuity.ticks > 0 {
+            run.findings.extend(self.addition.findings());
+        }
+        Report {
+            run,
+            addition: self.addition,
+        }
     }
 }
 
@@ -232,118 +285,5 @@ fn timing(stats: &TimingStats, page_faults: u64, origin: &Origin) -> Timing {
         period_box_ms: BoxPlot::of(&periods),
         lateness_histogram: log_histogram(stats.lateness_counts()),
         thesis: ThesisFigures::at(summary.rate_hz),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use fcc_core::framework::{Flags, StateCode};
-    use proptest::prelude::*;
-
-    use super::*;
-
-    /// A record of anything at all: a damaged file can hold it.
-    fn record() -> impl Strategy<Value = FlightRecord> {
-        let numbers = || prop::array::uniform8(any::<f64>());
-        let times = (any::<i64>(), any::<i64>(), any::<i64>());
-        let missed = prop_oneof![0_u64..5, any::<u64>()];
-        let counts = (0_u64..50, missed, any::<u64>(), 0_u8..4);
-        (times, counts, numbers(), numbers()).prop_map(
-            |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
-                let tick = Tick {
-                    number: step,
-                    scheduled: Time::from_nanos(due),
-                    woke: Time::from_nanos(woke),
-                    missed,
-                    dt_s: 0.025,
-                };
-                let mut record = FlightRecord {
-                    tick,
-                    ..FlightRecord::default()
-                };
-                record.stages.total_ns = stage_ns;
-                record.state = StateCode::from_parts(phase, u8::from(phase == 2), Flags::NONE)
-                    .unwrap_or_default();
-                record.sent = stage_ns % 2 == 0;
-                let taken = Time::from_nanos(taken);
-                let measured = &mut record.measurements;
-                let [
-                    roll,
-                    pitch,
-                    heading,
-                    airspeed,
-                    altitude,
-                    latitude,
-                    longitude,
-                    side,
-                ] = a;
-                measured.attitude.value.roll_rad = roll;
-                measured.attitude.value.pitch_rad = pitch;
-                measured.heading_rad.value = heading;
-                measured.airspeed_mps.value = airspeed;
-                measured.altitude_m.value = altitude;
-                measured.position.value.latitude_rad = latitude;
-                measured.position.value.longitude_rad = longitude;
-                measured.specific_force.value.y_mps2 = side;
-                measured.attitude.taken = taken;
-                measured.heading_rad.taken = record.tick.woke;
-                measured.airspeed_mps.taken = record.tick.woke;
-                measured.altitude_m.taken = taken;
-                measured.position.taken = taken;
-                let [
-                    throttle,
-                    elevator,
-                    aileron,
-                    rudder,
-                    speed,
-                    aimed,
-                    height,
-                    bank,
-                ] = b;
-                record.outputs.throttle = throttle;
-                record.outputs.elevator = elevator;
-                record.outputs.aileron = aileron;
-                record.outputs.rudder = rudder;
-                record.setpoints.airspeed_mps = speed;
-                record.setpoints.heading_rad = aimed;
-                record.setpoints.altitude_m = height;
-                record.setpoints.roll_rad = bank;
-                record
-            },
-        )
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-
-        /// Nothing that a file can hold makes a report panic or grow.
-        #[test]
-        fn anything_can_be_reported_on(
-            records in prop::collection::vec(record(), 0..40),
-            in_order in any::<bool>(),
-        ) {
-            let pattern = TimedPatternConfig::default();
-            let mut survey = Survey::new(Origin::default(), Some(pattern));
-            let mut number = 0;
-            let mut due_ns = 0_i64;
-            for (n, mut record) in records.into_iter().enumerate() {
-                if n == 0 {
-                    // The first says how long a period is; a loop cannot have any.
-                    record.tick.missed %= 5;
-                }
-                if in_order {
-                    number += record.tick.number;
-                    due_ns = due_ns.saturating_add(record.tick.scheduled.as_nanos().abs() >> 20);
-                    record.tick.number = number;
-                    record.tick.scheduled = Time::from_nanos(due_ns);
-                }
-                survey.take_record(&record).unwrap();
-            }
-            let report = survey.finish(FileEnd::Unknown);
-            let page = report.to_html().unwrap();
-            prop_assert!(page.len() < 5_000_000);
-            prop_assert!(!report.to_text().is_empty());
-            prop_assert!(serde_json::to_string(&report).is_ok());
-        }
     }
 }

@@ -6,7 +6,6 @@ use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 
 use fcc_record::{Entry, Wholeness};
 use fcc_telemetry::TimingReport;
-use fcc_telemetry::{FlightScore, LegScore, ScoredBy};
 
 /// One line under the header, and no other.
 const STYLE: TableStyle =
@@ -142,46 +141,6 @@ fn or_unknown(text: String) -> String {
     }
 }
 
-/// The columns of a leg's figures.
-pub(crate) const LEG_COLUMNS: [&str; 10] = [
-    "Leg",
-    "≤2° s",
-    "overshoot °",
-    "hdg RMS °",
-    "≤10 ft s",
-    "overshoot ft",
-    "alt RMS ft",
-    "turn loss ft",
-    "airspeed kt",
-    "lateral g",
-];
-
-/// What the columns of a leg mean.
-const LEG_LEGEND: &str = "\
-≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
-overshoot        how far past the set point, in the direction of the turn or climb
-hdg RMS, alt RMS root mean square of the error in the leg's last 3 s, last 8 s
-turn loss        how far below the lower of the two altitudes that the leg joins
-airspeed         largest error either way
-lateral          largest sideways acceleration";
-
-/// What it is scored by, a row per leg and the worst of each column, and what
-/// the columns mean.
-pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
-    let by = match by {
-        ScoredBy::Truth => "how the simulated aircraft truly flew",
-        ScoredBy::Measurement => "what the sensors measured",
-    };
-    let mut table = table(&LEG_COLUMNS);
-    for (index, leg) in score.legs.iter().enumerate() {
-        table.add_row(leg_cells((index + 1).to_string(), leg));
-    }
-    if let Some(worst) = &score.worst {
-        table.add_row(leg_cells("worst".to_owned(), worst));
-    }
-    format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")
-}
-
 /// A row per recording.
 pub fn recordings_table(entries: &[Entry]) -> String {
     let mut table = table(&[
@@ -215,23 +174,6 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         ]);
     }
     table.to_string()
-}
-
-/// The cells of a leg, under [`LEG_COLUMNS`].
-pub(crate) fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
-    let settle = |time: Option<f64>| time.map_or("never".to_owned(), |s| format!("{s:.1}"));
-    vec![
-        name,
-        settle(leg.heading_settle_s),
-        format!("{:.2}", leg.heading_overshoot_deg),
-        format!("{:.2}", leg.heading_rms_deg),
-        settle(leg.altitude_settle_s),
-        format!("{:.2}", leg.altitude_overshoot_ft),
-        format!("{:.2}", leg.altitude_rms_ft),
-        format!("{:.2}", leg.turn_loss_ft),
-        format!("{:.2}", leg.airspeed_error_kt),
-        format!("{:.3}", leg.lateral_acceleration_g),
-    ]
 }
 
 #[cfg(test)]

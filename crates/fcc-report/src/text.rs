@@ -4,17 +4,32 @@ use std::fmt::Write as _;
 
 use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
-use super::{Report, Timing};
+use super::{Report, RunReport, Timing, ValueRange};
+use crate::reported::Addition;
 use crate::table::{figure, table};
-use crate::{flight_table, timing_table};
-use fcc_telemetry::{FlightScore, ScoredBy};
+use crate::timing_table;
 
 /// More events than these do not fit on a screen.
 const MOST_EVENTS: usize = 20;
-/// Nor more legs.
-const MOST_LEGS: usize = 16;
 
-impl Report {
+/// The columns of the table of values.
+pub(super) const VALUE_COLUMNS: [&str; 5] = ["Value", "Unit", "Lowest", "Highest", "Last"];
+
+impl ValueRange {
+    /// Its cells, under [`VALUE_COLUMNS`].
+    pub(super) fn cells(&self) -> [String; 5] {
+        let number = |value: f64| format!("{value:.3}");
+        [
+            format!("{}, {}", self.quantity, self.role),
+            self.unit.to_owned(),
+            number(self.lowest),
+            number(self.highest),
+            number(self.last),
+        ]
+    }
+}
+
+impl<A: Addition> Report<A> {
     /// Tables for people.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
@@ -34,27 +49,24 @@ impl Report {
         if self.has_ages() {
             let _ = writeln!(text, "\n{}", percentiles_table("Age of", &self.sensor_ages));
         }
-        if let Some(flight) = &self.flight {
-            let many = flight.legs.len() > MOST_LEGS;
-            let legs = if many { &[] } else { flight.legs.as_slice() };
-            let shown = FlightScore {
-                legs: legs.to_vec(),
-                worst: flight.worst,
-            };
-            let _ = writeln!(text, "\n{}", flight_table(&shown, ScoredBy::Measurement));
-            if many {
-                let _ = writeln!(
-                    text,
-                    "of {} legs: see the page (--html) for each",
-                    flight.legs.len()
-                );
+        if !self.values.is_empty() {
+            let mut table = table(&VALUE_COLUMNS);
+            for value in &self.values {
+                table.add_row(value.cells());
             }
+            let _ = writeln!(text, "\n{table}");
+        }
+        let of_this_plant = self.addition.text();
+        if !of_this_plant.is_empty() {
+            let _ = writeln!(text, "\n{of_this_plant}");
         }
         self.write_events(&mut text);
         text.truncate(text.trim_end().len());
         text
     }
+}
 
+impl RunReport {
     fn write_events(&self, text: &mut String) {
         if self.events.is_empty() {
             return;
@@ -72,12 +84,12 @@ impl Report {
         }
     }
 
-    /// When the flight began, for people: `2026-11-20 04:21:33 UTC`.
+    /// When the run began, for people: `2026-11-20 04:21:33 UTC`.
     pub(super) fn started(&self) -> String {
         self.origin.started.replace('T', " ").replace('Z', " UTC")
     }
 
-    /// What is known of where the flight comes from, name by name.
+    /// What is known of where the recording comes from, name by name.
     pub(super) fn header(&self) -> Vec<(&'static str, String)> {
         let origin = &self.origin;
         let realtime = &origin.realtime;
@@ -103,7 +115,7 @@ impl Report {
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            ("Aircraft", origin.aircraft.clone()),
+            (self.words.plant, origin.aircraft.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),
@@ -140,7 +152,7 @@ impl Timing {
 fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> String {
     let mut table = table(&[title, "p50", "p90", "p99", "p99.9", "max"]);
     for row in rows {
-        let mut cells = vec![row.name.to_owned()];
+        let mut cells = vec![row.name.clone()];
         cells.extend(row.figures());
         table.add_row(cells);
     }

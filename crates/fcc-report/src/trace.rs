@@ -6,9 +6,10 @@
 //! visualization-oriented time series data aggregation", 2014): drawn no wider
 //! than there are bins, the line looks like one through every point.
 
-/// When there are as many bins, pairs become one: a plot has between half as
-/// many and as many, more than its width in pixels.
-const MOST_BINS: u64 = 2_048;
+/// When there are as many bins, pairs become one.
+const MOST_BINS: u64 = 16_384;
+/// As many bins are more than a plot is wide in pixels.
+pub(super) const OVERVIEW_BINS: u64 = 2_048;
 /// The width of the first bins, s: less than the period of a fast loop.
 const FINEST_S: f64 = 1.0 / 1_024.0;
 
@@ -84,6 +85,20 @@ impl Trace {
         self.broken = true;
     }
 
+    /// The same in fewer bins than `most`.
+    pub(super) fn thinned(&self, most: u64) -> Self {
+        let mut thinned = self.clone();
+        while thinned.bins.last().is_some_and(|bin| bin.index >= most) {
+            thinned.coarsen();
+        }
+        thinned
+    }
+
+    /// How many values it has; of a long line, about as many as are kept.
+    pub(super) const fn len(&self) -> usize {
+        self.bins.len()
+    }
+
     /// The unbroken lines, each of points in ascending time.
     pub(super) fn lines(&self) -> Vec<Vec<Point>> {
         let mut lines: Vec<Vec<Point>> = Vec::new();
@@ -100,6 +115,11 @@ impl Trace {
             }
         }
         lines
+    }
+
+    /// The last value; none if there is none.
+    pub(super) fn last(&self) -> Option<f64> {
+        self.bins.last().map(|bin| bin.last.value)
     }
 
     /// The lowest and the highest value; none if there is none.

@@ -26,7 +26,7 @@ use crate::telemetry_producer::{EVENT_SLOTS, TelemetryProducer};
 ///
 /// [`Loop`](crate::Loop) runs one on a real clock. Hold one yourself to run in
 /// lockstep with a simulated plant: on a timer that never waits, each
-/// [`step`](Self::step) is a tick of the very same code. Dropping a machine
+/// [`step`](Self::step) is a tick of the same code. Dropping a machine
 /// releases the actuators.
 pub struct Machine<C: Controller> {
     pub(crate) timer: Box<dyn Timer>,

@@ -1,4 +1,4 @@
-//! Wishes that the kernel may grant: what is reported is what the kernel says,
+//! Requests that the kernel may grant: what is reported is what the kernel says,
 //! whether or not this user has the rights.
 #![cfg(test)]
 

@@ -5,7 +5,7 @@
 //! positive nose right, each -1..1, and so are the columns of row 8; throttles
 //! are 0..1.
 //!
-//! No override has a timeout: X-Plane would keep the last deflection for ever.
+//! No override has a timeout: X-Plane would keep the last deflection.
 //! A release therefore centres the surfaces and then clears the overrides, in
 //! this order. The throttle has no centre position: it stays where it is until
 //! its override is cleared and the lever in the cockpit has control again.

@@ -110,7 +110,7 @@ impl ClockSample {
 #[derive(Clone, Debug)]
 pub(crate) struct SimulatorClock {
     silent_after: Duration,
-    heard: Time,
+    received: Time,
     latest: ClockSample,
     /// When the clock last advanced, or had a reason not to.
     advanced: Time,
@@ -127,7 +127,7 @@ impl SimulatorClock {
     pub(crate) fn new(silent_after: Duration) -> Self {
         Self {
             silent_after,
-            heard: Time::NEVER,
+            received: Time::NEVER,
             latest: ClockSample::default(),
             advanced: Time::NEVER,
             paused: false,
@@ -157,7 +157,7 @@ impl SimulatorClock {
     /// Evaluates the report of an accepted datagram.
     pub(crate) fn receive(&mut self, now: Time, report: SimulatorReport) {
         let was_silent = self.is_silent(now);
-        self.heard = now;
+        self.received = now;
         if let Some(paused) = report.paused {
             if self.paused && !paused {
                 self.begin_pace(now);
@@ -226,12 +226,12 @@ impl SimulatorClock {
 
     /// Whether nothing has arrived for the configured time.
     pub(crate) fn is_silent(&self, now: Time) -> bool {
-        now.since(self.heard) > self.silent_after
+        now.since(self.received) > self.silent_after
     }
 
     /// When something last arrived.
     pub(crate) const fn last_received(&self) -> Time {
-        self.heard
+        self.received
     }
 
     /// The simulator's time in s, once known.
@@ -242,7 +242,7 @@ impl SimulatorClock {
     /// Whether it sends, but its time does not advance: measured up to the last
     /// report, so that a gap between reports is not taken for a stopped clock.
     fn has_stopped(&self) -> bool {
-        !self.latest.seen.is_never() && self.heard.since(self.advanced) > STALLED_AFTER
+        !self.latest.seen.is_never() && self.received.since(self.advanced) > STALLED_AFTER
     }
 
     /// The simulator's state.

@@ -1,4 +1,4 @@
-//! Thermometer and heater keep what the traits promise.
+//! Runs the conformance suites for thermometer and heater.
 
 use fcc_conformance::{ActuatorBench, SensorBench, actuator_conformance, sensor_conformance};
 use fcc_core::framework::{Actuator, Sensor, Time};
@@ -25,7 +25,7 @@ fn room() -> Room {
 
 impl SensorBench for Room {
     type Measurements = Measured;
-    /// The thermometer computes the room: there is always something new.
+    /// The thermometer computes the room, so there is always a new value.
     const MEASURES_UNASKED: bool = true;
 
     fn new() -> Self {

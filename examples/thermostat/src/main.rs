@@ -1,16 +1,18 @@
-//! The framework with no aircraft in it: a room, a heater and a PI controller
-//! under the same 40 Hz loop that flies an aircraft, timed and reported in the
-//! same way.
+//! The framework without an aircraft: a room, a heater and a PI controller
+//! under the same 40 Hz loop that flies an aircraft, with the same timing and
+//! report.
 //!
-//! `cargo run -p thermostat` heats the room for eight seconds, of which each
-//! is 33 minutes to the room. With `-- --record DIR` the run is recorded, as
-//! flights are, and `-- replay FILE` replays it.
+//! `cargo run -p thermostat` heats the room for eight seconds, each of which is
+//! 33 minutes in the room. With `-- --record DIR` the run is recorded, like a
+//! flight; `-- replay FILE` replays it, and `-- report FILE` reports on it. A
+//! run with `-- --live` can be watched with `-- top`.
 
 #[cfg(test)]
 mod conformance;
 mod recording;
 mod replay;
 mod room;
+mod show;
 mod thermostat;
 
 use std::error::Error;
@@ -21,6 +23,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
+use fcc_live::PublisherOf;
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
@@ -30,6 +33,8 @@ use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
 const SECONDS: u64 = 8;
+/// How often the loop's messages are received: the greatest delay of a watcher.
+const LOOKS_A_SECOND: u32 = 20;
 
 /// Heats a simulated room for eight seconds.
 #[derive(Parser)]
@@ -37,6 +42,9 @@ struct Arguments {
     /// Record the run into this folder.
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
+    /// Publish the run for `thermostat top`.
+    #[arg(long)]
+    live: bool,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -49,6 +57,19 @@ enum Command {
         #[arg(required = true)]
         files: Vec<PathBuf>,
     },
+    /// Report on a recording.
+    Report {
+        /// The recording.
+        file: PathBuf,
+        /// Write a page with all plots.
+        #[arg(long, value_name = "PAGE")]
+        html: Option<PathBuf>,
+        /// Print JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Watch a run that was started with --live.
+    Top,
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -57,14 +78,25 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     match arguments.command {
         None => {
             let timer = TimerKind::Timerfd.build(PERIOD)?;
-            heat(timer, SECONDS, arguments.record.as_deref(), out)?;
-            Ok(ExitCode::SUCCESS)
+            let folder = arguments.record.as_deref();
+            heat(timer, SECONDS, folder, arguments.live, out)?;
         }
-        Some(Command::Replay { files }) => replay::replay(&files, out),
+        Some(Command::Replay { files }) => return replay::replay(&files, out),
+        Some(Command::Report { file, html, json }) => {
+            let report = show::report(&file, html.as_deref())?;
+            let text = if json {
+                serde_json::to_string_pretty(&report)?
+            } else {
+                report.to_text()
+            };
+            writeln!(out, "{text}")?;
+        }
+        Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
     }
+    Ok(ExitCode::SUCCESS)
 }
 
-/// Puts the parts together.
+/// Assembles the parts.
 fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     let thermometer = Thermometer {
         room_c: 12.0,
@@ -78,18 +110,21 @@ fn parts(timer: Box<dyn Timer>, heater: &Heater) -> Parts<Thermostat> {
     }
 }
 
-/// Heats for a while, reports it once a second, and records it if there is a
-/// folder to record into. Output that cannot be written ends nothing.
+/// Heats for some seconds, reports each second, and records if there is a
+/// folder. Output that cannot be written does not end it.
 fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
     folder: Option<&Path>,
+    live: bool,
     out: &mut dyn Write,
 ) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let mut recorder = folder
         .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
         .transpose()?;
+    let instance = show::instance()?;
+    let mut publisher = live.then(|| show::publish(&instance, &parts)).transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -100,12 +135,17 @@ fn heat(
     let (this, mut link) = Loop::new(parts, &config)?;
     let handle = this.spawn()?;
     for denied in &handle.granted().denied {
-        let _ = writeln!(out, "goes on without: {denied}");
+        let _ = writeln!(out, "continues without: {denied}");
     }
     link.commands.send(LoopCommand::Engage)?;
     for second in 1..=seconds {
-        thread::sleep(Duration::from_secs(1));
-        if let Some(record) = receive(&mut link, recorder.as_mut(), out) {
+        let mut last = None;
+        for _ in 0..LOOKS_A_SECOND {
+            thread::sleep(Duration::from_secs(1) / LOOKS_A_SECOND);
+            let newest = receive(&mut link, recorder.as_mut(), publisher.as_mut(), out);
+            last = newest.or(last);
+        }
+        if let Some(record) = last {
             let _ = writeln!(
                 out,
                 "{second:2} s  {}  room {:5.2} °C  heater {:4.0} W",
@@ -118,7 +158,12 @@ fn heat(
     link.commands.send(LoopCommand::Stop)?;
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
-    receive(&mut link, recorder.as_mut(), &mut io::sink());
+    receive(
+        &mut link,
+        recorder.as_mut(),
+        publisher.as_mut(),
+        &mut io::sink(),
+    );
     let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
@@ -133,6 +178,7 @@ fn heat(
 fn receive(
     link: &mut Link<Thermostat>,
     mut recorder: Option<&mut RecorderOf<Thermostat>>,
+    mut publisher: Option<&mut PublisherOf<Thermostat>>,
     out: &mut dyn Write,
 ) -> Option<RecordOf<Thermostat>> {
     let mut last = None;
@@ -140,12 +186,18 @@ fn receive(
         if let Some(recorder) = &mut recorder {
             recorder.take(&message);
         }
+        if let Some(publisher) = &mut publisher {
+            show::publish_message(publisher, &message);
+        }
         match message {
             Message::Tick(record) => last = Some(record),
             Message::Event(event) => {
                 let _ = writeln!(out, "{}", event.kind.description::<Thermostat>());
             }
         }
+    }
+    if let Some(publisher) = publisher {
+        publisher.flush();
     }
     last
 }
@@ -175,9 +227,10 @@ mod tests {
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
     use thermostat::Heating;
 
-    /// After one time constant a first-order room has come 1 - 1/e of the way.
+    /// After one time constant a first-order room has covered 1 - 1/e of the
+    /// difference.
     #[test]
-    fn the_room_is_the_textbooks() {
+    fn the_room_has_the_textbooks_time_constant() {
         let mut heater = Heater::default();
         Actuator::apply(&mut heater, &Tick::default(), &Heating { power: 0.5 }).unwrap();
         let mut thermometer = Thermometer {
@@ -192,10 +245,10 @@ mod tests {
         assert!((thermometer.room_c - (OUTSIDE_C + 20.0 * 0.632_120_558_8)).abs() < 1e-6);
     }
 
-    /// In the end the heater gives what the walls lose at the wanted
-    /// temperature: (20 - 2)/0.02 = 900 W.
+    /// Finally the heater gives what the walls lose at the wanted temperature:
+    /// (20 - 2)/0.02 = 900 W.
     #[test]
-    fn the_room_gets_as_warm_as_it_was_told() {
+    fn the_room_reaches_the_set_point() {
         let heater = Heater::default();
         let timer = Box::new(ManualTimer::new(PERIOD).unwrap());
         let (mut machine, mut link) =
@@ -217,13 +270,13 @@ mod tests {
         assert!(heater.power() <= 0.0, "the heater is still on");
     }
 
-    /// And is recorded to the last tick, even where nothing can be printed.
+    /// It is recorded to the last tick, even if nothing can be printed.
     #[test]
     fn it_runs_on_a_real_clock() {
         let folder = tempfile::tempdir().unwrap();
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
-        let report = heat(timer, 1, Some(folder.path()), &mut full).unwrap();
+        let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);

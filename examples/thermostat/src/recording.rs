@@ -52,7 +52,7 @@ pub(crate) fn start(
 /// Ends a recording.
 ///
 /// # Errors
-/// When a part of the run is missing from it.
+/// When a part of the run was not recorded.
 pub(crate) fn finish(
     recorder: RecorderOf<Thermostat>,
     ending: &str,
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use crate::replay::tests::{TICKS, record};
 
-    /// Every bit of a record, where a comparison of numbers takes -0 for 0.
+    /// The bits of a record: comparing numbers would treat -0 as 0.
     fn bits(record: &RecordOf<Thermostat>) -> Vec<u64> {
         const LEAVES: usize = <RecordOf<Thermostat> as Schema>::TYPE.leaves();
         let mut values = Values::<LEAVES>::default();
@@ -87,7 +87,7 @@ mod tests {
         values.as_slice().iter().map(|value| value.bits()).collect()
     }
 
-    /// What comes back from the file is what the loop produced.
+    /// The recording contains what the loop produced.
     #[test]
     fn a_recording_has_every_bit_of_every_tick() {
         let folder = tempfile::tempdir().unwrap();
@@ -117,7 +117,7 @@ mod tests {
                 (read, produced) => assert_eq!(read, produced),
             }
         }
-        // It is no recording of zeros: the second command is in it.
+        // It does not contain zeros only: the second command is in it.
         let heats = |message: &MessageOf<Thermostat>| {
             matches!(message, Message::Tick(record)
             if record.setpoints.room_c == 22.5 && record.outputs.power > 0.0)

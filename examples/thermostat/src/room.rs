@@ -7,19 +7,19 @@ use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault,
 
 use crate::thermostat::{Heating, Measured};
 
-/// How much faster time passes in the room than outside it: 1.8 s for an hour.
+/// How much faster time passes in the room: 1.8 s for an hour.
 pub(crate) const TIME_SCALE: f64 = 2_000.0;
-/// What the room's air, furniture and inner walls hold, J/K.
+/// Heat capacity of the room's air, furniture and inner walls, J/K.
 const HEAT_CAPACITY_J_PER_K: f64 = 360_000.0;
-/// What its walls resist, K/W: 50 W leave for each degree.
+/// Thermal resistance of its walls, K/W: 50 W are lost per degree.
 pub(crate) const RESISTANCE_K_PER_W: f64 = 0.02;
 pub(crate) const OUTSIDE_C: f64 = 2.0;
 pub(crate) const HEATER_W: f64 = 2_000.0;
 /// Time constant of the room, s: resistance times heat capacity.
 pub(crate) const TIME_CONSTANT_S: f64 = RESISTANCE_K_PER_W * HEAT_CAPACITY_J_PER_K;
 
-/// The heater, 0 off ..= 1 full. What the room feels is one atomic number, so
-/// that neither side ever waits for the other.
+/// The heater, 0 off ..= 1 full. Its power is an atomic number, so that neither
+/// side waits for the other.
 #[derive(Clone, Default)]
 pub(crate) struct Heater(Arc<AtomicU64>);
 
@@ -49,16 +49,17 @@ impl Actuator<Heating> for Heater {
     }
 }
 
-/// The thermometer, and the room around it.
+/// The thermometer and the room.
 pub(crate) struct Thermometer {
     pub(crate) room_c: f64,
     pub(crate) heater: Heater,
 }
 
 impl Thermometer {
-    /// Lets time pass. One lump of heat behind one resistance, `C dT/dt =
-    /// P - (T - T_outside)/R` (lumped capacitance; Incropera et al., Fundamentals
-    /// of Heat and Mass Transfer, 2007, section 5.1), solved for constant power.
+    /// Advances the time. One heat capacity behind one resistance,
+    /// `C dT/dt = P - (T - T_outside)/R` (lumped capacitance; Incropera et al.,
+    /// Fundamentals of Heat and Mass Transfer, 2007, section 5.1), solved for
+    /// constant power.
     pub(crate) fn pass(&mut self, seconds: f64) {
         let steady_c = OUTSIDE_C + RESISTANCE_K_PER_W * HEATER_W * self.heater.power();
         self.room_c = steady_c + (self.room_c - steady_c) * (-seconds / TIME_CONSTANT_S).exp();

@@ -1,4 +1,4 @@
-//! The controller: heats until the room is as warm as it was told.
+//! The controller: heats the room to its set point.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
 
 schema! {
-    /// What is measured of a room.
+    /// Measurements of a room.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Measured {
         /// Temperature of its air.
@@ -21,7 +21,7 @@ schema! {
 }
 
 schema! {
-    /// What is to become of a room.
+    /// Set points of a room.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Wanted {
         /// Temperature of its air.
@@ -31,7 +31,7 @@ schema! {
 }
 
 schema! {
-    /// What is done about it.
+    /// Outputs.
     #[derive(Clone, Copy, PartialEq, Debug, Default)]
     pub(crate) struct Heating {
         /// Power of the heater: 0 off, 1 full.
@@ -97,7 +97,7 @@ impl Controller for Thermostat {
     type Estimate = ();
     type Setpoints = Wanted;
     type Outputs = Heating;
-    /// Another temperature, °C.
+    /// Another set point, °C.
     type Command = f64;
 
     fn estimate(&mut self, _: &Tick, _: &Measured) {}

@@ -1,7 +1,7 @@
-"""Configurations of the daemon for aircraft of JSBSim's: one file for each, as `fccd` reads it.
+"""Configurations of the daemon for JSBSim's aircraft: one file for each, as `fccd` reads it.
 
-What is not in a file is as for a Cessna 172. `[autopilot.scale]` scales the one set of
-gains; most files need nothing else but the aircraft's speeds and the length of its legs.
+The defaults are for a Cessna 172. `[autopilot.scale]` scales the gains; most files need only that,
+the aircraft's speeds and the duration of its legs.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from ..pattern import TimedPattern
 
 
 def configuration(aircraft: str) -> str:
-    """Return the text of an aircraft's configuration; empty where there is no file for it."""
+    """Return the text of an aircraft's configuration; empty if there is no file for it."""
     file = resources.files(__name__) / f"{aircraft}.toml"
     return file.read_text(encoding="utf-8") if file.is_file() else ""
 
 
 def value_of(text: str, key: str, default: float) -> float:
-    """Return the number at a dotted key of a configuration, or `default` if it is not there."""
+    """Return the number at a dotted key of a configuration, or `default` if it is missing."""
     node: object = _parsed(text)
     for part in key.split("."):
         if not isinstance(node, Mapping) or part not in node:
@@ -52,7 +52,7 @@ def with_values(text: str, values: Mapping[str, float | str]) -> str:
 
 
 def pattern_of(text: str) -> TimedPattern:
-    """Return the timed pattern that a configuration asks for."""
+    """Return the timed pattern of a configuration."""
     default = TimedPattern()
     return TimedPattern(
         hold_s=value_of(text, "guidance.hold_s", default.hold_s),

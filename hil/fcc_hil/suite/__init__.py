@@ -1,7 +1,7 @@
-"""The flight suite: many aircraft, weathers and beginnings, each held to stated limits.
+"""The flight suite: many aircraft, conditions and initial states, each checked against limits.
 
-`matrix` says what is flown, `limits` what is asked of it, `flying` flies it in parallel
-processes, `report` and `picture` show it.
+`matrix` defines the flights, `limits` and `limit_table` the limits, `flying` flies them in parallel
+processes, `report` and `picture` show the results.
 """
 
 from .flying import Outcome, fly_all, fly_case

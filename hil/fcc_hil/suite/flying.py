@@ -1,4 +1,4 @@
-"""Fly the suite's cases in parallel processes and judge them."""
+"""Flies the suite's cases in parallel processes and judges them."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ from .matrix import Case
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a case went."""
+    """The result of a case."""
 
     case: Case
     figures: dict[str, float | None]
     """By the names in `limits.UNITS`."""
     score: Score | None
-    """None where the flight ended before its legs did."""
+    """None if the flight ended before its legs did."""
     broken: tuple[str, ...]
-    """Limits that the flight broke, in words; the reason where it could not be flown."""
+    """Limits exceeded, as text; or the reason why the case could not be flown."""
     digest: str
-    """Of every bit of what was flown: equal for equal flights."""
+    """Of every bit of the flight: equal for equal flights."""
     simulated_s: float
     cpu_s: float
-    """Processor time of flying and scoring, trimming included."""
+    """Processor time of flying and scoring, including trimming."""
 
     def document(self) -> dict[str, Any]:
-        """Return what JSON takes."""
+        """Return it for JSON."""
         return {
             "name": self.case.name,
             "group": self.case.group,
@@ -58,7 +58,7 @@ class Outcome:
 
 
 def fly_case(case: Case) -> Outcome:
-    """Fly one case and judge it. What cannot be flown is an outcome too, not an exception."""
+    """Fly one case and judge it. If it cannot be flown, that is an outcome, not an exception."""
     began_s = time.process_time()
     try:
         flights = [_fly(case, seed) for seed in case.seeds]
@@ -83,14 +83,14 @@ def fly_case(case: Case) -> Outcome:
 def fly_all(cases: Sequence[Case], workers: int | None = None) -> Iterator[Outcome]:
     """Fly cases in `workers` processes (one for each processor by default).
 
-    Yields each outcome as it comes, in no certain order. Each flight depends on its case
-    alone, so the number of processes changes no bit of it.
+    Yields each outcome when it is done, in any order. Each flight depends only on its case, so the
+    number of processes does not change it.
     """
     workers = workers or os.cpu_count() or 1
     if workers == 1:
         yield from map(fly_case, cases)
         return
-    # Forked children would inherit the threads' locks of whoever calls.
+    # Forked children would inherit the locks of the caller's threads.
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         # The longest first, so that no process is left with one at the end.
         flights = [pool.submit(fly_case, case) for case in sorted(cases, key=_duration_s)[::-1]]
@@ -131,7 +131,7 @@ def _figures(scenario: Scenario, flights: Sequence[tuple[Score, Truth]]) -> dict
 
 
 def _turned_back_deg(scenario: Scenario, truth: Truth) -> float:
-    """Return how far the heading ever goes back on the turns' direction, once they began."""
+    """Return how far the heading goes back against the direction of the turns, once they began."""
     time_s = truth["time_s"] - truth["time_s"][0]
     turned_deg = np.degrees(np.unwrap(np.radians(truth["heading_deg"])))
     turning = (
@@ -141,7 +141,7 @@ def _turned_back_deg(scenario: Scenario, truth: Truth) -> float:
 
 
 def _hold(scenario: Scenario, truth: Truth) -> LegScore:
-    """Score the hold before the first leg, by its end: what was captured, kept."""
+    """Score the end of the hold before the first leg."""
     start_s = float(truth["time_s"][0])
     captured = truth.captured_at(start_s)
     leg = Leg(

@@ -1,9 +1,8 @@
-"""What is asked of a flight: the largest that each of its figures may be.
+"""Limits of a flight: the largest permitted value of each figure.
 
-The two Cessnas with noise and a delay of 25 ms are held to the figures of a first
-controller, which they have to beat in every column. The others are held to what was
-measured on the seeds flown here and a margin of about a third: a figure beyond it says
-that something changed.
+The two Cessnas with noise and a delay of 25 ms must be better than an earlier controller in every
+column. The limits of the others are the values measured on the seeds flown here plus a margin of
+about a third: exceeding one shows that something changed.
 """
 
 from __future__ import annotations
@@ -33,25 +32,25 @@ UNITS = MappingProxyType(
         "hold_altitude_error_ft": "ft",
     }
 )
-"""Every figure that can be limited. The first nine are the worst over the legs."""
+"""Every figure that can have a limit. The first nine are the worst over the legs."""
 
 
 def limits(**figures: float) -> Limits:
-    """Return limits; raises ValueError for a figure that there is not."""
+    """Return limits; raise ValueError for an unknown figure."""
     for name in figures:
         if name not in UNITS:
             raise ValueError(f"no figure '{name}'; there are: {', '.join(UNITS)}")
-    # A plain dictionary: it travels to the processes that fly.
+    # A plain dictionary, because it is sent to the flying processes.
     return figures
 
 
 def broken(figures: Mapping[str, Any], asked: Limits) -> list[str]:
-    """Return in words each limit that the figures break; a figure that is None breaks its own."""
+    """Describe each exceeded limit; a figure that is None exceeds its limit."""
     words = []
     for name, most in asked.items():
         value = figures[name]
         if value is None:
             words.append(f"{name}: some leg never settles; the limit is {most:g} {UNITS[name]}")
-        elif not value <= most:  # NaN is beyond every limit
-            words.append(f"{name}: {value:.3g} is beyond {most:g} {UNITS[name]}")
+        elif not value <= most:  # NaN exceeds every limit
+            words.append(f"{name}: {value:.3g} exceeds {most:g} {UNITS[name]}")
     return words

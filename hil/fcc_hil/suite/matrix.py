@@ -1,20 +1,20 @@
-"""What the suite flies: the matrix of aircraft, weathers, sensors and beginnings."""
+"""The suite's flights: the matrix of aircraft, conditions, sensors and initial states."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from ..beginning import Beginning
 from ..configurations import configuration, pattern_of, with_values
+from ..initial_state import InitialState
 from ..lockstep import Scenario
 from ..peer import PEER_AIRCRAFT
 from ..plant import Weather
-from .asked import ROUGH, SMOOTH, TAKEN_OVER, late
+from .limit_table import ROUGH, SMOOTH, TAKEN_OVER, late
 from .limits import Limits, limits
 
 SEEDS = (4101, 4102, 4103, 4104, 4105)
-"""No gain was found on one of these."""
+"""None of these was used for tuning."""
 
 CESSNAS = ("c172p", "c172x")
 LIGHT = (*CESSNAS, "c172r", "J3Cub")
@@ -31,11 +31,11 @@ _NARROW_BANK_DEG = 20.0
 
 @dataclass(frozen=True)
 class Case:
-    """A scenario, flown once for each seed, and what is asked of it."""
+    """A scenario, flown once for each seed, and its limits."""
 
     name: str
     group: str
-    """Cases of one group stand together in the table."""
+    """Cases of one group are together in the table."""
     scenario: Scenario
     limits: Limits
     seeds: tuple[int, ...] = SEEDS[:1]
@@ -43,16 +43,16 @@ class Case:
     is_peer: bool = False
     """Flown by JSBSim's own autopilot."""
     is_quick: bool = False
-    """Among those that are flown as a test."""
+    """Whether it is flown as a test."""
 
 
 def cases() -> list[Case]:
     """Return all cases, in the order of the table."""
-    return [_peer(), *_aircraft(), *_beginnings(), *_narrow_bank()]
+    return [_peer(), *_aircraft(), *_initial_states(), *_narrow_bank()]
 
 
 def scenario_of(aircraft: str) -> Scenario:
-    """Return an aircraft's calm flight with its own configuration and its own legs."""
+    """Return an aircraft's calm flight with its own configuration and legs."""
     config = configuration(aircraft)
     return Scenario(
         aircraft=aircraft,
@@ -105,15 +105,17 @@ def _aircraft() -> Iterator[Case]:
             )
 
 
-def _beginnings() -> Iterator[Case]:
-    """Return cases in which the autopilot takes over in another state than trimmed flight."""
-    taken = [(aircraft, beginning) for aircraft in CESSNAS for beginning in Beginning]
-    turning = (Beginning.IN_A_TURN, Beginning.IN_A_CLIMB)
-    taken += [(aircraft, beginning) for aircraft in ("OV10", "737") for beginning in turning]
-    for aircraft, beginning in taken:
-        if beginning is Beginning.TRIMMED:
+def _initial_states() -> Iterator[Case]:
+    """Return cases in which the autopilot engages in another state than trimmed flight."""
+    taken = [(aircraft, initial_state) for aircraft in CESSNAS for initial_state in InitialState]
+    turning = (InitialState.IN_A_TURN, InitialState.IN_A_CLIMB)
+    taken += [
+        (aircraft, initial_state) for aircraft in ("OV10", "737") for initial_state in turning
+    ]
+    for aircraft, initial_state in taken:
+        if initial_state is InitialState.TRIMMED:
             continue
-        # Legs are asked of the trimmed airspeed; here another one is captured.
+        # Legs refer to the trimmed airspeed; here another one is captured.
         asked = limits(
             unsettled_share=0.0,
             mean_altitude_rms_ft=TAKEN_OVER[aircraft],
@@ -123,9 +125,9 @@ def _beginnings() -> Iterator[Case]:
             lateral_acceleration_g=0.15,
         )
         yield Case(
-            f"{aircraft}: engaged {beginning.value}",
-            "beginnings",
-            replace(scenario_of(aircraft), legs=2, beginning=beginning),
+            f"{aircraft}: engaged {initial_state.value}",
+            "initial states",
+            replace(scenario_of(aircraft), legs=2, initial_state=initial_state),
             asked,
             is_quick=aircraft == "c172p",
         )
@@ -134,13 +136,13 @@ def _beginnings() -> Iterator[Case]:
 def _narrow_bank() -> Iterator[Case]:
     """At 20 degrees of bank a turn cannot be finished in its leg.
 
-    What is left piles up past half a circle, where the shorter way is the wrong one.
+    Unfinished turns accumulate past half a circle, where the shorter way is the wrong one.
     """
     for aircraft in CESSNAS:
         plain = scenario_of(aircraft)
         config = with_values(plain.config, {"autopilot.envelope.max_bank_deg": _NARROW_BANK_DEG})
         yield Case(
-            f"{aircraft}: bank limit {_NARROW_BANK_DEG:.0f}°, turns pile up",
+            f"{aircraft}: bank limit {_NARROW_BANK_DEG:.0f}°, turns accumulate",
             "narrow bank",
             replace(plain, config=config, legs=12),
             limits(turned_back_deg=1.0, largest_bank_deg=23.0, mean_altitude_rms_ft=2.0),

@@ -1,4 +1,4 @@
-"""The suite as a picture: every case's worst leg beside its limit and the peer's."""
+"""The suite as a picture: every case's worst leg, its limit and the peer's."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ _COLUMNS = (
     ("turn_loss_ft", "height lost, ft", 0.05),
     ("airspeed_error_kt", "airspeed, kt", 0.1),
 )
-"""Figure, title, and what is too little to tell apart."""
+"""Figure, title, and the smallest difference shown."""
 _FLOWN, _BAD, _LIMIT, _PEER, _GRID = "#1f4e79", "#c0504d", "#c0504d", "#7f7f7f", "#dddddd"
 _ROW_INCH = 0.17
 
 
 def draw(path: Path, outcomes: Sequence[Outcome]) -> None:
-    """Write a picture of outcomes, as PNG, SVG or whatever the file's name ends with."""
+    """Write a picture of outcomes, as PNG, SVG or another format by the file's extension."""
     peer = next((outcome for outcome in outcomes if outcome.case.is_peer), None)
     shown = [outcome for outcome in outcomes if outcome.figures and not outcome.case.is_peer]
     if not shown:
-        raise ValueError("no flight to draw: none came to its end")
+        raise ValueError("no flight to draw: none was completed")
     height = 1.2 + _ROW_INCH * len(shown)
     figure, columns = plt.subplots(
         1, len(_COLUMNS), figsize=(13, height), sharey=True, layout="constrained"

@@ -1,4 +1,4 @@
-"""The suite's outcomes as a table for people and as JSON."""
+"""The suite's outcomes as a table and as JSON."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .speed import Speed
 
 
 def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
-    """Return the table, mean/worst over the legs, then every limit that was broken."""
+    """Return the table, mean/worst over the legs, then every exceeded limit."""
     flown = [(_title(outcome), outcome.score) for outcome in outcomes]
     parts = [table([(title, figures) for title, figures in flown if figures is not None])]
     parts += [part for part in (_asked(outcomes), _further(outcomes)) if part]
@@ -21,14 +21,14 @@ def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
     for outcome in bad:
         parts.append("\n".join([f"{outcome.case.name}:", *(f"    {it}" for it in outcome.broken)]))
     if bad:
-        parts.append(f"{len(bad)} of {len(outcomes)} cases break a limit")
+        parts.append(f"{len(bad)} of {len(outcomes)} cases exceed a limit")
     else:
         parts.append(f"all {len(outcomes)} cases are within their limits")
     return "\n\n".join(parts)
 
 
 def document(outcomes: Iterable[Outcome], speed: Speed | None = None) -> dict[str, Any]:
-    """Return what JSON takes."""
+    """Return it for JSON."""
     return {
         "cases": [outcome.document() for outcome in outcomes],
         "speed": speed.document() if speed else None,
@@ -57,7 +57,7 @@ def _asked(outcomes: Sequence[Outcome]) -> str:
 
 
 def _further(outcomes: Sequence[Outcome]) -> str:
-    """Return what the table of legs does not say, for the cases that are asked for it."""
+    """Return the figures that are not in the table of legs, for the cases with limits on them."""
     rows = []
     for outcome in outcomes:
         figures = outcome.figures

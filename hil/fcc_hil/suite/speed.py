@@ -1,4 +1,4 @@
-"""How fast a flight in lockstep goes, and how much of the time is whose."""
+"""The speed of a flight in lockstep, and how the time is spent."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class Speed:
 
     simulated_s: float
     whole_s: float
-    """Flown, with trimming and scoring."""
+    """The whole flight, with trimming and scoring."""
     jsbsim_s: float
-    """The same steps of JSBSim with nobody at the controls."""
+    """The same steps of JSBSim without a pilot."""
     properties_s: float
-    """Its state read at every tick."""
+    """Reading its state in every tick."""
     autopilot_s: float
-    """The autopilot's own steps, called from Python."""
+    """The autopilot's steps, called from Python."""
 
     @property
     def times_real_time(self) -> float:
-        """Simulated seconds to a second of processor time."""
+        """Simulated seconds per second of processor time."""
         return self.simulated_s / self.whole_s
 
     def words(self) -> str:
-        """Return it for people."""
+        """Return it as text."""
         rest_s = self.whole_s - self.jsbsim_s - self.properties_s - self.autopilot_s
         return (
             f"{self.times_real_time:.0f} times real time with JSBSim on one processor: "
@@ -48,7 +48,7 @@ class Speed:
         )
 
     def document(self) -> dict[str, float]:
-        """Return what JSON takes."""
+        """Return it for JSON."""
         return {**asdict(self), "times_real_time": self.times_real_time}
 
 
@@ -75,7 +75,7 @@ def _best(work: Callable[[], object]) -> float:
 
 
 def _of_jsbsim(aircraft: str, ticks: int) -> float:
-    # Nobody is at the controls, so each round begins anew, in trim.
+    # Without a pilot each round starts again in trim.
     plants = [Plant(aircraft) for _ in range(_ROUNDS)]
     return _best(lambda: plants.pop().step(ticks * STEPS_PER_ROW))
 

@@ -1,11 +1,11 @@
-"""Find gains for an aircraft: flights in parallel, a stated cost, a configuration at the end.
+"""Finds gains for an aircraft: parallel flights, a cost, and a configuration as the result.
 
-`identify` measures how strongly the aircraft answers its controls, `search` begins there
-and looks around, `cost` says what a flight is worth, `workers` fly.
+`identify` measures the aircraft's response to its controls, `search` starts from there, `cost`
+rates a flight, `workers` fly.
 """
 
 from .cost import COSTS, Cost, cost_of
-from .search import SCALE_KEYS, Found, Order, tune
+from .search import SCALE_KEYS, Found, Task, tune
 from .workers import local_workers, on_dask
 
 __all__ = [
@@ -13,7 +13,7 @@ __all__ = [
     "SCALE_KEYS",
     "Cost",
     "Found",
-    "Order",
+    "Task",
     "cost_of",
     "local_workers",
     "on_dask",

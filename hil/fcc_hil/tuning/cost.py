@@ -1,10 +1,9 @@
-"""What a flight is worth: a weighted sum of its figures, each against what is good.
+"""The cost of a flight: a weighted sum of its figures, each relative to a good value.
 
-A figure counts as two parts its mean over the legs and one part the worst leg, divided by
-what is good for a light aircraft; the times to settle by the length of the leg, twice that
-where a leg never settles. Movement is how far elevator, aileron and rudder move in a second,
-against 0.5 of their range: without it, the search buys a little accuracy with surfaces that
-shake.
+A figure counts as two parts its mean over the legs and one part the worst leg, divided by a good
+value for a light aircraft; the times to settle by the duration of the leg, twice that if a leg
+never settles. Movement is the travel of elevator, aileron and rudder per second, relative to 0.5 of
+their range: without it, the search gains a little accuracy at the price of oscillating surfaces.
 """
 
 from __future__ import annotations
@@ -36,20 +35,20 @@ _GOOD_MOVEMENT_PER_S = 0.5
 _SURFACES = ("elevator", "aileron", "rudder")
 
 NOT_FLOWN = 1_000.0
-"""What a flight costs that does not come to its end, or cannot be begun."""
+"""The cost of a flight that is not completed, or cannot be started."""
 
 Weights = Mapping[str, float]
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Weights of the figures; a figure that is not named does not count."""
+    """Weights of the figures; a figure without a weight does not count."""
 
     name: str
     weights: Weights
 
 
-# Plain dictionaries: they travel to the processes that fly.
+# Plain dictionaries, because they are sent to the flying processes.
 _EVEN: Weights = dict.fromkeys((*_SETTLING, *_GOOD, _MOVEMENT), 1.0)
 
 COSTS = MappingProxyType(
@@ -63,9 +62,9 @@ COSTS = MappingProxyType(
 
 
 def cost_of(text: str) -> Cost:
-    """Return a cost by its name in COSTS, or made of weights, as in `altitude_rms_ft=2,movement=1`.
+    """Return a cost by its name in COSTS, or from weights, as in `altitude_rms_ft=2,movement=1`.
 
-    Raises ValueError with the names that there are.
+    Raises ValueError with the known names.
     """
     if text in COSTS:
         return COSTS[text]
@@ -89,7 +88,7 @@ def cost_of(text: str) -> Cost:
 
 
 def flight_cost(scenario: Scenario, weights: Weights) -> float:
-    """Fly a scenario; return what the flight costs. A flight that fails costs NOT_FLOWN."""
+    """Fly a scenario; return its cost. A flight that fails costs NOT_FLOWN."""
     try:
         flown, truth = fly(scenario)
     except (ValueError, RuntimeError, ArithmeticError):

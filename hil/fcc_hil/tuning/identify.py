@@ -1,7 +1,7 @@
-"""How strongly an aircraft answers its controls, measured in small steps from trim.
+"""An aircraft's response to its controls, measured in small steps from trim.
 
-An aircraft that answers half as much as the Cessna 172 on which the gains were found
-needs gains twice as large: `[autopilot.scale]`, to begin with.
+An aircraft that responds half as much as the Cessna 172 on which the gains were tuned needs gains
+twice as large: `[autopilot.scale]`, as a first guess.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ _THROTTLE_STEP = 0.1
 _SURFACE_S = 0.6
 _THROTTLE_S = 4.0
 _LEAST, _MOST = 0.05, 20.0
-"""A scale beyond these is a surface that does nothing, and is left at the bound."""
+"""A scale beyond these means a surface without effect; the limit is used."""
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What one unit of each control does within a moment, at the trimmed airspeed."""
+    """The effect of one unit of each control after a short time, at the trimmed airspeed."""
 
     pitch_radps: float
     roll_radps: float
@@ -34,7 +34,7 @@ class Answer:
 
 
 def answer(aircraft: str) -> Answer:
-    """Measure an aircraft's answers. Raises ValueError and `TrimError` as `Plant` does."""
+    """Measure an aircraft's responses. Raises ValueError and `TrimError` as `Plant` does."""
     return Answer(
         pitch_radps=_change(aircraft, Controls(elevator=_SURFACE_STEP), _SURFACE_S).pitch_rate_radps
         / _SURFACE_STEP,
@@ -51,7 +51,7 @@ def answer(aircraft: str) -> Answer:
 
 
 def _change(aircraft: str, step: Controls, seconds: float) -> State:
-    """Return what a step of a control changes against the same flight without it."""
+    """Return the change by a step of a control relative to the same flight without it."""
     plain, moved = _after(aircraft, Controls(), seconds), _after(aircraft, step, seconds)
     return replace(
         moved,
@@ -64,7 +64,7 @@ def _change(aircraft: str, step: Controls, seconds: float) -> State:
 
 def _after(aircraft: str, step: Controls, seconds: float) -> State:
     plant = Plant(aircraft)
-    # Down where there is no room above.
+    # Downwards if there is no margin upwards.
     up = plant.trim.throttle + step.throttle <= 1.0
     throttle = plant.trim.throttle + (step.throttle if up else -step.throttle)
     plant.write(replace(step, throttle=throttle))
@@ -74,10 +74,10 @@ def _after(aircraft: str, step: Controls, seconds: float) -> State:
 
 
 def first_guess(aircraft: str, config: str = "") -> str:
-    """Return a configuration with the scale that an aircraft's answers ask for.
+    """Return a configuration with the scale that follows from an aircraft's responses.
 
-    Gains follow airspeed by themselves, so answers are compared at each aircraft's own
-    reference airspeed, which is set to the trimmed one.
+    Gains follow airspeed, so responses are compared at each aircraft's own reference airspeed,
+    which is set to the trimmed one.
     """
     reference, ours = answer(REFERENCE), answer(aircraft)
     return with_values(

@@ -1,8 +1,8 @@
 """Search for gains: CMA-ES (Hansen 2016) over the logarithm of each.
 
-A gain half as large is as far from right as one twice as large, and gains that hang
-together are found together. Every candidate flies the same seeds, so candidates differ by
-their gains alone; the search itself is seeded, so the same order finds the same gains.
+Half a gain is as far off as twice the gain, and gains that depend on each other are found together.
+Every candidate flies the same seeds, so candidates differ only by their gains; the search itself is
+seeded, so the same task finds the same gains.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .workers import Flight, FlyAll
 SCALE_KEYS = tuple(
     f"autopilot.scale.{name}" for name in ("elevator", "aileron", "rudder", "throttle", "pace")
 )
-"""What is searched unless told otherwise: the scale of the one set of gains."""
+"""Searched by default: the scale of the gains."""
 
 _FIRST_STEP = 0.25
 """One sigma of the first candidates, in the logarithm: a quarter more or less."""
@@ -31,12 +31,12 @@ _DIGITS = 4
 
 
 @dataclass(frozen=True)
-class Order:
-    """What to search for."""
+class Task:
+    """A search."""
 
     aircraft: str
     config: str | None = None
-    """Where to begin; by default the aircraft's own, and stock gains where it has none."""
+    """The initial configuration; by default the aircraft's own, or stock gains."""
     keys: Sequence[str] = SCALE_KEYS
     """Numbers of the configuration to search, by dotted key, each above 0."""
     cost: Cost = field(default_factory=lambda: COSTS["even"])
@@ -50,80 +50,80 @@ class Order:
 
 @dataclass(frozen=True)
 class Found:
-    """The best that was found."""
+    """The best configuration found."""
 
     config: str
     before: float
-    """Cost of the configuration as it was given; means over the seeds."""
+    """Cost of the given configuration; means over the seeds."""
     guessed: float
-    """Cost of the first guess from the measured answers."""
+    """Cost of the first guess from the measured responses."""
     after: float
     values: dict[str, float]
     evaluations: int
 
 
-Say = Callable[[int, float], None]
-"""Is told after each round how many candidates were flown, and the least cost so far."""
+Notify = Callable[[int, float], None]
+"""Called after each round with the number of candidates flown and the lowest cost so far."""
 
 
-def tune(order: Order, fly_all: FlyAll, say: Say = lambda _flown, _least: None) -> Found:
-    """Search; returns the best configuration, which is never worse than the given one.
+def tune(task: Task, fly_all: FlyAll, notify: Notify = lambda _flown, _least: None) -> Found:
+    """Search; return the best configuration, which is never worse than the given one.
 
-    Raises ValueError for an order that cannot be carried out.
+    Raises ValueError for an invalid task.
     """
-    _check(order)
+    _check(task)
     import cma  # noqa: PLC0415 - the extra `tune`
 
-    given = order.config if order.config is not None else configuration(order.aircraft)
+    given = task.config if task.config is not None else configuration(task.aircraft)
     is_scaled = any(value_of(given, key, 0.0) for key in SCALE_KEYS)
-    begun = given if is_scaled else first_guess(order.aircraft, given)
-    begun = with_values(begun, {key: _start(begun, key) for key in order.keys})
-    start = np.log([value_of(begun, key, 1.0) for key in order.keys])
+    begun = given if is_scaled else first_guess(task.aircraft, given)
+    begun = with_values(begun, {key: _start(begun, key) for key in task.keys})
+    start = np.log([value_of(begun, key, 1.0) for key in task.keys])
 
-    before, guessed = _costs(order, [given, begun], fly_all)
+    before, guessed = _costs(task, [given, begun], fly_all)
     least, best = min((before, given), (guessed, begun))
     flown = 2
     search = cma.CMAEvolutionStrategy(
-        start, _FIRST_STEP, {"seed": 1, "verbose": -9, "maxfevals": order.evaluations}
+        start, _FIRST_STEP, {"seed": 1, "verbose": -9, "maxfevals": task.evaluations}
     )
-    while flown < order.evaluations and not search.stop():
+    while flown < task.evaluations and not search.stop():
         points = search.ask()
-        configs = [with_values(begun, _values(order.keys, point)) for point in points]
-        costs = _costs(order, configs, fly_all)
+        configs = [with_values(begun, _values(task.keys, point)) for point in points]
+        costs = _costs(task, configs, fly_all)
         search.tell(points, costs)
         flown += len(points)
         least, best = min((least, best), *zip(costs, configs, strict=True))
-        say(flown, least)
+        notify(flown, least)
     return Found(
         config=_complete(best),
         before=before,
         guessed=guessed,
         after=least,
-        values={key: value_of(best, key, math.nan) for key in order.keys},
+        values={key: value_of(best, key, math.nan) for key in task.keys},
         evaluations=flown,
     )
 
 
-def scenarios(order: Order, config: str) -> list[Scenario]:
+def scenarios(task: Task, config: str) -> list[Scenario]:
     """Return the flights of one candidate: noisy sensors, 25 ms late, one for each seed."""
     one = Scenario(
-        aircraft=order.aircraft,
-        legs=order.legs,
+        aircraft=task.aircraft,
+        legs=task.legs,
         noise=True,
         delay_ticks=1,
-        weather=Weather(turbulence_severity=order.turbulence),
+        weather=Weather(turbulence_severity=task.turbulence),
         pattern=pattern_of(config),
         config=config,
     )
-    return [replace(one, seed=seed) for seed in order.seeds]
+    return [replace(one, seed=seed) for seed in task.seeds]
 
 
-def _check(order: Order) -> None:
-    if not order.seeds:
+def _check(task: Task) -> None:
+    if not task.seeds:
         raise ValueError("no seeds: give at least one")
-    if order.evaluations < 3:
-        raise ValueError(f"{order.evaluations} evaluations: give at least 3")
-    if not order.keys:
+    if task.evaluations < 3:
+        raise ValueError(f"{task.evaluations} evaluations: give at least 3")
+    if not task.keys:
         raise ValueError("nothing to search: give at least one key")
     try:
         import cma  # noqa: F401, PLC0415 - the extra `tune`
@@ -135,7 +135,7 @@ def _start(config: str, key: str) -> float:
     value = value_of(config, key, 1.0 if key in SCALE_KEYS else 0.0)
     if value <= 0.0:
         raise ValueError(
-            f"{key}: the search begins at a number above 0: put one into the configuration"
+            f"{key}: the search needs an initial value above 0: put one into the configuration"
         )
     return value
 
@@ -144,20 +144,20 @@ def _values(keys: Sequence[str], point: Sequence[float]) -> dict[str, float]:
     return {key: float(f"{math.exp(x):.{_DIGITS}g}") for key, x in zip(keys, point, strict=True)}
 
 
-def _costs(order: Order, configs: Sequence[str], fly_all: FlyAll) -> list[float]:
+def _costs(task: Task, configs: Sequence[str], fly_all: FlyAll) -> list[float]:
     """Return each configuration's mean cost over the seeds."""
     flights = [
-        Flight(scenario, order.cost.weights)
+        Flight(scenario, task.cost.weights)
         for config in configs
-        for scenario in scenarios(order, config)
+        for scenario in scenarios(task, config)
     ]
     costs = list(fly_all(flights))
-    each = len(order.seeds)
+    each = len(task.seeds)
     return [sum(costs[i : i + each]) / each for i in range(0, len(costs), each)]
 
 
 def _complete(config: str) -> str:
-    """Return a configuration that the daemon takes: with the section of what is flown."""
+    """Return a configuration that the daemon accepts: with an aircraft's section."""
     sections = ("[x-plane]", "[built-in]")
     if any(section in config for section in sections):
         return config

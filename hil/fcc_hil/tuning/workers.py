@@ -1,6 +1,6 @@
-"""Who flies: processes of this machine, or a Dask cluster by its address.
+"""Flies in processes of this machine, or on a Dask cluster.
 
-Both take the same flights and return the same costs in the same order.
+Both fly the same flights and return the same costs in the same order.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from .cost import flight_cost
 
 @dataclass(frozen=True)
 class Flight:
-    """One flight to be flown somewhere."""
+    """A flight to be flown by a worker."""
 
     scenario: Scenario
     weights: Mapping[str, float]
 
 
 FlyAll = Callable[[Sequence[Flight]], Iterator[float]]
-"""Flies all, and yields their costs in their order."""
+"""Flies all, and yields their costs in order."""
 
 
 def _cost(flight: Flight) -> float:
@@ -34,7 +34,7 @@ def _cost(flight: Flight) -> float:
 
 @contextmanager
 def local_workers(count: int | None = None) -> Iterator[FlyAll]:
-    """Give processes of this machine, one for each processor by default."""
+    """Yield processes of this machine, by default one for each processor."""
     count = count or os.cpu_count() or 1
     if count == 1:
         yield lambda flights: map(_cost, flights)
@@ -45,15 +45,15 @@ def local_workers(count: int | None = None) -> Iterator[FlyAll]:
 
 @contextmanager
 def on_dask(address: str, timeout_s: float = 10.0) -> Iterator[FlyAll]:
-    """Give the workers of a Dask cluster, which need this package and `fcc` too.
+    """Yield the workers of a Dask cluster, which also need this package and `fcc`.
 
-    Raises ValueError where Dask is not installed or nobody answers at the address.
+    Raises ValueError if Dask is not installed or there is no answer at the address.
     """
     try:
         from distributed import Client  # noqa: PLC0415 - only where it is asked for
     except ImportError:
         raise ValueError(
-            "Dask is not installed: pip install 'fcc-hil[dask]', or leave --dask away"
+            "Dask is not installed: pip install 'fcc-hil[dask]', or omit --dask"
         ) from None
     try:
         client = Client(address, timeout=timeout_s)
@@ -62,7 +62,7 @@ def on_dask(address: str, timeout_s: float = 10.0) -> Iterator[FlyAll]:
             f"no Dask scheduler at {address}: {error}; start one with `dask scheduler`"
         ) from None
     try:
-        # The same flight costs the same, but nobody is to remember flights.
+        # The same flight has the same cost, but results must not be cached.
         yield lambda flights: iter(client.gather(client.map(_cost, flights, pure=False)))
     finally:
         client.close()

@@ -1,7 +1,7 @@
-//! Counts what a tick asks of the kernel and what memory it touches: the loop
-//! of the benchmark under `strace`, and then under valgrind's `lackey`, with
-//! marks around each tick. The counts are the same on every run but for where
-//! the memory happens to lie.
+//! Counts the system calls of a tick and the memory it touches: the loop of the
+//! benchmark under `strace`, and then under valgrind's `lackey`, with marks
+//! around each tick. The counts are the same on every run, except for the
+//! addresses of memory.
 #![allow(clippy::print_stdout, reason = "a program")]
 
 use std::collections::{BTreeMap, HashSet};
@@ -15,9 +15,9 @@ use clap::Parser;
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// What a cache holds or does not, bytes: all of our boards have these.
+/// Size of a cache line, bytes: the same on all our boards.
 const CACHE_LINE: u64 = 64;
-/// What the flight says before it begins, in the stream of the trace.
+/// Printed by the flight before it begins, in the stream of the trace.
 const MARKS_AT: &str = "marks at ";
 /// What `strace` prints when a mark is passed.
 const MARK: &str = "getppid()";
@@ -28,7 +28,7 @@ struct Cli {
     /// How many ticks are counted
     #[arg(long, default_value_t = 40)]
     ticks: u32,
-    /// Fly and pass the marks: what the tracers run
+    /// Fly and pass the marks: run by the tracers
     #[arg(long, hide = true)]
     fly: bool,
 }
@@ -71,7 +71,7 @@ fn fly(ticks: u32) {
     let mut flight = Flight::engaged();
     let (begin, end) = (marks::begin as *const (), marks::end as *const ());
     let words = format!("{MARKS_AT}{:x} {:x}\n", begin.addr(), end.addr());
-    // At one go, or lines of the trace get between.
+    // In one write, or lines of the trace could get between.
     let _ = std::io::stderr().write_all(words.as_bytes());
     for _ in 0..ticks {
         flight.frame();
@@ -124,8 +124,9 @@ struct Memory {
     code_lines: u64,
 }
 
-/// What the instructions between the marks touch. `lackey` writes a line for
-/// each: `I  address,size`, and ` L`, ` S` or ` M` for load, store or both.
+/// The memory accesses of the instructions between the marks. `lackey` writes a
+/// line for each: `I  address,size`, and ` L`, ` S` or ` M` for load, store or
+/// both.
 fn memory(ticks: u32) -> Outcome<Memory> {
     let mut child = Command::new("valgrind")
         .args(["--tool=lackey", "--trace-mem=yes", "--log-fd=2"])
@@ -180,7 +181,7 @@ fn memory(ticks: u32) -> Outcome<Memory> {
     Ok(sum)
 }
 
-/// Where the two marks are, in hexadecimal.
+/// The addresses of the two marks, in hexadecimal.
 fn addresses(words: &str) -> Option<(u64, u64)> {
     let (begin, end) = words.split_once(' ')?;
     let number = |word: &str| u64::from_str_radix(word, 16).ok();

@@ -1,8 +1,8 @@
 //! The loop of copper: its generated runtime at a rate target, with one task
-//! that logs when it ran, and its own logging off.
+//! that logs its times, and its own logging off.
 //!
-//! The task's type has to be known to the runtime that a macro generates, so
-//! the log is handed to it by a static.
+//! The runtime that a macro generates needs the task's type, so the log is
+//! passed to it in a static.
 
 use std::sync::Mutex;
 
@@ -10,7 +10,7 @@ use clap::Parser;
 use cu29::prelude::*;
 use ticklog::{Run, TickLog};
 
-/// A macro's generated program has no other door for it.
+/// A generated program has no other way to receive it.
 static LOG: Mutex<Option<TickLog>> = Mutex::new(None);
 
 #[derive(Reflect)]
@@ -36,8 +36,8 @@ impl CuSrcTask for Clock {
         if go_on {
             return Ok(());
         }
-        // The runtime goes on after a task's error, and there is no word that
-        // ends it from within.
+        // The runtime continues after a task's error, and cannot be ended from
+        // within.
         let printed = self.log.take().map(TickLog::print);
         std::process::exit(i32::from(!matches!(printed, Some(Ok(())))))
     }
@@ -68,5 +68,5 @@ fn main() -> anyhow::Result<()> {
         .map_err(|error| anyhow::anyhow!("{error}"))?;
     // The task ends the process.
     let _ = app.run_until_shutdown();
-    anyhow::bail!("the loop ended before its run was over")
+    anyhow::bail!("the loop ended before its run")
 }

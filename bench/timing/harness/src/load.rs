@@ -1,4 +1,4 @@
-//! What the machine does beside: nothing, or `stress-ng`.
+//! The load of the machine: none, or `stress-ng`.
 
 use std::process::{Child, Command, Stdio};
 use std::thread::{self, available_parallelism};
@@ -9,13 +9,13 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde::{Deserialize, Serialize};
 
-/// Memory that is written again and again. More would push out of a small
-/// board's memory what is measured.
+/// Memory that is written repeatedly. More would displace what is measured from
+/// a small board's memory.
 const VM_BYTES: &str = "128M";
-/// Until the stressors are all at work.
+/// Time until all stressors run.
 const SETTLE: Duration = Duration::from_secs(1);
 
-/// What the machine does beside.
+/// The load of the machine.
 #[derive(clap::ValueEnum, Serialize, Deserialize, Clone, Copy, PartialEq, Eq, Debug)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Load {
@@ -72,7 +72,7 @@ pub(crate) struct Stress(Option<Child>);
 impl Drop for Stress {
     fn drop(&mut self) {
         if let Some(child) = &mut self.0 {
-            // It is asked and not killed, so that it ends its stressors.
+            // A signal and not a kill, so that it ends its stressors.
             let asked = kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM);
             if asked.is_err() {
                 let _ = child.kill();

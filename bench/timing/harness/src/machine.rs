@@ -1,19 +1,19 @@
-//! On what it was measured.
+//! The machine.
 
 use std::{fs, thread};
 
 use anyhow::anyhow;
 use fcc_timer::{CpuRequest, RealtimeRequest};
 
-/// The CPU that everybody is bound to, and why: the one that `fccd` would
-/// choose for its loop, an isolated one or one that stays off the interrupts;
-/// the last where none is better than the others.
+/// The CPU that all are bound to, and why: the one that `fccd` would choose for
+/// its loop, an isolated one or one with few interrupts; the last if none is
+/// better than the others.
 pub(crate) fn quiet_cpu() -> anyhow::Result<(usize, String)> {
     let auto = RealtimeRequest {
         cpu: Some(CpuRequest::Auto),
         ..RealtimeRequest::default()
     };
-    // In a thread of its own: whoever chooses is bound to what it chose.
+    // In a separate thread, because choosing binds the thread.
     let granted = thread::spawn(move || auto.apply())
         .join()
         .map_err(|_| anyhow!("choosing a CPU panicked"))??;
@@ -21,7 +21,7 @@ pub(crate) fn quiet_cpu() -> anyhow::Result<(usize, String)> {
     Ok((granted.cpu.unwrap_or(last), granted.cpu_reason))
 }
 
-/// Kernel, processors and clock source in words.
+/// Kernel, processors and clock source, as text.
 pub(crate) fn describe() -> String {
     let kernel = read("/proc/sys/kernel/osrelease");
     let version = read("/proc/sys/kernel/version");

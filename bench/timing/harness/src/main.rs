@@ -1,6 +1,6 @@
 //! Runs our clocks and their peers in turn, under the same conditions, and
-//! compares when they ticked. What is measured and how is told in
-//! `docs/benchmarks.md`.
+//! compares the times of their ticks. `docs/benchmarks.md` describes the
+//! method.
 
 mod load;
 mod machine;
@@ -26,23 +26,23 @@ use results::{Results, Run};
 /// Compares our clocks with their peers
 #[derive(Parser)]
 struct Cli {
-    /// How long each run counts, after a second of warm-up
+    /// How long each run is measured, after a second of warm-up
     #[arg(long, default_value_t = 5.0)]
     seconds: f64,
-    /// How often everything is run, in turn
+    /// Number of rounds, in turn
     #[arg(long, default_value_t = 3)]
     rounds: u32,
     /// Ticks per second
     #[arg(long, value_delimiter = ',', default_values_t = [40, 100, 1_000])]
     rates: Vec<u32>,
-    /// What the machine does beside
+    /// Load of the machine
     #[arg(long, value_delimiter = ',', value_enum, default_values_t = [Load::Idle, Load::Stress])]
     loads: Vec<Load>,
-    /// Who is compared; all if left out
+    /// Clocks and peers to compare [default: all]
     #[arg(long, value_delimiter = ',', value_enum)]
     peers: Vec<Peer>,
-    /// The CPU that all of them run on; if left out, an isolated one or one that
-    /// takes few interrupts of devices
+    /// CPU that all of them run on [default: an isolated one, or one with few
+    /// interrupts of devices]
     #[arg(long)]
     cpu: Option<usize>,
     /// Their priority under `SCHED_FIFO`
@@ -97,14 +97,14 @@ fn run(cli: &Cli) -> anyhow::Result<Results> {
         &cli.peers
     };
     let (cpu, because) = match cli.cpu {
-        Some(cpu) => (cpu, "it was asked for".to_owned()),
+        Some(cpu) => (cpu, "as requested".to_owned()),
         None => machine::quiet_cpu()?,
     };
     eprintln!("on CPU {cpu}: {because}");
     let priority = is_granted(cli.priority).then_some(cli.priority);
     if priority.is_none() {
         eprintln!(
-            "SCHED_FIFO {0} is not granted, so nobody gets it: run as root, or with `ulimit -r {0}`",
+            "SCHED_FIFO {0} is not granted, so none gets it: run as root, or with `ulimit -r {0}`",
             cli.priority
         );
     }
@@ -127,8 +127,8 @@ fn run(cli: &Cli) -> anyhow::Result<Results> {
             let _stress = load.begin()?;
             for &rate_hz in &cli.rates {
                 for (place, _) in peers.iter().enumerate() {
-                    // Each round begins with another one, so that nobody
-                    // always follows the same.
+                    // Each round begins with another one, so that none always
+                    // follows the same one.
                     let peer = peers[(place + round as usize) % peers.len()];
                     bar.set_message(format!("{} {rate_hz} Hz {}", peer.name(), load.name()));
                     let conditions = Conditions {

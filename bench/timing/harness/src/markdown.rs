@@ -1,14 +1,15 @@
-//! The tables: what was measured, what was asked, and every round.
+//! The tables: figures, comparison with the goals, and every round.
 
 use std::fmt::Write as _;
 
 use crate::peer::Peer;
 use crate::results::{Case, Results};
 
-/// Lateness at p99 that is asked of us, µs, and as a share of the best peer's.
+/// Goals for our lateness at p99, µs, and as a share of the best peer's.
 const ASKED_P99_US: f64 = 1.0;
 const ASKED_SHARE: f64 = 0.1;
-/// CPU that spinning may cost, % of a core, and up to which rate it is asked.
+/// Goal for the CPU time of spinning, % of a core, and up to which rate it
+/// applies.
 const ASKED_CPU_PERCENT: f64 = 1.0;
 const ASKED_CPU_AT_HZ: u32 = 40;
 
@@ -70,14 +71,14 @@ fn figures(cases: &[Case<'_>]) -> String {
     text
 }
 
-/// What is asked of our clocks that spin, beside the best peer of each case.
+/// Our clocks that spin compared with the goals and the best peer of each case.
 fn asked(cases: &[Case<'_>]) -> String {
     let mut text = String::from(
         "| load | Hz | clock | late p99 µs | asked ≤ 1 | best peer | its p99 without drift µs | asked ≤ 1/10 \
          | drift µs/s | CPU % |\n|---|---:|---|---:|---|---|---:|---|---:|---:|\n",
     );
     let p99 = |case: &Case<'_>| case.median(|figures| figures.lateness_us.p99);
-    // A peer's drift is held against it in its own column, and not here.
+    // A peer's drift has its own column, and does not count here.
     let kind_p99 = |case: &Case<'_>| {
         case.median(|figures| figures.lateness_us.p99.min(figures.undrifted_us.p99))
     };
@@ -116,7 +117,7 @@ const fn verdict(kept: bool) -> &'static str {
     if kept { "yes" } else { "**no**" }
 }
 
-/// p99 and largest lateness of every round: how much a median hides.
+/// p99 and largest lateness of every round, which a median hides.
 fn rounds(cases: &[Case<'_>]) -> String {
     let mut text = String::from(
         "| load | Hz | clock | p99 µs of each round | largest µs of each round |\n\
@@ -140,7 +141,7 @@ fn rounds(cases: &[Case<'_>]) -> String {
     text
 }
 
-/// Three digits that mean something.
+/// Three significant digits.
 fn us(us: f64) -> String {
     match us.abs() {
         small if small < 0.0005 => "0".to_owned(),

@@ -11,11 +11,11 @@ use ticklog::Ticks;
 use crate::peer::{Conditions, Peer};
 use crate::stats::Figures;
 
-/// Ticks before this are not counted: caches and branch predictors are cold,
-/// and whoever learns how late he wakes has learnt nothing yet.
+/// Earlier ticks are not counted: caches and branch predictors are cold, and an
+/// early wake has not measured enough.
 pub(crate) const WARM_UP_S: f64 = 1.0;
 
-/// What a run gave, and under which scheduling.
+/// The result of a run, and its scheduling.
 pub(crate) struct Measured {
     pub(crate) figures: Figures,
     pub(crate) scheduling: String,
@@ -54,8 +54,8 @@ pub(crate) fn measure(peer: Peer, under: Conditions) -> anyhow::Result<Measured>
     })
 }
 
-/// It prints how late each tick was after its deadline, and no times; its CPU
-/// time is the whole process', and the kernel tells it when that has ended.
+/// It prints the lateness of each tick, and no times; its CPU time is that of
+/// the whole process, known after it has ended.
 fn run_cyclictest(under: Conditions) -> anyhow::Result<Ticks> {
     let before_ns = children_cpu_ns()?;
     let output = output(Peer::Cyclictest.command(under)?)?;
@@ -75,8 +75,8 @@ fn run_cyclictest(under: Conditions) -> anyhow::Result<Ticks> {
     })
 }
 
-/// When ticks came that were so late, ns. One that comes after further
-/// deadlines have passed makes cyclictest skip these, and count on by one.
+/// The times of ticks from their lateness, ns. If a tick is later than further
+/// deadlines, cyclictest skips these, and counts one.
 fn times_of(latencies: impl Iterator<Item = (i64, i64)>, period_ns: i64) -> Vec<i64> {
     let mut skipped = 0;
     latencies
@@ -98,7 +98,7 @@ fn latency(line: &str) -> Option<(i64, i64)> {
     numbers.next().is_none().then_some((found.1, found.2))
 }
 
-/// CPU time of every process that was waited for.
+/// CPU time of all ended child processes.
 fn children_cpu_ns() -> anyhow::Result<i64> {
     let usage = getrusage(UsageWho::RUSAGE_CHILDREN)?;
     Ok(usage.user_time().num_nanoseconds() + usage.system_time().num_nanoseconds())

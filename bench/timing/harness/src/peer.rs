@@ -1,4 +1,4 @@
-//! Who is compared, and how each is started.
+//! The peers, and how each is started.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -7,12 +7,12 @@ use std::process::Command;
 use anyhow::Context as _;
 use serde::{Deserialize, Serialize};
 
-/// How long beyond twice its run a peer may take, s.
+/// How long a peer may take beyond twice its run, s.
 const PATIENCE_S: f64 = 10.0;
 
 const PYTHON_LOOP: &str = include_str!("../../peers/loop.py");
 
-/// Who is compared.
+/// A clock or a peer.
 #[derive(clap::ValueEnum, Serialize, Deserialize, Clone, Copy, PartialEq, Eq, Debug)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Peer {
@@ -28,7 +28,7 @@ pub(crate) enum Peer {
     Posix,
     /// Our `clock_nanosleep`.
     Nanosleep,
-    /// cyclictest of rt-tests: what the kernel can do.
+    /// cyclictest of rt-tests: the best that the kernel achieves.
     Cyclictest,
     /// copper's loop with its high-precision limiter.
     CopperPrecise,
@@ -42,7 +42,7 @@ pub(crate) enum Peer {
     Python,
 }
 
-/// What is the same for every peer of a measurement.
+/// The conditions, the same for every peer.
 #[derive(Clone, Copy)]
 pub(crate) struct Conditions {
     pub(crate) rate_hz: u32,
@@ -71,7 +71,7 @@ impl Peer {
         }
     }
 
-    /// Whether it is one of ours, and not a peer of ours.
+    /// Whether it is one of ours.
     pub(crate) const fn is_ours(self) -> bool {
         matches!(self, Self::Timerfd | Self::Posix | Self::Nanosleep) || self.spins()
     }
@@ -84,13 +84,13 @@ impl Peer {
         )
     }
 
-    /// How it is started under these conditions.
+    /// The command under these conditions.
     pub(crate) fn command(self, under: Conditions) -> anyhow::Result<Command> {
         let rate = under.rate_hz.to_string();
         let seconds = under.seconds.to_string();
         let run = ["--rate", &rate, "--seconds", &seconds];
         let ours = |timer: &str| -> anyhow::Result<Vec<String>> {
-            let mut words = words(&beside("peer")?, &[timer]);
+            let mut words = words(&sibling("peer")?, &[timer]);
             words.extend(run.map(str::to_owned));
             if self.spins() {
                 words.push("--spin".to_owned());
@@ -103,8 +103,8 @@ impl Peer {
             Self::NanosleepSpin | Self::Nanosleep => ours("nanosleep")?,
             Self::Rtsc => ours("rtsc")?,
             Self::Tokio => ours("tokio")?,
-            Self::CopperPrecise => words(&beside("peer-copper-precise")?, &run),
-            Self::Copper => words(&beside("peer-copper")?, &run),
+            Self::CopperPrecise => words(&sibling("peer-copper-precise")?, &run),
+            Self::Copper => words(&sibling("peer-copper")?, &run),
             Self::Python => words(Path::new("python3"), &["-c", PYTHON_LOOP, &rate, &seconds]),
             Self::Cyclictest => return Ok(cyclictest(under)),
         };
@@ -118,7 +118,7 @@ impl Peer {
     }
 }
 
-/// Ends what does not end by itself, long after it should have.
+/// Ends a peer that does not end by itself, long after it should have.
 fn bounded(under: Conditions) -> Command {
     let seconds = PATIENCE_S + 2.0 * under.seconds;
     let mut command = Command::new("timeout");
@@ -132,8 +132,8 @@ fn words(program: &Path, arguments: &[&str]) -> Vec<String> {
     words
 }
 
-/// Its measuring thread alone gets the priority and the CPU: its other one
-/// only prints, and no other peer prints while it ticks.
+/// Only its measuring thread gets the priority and the CPU: the other one only
+/// prints, and no other peer prints while it ticks.
 fn cyclictest(under: Conditions) -> Command {
     let interval_us = 1_000_000 / under.rate_hz;
     let ticks = (f64::from(under.rate_hz) * under.seconds) as u64;
@@ -156,8 +156,8 @@ fn cyclictest(under: Conditions) -> Command {
     command
 }
 
-/// A program that was built with this one.
-fn beside(name: &str) -> anyhow::Result<PathBuf> {
+/// A program built together with this one.
+fn sibling(name: &str) -> anyhow::Result<PathBuf> {
     let path = env::current_exe()?.with_file_name(name);
     path.exists()
         .then_some(path)

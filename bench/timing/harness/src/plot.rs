@@ -109,8 +109,8 @@ fn draw_panel(area: &Area<'_>, corner: (i32, i32), panel: &[&Case<'_>]) -> anyho
     Ok(())
 }
 
-/// Where a lateness is on the scale, px from its left end; what is beyond
-/// either end is at it.
+/// Position of a lateness on the scale, px from its left end; limited to the
+/// ends.
 fn along(us: f64) -> i32 {
     let (from, to) = (f64::from(*DECADES.start()), f64::from(*DECADES.end()));
     let share = ((us.max(f64::MIN_POSITIVE).log10() - from) / (to - from)).clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Everything that was measured, round by round, and its medians.
+//! All results, round by round, and their medians.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub(crate) struct Run {
     pub(crate) figures: Figures,
 }
 
-/// All runs, and on what.
+/// All runs, and the machine.
 #[derive(Serialize, Deserialize, Clone, Debug)]
 pub(crate) struct Results {
     /// Kernel, processor and clock source.

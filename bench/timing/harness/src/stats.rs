@@ -1,26 +1,25 @@
-//! From the times of ticks to the figures that are compared, alike for all.
+//! Computes the figures from the times of ticks, in the same way for all.
 //!
-//! A peer's ticks are laid on its own grid: the nominal period, from wherever
-//! it began. What a clock gains or loses against `CLOCK_MONOTONIC` is its
-//! *drift*; it is measured at the lower edge, where nothing made a tick late.
-//! *Lateness* is how far a tick is behind the grid whose earliest tick is on
-//! time. It is told twice: against the monotonic clock, where drift counts
-//! (`lateness_us`), and with the drift taken out (`undrifted_us`), which is
-//! kind to a clock that runs at another speed. The *period's error* knows no
-//! grid: how far two ticks in a row are from a period (or several, where some
-//! were skipped) apart.
+//! A peer's ticks are compared with its own grid: the nominal period from its
+//! start. *Drift* is what a clock gains or loses against `CLOCK_MONOTONIC`,
+//! measured at the lower edge, where nothing delayed a tick. *Lateness* is how
+//! far a tick is behind the grid on which the earliest tick is on time. There
+//! are two: against the monotonic clock, including drift (`lateness_us`), and
+//! without drift (`undrifted_us`), which favours a clock that runs at another
+//! speed. The *period error* needs no grid: how far the time between two ticks
+//! differs from a period (or several, if some were skipped).
 
 use serde::{Deserialize, Serialize};
 
 /// A period counts as kept within this share of itself.
 const KEPT_WITHIN: f64 = 0.02;
-/// How much earlier than the earliest of late a tick may be and still count
+/// How much earlier than the earliest recent tick a tick may be and still count
 /// as the next one, in periods.
 const TOLERANCE: f64 = 0.1;
-/// The earliest tick is looked for among so many before.
+/// Number of earlier ticks among which the earliest is searched.
 const RECENT_TICKS: usize = 32;
 
-/// How a set of times is spread, µs.
+/// The distribution of times, µs.
 #[derive(Serialize, Deserialize, Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct Spread {
     pub(crate) p50: f64,
@@ -29,11 +28,11 @@ pub(crate) struct Spread {
     pub(crate) max: f64,
 }
 
-/// What one run of a peer gave.
+/// The figures of one run of a peer.
 #[derive(Serialize, Deserialize, Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct Figures {
     pub(crate) ticks: usize,
-    /// Periods in which no tick came.
+    /// Periods without a tick.
     pub(crate) missed: u64,
     pub(crate) lateness_us: Spread,
     pub(crate) undrifted_us: Spread,
@@ -41,10 +40,10 @@ pub(crate) struct Figures {
     pub(crate) period_error_us: Spread,
     /// Share of periods within ±2 %, %.
     pub(crate) kept_percent: f64,
-    /// How much later each second than the second before, µs.
+    /// Drift per second, µs.
     pub(crate) drift_us_per_s: f64,
-    /// How late the earliest tick was after its deadline, µs, where the peer
-    /// tells from what its deadlines count.
+    /// Lateness of the earliest tick, µs, if the peer reports the origin of its
+    /// deadlines.
     pub(crate) earliest_us: Option<f64>,
     /// CPU time, % of a core.
     pub(crate) cpu_percent: f64,
@@ -120,7 +119,7 @@ impl Spread {
 
     fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
-        // The smallest value that so many are not above: nearest rank.
+        // The smallest value that this share does not exceed: nearest rank.
         let at = |share: f64| {
             let rank = (share * values.len() as f64).ceil() as usize;
             values.get(rank.max(1) - 1).copied().unwrap_or(0.0)
@@ -134,11 +133,11 @@ impl Spread {
     }
 }
 
-/// Which deadline of the grid each tick served, the first tick's being 0.
+/// The number of the deadline on the grid for each tick, from 0.
 ///
-/// The grid is where the earliest of the last ticks was, so that a clock may
-/// drift away from the nominal grid by many periods. A tick that is nearly a
-/// period late looks like an early next one, until the next one comes too.
+/// The grid follows the earliest of the last ticks, so that a clock may drift
+/// from the nominal grid by many periods. A tick that is nearly a period late
+/// looks like an early next one, until the next one comes too.
 fn grid_numbers(ticks_ns: &[i64], period_ns: i64) -> Vec<i64> {
     let tolerance_ns = (TOLERANCE * period_ns as f64) as i64;
     let mut numbers: Vec<i64> = Vec::with_capacity(ticks_ns.len());
@@ -178,8 +177,7 @@ fn least(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::INFINITY, f64::min)
 }
 
-/// The middle of some values; the mean of the two in the middle of an even
-/// number; 0 of none.
+/// The median; the mean of the two middle values of an even number; 0 of none.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     match values.len() {
@@ -254,7 +252,7 @@ mod tests {
 
     #[test]
     fn nearly_a_period_late_is_late() {
-        // Ticks due at 20 and 30 ms that came at 29.6 and 30 ms.
+        // Ticks due at 20 and 30 ms at 29.6 and 30 ms.
         let mut ticks: Vec<i64> = (0..10).map(|k| 10 * MS * k).collect();
         ticks[2] = 29_600_000;
         let figures = Figures::of(&ticks, 10 * MS, None).unwrap();

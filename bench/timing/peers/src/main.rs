@@ -1,7 +1,7 @@
-//! One peer in a process of its own: `peer timerfd --rate 40 --seconds 5`.
+//! Runs one peer: `peer timerfd --rate 40 --seconds 5`.
 //!
-//! Each is used as its documentation shows, and told to keep its phase and to
-//! skip what it missed, where it offers that.
+//! Each is used as documented, and configured to keep its phase and to skip
+//! missed ticks, if it offers that.
 
 use anyhow::Context as _;
 use clap::{Args, Parser, Subcommand};
@@ -51,7 +51,7 @@ fn main() -> anyhow::Result<()> {
 }
 
 impl Ours {
-    /// As the daemon does it, with what it does by default.
+    /// As in the daemon, with its defaults.
     fn tick(self, kind: TimerKind) -> anyhow::Result<()> {
         let period = self.run.period();
         let mut timer = if self.spin {
@@ -66,7 +66,7 @@ impl Ours {
         log.tick();
         loop {
             let wake = timer.wait_or_warm_up()?;
-            // The same for a rehearsal, but that nothing is kept.
+            // The same for a warm-up, without storing the time.
             let now_ns = log.stamp();
             if matches!(wake, Wake::Deadline(_)) && !now_ns.is_some_and(|at| log.keep(at)) {
                 return log.print();

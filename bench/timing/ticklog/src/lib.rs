@@ -1,9 +1,8 @@
-//! What every peer logs, alike: when each tick came, and nothing else.
+//! The log of every peer: the times of its ticks.
 //!
-//! A peer makes a [`TickLog`], calls [`TickLog::tick`] first of all in each
-//! tick, and prints the log when that says it is over. All the reckoning is
-//! done afterwards, by the harness, from what is printed: one [`Ticks`] as JSON.
-//! The peer in Python prints the same fields.
+//! A peer creates a [`TickLog`], calls [`TickLog::tick`] first in each tick,
+//! and prints the log when that returns false. The harness evaluates the
+//! output: one [`Ticks`] as JSON. The peer in Python prints the same fields.
 
 use std::io::Write as _;
 use std::time::Duration;
@@ -13,7 +12,7 @@ use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_gettime};
 use serde::{Deserialize, Serialize};
 
-/// What the harness tells every peer.
+/// The harness' arguments for every peer.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct Run {
     /// Ticks per second, 1..=1000000.
@@ -32,19 +31,19 @@ impl Run {
     }
 }
 
-/// What a peer prints: times in ns on `CLOCK_MONOTONIC`.
+/// A peer's output: times in ns on `CLOCK_MONOTONIC`.
 #[derive(Serialize, Deserialize, Clone, Debug, Default)]
 pub struct Ticks {
     /// The scheduling policy that the kernel reads back.
     pub policy: String,
     /// Its priority.
     pub priority: i32,
-    /// From what the deadlines count: tick k is due at `origin_ns + k * period`.
-    /// `None` where the peer does not tell.
+    /// Origin of the deadlines: tick k is due at `origin_ns + k * period`.
+    /// `None` if the peer does not report it.
     pub origin_ns: Option<i64>,
     /// CPU time of the process from the first tick to the last.
     pub cpu_ns: i64,
-    /// When each tick came.
+    /// The time of each tick.
     pub ticks_ns: Vec<i64>,
 }
 
@@ -55,7 +54,7 @@ pub fn monotonic_ns() -> i64 {
     clock_gettime(ClockId::CLOCK_MONOTONIC).map_or(0, |now| now.num_nanoseconds())
 }
 
-/// The times of the ticks, in memory that is there before the first.
+/// The times of the ticks, in memory allocated before the first.
 #[derive(Debug)]
 pub struct TickLog {
     log: Ticks,
@@ -65,14 +64,14 @@ pub struct TickLog {
 }
 
 impl TickLog {
-    /// Allocates for the run, locks memory, and reads back what the thread's
-    /// scheduling is. The harness sets that from outside, alike for all.
+    /// Allocates for the run, locks memory, and reads the thread's scheduling.
+    /// The harness sets that from outside, in the same way for all.
     ///
     /// # Errors
-    /// When the kernel refuses and that matters.
+    /// When the kernel denies something required.
     pub fn new(run: Run) -> anyhow::Result<Self> {
         let run_ns = (run.seconds * 1e9) as i64;
-        // A peer that ticks too often shall fill the log and end, not grow it.
+        // A peer that ticks too often fills the log and ends.
         let room = (f64::from(run.rate) * run.seconds * 2.0) as usize + 1_000;
         let ticks_ns = vec![0; room];
         let granted = RealtimeRequest {
@@ -97,12 +96,12 @@ impl TickLog {
         })
     }
 
-    /// From what the deadlines count, if the peer knows.
+    /// Sets the origin of the deadlines, if the peer knows it.
     pub fn set_origin(&mut self, origin_ns: i64) {
         self.log.origin_ns = Some(origin_ns);
     }
 
-    /// Logs a tick, now; says whether to go on.
+    /// Logs a tick now; returns whether to continue.
     #[inline]
     pub fn tick(&mut self) -> bool {
         match self.stamp() {
@@ -111,9 +110,9 @@ impl TickLog {
         }
     }
 
-    /// What a tick begins with: writes the time into the slot of the next tick.
-    /// It leaves no trace unless it is kept, so a loop may do it in a rehearsal.
-    /// `None` when the log is full.
+    /// The first part of a tick: writes the time into the slot of the next
+    /// tick. It has no effect unless it is kept, so a loop may do it in a
+    /// warm-up. `None` when the log is full.
     #[inline(never)]
     pub fn stamp(&mut self) -> Option<i64> {
         let now_ns = monotonic_ns();
@@ -122,7 +121,7 @@ impl TickLog {
         Some(now_ns)
     }
 
-    /// Keeps the time last written; says whether to go on.
+    /// Keeps the time last written; returns whether to continue.
     pub fn keep(&mut self, now_ns: i64) -> bool {
         self.length += 1;
         if self.length == 1 {

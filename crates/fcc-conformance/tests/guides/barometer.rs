@@ -12,9 +12,9 @@ use fcc_core::framework::{Reading, Sensor, SensorFault, Tick, Time};
 
 use super::{address, errno};
 
-/// The chip measures 25 times a second: this is several of its periods.
+/// The chip measures 25 times a second: several of its periods.
 const SILENT_AFTER: Duration = Duration::from_millis(500);
-/// The most datagrams that are read in one tick: a flood must not make it long.
+/// The most datagrams read in one tick: a flood must not lengthen it.
 const DATAGRAMS_PER_TICK: usize = 8;
 /// What the chip can measure, by its data sheet.
 const RANGE_PA: std::ops::RangeInclusive<f64> = 30_000.0..=110_000.0;
@@ -39,7 +39,7 @@ impl Sensor<Measurements> for Barometer {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let mut result = Ok(());
         for _ in 0..DATAGRAMS_PER_TICK {
-            // One byte more than a message, to notice longer ones.
+            // One byte more than a message, to detect longer ones.
             let mut buffer = [0; 9];
             match self.socket.recv(&mut buffer) {
                 Ok(length) => match pressure_pa(buffer.get(..length)) {

@@ -1,5 +1,5 @@
 //! The sensor of docs/guides/add-a-sensor.md and the actuator of
-//! docs/guides/add-an-actuator.md, with the suites that both have to pass.
+//! docs/guides/add-an-actuator.md, with their conformance suites.
 #![cfg(test)]
 
 mod barometer;

@@ -1,4 +1,4 @@
-//! Servos: another program drives them by pulses. It takes messages of five
+//! Servos: another program drives them by pulses. It receives messages of five
 //! numbers of two bytes: 1 to drive or 0 to let the pilot's receiver drive,
 //! then the pulse widths of throttle, elevator, aileron and rudder in µs.
 
@@ -11,7 +11,7 @@ use fcc_core::framework::{Actuator, ActuatorFault, Tick};
 use super::{address, errno};
 
 const MESSAGE_BYTES: usize = 10;
-/// A servo's middle, and how far it turns to either side.
+/// A servo's middle position, and its travel to either side.
 const MIDDLE_US: f64 = 1_500.0;
 const TRAVEL_US: f64 = 500.0;
 
@@ -54,7 +54,7 @@ impl Actuator<Surfaces> for ServoBoard {
 
     fn release(&mut self) -> Result<(), ActuatorFault> {
         if self.is_held {
-            // One message centres the surfaces and gives control back.
+            // One message centres the surfaces and releases control.
             self.send(false, &Surfaces::default())?;
             self.is_held = false;
         }
@@ -159,7 +159,7 @@ impl ActuatorBench for Bench {
 }
 
 impl VanishingPlant for Bench {
-    /// The kernel says at once that nobody listens.
+    /// The kernel reports at once that there is no receiver.
     const PATIENCE: usize = 0;
     const BACK_AFTER: usize = 1;
 
@@ -175,7 +175,7 @@ impl VanishingPlant for Bench {
 
 actuator_conformance!(servo_board: Bench, vanishes);
 
-/// As servos want it: 1 ms to 2 ms, the middle at 1.5 ms.
+/// As servos require: 1 ms to 2 ms, the middle at 1.5 ms.
 #[test]
 fn deflections_become_pulses() {
     let surfaces = Surfaces {

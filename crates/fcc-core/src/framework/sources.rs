@@ -163,15 +163,16 @@ impl Sources {
             let at = |of: &[Option<u8>; MOST]| of.get(bit as usize).copied().flatten();
             Some((at(&before)?, at(&self.known)?)).filter(|(from, to)| from != to)
         };
-        let mut told = Flags::NONE;
+        let mut reported = Flags::NONE;
         for first in 0..MOST as u32 {
-            let Some((from, to)) = way(first).filter(|_| !told.contains(Flags::bit(first))) else {
+            let Some((from, to)) = way(first).filter(|_| !reported.contains(Flags::bit(first)))
+            else {
                 continue;
             };
             let readings = (first..MOST as u32).fold(Flags::NONE, |all, bit| {
                 all.with(Flags::bit(bit), way(bit) == Some((from, to)))
             });
-            told |= readings;
+            reported |= readings;
             changed(SourceChange { readings, from, to });
         }
     }

@@ -25,7 +25,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
         let _ = write!(text, "; {} ticks overran their budget", outcome.overruns);
     }
     if !outcome.released {
-        text.push_str("; CONTROL MAY STILL BE HELD: release the overrides by hand");
+        text.push_str("; CONTROL MAY STILL BE HELD: release the overrides in the simulator");
     }
     if let Some(recording) = &outcome.recording {
         for file in &recording.files {

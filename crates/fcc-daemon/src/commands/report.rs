@@ -1,12 +1,9 @@
-//! `fccd report FILE`: what a recording tells.
-
-use std::fs;
-use std::path::Path;
+//! `fccd report FILE`: what a recording says.
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_record::{Item, Recording};
-use fcc_report::{CsvFolder, FileEnd, Origin, Report, Survey};
+use fcc_record::Recording;
+use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 
 use super::{fail, progress};
 use crate::cli::ReportArgs;
@@ -14,13 +11,9 @@ use crate::exit::Exit;
 use crate::output;
 use fcc_flight::config::Config;
 
-/// Messages between two looks at how far the file is read.
-const BAR_EVERY: u64 = 4_096;
-
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Exit {
-    let made = read(args).and_then(|report| write_page(args, &report).map(|()| report));
-    let report = match made {
+    let report = match make(args) {
         Ok(report) => report,
         Err(message) => return fail(&message),
     };
@@ -36,73 +29,21 @@ pub(super) fn report(args: &ReportArgs) -> Exit {
     }
 }
 
-/// One pass over the file.
-fn read(args: &ReportArgs) -> Result<Report, String> {
-    if let Some(html) = &args.html
-        && is_same_file(html, &args.file)
-    {
-        return Err(format!(
-            "{}: is the recording itself: give the page another name",
-            html.display()
-        ));
-    }
+fn make(args: &ReportArgs) -> Result<FlightReport, String> {
     let recording = Recording::open(&args.file).map_err(|error| error.to_string())?;
-    let origin = Origin::of(&recording);
-    let mut csv = match &args.csv {
-        None => None,
-        Some(folder) => Some(
-            CsvFolder::<fcc_core::flight::Autopilot>::create(folder, &origin)
-                .map_err(|error| format!("{}: cannot be written: {error}", folder.display()))?,
-        ),
-    };
-    let csv_failed = |error| {
-        let folder = args.csv.as_deref().unwrap_or(Path::new("")).display();
-        format!("{folder}: cannot be written: {error}")
-    };
-    let mut survey = Survey::new(origin, pattern(&recording));
-    let mut items = recording.items().map_err(|error| error.to_string())?;
     let bar = progress::bar(recording.bytes(), "reading");
-    let mut taken = 0_u64;
-    while let Some(item) = items.next() {
-        survey
-            .take_item(&item)
-            .map_err(|error| format!("{}: {error}", args.file.display()))?;
-        if let Some(csv) = &mut csv {
-            match &item {
-                Item::Message(message) => csv.take(message),
-                Item::Remark(remark) => csv.take_remark(remark),
-                Item::Damage(damage) => csv.take_remark(&damage.remark()),
-            }
-            .map_err(csv_failed)?;
-        }
-        taken += 1;
-        if taken.is_multiple_of(BAR_EVERY) {
-            bar.set_position(items.bytes_read());
-        }
-    }
+    let addition = FlightAddition::new(pattern(&recording));
+    let report = FlightSurvey::read(&recording, addition, args.csv.as_deref(), |read| {
+        bar.set_position(read);
+    })?;
     bar.finish_and_clear();
-    if let Some(csv) = csv {
-        csv.finish().map_err(csv_failed)?;
-    }
-    Ok(survey.finish(FileEnd::of(&recording, items.cut())))
-}
-
-fn write_page(args: &ReportArgs, report: &Report) -> Result<(), String> {
     if let Some(folder) = &args.svg {
         report.write_svgs(folder)?;
     }
-    let Some(path) = &args.html else {
-        return Ok(());
-    };
-    let page = report.to_html().map_err(|error| error.to_string())?;
-    fs::write(path, page).map_err(|error| format!("{}: cannot be written: {error}", path.display()))
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
+    if let Some(page) = &args.html {
+        report.write_page(page, &args.file)?;
     }
+    Ok(report)
 }
 
 /// The pattern that was to be flown, by the configuration in the recording; a

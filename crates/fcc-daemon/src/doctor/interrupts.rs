@@ -130,8 +130,8 @@ fn busy_devices(machine: &Machine, total: u64) -> BTreeMap<usize, Vec<Busy>> {
 /// where it came most often.
 fn cpus_of(machine: &Machine, device: &DeviceInterrupt) -> Vec<usize> {
     let file = format!("proc/irq/{}/effective_affinity_list", device.number);
-    let told = machine.text(&file).map(|text| parse_list(&text));
-    match told {
+    let effective = machine.text(&file).map(|text| parse_list(&text));
+    match effective {
         Some(cpus) if !cpus.is_empty() => cpus.into_iter().collect(),
         _ => {
             let most = device.counts.iter().max_by_key(|(_, count)| *count);

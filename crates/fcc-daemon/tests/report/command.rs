@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use fcc_record::Recording;
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_telemetry::FlightMessage;
 
 use super::flown::{Plan, REMARK};
 use super::sound;
@@ -105,7 +105,7 @@ fn the_csv_is_the_recording() {
         .messages::<FlightMessage>()
         .unwrap()
         .collect();
-    let records: Vec<&FlightRecord> = messages
+    let records: Vec<_> = messages
         .iter()
         .filter_map(|message| match message {
             FlightMessage::Tick(record) => Some(record),

@@ -5,16 +5,19 @@
 mod command;
 mod flown;
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_report::{FileEnd, Origin, Report, Survey};
+use fcc_core::framework::{Reading, RecordOf, Time};
+use fcc_report::{FileEnd, FlightAddition, FlightReport, FlightSurvey, Origin};
 use fcc_telemetry::FlightMessage;
 use flown::Plan;
 use html5ever::tendril::TendrilSink as _;
 use markup5ever_rcdom::{Handle, NodeData, RcDom};
 
 /// The report on a flight of which only some messages were kept.
-fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> Report {
-    let mut survey = Survey::new(Origin::default(), Some(TimedPatternConfig::default()));
+fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> FlightReport {
+    let addition = FlightAddition::new(Some(TimedPatternConfig::default()));
+    let mut survey = FlightSurvey::new(Origin::default(), addition);
     plan.fly(|message| {
         if keep(message) {
             survey.take(message).unwrap();
@@ -27,7 +30,7 @@ fn all(_: &FlightMessage) -> bool {
     true
 }
 
-fn says(report: &Report, words: &str) -> bool {
+fn says(report: &FlightReport, words: &str) -> bool {
     report.findings.iter().any(|said| said.contains(words))
 }
 
@@ -102,9 +105,9 @@ fn a_flight_is_told_as_it_was_flown() {
     assert!((timing.table.period_ms.mean - 25.0).abs() < 1e-9);
     // Table 6.1 of the thesis.
     assert_eq!(timing.thesis.unwrap().max_ms, 32.593);
-    assert!(says(&report, "flown in lockstep"));
+    assert!(says(&report, "ran in lockstep"));
 
-    let flight = report.flight.as_ref().unwrap();
+    let flight = report.addition.flight.as_ref().unwrap();
     assert_eq!(flight.legs.len(), 2, "the third leg is not whole");
     let worst = flight.worst.unwrap();
     // The design's bounds, widened by the sensors' noise.
@@ -185,7 +188,7 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
 fn standby_alone_has_nothing_desired() {
     let report = report(Plan::seconds(1), all);
     assert!(says(&report, "never engaged"));
-    assert!(report.flight.is_none());
+    assert!(report.addition.flight.is_none());
     let page = report.to_html().unwrap();
     sound(&page);
     assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
@@ -193,7 +196,8 @@ fn standby_alone_has_nothing_desired() {
 
 #[test]
 fn a_recording_without_ticks_says_so() {
-    let report = Survey::new(Origin::default(), None).finish(FileEnd::Unknown);
+    let report =
+        FlightSurvey::new(Origin::default(), FlightAddition::default()).finish(FileEnd::Unknown);
     assert!(says(&report, "no tick"));
     let html = sound(&report.to_html().unwrap());
     assert!(texts(&html, "body", "figure").is_empty());
@@ -259,9 +263,59 @@ fn plots_are_svg_files() {
     );
     for (name, svg) in &svgs {
         assert!(
-            svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""),
+            svg.starts_with("<svg ") && svg.contains("xmlns=\"http://www.w3.org/2000/svg\""),
             "{name}"
         );
         assert!(svg.trim_end().ends_with("</svg>"), "{name}");
     }
+}
+
+/// A spike of one tick in an hour, of which the overview's bins are 1.8 s long:
+/// the lines for a zoomed plot have more points around it, in a page that is
+/// still small.
+#[test]
+fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
+    let mut record = RecordOf::<Autopilot>::default();
+    let mut survey = FlightSurvey::new(Origin::default(), FlightAddition::default());
+    for number in 1..=144_000_u64 {
+        let at = Time::from_nanos(number as i64 * 25_000_000);
+        (record.tick.number, record.tick.dt_s) = (number, 0.025);
+        (record.tick.scheduled, record.tick.woke) = (at, at);
+        // Noise of a generator by Lehmer (1951).
+        let noise = |of: u64| (number * of * 48_271 % 2_147_483_647) as f64 / 2_147_483_647.0;
+        let measured = &mut record.measurements;
+        measured.altitude_m = Reading::new(1_000.0 + noise(1), at);
+        measured.airspeed_mps = Reading::new(50.0 + noise(3), at);
+        measured.heading_rad = Reading::new(1.0 + 0.1 * noise(5), at);
+        record.estimate.altitude_m = 1_000.0 + noise(7);
+        record.estimate.airspeed_mps = 50.0 + noise(11);
+        record.estimate.heading_rad = 1.0 + 0.1 * noise(13);
+        survey.take(&FlightMessage::Tick(record)).unwrap();
+    }
+    let report = survey.finish(FileEnd::Unknown);
+    let page = report.to_html().unwrap();
+    sound(&page);
+    let paths = |class: &str| -> Vec<usize> {
+        let begin = format!("<path class=\"{class}\"");
+        let pieces = page.split(&begin).skip(1);
+        pieces
+            .map(|piece| {
+                let (path, _) = piece.split_once("/>").unwrap();
+                path.matches([' ', '-', 'h', 'l']).count()
+            })
+            .collect()
+    };
+    let (overview, detail) = (paths("overview"), paths("detail"));
+    assert_eq!(overview.len(), detail.len());
+    assert!(overview.len() >= 6, "{overview:?}");
+    let finer = overview.iter().zip(&detail);
+    let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
+    assert!(finer.count() >= 6, "{overview:?} {detail:?}");
+    assert!(page.len() < 4_500_000, "{}", page.len());
+    let svgs = report.to_svgs().unwrap();
+    let mut files = svgs.iter();
+    assert!(
+        files.all(|(_, svg)| !svg.contains("detail")),
+        "on paper, too"
+    );
 }

@@ -36,7 +36,7 @@ pub(super) struct Hung {
 
 /// Receives a hang of the loop from the watchdog.
 pub(super) struct HangWatch {
-    told: Receiver<Hung>,
+    receiver: Receiver<Hung>,
 }
 
 impl HangWatch {
@@ -61,22 +61,22 @@ impl HangWatch {
             loop_priority,
         };
         let stop = link.stop.clone();
-        let (tell, told) = mpsc::channel();
+        let (sender, receiver) = mpsc::channel();
         let granted = watch(link.heartbeat.clone(), &config, move |Hang { silent }| {
             // If it wakes up once more, it releases by itself.
             stop.stop();
             let released = authority.is_none_or(|authority| release_controls(authority.as_ref()));
             // If the receiver no longer exists, the program is about to end.
-            let _ = tell.send(Hung { silent, released });
+            let _ = sender.send(Hung { silent, released });
             thread::sleep(GRACE);
             last_resort(released);
         })?;
-        Ok(Some((Self { told }, granted)))
+        Ok(Some((Self { receiver }, granted)))
     }
 
     /// The hang, after the release of the controls.
     pub(super) fn hung(&self) -> Option<Hung> {
-        self.told.try_recv().ok()
+        self.receiver.try_recv().ok()
     }
 }
 

@@ -6,16 +6,16 @@
     reason = "pyo3 hands paths over by value"
 )]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{recorded_config, replay as replay_of};
-use fcc_record::{Item, Recording};
+use fcc_record::Recording;
 use fcc_replay::{Chain, Deviation, Identity, Replayed};
-use fcc_report::{CsvFolder, FileEnd, Origin, Report, Survey};
+use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 use pyo3::prelude::*;
 use serde::Serialize;
 
@@ -74,54 +74,19 @@ pub(crate) fn report(
     svg: Option<PathBuf>,
     csv: Option<PathBuf>,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let made = py.detach(|| -> Result<Report, String> {
-        let report = survey(&path, csv.as_deref())?;
+    let made = py.detach(|| -> Result<FlightReport, String> {
+        let recording = Recording::open(&path).map_err(|error| error.to_string())?;
+        let addition = FlightAddition::new(pattern(&recording));
+        let report = FlightSurvey::read(&recording, addition, csv.as_deref(), |_| {})?;
         if let Some(folder) = &svg {
             report.write_svgs(folder)?;
         }
         if let Some(html) = &html {
-            if same_file(html, &path) {
-                return Err(format!(
-                    "{}: is the recording itself: give the page another name",
-                    html.display()
-                ));
-            }
-            let page = report.to_html().map_err(|error| error.to_string())?;
-            std::fs::write(html, page).map_err(|error| not_written(html, &error))?;
+            report.write_page(html, &path)?;
         }
         Ok(report)
     });
     json::to_python(py, &made.map_err(|words| errors::RECORDING.say(words))?)
-}
-
-fn survey(path: &Path, csv: Option<&Path>) -> Result<Report, String> {
-    let recording = Recording::open(path).map_err(|error| error.to_string())?;
-    let origin = Origin::of(&recording);
-    let folder = csv.unwrap_or(Path::new(""));
-    let refused = |error: std::io::Error| not_written(folder, &error);
-    let mut tables = csv
-        .map(|folder| CsvFolder::<Autopilot>::create(folder, &origin))
-        .transpose()
-        .map_err(refused)?;
-    let mut survey = Survey::new(origin, pattern(&recording));
-    let mut items = recording.items().map_err(|error| error.to_string())?;
-    for item in &mut items {
-        survey
-            .take_item(&item)
-            .map_err(|error| format!("{}: {error}", path.display()))?;
-        if let Some(tables) = &mut tables {
-            match &item {
-                Item::Message(message) => tables.take(message),
-                Item::Remark(remark) => tables.take_remark(remark),
-                Item::Damage(damage) => tables.take_remark(&damage.remark()),
-            }
-            .map_err(refused)?;
-        }
-    }
-    if let Some(tables) = tables {
-        tables.finish().map_err(refused)?;
-    }
-    Ok(survey.finish(FileEnd::of(&recording, items.cut())))
 }
 
 /// The pattern that was to be flown; a configuration of another version may
@@ -131,17 +96,6 @@ fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     match config.guidance {
         GuidanceConfig::TimedPattern(pattern) => Some(pattern),
         GuidanceConfig::Hold => None,
-    }
-}
-
-fn not_written(path: &Path, error: &std::io::Error) -> String {
-    format!("{}: cannot be written: {error}", path.display())
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
     }
 }
 

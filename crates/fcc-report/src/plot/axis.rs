@@ -8,13 +8,13 @@ use super::super::trace::Trace;
 
 /// An axis: a range, ticks within it with their words, and what it measures.
 #[derive(Clone, Debug)]
-pub(super) struct Axis {
-    pub(super) from: f64,
-    pub(super) to: f64,
-    pub(super) ticks: Vec<(f64, String)>,
+pub(crate) struct Axis {
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) ticks: Vec<(f64, String)>,
     /// Lines of the grid without words.
-    pub(super) light: Vec<f64>,
-    pub(super) title: String,
+    pub(crate) light: Vec<f64>,
+    pub(crate) title: String,
 }
 
 /// Room beyond the data at either end, in parts of the span.
@@ -23,7 +23,7 @@ const MARGIN: f64 = 0.06;
 impl Axis {
     /// Around values from `low` to `high`, at least `least_span` long, with
     /// about `count` ticks.
-    pub(super) fn around(
+    pub(crate) fn around(
         (low, high): (f64, f64),
         least_span: f64,
         count: usize,
@@ -36,7 +36,7 @@ impl Axis {
     }
 
     /// From one value to another, with about `count` ticks.
-    pub(super) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
+    pub(crate) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
         let step = nice_step((to - from) / count.max(1) as f64);
         // Two ticks are the least to read a scale from.
         let finer = |step: &f64| Some(nice_step(0.4 * step));
@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// With a tick at every multiple of `step`, in the words of `say`.
-    pub(super) fn stepped(
+    pub(crate) fn stepped(
         (from, to): (f64, f64),
         step: f64,
         title: &str,
@@ -71,7 +71,7 @@ impl Axis {
 
     /// A logarithmic axis over whole decades around positive values: its
     /// coordinate is the decimal logarithm.
-    pub(super) fn decades((low, high): (f64, f64), title: &str, say: fn(i32) -> String) -> Self {
+    pub(crate) fn decades((low, high): (f64, f64), title: &str, say: fn(i32) -> String) -> Self {
         let from = low.max(f64::MIN_POSITIVE).log10().floor() as i32;
         let to = (high.max(f64::MIN_POSITIVE).log10().ceil() as i32).max(from + 1);
         Self {
@@ -119,7 +119,7 @@ impl ValueFormatter<f64> for Axis {
 }
 
 /// The lowest and highest value of lines; 0 and 0 if there is none.
-pub(super) fn extent<'a>(traces: impl IntoIterator<Item = &'a Trace>) -> (f64, f64) {
+pub(crate) fn extent<'a>(traces: impl IntoIterator<Item = &'a Trace>) -> (f64, f64) {
     traces
         .into_iter()
         .filter_map(Trace::extent)
@@ -157,7 +157,7 @@ fn multiples(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
 }
 
 /// A number with a real minus.
-pub(super) fn number(value: f64, decimals: usize) -> String {
+pub(crate) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(rest) if rest.chars().all(|c| matches!(c, '0' | '.')) => rest.to_owned(),

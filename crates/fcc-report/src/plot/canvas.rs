@@ -11,46 +11,46 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 #[error("a plot could not be drawn: {0}")]
 pub struct PlotError(#[from] DrawingAreaErrorKind<io::Error>);
 
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub(super) type Drawn = Result<(), PlotError>;
+pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(crate) type Drawn = Result<(), PlotError>;
 
 /// Width of every plot, px: half a millimetre of an A4 page is about 2 px.
-pub(super) const WIDTH_PX: f64 = 760.0;
+pub(crate) const WIDTH_PX: f64 = 760.0;
 
 /// The library draws to whole units; with as many in a pixel, lines are smooth.
 const UNITS_PER_PX: f64 = 10.0;
 
 /// What is actual.
-pub(super) const ACTUAL: RGBColor = RGBColor(24, 66, 110);
+pub(crate) const ACTUAL: RGBColor = RGBColor(24, 66, 110);
 /// What was measured, behind what is estimated from it.
-pub(super) const MEASURED: RGBColor = RGBColor(150, 178, 206);
+pub(crate) const MEASURED: RGBColor = RGBColor(150, 178, 206);
 /// What is desired. Nothing else has this ink: it is what is dashed.
-pub(super) const DESIRED: RGBColor = RGBColor(200, 80, 30);
+pub(crate) const DESIRED: RGBColor = RGBColor(200, 80, 30);
 /// What is compared with.
-pub(super) const OTHER: RGBColor = RGBColor(120, 120, 120);
+pub(crate) const OTHER: RGBColor = RGBColor(120, 120, 120);
 /// Axes and their words.
-pub(super) const TEXT: RGBColor = RGBColor(45, 45, 45);
+pub(crate) const TEXT: RGBColor = RGBColor(45, 45, 45);
 /// Less than that.
-pub(super) const FAINT: RGBColor = RGBColor(130, 130, 130);
+pub(crate) const FAINT: RGBColor = RGBColor(130, 130, 130);
 /// The grid.
-pub(super) const GRID: RGBColor = RGBColor(224, 224, 224);
+pub(crate) const GRID: RGBColor = RGBColor(224, 224, 224);
 
 /// Text sizes, px.
-pub(super) const LABEL_PX: f64 = 10.5;
-pub(super) const SMALL_PX: f64 = 9.0;
+pub(crate) const LABEL_PX: f64 = 10.5;
+pub(crate) const SMALL_PX: f64 = 9.0;
 
 /// Pixels in the library's units.
-pub(super) fn px(pixels: f64) -> i32 {
+pub(crate) fn px(pixels: f64) -> i32 {
     (pixels * UNITS_PER_PX).round() as i32
 }
 
 /// A pen of a width in px.
-pub(super) fn pen(ink: RGBColor, width_px: f64) -> ShapeStyle {
+pub(crate) fn pen(ink: RGBColor, width_px: f64) -> ShapeStyle {
     ink.stroke_width(px(width_px) as u32)
 }
 
 /// Text of a size in px, where it stands by its anchor.
-pub(super) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
+pub(crate) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
     // The library writes sizes by this factor smaller.
     const LIBRARY_FACTOR: f64 = 1.24;
     let size = size_px * UNITS_PER_PX * LIBRARY_FACTOR;
@@ -60,13 +60,13 @@ pub(super) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'
 }
 
 /// About how wide a text is, px: sans serif letters are half as wide as high.
-pub(super) fn text_width_px(words: &str, size_px: f64) -> f64 {
+pub(crate) fn text_width_px(words: &str, size_px: f64) -> f64 {
     0.52 * size_px * words.chars().count() as f64
 }
 
 /// Draws a plot of a height; `label` says to those who cannot see it what it
 /// shows.
-pub(super) fn draw(
+pub(crate) fn draw(
     height_px: f64,
     label: &str,
     paint: impl FnOnce(&Area<'_>) -> Drawn,

@@ -5,9 +5,9 @@ use super::canvas::{SMALL_PX, text_width_px};
 
 /// Events that are too close to be told apart, under one mark.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(super) struct Mark {
+pub(crate) struct Mark {
     /// Of the weightiest of them, px on the sheet.
-    pub(super) at_px: f64,
+    pub(crate) at_px: f64,
     /// Number of the first.
     first: usize,
     /// Number of the last.
@@ -18,7 +18,7 @@ pub(super) struct Mark {
 
 /// Marks for all events, none on top of another; `x_px` says where on the
 /// sheet a time is.
-pub(super) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark> {
+pub(crate) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for event in events {
         let mut mark = Mark {
@@ -38,7 +38,7 @@ pub(super) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark
 
 impl Mark {
     /// The numbers of its events.
-    pub(super) fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         if self.first == self.last {
             self.first.to_string()
         } else {

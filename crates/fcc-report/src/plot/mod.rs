@@ -4,63 +4,54 @@
 //! One style for all: what is actual is a dark solid line, what is desired a
 //! thin dashed one; legends stand above the data and never on it; axes carry
 //! their unit; every plot over time has the same time axis, tinted where the
-//! autopilot was not engaged, with the events numbered as in the table.
+//! loop was not engaged, with the events numbered as in the table.
 
-mod axis;
-mod canvas;
-mod flight;
-mod ground_track;
+pub(crate) mod axis;
+pub(crate) mod canvas;
+mod curves;
 mod marks;
-mod panel;
+pub(crate) mod panel;
 mod percentile_ranges;
 mod time_figure;
+mod time_plots;
 mod timeline;
 mod timing;
 
 pub use canvas::PlotError;
+pub(crate) use curves::{Detail, Ink};
 
-use super::Report;
+use super::RunReport;
 
 /// A plot with its words.
-pub(super) struct Figure {
+pub struct Figure {
     /// What it shows.
-    pub(super) title: &'static str,
+    pub title: String,
     /// How to read it.
-    pub(super) caption: String,
+    pub caption: String,
     /// The picture.
-    pub(super) svg: String,
+    pub svg: String,
 }
 
 /// The figures of a page, by its sections.
+#[derive(Default)]
 pub(super) struct Figures {
     /// States and events.
     pub(super) timeline: Vec<Figure>,
-    /// How the aircraft flew.
-    pub(super) flight: Vec<Figure>,
+    /// Measurements, set points and outputs.
+    pub(super) values: Vec<Figure>,
     /// How the loop kept time.
     pub(super) timing: Vec<Figure>,
 }
 
-impl Figures {
-    /// In the order of the page.
-    pub(super) fn into_all(self) -> impl Iterator<Item = Figure> {
-        let sections = [self.timeline, self.flight, self.timing];
-        sections.into_iter().flatten()
-    }
-}
-
 /// Draws all that there is to draw.
-pub(super) fn figures(report: &Report) -> Result<Figures, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Figures, PlotError> {
     if report.continuity.ticks == 0 {
-        return Ok(Figures {
-            timeline: Vec::new(),
-            flight: Vec::new(),
-            timing: Vec::new(),
-        });
+        return Ok(Figures::default());
     }
+    let detail = detail.shared_by(report);
     Ok(Figures {
         timeline: vec![timeline::timeline(report)?],
-        flight: flight::figures(report)?,
-        timing: timing::figures(report)?,
+        values: time_plots::figures(report, detail)?,
+        timing: timing::figures(report, detail)?,
     })
 }

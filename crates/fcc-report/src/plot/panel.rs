@@ -4,7 +4,6 @@ use plotters::chart::ChartContext;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::super::trace::Point;
 use super::axis::Axis;
 use super::canvas::{Area, Drawn, FAINT, GRID, LABEL_PX, PlotError, TEXT, pen, px, text};
 
@@ -13,11 +12,11 @@ type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
 /// Where a panel lies on its sheet, px from the sheet's upper left, axes and
 /// their words not included.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    pub(super) left: f64,
-    pub(super) top: f64,
-    pub(super) right: f64,
-    pub(super) bottom: f64,
+pub(crate) struct Frame {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) right: f64,
+    pub(crate) bottom: f64,
 }
 
 /// Room for the words of an axis, px.
@@ -25,7 +24,7 @@ const X_WORDS_PX: f64 = 34.0;
 const Y_WORDS_PX: f64 = 54.0;
 
 /// One pair of axes, and what is drawn between them.
-pub(super) struct Panel<'a> {
+pub(crate) struct Panel<'a> {
     area: Area<'a>,
     chart: Chart<'a>,
     x: Axis,
@@ -35,7 +34,7 @@ pub(super) struct Panel<'a> {
 
 impl<'a> Panel<'a> {
     /// A panel in its frame; nothing is drawn yet.
-    pub(super) fn new(area: &Area<'a>, frame: Frame, x: Axis, y: Axis) -> Result<Self, PlotError> {
+    pub(crate) fn new(area: &Area<'a>, frame: Frame, x: Axis, y: Axis) -> Result<Self, PlotError> {
         let left = frame.left - Y_WORDS_PX;
         let cell = area.clone().shrink(
             (px(left), px(frame.top)),
@@ -58,7 +57,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Tints the whole height from one x to another.
-    pub(super) fn tint(&mut self, from: f64, to: f64, ink: RGBColor) -> Drawn {
+    pub(crate) fn tint(&mut self, from: f64, to: f64, ink: RGBColor) -> Drawn {
         let (from, to) = (from.max(self.x.from), to.min(self.x.to));
         if from < to {
             let corners = [(from, self.y.from), (to, self.y.to)];
@@ -69,7 +68,7 @@ impl<'a> Panel<'a> {
     }
 
     /// Draws grid and axes; the words of the x axis if they are wanted.
-    pub(super) fn axes(&mut self, with_x_words: bool) -> Drawn {
+    pub(crate) fn axes(&mut self, with_x_words: bool) -> Drawn {
         let label = text(LABEL_PX, TEXT, HPos::Center, VPos::Center);
         let (log, silent) = (
             !self.x.light.is_empty() || !self.y.light.is_empty(),
@@ -114,17 +113,8 @@ impl<'a> Panel<'a> {
         Ok(())
     }
 
-    /// Draws unbroken lines.
-    pub(super) fn lines(&mut self, lines: &[Vec<Point>], style: ShapeStyle) -> Drawn {
-        for line in lines {
-            let points: Vec<_> = line.iter().map(|p| (p.time_s, p.value)).collect();
-            self.polyline(points, style)?;
-        }
-        Ok(())
-    }
-
     /// Draws a line through points of the axes.
-    pub(super) fn polyline(&mut self, points: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn {
+    pub(crate) fn polyline(&mut self, points: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn {
         // A line of one point would be nothing at all.
         if let [(x, y)] = points.as_slice() {
             let (at, radius) = ((*x, *y), px(0.8));
@@ -137,26 +127,26 @@ impl<'a> Panel<'a> {
     }
 
     /// Draws a filled rectangle between points of the axes.
-    pub(super) fn bar(&mut self, from: (f64, f64), to: (f64, f64), style: ShapeStyle) -> Drawn {
+    pub(crate) fn bar(&mut self, from: (f64, f64), to: (f64, f64), style: ShapeStyle) -> Drawn {
         self.chart
             .draw_series([Rectangle::new([from, to], style)])?;
         Ok(())
     }
 
     /// Draws a dot, filled or not.
-    pub(super) fn dot(&mut self, at: (f64, f64), radius_px: f64, style: ShapeStyle) -> Drawn {
+    pub(crate) fn dot(&mut self, at: (f64, f64), radius_px: f64, style: ShapeStyle) -> Drawn {
         self.chart
             .draw_series([Circle::new(at, px(radius_px), style)])?;
         Ok(())
     }
 
     /// Whether the x axis reaches a value.
-    pub(super) fn shows(&self, x: f64) -> bool {
+    pub(crate) fn shows(&self, x: f64) -> bool {
         (self.x.from..=self.x.to).contains(&x)
     }
 
     /// Where a point of the axes lies on the sheet, px.
-    pub(super) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
+    pub(crate) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
         let frame = self.frame;
         let share = |value: f64, axis: &Axis| (value - axis.from) / (axis.to - axis.from);
         (

@@ -20,7 +20,7 @@ const LEAST_US: f64 = 0.01;
 
 /// A row for each; none where there is nothing above 0.
 pub(super) fn figure(
-    title: &'static str,
+    title: &str,
     what: &str,
     rows: &[NamedPercentiles],
 ) -> Result<Option<Figure>, PlotError> {
@@ -54,7 +54,7 @@ pub(super) fn figure(
         legend(area)
     })?;
     Ok(Some(Figure {
-        title,
+        title: title.to_owned(),
         caption: format!("{what}; the scale is logarithmic."),
         svg,
     }))
@@ -78,7 +78,7 @@ fn draw_row(area: &Area<'_>, panel: &mut Panel<'_>, y: f64, row: &NamedPercentil
     panel.dot((at(of.max_us), y), 2.4, pen(ACTUAL, 1.0))?;
     let (_, middle) = panel.on_sheet((0.0, y));
     let style = text(LABEL_PX, TEXT, HPos::Right, VPos::Center);
-    area.draw_text(row.name, &style, (px(LEFT_PX - 8.0), px(middle)))?;
+    area.draw_text(&row.name, &style, (px(LEFT_PX - 8.0), px(middle)))?;
     Ok(())
 }
 

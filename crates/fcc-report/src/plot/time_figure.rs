@@ -3,14 +3,15 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::super::Report;
+use super::super::RunReport;
+use super::super::plots::Curve;
 use super::super::states::Phase;
-use super::super::trace::Point;
 use super::axis::Axis;
 use super::canvas::{
-    ACTUAL, Area, DESIRED, Drawn, FAINT, LABEL_PX, MEASURED, PlotError, SMALL_PX, TEXT, WIDTH_PX,
-    draw, pen, px, text, text_width_px,
+    Area, Drawn, FAINT, LABEL_PX, PlotError, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
+    text_width_px,
 };
+use super::curves::{Detail, Ink, is_dense, markup};
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
 
@@ -24,66 +25,73 @@ const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
 const X_WORDS_PX: f64 = 36.0;
 
-/// Of a flight longer than this, a fine line shows more.
-const DENSE_S: f64 = 600.0;
-
 /// Where records are missing.
 const GAP: RGBColor = RGBColor(255, 238, 170);
 
-/// How a line is drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Ink {
-    /// Thin and pale, behind the others.
-    Measured,
-    /// Solid.
-    Actual,
-    /// Thin and dashed.
-    Desired,
-}
-
 /// A panel of a figure over time.
-pub(super) struct TimePanel {
+pub(super) struct TimePanel<'a> {
     pub(super) height_px: f64,
     pub(super) y: Axis,
-    /// Unbroken lines, drawn in this order.
-    pub(super) lines: Vec<(Ink, Vec<Vec<Point>>)>,
+    /// Drawn in this order.
+    pub(super) curves: &'a [Curve],
 }
 
 /// Draws panels over the time of a report.
 pub(super) fn time_figure(
-    report: &Report,
+    report: &RunReport,
     label: &str,
-    panels: &[TimePanel],
+    detail: Detail,
+    panels: &[TimePanel<'_>],
 ) -> Result<String, PlotError> {
     let top = LEGEND_PX + MARKS_PX;
-    let of_panels: f64 = panels
-        .iter()
-        .map(|panel| panel.height_px + BETWEEN_PX)
-        .sum();
-    let height_px = top + of_panels - BETWEEN_PX + X_WORDS_PX;
+    let mut bottom = top - BETWEEN_PX;
+    let mut frames = Vec::new();
+    for panel in panels {
+        let top = bottom + BETWEEN_PX;
+        bottom = top + panel.height_px;
+        frames.push(Frame {
+            left: LEFT_PX,
+            top,
+            right: RIGHT_PX,
+            bottom,
+        });
+    }
     let marks = marks(&report.events, |time_s| time_px(report, time_s));
-    draw(height_px, label, |area| {
+    let mut svg = draw(bottom + X_WORDS_PX, label, |area| {
         legend(area, report, panels)?;
-        let mut y_px = top;
-        for (number, panel) in panels.iter().enumerate() {
-            let frame = Frame {
-                left: LEFT_PX,
-                top: y_px,
-                right: RIGHT_PX,
-                bottom: y_px + panel.height_px,
-            };
-            let is_last = number + 1 == panels.len();
-            draw_panel(area, report, panel, frame, is_last, &marks)?;
-            y_px = frame.bottom + BETWEEN_PX;
+        for (panel, frame) in panels.iter().zip(&frames) {
+            let is_last = frame.bottom == bottom;
+            draw_panel(area, report, panel, *frame, is_last, &marks)?;
         }
         number_marks(area, top, &marks)
-    })
+    })?;
+    let curves = |(panel, frame): (&TimePanel<'_>, &Frame)| -> String {
+        let (y, frame) = (panel.y.clone(), *frame);
+        let curves = panel.curves.iter();
+        curves
+            .map(|curve| {
+                markup(curve, is_dense(report), detail, |point| {
+                    let share = (point.value - y.from) / (y.to - y.from);
+                    let height = frame.bottom - frame.top;
+                    (time_px(report, point.time_s), frame.bottom - share * height)
+                })
+            })
+            .collect()
+    };
+    let lines: String = panels.iter().zip(&frames).map(curves).collect();
+    let end = svg.rfind("</svg>").unwrap_or(svg.len());
+    svg.insert_str(end, &lines);
+    // For the page's script: where the axis of time is.
+    let (left, right, end_s) = (px(LEFT_PX), px(RIGHT_PX), end_s(report));
+    let axis = format!(" data-left=\"{left}\" data-right=\"{right}\" data-end=\"{end_s}\"");
+    svg.insert_str("<svg".len(), &axis);
+    Ok(svg)
 }
 
 fn draw_panel(
     area: &Area<'_>,
-    report: &Report,
-    panel: &TimePanel,
+    report: &RunReport,
+    panel: &TimePanel<'_>,
     frame: Frame,
     is_last: bool,
     marks: &[Mark],
@@ -107,16 +115,6 @@ fn draw_panel(
             pen(RGBColor(190, 190, 190), 0.6),
         ))?;
     }
-    for (ink, lines) in &panel.lines {
-        let style = match (ink, report.duration_s > DENSE_S) {
-            (Ink::Measured, _) => pen(MEASURED, 0.6),
-            (Ink::Actual, false) => pen(ACTUAL, 1.3),
-            (Ink::Actual, true) => pen(ACTUAL, 0.8),
-            (Ink::Desired, false) => pen(DESIRED, 1.0),
-            (Ink::Desired, true) => pen(DESIRED, 0.7),
-        };
-        drawn.lines(lines, style)?;
-    }
     Ok(())
 }
 
@@ -129,36 +127,35 @@ fn number_marks(area: &Area<'_>, top: f64, marks: &[Mark]) -> Drawn {
 }
 
 /// What lines and tints mean, in a row above the panels.
-fn legend(area: &Area<'_>, report: &Report, panels: &[TimePanel]) -> Drawn {
-    let has = |ink: Ink| {
-        panels
-            .iter()
-            .flat_map(|panel| &panel.lines)
-            .any(|(with, lines)| *with == ink && !lines.is_empty())
-    };
+fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Drawn {
+    let curves = panels.iter().flat_map(|panel| panel.curves);
+    let drawn: Vec<&Curve> = curves.filter(|curve| curve.trace.len() > 0).collect();
+    let of = |ink: Ink| drawn.iter().find(|curve| curve.ink == ink);
+    let mut inks: Vec<_> = [Ink::Measured, Ink::Actual, Ink::Desired]
+        .into_iter()
+        .filter_map(of)
+        .collect();
+    // One line needs no name.
+    if inks.len() == 1 {
+        inks.clear();
+    }
     let in_phase = |phase: Phase| report.states.iter().any(|span| span.phase == phase);
     let mut x = LEFT_PX;
     let middle = LEGEND_PX / 2.0 - 1.0;
     let style = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
-    let mut say = |sample: &dyn Fn(f64) -> Drawn, words: &str| -> Drawn {
+    let mut add = |sample: &dyn Fn(f64) -> Drawn, words: &str| -> Drawn {
         sample(x)?;
         area.draw_text(words, &style, (px(x + 26.0), px(middle)))?;
         x += 26.0 + text_width_px(words, LABEL_PX) + 16.0;
         Ok(())
     };
-    for (ink, pen, words) in [
-        (Ink::Measured, pen(MEASURED, 0.9), "measured"),
-        (Ink::Actual, pen(ACTUAL, 1.3), "actual"),
-        (Ink::Desired, pen(DESIRED, 1.0), "desired"),
-    ] {
-        // Where nothing is desired, the one line needs no name.
-        if has(ink) && has(Ink::Desired) {
-            let sample = |x: f64| -> Drawn {
-                let ends = [(px(x), px(middle)), (px(x + 21.0), px(middle))];
-                Ok(area.draw(&PathElement::new(ends, pen))?)
-            };
-            say(&sample, words)?;
-        }
+    for curve in inks {
+        let (colour, width_px) = curve.ink.pen(false);
+        let sample = |x: f64| -> Drawn {
+            let ends = [(px(x), px(middle)), (px(x + 21.0), px(middle))];
+            Ok(area.draw(&PathElement::new(ends, pen(colour, width_px)))?)
+        };
+        add(&sample, curve.name)?;
     }
     let tints = [Phase::Standby, Phase::Failsafe, Phase::Stopped]
         .into_iter()
@@ -174,12 +171,12 @@ fn legend(area: &Area<'_>, report: &Report, panels: &[TimePanel]) -> Drawn {
             area.draw(&Rectangle::new(corners, tint.filled()))?;
             Ok(())
         };
-        say(&sample, words)?;
+        add(&sample, words)?;
     }
     Ok(())
 }
 
-/// The ground of a panel where the autopilot was not engaged.
+/// The ground of a panel where the loop was not engaged.
 pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
     match phase {
         Phase::Engaged => None,
@@ -199,18 +196,18 @@ pub(super) fn words(phase: Phase) -> &'static str {
 }
 
 /// Where on the sheet a time is, px.
-pub(super) fn time_px(report: &Report, time_s: f64) -> f64 {
+pub(super) fn time_px(report: &RunReport, time_s: f64) -> f64 {
     let share = (time_s / end_s(report)).clamp(0.0, 1.0);
     LEFT_PX + share * (RIGHT_PX - LEFT_PX)
 }
 
-fn end_s(report: &Report) -> f64 {
+fn end_s(report: &RunReport) -> f64 {
     // One tick has no duration, and its axis must have one.
     report.duration_s.max(0.1)
 }
 
 /// The axis of time: its coordinate is in seconds, its words in what suits.
-pub(super) fn time_axis(report: &Report) -> Axis {
+pub(super) fn time_axis(report: &RunReport) -> Axis {
     let end_s = end_s(report);
     let (unit_s, unit) = match end_s {
         end_s if end_s <= 300.0 => (1.0, "s"),

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::super::Report;
+use super::super::RunReport;
 use super::super::events::EventLine;
 use super::super::states::Phase;
 use super::Figure;
@@ -24,7 +24,7 @@ const MOST_TRIED: usize = 80;
 const MOST_LETTERS: usize = 70;
 
 /// States and events over time.
-pub(super) fn timeline(report: &Report) -> Result<Figure, PlotError> {
+pub(super) fn timeline(report: &RunReport) -> Result<Figure, PlotError> {
     let notes = place_notes(report);
     let rows = notes.iter().map(|note| note.row + 1).max().unwrap_or(0);
     let height_px = BAR_TOP_PX + BAR_PX + LEAD_PX + rows as f64 * ROW_PX + 6.0;
@@ -48,14 +48,14 @@ pub(super) fn timeline(report: &Report) -> Result<Figure, PlotError> {
             .to_owned()
     };
     Ok(Figure {
-        title: "Timeline",
+        title: "Timeline".to_owned(),
         caption,
         svg,
     })
 }
 
 /// Above the bar, so that the words below it have room.
-fn axis(area: &Area<'_>, axis: &Axis, report: &Report) -> Drawn {
+fn axis(area: &Area<'_>, axis: &Axis, report: &RunReport) -> Drawn {
     let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Bottom);
     for (at, words) in &axis.ticks {
         let x = px(time_px(report, *at));
@@ -68,7 +68,7 @@ fn axis(area: &Area<'_>, axis: &Axis, report: &Report) -> Drawn {
     Ok(())
 }
 
-fn bar(area: &Area<'_>, report: &Report) -> Drawn {
+fn bar(area: &Area<'_>, report: &RunReport) -> Drawn {
     let (top, bottom) = (px(BAR_TOP_PX), px(BAR_TOP_PX + BAR_PX));
     for span in &report.states {
         let (from, to) = (
@@ -140,7 +140,7 @@ impl Note {
 /// Finds room for as many events as there is, the weightiest first and of
 /// equals the latest: words stand to the right of their lead, and so the leads
 /// of earlier ones pass them by.
-fn place_notes(report: &Report) -> Vec<Note> {
+fn place_notes(report: &RunReport) -> Vec<Note> {
     let mut events: Vec<&EventLine> = report.events.iter().collect();
     events.sort_by(|a, b| b.weight.cmp(&a.weight).then(b.time_s.total_cmp(&a.time_s)));
     let mut placed: Vec<Note> = Vec::new();

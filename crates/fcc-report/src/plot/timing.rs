@@ -6,14 +6,15 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::super::box_plot::BoxPlot;
 use super::super::text::time;
-use super::super::{Report, Timing};
+use super::super::{RunReport, Timing};
 use super::axis::{Axis, extent};
 use super::canvas::{
     ACTUAL, Drawn, FAINT, OTHER, PlotError, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
     text_width_px,
 };
+use super::curves::Detail;
 use super::panel::{Frame, Panel};
-use super::time_figure::{Ink, TimePanel, time_figure};
+use super::time_figure::{TimePanel, time_figure};
 use super::{Figure, percentile_ranges};
 
 const LEFT_PX: f64 = 90.0;
@@ -21,17 +22,17 @@ const RIGHT_PX: f64 = WIDTH_PX - 22.0;
 const X_WORDS_PX: f64 = 36.0;
 
 /// The figures that there are data for.
-pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Vec<Figure>, PlotError> {
     let Some(timing) = &report.timing else {
         return Ok(Vec::new());
     };
     let mut figures = Vec::new();
     if !timing.is_lockstep() {
         if let Some(of) = &timing.period_box_ms {
-            figures.push(periods(timing, of)?);
+            figures.push(periods(timing, of, report.words.run)?);
         }
         figures.push(lateness(timing)?);
-        figures.push(lateness_over_time(report)?);
+        figures.push(lateness_over_time(report, detail)?);
     }
     figures.extend(percentile_ranges::figure(
         "Stages of a tick",
@@ -46,17 +47,18 @@ pub(super) fn figures(report: &Report) -> Result<Vec<Figure>, PlotError> {
     Ok(figures)
 }
 
-fn lateness_over_time(report: &Report) -> Result<Figure, PlotError> {
+fn lateness_over_time(report: &RunReport, detail: Detail) -> Result<Figure, PlotError> {
     Ok(Figure {
-        title: "Lateness over time",
+        title: "Lateness over time".to_owned(),
         caption: "From deadline to wake-up.".to_owned(),
         svg: time_figure(
             report,
             "Lateness over time",
+            detail,
             &[TimePanel {
                 height_px: 100.0,
-                y: lateness_axis(extent([&report.lines.lateness_us])),
-                lines: vec![(Ink::Actual, report.lines.lateness_us.lines())],
+                y: lateness_axis(extent([&report.lateness.trace])),
+                curves: std::slice::from_ref(&report.lateness),
             }],
         )?,
     })
@@ -77,7 +79,7 @@ fn lateness_axis((_, high): (f64, f64)) -> Axis {
 }
 
 /// The periods beside the thesis', and below them by themselves.
-fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
+fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Result<Figure, PlotError> {
     let nominal_ms = 1e3 / timing.table.rate_hz;
     let thesis = timing.thesis.map(|thesis| thesis.box_plot());
     let rows = 1 + usize::from(thesis.is_some());
@@ -109,16 +111,17 @@ fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
             let style = text(SMALL_PX, FAINT, HPos::Center, VPos::Bottom);
             let (middle, top) = panel.on_sheet((nominal_ms, rows as f64));
             area.draw_text("±2 %", &style, (px(middle), px(top - 2.0)))?;
-            let draw_row = |panel: &mut Panel<'_>, row: usize, of: &BoxPlot, mean, name, ink| {
-                let y = (rows - row) as f64 - 0.5;
-                draw_box(panel, y, of, mean, ink)?;
-                let (_, at) = panel.on_sheet((nominal_ms, y));
-                let style = text(SMALL_PX, TEXT, HPos::Right, VPos::Center);
-                area.draw_text(name, &style, (px(LEFT_PX - 8.0), px(at)))
-                    .map_err(PlotError::from)
-            };
+            let draw_row =
+                |panel: &mut Panel<'_>, row: usize, of: &BoxPlot, mean, name: &str, ink| {
+                    let y = (rows - row) as f64 - 0.5;
+                    draw_box(panel, y, of, mean, ink)?;
+                    let (_, at) = panel.on_sheet((nominal_ms, y));
+                    let style = text(SMALL_PX, TEXT, HPos::Right, VPos::Center);
+                    area.draw_text(name, &style, (px(LEFT_PX - 8.0), px(at)))
+                        .map_err(PlotError::from)
+                };
             let mean_ms = timing.table.period_ms.mean;
-            draw_row(&mut panel, 0, of, mean_ms, "this flight", ACTUAL)?;
+            draw_row(&mut panel, 0, of, mean_ms, &format!("this {run}"), ACTUAL)?;
             if let (Some(of), Some(thesis)) = (&thesis, &timing.thesis) {
                 draw_row(&mut panel, 1, of, thesis.mean_ms, "thesis (2012)", OTHER)?;
             }
@@ -129,7 +132,7 @@ fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
                 (whiskers.0 - beyond, whiskers.1 + beyond),
                 0.1,
                 10,
-                &format!("this flight: period less {nominal_ms:.3} ms, µs"),
+                &format!("this {run}: period less {nominal_ms:.3} ms, µs"),
             );
             let mut panel = Panel::new(area, frame(lower_top_px, 40.0), x, rows_axis(1))?;
             panel.axes(true)?;
@@ -145,7 +148,7 @@ fn periods(timing: &Timing, of: &BoxPlot) -> Result<Figure, PlotError> {
         ""
     };
     Ok(Figure {
-        title: "Period of the loop",
+        title: "Period of the loop".to_owned(),
         caption: format!(
             "Box: the middle half; line: median; dot: mean; whiskers: to the last period \
              within 1.5 box lengths; circles: the {} beyond (thesis, figures 6.1 to 6.3).{beside}",
@@ -274,7 +277,7 @@ fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
         },
     )?;
     Ok(Figure {
-        title: "Lateness",
+        title: "Lateness".to_owned(),
         caption: "How late the loop woke after its deadlines: ticks in bins of a tenth of a \
                   decade; both scales are logarithmic."
             .to_owned(),

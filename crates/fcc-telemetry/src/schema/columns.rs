@@ -1,12 +1,14 @@
 //! The values of a struct as columns.
 
-use fcc_core::framework::schema::{Field, Kind, Schema, Structure, Type};
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Structure, Type, Value};
 
 /// A column: one value of a struct.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Column {
     /// Its name in tables and arrays, with the unit at the end.
     pub name: String,
+    /// Its name in its struct; of a reading's value, the reading's.
+    pub field: &'static str,
     /// Its path in the struct: `measurements.attitude.value.pitch_rad`.
     pub path: String,
     /// The path of the reading that contains it, if there is one.
@@ -31,6 +33,31 @@ pub fn columns<T: Schema>() -> Vec<Column> {
 /// The same, followed by the derived values.
 pub(super) fn columns_and_derived<T: Schema>() -> Vec<Column> {
     collect::<T>(true)
+}
+
+/// The single values of a struct, in the order of its [`columns`].
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Leaves {
+    values: Vec<Value>,
+}
+
+impl Leaves {
+    /// Replaces the values by those of a struct.
+    pub fn take<T: Schema>(&mut self, of: &T) {
+        self.values.clear();
+        of.visit(self);
+    }
+
+    /// The values.
+    pub fn as_slice(&self) -> &[Value] {
+        &self.values
+    }
+}
+
+impl Sink for Leaves {
+    fn value(&mut self, _: &'static Field, value: Value) {
+        self.values.push(value);
+    }
 }
 
 fn collect<T: Schema>(derived: bool) -> Vec<Column> {
@@ -90,6 +117,7 @@ impl Around<'_> {
         named.of = Type::Leaf(kind);
         Column {
             name: self.name(),
+            field: told_by.name,
             path: self.path.clone(),
             reading: self.reading(),
             offset: self.offset,

@@ -1,17 +1,17 @@
-//! From the times at both ends to figures.
+//! Figures from the times at both ends.
 
 use std::error::Error;
 use std::fmt::Write as _;
 
 use fcc_core::framework::{State, StateCode};
-use fcc_telemetry::FlightRecord;
 use serde_json::{Value, json};
 
-use crate::wire::Seen;
+use crate::daemon::LoopRecord;
+use crate::wire::Times;
 
-/// Surfaces and throttle: datagrams in a tick that only steers.
+/// Surfaces and throttle: datagrams of a tick without overrides.
 const WRITES_PER_TICK: usize = 4;
-/// Ticks after engaging that are left out: the first of them sets overrides.
+/// Ticks after engaging that are omitted: the first of them sets overrides.
 const SKIPPED_TICKS: usize = 80;
 
 /// One figure of every tick, µs.
@@ -28,12 +28,12 @@ pub(crate) struct Report {
 
 /// The figures of the ticks that steered.
 pub(crate) fn report(
-    records: &[FlightRecord],
-    seen: &Seen,
+    records: &[LoopRecord],
+    times: &Times,
     rate_hz: u32,
 ) -> Result<Report, Box<dyn Error>> {
     let engaged = StateCode::from(State::Engaged);
-    let steered: Vec<&FlightRecord> = records
+    let steered: Vec<&LoopRecord> = records
         .iter()
         .filter(|record| record.sent && record.state == engaged)
         .skip(SKIPPED_TICKS)
@@ -41,7 +41,7 @@ pub(crate) fn report(
     if steered.is_empty() {
         return Err("the autopilot never engaged: is the machine too slow, or the switch?".into());
     }
-    let stage = |name, of: fn(&FlightRecord) -> u64| Figure {
+    let stage = |name, of: fn(&LoopRecord) -> u64| Figure {
         name,
         us: steered
             .iter()
@@ -64,14 +64,14 @@ pub(crate) fn report(
     let period_ns = 1_000_000_000 / i64::from(rate_hz);
     for record in &steered {
         let woke_ns = record.tick.woke.as_nanos();
-        let from = seen.writes_ns.partition_point(|&at| at < woke_ns);
-        let to = seen
+        let from = times.writes_ns.partition_point(|&at| at < woke_ns);
+        let to = times
             .writes_ns
             .partition_point(|&at| at < woke_ns + period_ns);
-        let writes = seen.writes_ns.get(from..to).unwrap_or_default();
-        let newest = seen.frames_ns.partition_point(|&at| at < woke_ns);
-        let frame = newest.checked_sub(1).and_then(|at| seen.frames_ns.get(at));
-        // A tick that asserts its overrides sends more: another thing.
+        let writes = times.writes_ns.get(from..to).unwrap_or_default();
+        let newest = times.frames_ns.partition_point(|&at| at < woke_ns);
+        let frame = newest.checked_sub(1).and_then(|at| times.frames_ns.get(at));
+        // A tick that repeats its overrides sends more, and is omitted.
         if let ([begin, .., end], Some(frame)) = (writes, frame)
             && writes.len() == WRITES_PER_TICK
         {
@@ -107,7 +107,7 @@ pub(crate) fn report(
 }
 
 impl Figure {
-    /// The value that so many are not above: nearest rank.
+    /// The value that this share does not exceed: nearest rank.
     fn at(&self, share: f64) -> f64 {
         let rank = (share * self.us.len() as f64).ceil() as usize;
         self.us.get(rank.max(1) - 1).copied().unwrap_or(0.0)

@@ -1,4 +1,4 @@
-//! The daemon in a process of its own, and what it recorded.
+//! The daemon in a separate process, and its recording.
 
 use std::error::Error;
 use std::fs;
@@ -6,9 +6,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::Message;
+use fcc_core::framework::{Message, Record};
 use fcc_record::Recording;
-use fcc_telemetry::{FlightMessage, FlightRecord};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
@@ -18,7 +17,10 @@ use crate::wire::Wire;
 /// How long it may take to end.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// The daemon at work.
+/// What the loop of any plant records: ticks, stages, states.
+pub(crate) type LoopRecord = Record<(), (), (), ()>;
+
+/// A running daemon.
 pub(crate) struct Daemon {
     process: Child,
     folder: TempDir,
@@ -34,7 +36,8 @@ impl Daemon {
         let folder = tempfile::tempdir()?;
         let config = folder.path().join("fccd.toml");
         let recordings = folder.path().join("recordings").display().to_string();
-        // The simulator's values stand still, which is no fault of sensors here.
+        // The simulator's values are constant; this must not count as frozen
+        // sensors.
         let text = format!(
             "[failsafe]\nsensor_frozen_s = 0.0\n\n[x-plane]\nsimulator = \"127.0.0.1:{port}\"\n\n[loop]\nrate_hz = {rate_hz}\n{with}\n\n\
              [recording]\nfolder = \"{recordings}\"\n\n[telemetry]\ninstance = \"latency-{port}\"\n\n\
@@ -52,8 +55,8 @@ mode = \"hold\"\n"
         Ok(Self { process, folder })
     }
 
-    /// Ends it and reads what it recorded; the simulator lives on meanwhile.
-    pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<FlightRecord>, Box<dyn Error>> {
+    /// Ends it and reads its recording; the simulator continues meanwhile.
+    pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<LoopRecord>, Box<dyn Error>> {
         kill(
             Pid::from_raw(self.process.id().cast_signed()),
             Signal::SIGTERM,
@@ -80,7 +83,7 @@ mode = \"hold\"\n"
             {
                 records.extend(
                     Recording::open(&path)?
-                        .messages::<FlightMessage>()?
+                        .messages::<Message<(), (), (), (), ()>>()?
                         .filter_map(|message| match message {
                             Message::Tick(record) => Some(record),
                             Message::Event(_) => None,
@@ -94,7 +97,7 @@ mode = \"hold\"\n"
 
 impl Drop for Daemon {
     fn drop(&mut self) {
-        // Ended long ago, unless something went wrong.
+        // Already ended, unless an error occurred.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }

@@ -1,10 +1,10 @@
-//! The way from the simulator's datagram to ours, through the daemon as it is
-//! installed: `fccd run` in a process of its own, with telemetry and recording,
+//! The latency from the simulator's datagram to ours, through the daemon as
+//! installed: `fccd run` in a separate process, with telemetry and recording,
 //! against a simulated X-Plane on loopback.
 //!
-//! The simulator stamps each frame with the monotonic clock as it sends it; the
-//! kernel stamps each datagram of ours as it arrives; the recording tells when
-//! each tick woke and how long its stages took.
+//! The simulator stamps each frame with the monotonic clock when it sends it;
+//! the kernel stamps each datagram of ours when it arrives; the recording has
+//! each tick's wake-up and the durations of its stages.
 #![allow(clippy::print_stdout, reason = "a program")]
 
 mod analysis;
@@ -20,8 +20,8 @@ use clap::Parser;
 use daemon::Daemon;
 use wire::Wire;
 
-/// Until the autopilot may engage: it watches for a second first, and the
-/// daemon has to find the simulator.
+/// Time until the autopilot may engage: it settles for a second, and the daemon
+/// must first find the simulator.
 const SETTLE: Duration = Duration::from_secs(4);
 
 /// Follows a datagram from a simulated X-Plane through fccd and back
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     wire.engage();
     wire.live_until(Instant::now() + Duration::from_secs_f64(cli.seconds))?;
     let records = daemon.stop(&mut wire)?;
-    let report = analysis::report(&records, &wire.seen(), cli.rate)?;
+    let report = analysis::report(&records, &wire.times(), cli.rate)?;
     println!("{}", report.markdown());
     if let Some(file) = cli.json {
         std::fs::write(file, serde_json::to_string_pretty(&report.json())?)?;

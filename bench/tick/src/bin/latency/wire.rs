@@ -1,4 +1,4 @@
-//! The simulator's end of the socket, with the time of everything.
+//! The simulator's side of the socket, with time stamps.
 
 use std::error::Error;
 use std::io::{self, IoSliceMut};
@@ -14,23 +14,23 @@ use nix::sys::socket::{
 use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_gettime};
 
-/// Generic lights 1, which engages.
+/// Generic lights 1, the engage switch.
 const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[0]";
-/// How often what came is fetched between two frames. It does not matter for
-/// the times: the kernel takes them.
+/// Interval of reading between two frames. It does not affect the times, which
+/// the kernel stamps.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
-/// No write is longer.
+/// Longer than any write.
 const BUFFER_BYTES: usize = 2_048;
 
-/// What was seen at the simulator's end, ns on `CLOCK_MONOTONIC`, ascending.
-pub(crate) struct Seen {
+/// The times at the simulator's side, ns on `CLOCK_MONOTONIC`, ascending.
+pub(crate) struct Times {
     /// When each frame was sent.
     pub(crate) frames_ns: Vec<i64>,
     /// When each write of a control arrived.
     pub(crate) writes_ns: Vec<i64>,
 }
 
-/// The simulator's end.
+/// The simulator's side.
 pub(crate) struct Wire {
     simulator: FakeXPlane,
     frame: Duration,
@@ -56,12 +56,12 @@ impl Wire {
         self.simulator.socket.local_addr().map(|at| at.port())
     }
 
-    /// Moves the switch that engages.
+    /// Switches the engage switch on.
     pub(crate) fn engage(&mut self) {
         self.simulator.set(SWITCH, 1.0);
     }
 
-    /// Sends frames and takes what comes, for a while.
+    /// Sends frames and reads datagrams, until `end`.
     pub(crate) fn live_until(&mut self, end: Instant) -> Result<(), Box<dyn Error>> {
         while Instant::now() < end {
             self.take_all()?;
@@ -77,8 +77,8 @@ impl Wire {
     }
 
     fn take_all(&mut self) -> Result<(), Box<dyn Error>> {
-        // The kernel stamps with the wall clock; where that is against the
-        // monotonic clock is asked anew, since the wall clock may be set.
+        // The kernel stamps with the wall clock; its offset to the monotonic
+        // clock is read each time, because the wall clock may be set.
         let offset_ns = now_ns(ClockId::CLOCK_REALTIME)? - now_ns(ClockId::CLOCK_MONOTONIC)?;
         loop {
             let mut buffer = [0; BUFFER_BYTES];
@@ -111,8 +111,8 @@ impl Wire {
         }
     }
 
-    pub(crate) fn seen(self) -> Seen {
-        Seen {
+    pub(crate) fn times(self) -> Times {
+        Times {
             frames_ns: self.frames_ns,
             writes_ns: self.writes_ns,
         }

@@ -1,0 +1,226 @@
+//! The ground track, where there is position.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::track::TrackPoint;
+use crate::RunReport;
+use crate::events::Weight;
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{
+    ACTUAL, Area, Drawn, FAINT, LABEL_PX, OTHER, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
+};
+use crate::plot::panel::{Frame, Panel};
+use crate::plot::{Figure, PlotError};
+use crate::states::Phase;
+
+const LEFT_PX: f64 = 60.0;
+const TOP_PX: f64 = 24.0;
+const X_WORDS_PX: f64 = 36.0;
+/// The taller side at most, px.
+const MOST_HEIGHT_PX: f64 = 460.0;
+const LEAST_HEIGHT_PX: f64 = 160.0;
+/// A track shorter than this is drawn on a map of this size, m.
+const LEAST_SPAN_M: f64 = 100.0;
+
+/// The ground track; none where there is no position.
+pub(super) fn figure(
+    report: &RunReport,
+    track: &[TrackPoint],
+) -> Result<Option<Figure>, PlotError> {
+    if track.is_empty() {
+        return Ok(None);
+    }
+    let map = Map::of(track);
+    let svg = draw(
+        TOP_PX + map.height_px + X_WORDS_PX,
+        "Ground track",
+        |area| map.paint(area, report, track),
+    )?;
+    Ok(Some(Figure {
+        title: "Ground track".to_owned(),
+        caption: "Over the ground, north up, from the first measured position; numbers are \
+                  the changes of state in the table of events."
+            .to_owned(),
+        svg,
+    }))
+}
+
+/// The same scale in both directions.
+struct Map {
+    east_m: (f64, f64),
+    north_m: (f64, f64),
+    width_px: f64,
+    height_px: f64,
+}
+
+impl Map {
+    fn of(track: &[TrackPoint]) -> Self {
+        let around = |of: fn(&TrackPoint) -> f64| {
+            let low = track.iter().map(of).fold(f64::INFINITY, f64::min);
+            let high = track.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let reach = (high - low).max(LEAST_SPAN_M) * 0.56;
+            let middle = f64::midpoint(low, high);
+            (middle - reach, middle + reach)
+        };
+        let (east_m, north_m) = (around(|p| p.east_m), around(|p| p.north_m));
+        let span = |(low, high): (f64, f64)| high - low;
+        let most_width_px = WIDTH_PX - LEFT_PX - 12.0;
+        let m_per_px = (span(east_m) / most_width_px).max(span(north_m) / MOST_HEIGHT_PX);
+        let height_px = (span(north_m) / m_per_px).max(LEAST_HEIGHT_PX);
+        let widen = |(low, high): (f64, f64), to_px: f64| {
+            let reach = to_px * m_per_px / 2.0;
+            let middle = f64::midpoint(low, high);
+            (middle - reach, middle + reach)
+        };
+        // A narrow track has room beside it rather than a narrow map.
+        let width_px = most_width_px;
+        Self {
+            east_m: widen(east_m, width_px),
+            north_m: widen(north_m, height_px),
+            width_px,
+            height_px,
+        }
+    }
+
+    fn paint(&self, area: &Area<'_>, report: &RunReport, track: &[TrackPoint]) -> Drawn {
+        let span_m = self.east_m.1 - self.east_m.0;
+        let (unit_m, unit) = if span_m > 3_000.0 {
+            (1_000.0, "km")
+        } else {
+            (1.0, "m")
+        };
+        let axis = |range: (f64, f64), count_px: f64, name: &str| {
+            let count = (count_px / 90.0).max(2.0) as usize;
+            let title = format!("{name}, {unit}");
+            Axis::exactly((range.0 / unit_m, range.1 / unit_m), count, &title)
+        };
+        let frame = Frame {
+            left: LEFT_PX,
+            top: TOP_PX,
+            right: LEFT_PX + self.width_px,
+            bottom: TOP_PX + self.height_px,
+        };
+        let x = axis(self.east_m, self.width_px, "east");
+        let y = axis(self.north_m, self.height_px, "north");
+        let mut panel = Panel::new(area, frame, x, y)?;
+        panel.axes(true)?;
+        let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
+        for (phase, places) in stretches(report, track) {
+            let style = if phase == Phase::Engaged {
+                pen(ACTUAL, 1.4)
+            } else {
+                pen(OTHER, 1.0)
+            };
+            panel.polyline(smooth(&panel, places.iter().map(at)), style)?;
+        }
+        let ends = [track.first(), track.last()];
+        for (place, filled) in ends.into_iter().flatten().zip([false, true]) {
+            let style = if filled {
+                ACTUAL.filled()
+            } else {
+                pen(ACTUAL, 1.2)
+            };
+            panel.dot(at(place), 3.5, style)?;
+        }
+        legend(area)?;
+        number_states(area, report, track, &panel, at)
+    }
+}
+
+/// The points that are told apart on the sheet, and the last: closer ones show
+/// the noise of a receiver and no turn.
+fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    const APART_PX: f64 = 3.0;
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    let mut last = None;
+    for point in points {
+        let (x, y) = panel.on_sheet(point);
+        let is_far = kept.last().is_none_or(|kept| {
+            let (u, v) = panel.on_sheet(*kept);
+            (u - x).hypot(v - y) >= APART_PX
+        });
+        last = (!is_far).then_some(point);
+        if is_far {
+            kept.push(point);
+        }
+    }
+    kept.extend(last);
+    kept
+}
+
+/// The track in pieces of one state each, which touch.
+fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackPoint>)> {
+    let mut spans = report.states.iter().peekable();
+    let mut pieces: Vec<(Phase, Vec<TrackPoint>)> = Vec::new();
+    let mut phase = Phase::Standby;
+    for place in track {
+        while let Some(span) = spans.next_if(|span| span.from_s <= place.time_s) {
+            phase = span.phase;
+        }
+        match pieces.last_mut() {
+            Some((last, places)) if *last == phase => places.push(*place),
+            Some((_, places)) => {
+                // The piece before leads up to where this one begins.
+                places.push(*place);
+                pieces.push((phase, vec![*place]));
+            }
+            None => pieces.push((phase, vec![*place])),
+        }
+    }
+    pieces
+}
+
+/// Numbers of the events that changed the state, where they happened.
+fn number_states(
+    area: &Area<'_>,
+    report: &RunReport,
+    track: &[TrackPoint],
+    panel: &Panel<'_>,
+    at: impl Fn(&TrackPoint) -> (f64, f64),
+) -> Drawn {
+    let style = text(SMALL_PX, FAINT, HPos::Left, VPos::Bottom);
+    let mut taken: Vec<(f64, f64)> = Vec::new();
+    for event in report.events.iter().filter(|e| e.weight == Weight::State) {
+        let after = track.partition_point(|p| p.time_s < event.time_s);
+        let Some(place) = track.get(after).or(track.last()) else {
+            continue;
+        };
+        let (x, y) = panel.on_sheet(at(place));
+        // One number is enough where several would lie on each other.
+        if taken.iter().all(|(u, v)| (u - x).hypot(v - y) > 14.0) {
+            taken.push((x, y));
+            let words = event.number.to_string();
+            area.draw_text(&words, &style, (px(x + 5.0), px(y - 4.0)))?;
+        }
+    }
+    Ok(())
+}
+
+fn legend(area: &Area<'_>) -> Drawn {
+    let y = 10.0;
+    let words = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
+    let line = |x: f64, style: ShapeStyle| {
+        area.draw(&PathElement::new(
+            [(px(x), px(y)), (px(x + 21.0), px(y))],
+            style,
+        ))
+    };
+    line(LEFT_PX, pen(ACTUAL, 1.4))?;
+    area.draw_text("engaged", &words, (px(LEFT_PX + 26.0), px(y)))?;
+    line(LEFT_PX + 90.0, pen(OTHER, 1.0))?;
+    area.draw_text("not engaged", &words, (px(LEFT_PX + 116.0), px(y)))?;
+    area.draw(&Circle::new(
+        (px(LEFT_PX + 206.0), px(y)),
+        px(3.5),
+        pen(ACTUAL, 1.2),
+    ))?;
+    area.draw_text("begin", &words, (px(LEFT_PX + 216.0), px(y)))?;
+    area.draw(&Circle::new(
+        (px(LEFT_PX + 266.0), px(y)),
+        px(3.5),
+        ACTUAL.filled(),
+    ))?;
+    area.draw_text("end", &words, (px(LEFT_PX + 276.0), px(y)))?;
+    Ok(())
+}

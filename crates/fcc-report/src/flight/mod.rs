@@ -1,0 +1,297 @@
+//! What a flight's report has beside that of any loop: the plots that pilots
+//! and the thesis have, the score along a timed pattern, and the ground track.
+
+mod ground_track;
+mod legs;
+mod scoring;
+mod track;
+
+use fcc_core::flight::Autopilot;
+use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_core::framework::RecordOf;
+use fcc_telemetry::units::AVIATION;
+use fcc_telemetry::{FlightScore, ScoredBy};
+use serde::Serialize;
+
+use super::plot::{Figure, PlotError};
+use super::plots::{Panel, Plot, Quantities, Scale};
+use super::reported::{Addition, Reported, Words};
+use super::{Report, RunReport, Survey};
+pub use legs::flight_table;
+use scoring::Scoring;
+use track::Track;
+
+/// The report on a flight.
+pub type FlightReport = Report<FlightAddition>;
+
+/// Takes the messages of a flight's recording.
+pub type FlightSurvey = Survey<Autopilot>;
+
+/// More legs than these do not fit on a screen.
+const MOST_LEGS: usize = 16;
+
+/// What only a flight's report has.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct FlightAddition {
+    /// How well the timed pattern was flown, by what was measured; none
+    /// without a whole leg.
+    pub flight: Option<FlightScore>,
+    /// Why a part of the flight has no score.
+    pub not_scored: Option<String>,
+    #[serde(skip)]
+    scoring: Option<Scoring>,
+    #[serde(skip)]
+    track: Track,
+}
+
+impl FlightAddition {
+    /// Scores the flight if it is to be along a timed pattern.
+    pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
+        Self {
+            scoring: pattern.map(Scoring::new),
+            ..Self::default()
+        }
+    }
+}
+
+impl Addition for FlightAddition {
+    /// The pattern ends with it.
+    fn command_received(&mut self) {
+        if let Some(scoring) = &mut self.scoring {
+            scoring.command_received();
+        }
+    }
+
+    fn finish(&mut self) {
+        if let Some(scoring) = &self.scoring {
+            let (score, failed) = scoring.result();
+            self.flight = Some(score).filter(|score| !score.legs.is_empty());
+            self.not_scored = failed;
+        }
+        self.track.finish();
+    }
+
+    fn findings(&self) -> Vec<String> {
+        let unscored = self.not_scored.as_ref();
+        let unscored =
+            unscored.map(|why| format!("A part of the flight could not be scored: {why}."));
+        let nowhere = "No position was measured: there is no ground track.";
+        let nowhere = self.track.places().is_empty().then(|| nowhere.to_owned());
+        unscored.into_iter().chain(nowhere).collect()
+    }
+
+    fn figures(&self, run: &RunReport) -> Result<Vec<Figure>, PlotError> {
+        ground_track::figure(run, self.track.places()).map(|figure| figure.into_iter().collect())
+    }
+
+    fn text(&self) -> String {
+        let Some(flight) = &self.flight else {
+            return String::new();
+        };
+        let count = flight.legs.len();
+        if count <= MOST_LEGS {
+            return flight_table(flight, ScoredBy::Measurement);
+        }
+        let worst = FlightScore {
+            legs: Vec::new(),
+            worst: flight.worst,
+        };
+        let table = flight_table(&worst, ScoredBy::Measurement);
+        format!("{table}\nof {count} legs: see the page (--html) for each")
+    }
+
+    fn html(&self) -> String {
+        let table = self.flight.as_ref().map(legs::html);
+        table.map(maud::PreEscaped::into_string).unwrap_or_default()
+    }
+}
+
+impl Reported for Autopilot {
+    type Addition = FlightAddition;
+
+    const WORDS: Words = Words {
+        run: "flight",
+        plant: "Aircraft",
+        controller: "autopilot",
+    };
+
+    const TABLE_OF_VALUES: bool = false;
+
+    fn take(addition: &mut FlightAddition, record: &RecordOf<Self>, time_s: f64) {
+        let position = &record.measurements.position;
+        if !position.is_never() {
+            addition.track.push(time_s, &position.value);
+        }
+        if let Some(scoring) = &mut addition.scoring {
+            scoring.take(record, time_s);
+        }
+    }
+
+    fn plots(of: &Quantities) -> Vec<Plot> {
+        let panel = |name, quantity| of.panel(name, AVIATION).called(quantity);
+        let surface = |name| {
+            let panel = of.output(name, AVIATION).unscaled();
+            panel.sized(64.0, Scale::Together(0.1))
+        };
+        let plot = |title: &str, caption: &str, panels: Vec<Panel>| Plot {
+            title: title.to_owned(),
+            caption: caption.to_owned(),
+            panels,
+        };
+        vec![
+            plot(
+                "Heading",
+                "Magnetic heading, desired and actual, which is what the navigation made of what \
+                 was measured (thesis, figure 6.4).",
+                vec![panel("heading_rad", "heading").sized(200.0, Scale::Compass)],
+            ),
+            plot(
+                "Altitude and pitch",
+                "Barometric altitude, desired and actual, and below it the pitch that makes it \
+                 (thesis, figure 6.5).",
+                vec![
+                    panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
+                    panel("pitch_rad", "pitch")
+                        .sized(90.0, Scale::Around(2.0))
+                        .followed_in_failsafe(),
+                ],
+            ),
+            plot(
+                "Airspeed and throttle",
+                "Indicated airspeed, desired and actual, and the throttle commanded.",
+                vec![
+                    panel("airspeed_mps", "airspeed").sized(130.0, Scale::Around(4.0)),
+                    of.output("throttle", AVIATION).sized(80.0, Scale::Percent),
+                ],
+            ),
+            plot(
+                "Bank and surfaces",
+                "Bank, desired and actual, and the surfaces commanded, all three on the same \
+                 scale: 1 is full deflection; positive raises the nose, rolls right, yaws right.",
+                vec![
+                    panel("roll_rad", "bank")
+                        .sized(120.0, Scale::Around(5.0))
+                        .followed_in_failsafe(),
+                    surface("aileron"),
+                    surface("elevator"),
+                    surface("rudder"),
+                ],
+            ),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Flags, Message, StateCode, Tick, Time};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{FileEnd, Origin};
+
+    /// A record of anything at all: a damaged file can hold it.
+    fn record() -> impl Strategy<Value = RecordOf<Autopilot>> {
+        let numbers = || prop::array::uniform8(any::<f64>());
+        let times = (any::<i64>(), any::<i64>(), any::<i64>());
+        let missed = prop_oneof![0_u64..5, any::<u64>()];
+        let counts = (0_u64..50, missed, any::<u64>(), 0_u8..4);
+        (times, counts, numbers(), numbers()).prop_map(
+            |((due, woke, taken), (step, missed, stage_ns, phase), a, b)| {
+                let tick = Tick {
+                    number: step,
+                    scheduled: Time::from_nanos(due),
+                    woke: Time::from_nanos(woke),
+                    missed,
+                    dt_s: 0.025,
+                };
+                let mut record = RecordOf::<Autopilot> {
+                    tick,
+                    ..RecordOf::<Autopilot>::default()
+                };
+                record.stages.total_ns = stage_ns;
+                record.state = StateCode::from_parts(phase, u8::from(phase == 2), Flags::NONE)
+                    .unwrap_or_default();
+                record.sent = stage_ns % 2 == 0;
+                let taken = Time::from_nanos(taken);
+                let measured = &mut record.measurements;
+                let [
+                    roll,
+                    pitch,
+                    heading,
+                    airspeed,
+                    altitude,
+                    latitude,
+                    longitude,
+                    side,
+                ] = a;
+                measured.attitude.value.roll_rad = roll;
+                measured.attitude.value.pitch_rad = pitch;
+                measured.heading_rad.value = heading;
+                measured.airspeed_mps.value = airspeed;
+                measured.altitude_m.value = altitude;
+                measured.position.value.latitude_rad = latitude;
+                measured.position.value.longitude_rad = longitude;
+                measured.specific_force.value.y_mps2 = side;
+                measured.attitude.taken = taken;
+                measured.heading_rad.taken = record.tick.woke;
+                measured.airspeed_mps.taken = record.tick.woke;
+                measured.altitude_m.taken = taken;
+                measured.position.taken = taken;
+                let [
+                    throttle,
+                    elevator,
+                    aileron,
+                    rudder,
+                    speed,
+                    aimed,
+                    height,
+                    bank,
+                ] = b;
+                record.outputs.throttle = throttle;
+                record.outputs.elevator = elevator;
+                record.outputs.aileron = aileron;
+                record.outputs.rudder = rudder;
+                record.setpoints.airspeed_mps = speed;
+                record.setpoints.heading_rad = aimed;
+                record.setpoints.altitude_m = height;
+                record.setpoints.roll_rad = bank;
+                record
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Nothing that a file can hold makes a report panic or grow.
+        #[test]
+        fn anything_can_be_reported_on(
+            records in prop::collection::vec(record(), 0..40),
+            in_order in any::<bool>(),
+        ) {
+            let pattern = TimedPatternConfig::default();
+            let addition = FlightAddition::new(Some(pattern));
+            let mut survey = FlightSurvey::new(Origin::default(), addition);
+            let mut number = 0;
+            let mut due_ns = 0_i64;
+            for (n, mut record) in records.into_iter().enumerate() {
+                if n == 0 {
+                    // The first says how long a period is; a loop cannot have any.
+                    record.tick.missed %= 5;
+                }
+                if in_order {
+                    number += record.tick.number;
+                    due_ns = due_ns.saturating_add(record.tick.scheduled.as_nanos().abs() >> 20);
+                    record.tick.number = number;
+                    record.tick.scheduled = Time::from_nanos(due_ns);
+                }
+                survey.take(&Message::Tick(record)).unwrap();
+            }
+            let report = survey.finish(FileEnd::Unknown);
+            let page = report.to_html().unwrap();
+            prop_assert!(page.len() < 5_000_000);
+            prop_assert!(!report.to_text().is_empty());
+            prop_assert!(serde_json::to_string(&report).is_ok());
+        }
+    }
+}

@@ -1,0 +1,409 @@
+//! The values over time that a report shows, in the units that people read.
+
+use std::time::Duration;
+
+use fcc_core::framework::schema::{Kind, Schema, Value, unit};
+use fcc_core::framework::{Readings, Record, RecordOf, State, Time};
+use fcc_telemetry::Telemetry;
+use fcc_telemetry::schema::{Column, columns};
+use fcc_telemetry::units::{SI, Shown};
+use serde::Serialize;
+
+use super::page::capitalized;
+use super::plot::Ink;
+use super::trace::Trace;
+use super::turns::Turns;
+
+/// A reading older than this is not drawn: the line ends where the sensor fell
+/// silent.
+const OLDEST: Duration = Duration::from_secs(1);
+
+/// Values over time in panels, one above another.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    pub(crate) title: String,
+    pub(crate) caption: String,
+    pub(crate) panels: Vec<Panel>,
+}
+
+/// One quantity over time: as measured, as estimated, as desired.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    quantity: String,
+    /// For people.
+    shown_in: &'static str,
+    pub(crate) height_px: f64,
+    pub(crate) scale: Scale,
+    pub(crate) curves: Vec<Curve>,
+    /// Display units in one of the record's.
+    factor: f64,
+    /// Whether it is an angle that begins again after a full turn.
+    wraps: bool,
+    /// Whether failsafe follows its set point, too.
+    in_failsafe: bool,
+}
+
+/// What a value ranged over.
+#[derive(Clone, PartialEq, Debug, Serialize)]
+pub struct ValueRange {
+    /// What it is.
+    pub quantity: String,
+    /// `measured`, `actual` (estimated), `desired` or `commanded`.
+    pub role: &'static str,
+    /// Its unit; empty for none.
+    pub unit: &'static str,
+    /// Smallest value.
+    pub lowest: f64,
+    /// Largest value.
+    pub highest: f64,
+    /// Last value.
+    pub last: f64,
+}
+
+/// The vertical axis of a panel.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Scale {
+    /// Around the values, at least so long.
+    Around(f64),
+    /// The same for all such panels of a plot.
+    Together(f64),
+    /// From 0 to 100.
+    Percent,
+    /// Around directions, in the words of a compass.
+    Compass,
+}
+
+/// One line of a panel.
+#[derive(Clone, Debug)]
+pub(crate) struct Curve {
+    pub(crate) ink: Ink,
+    pub(crate) name: &'static str,
+    pub(crate) trace: Trace,
+    role: Role,
+    /// Which value of the record it is.
+    value: usize,
+    turns: Turns,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Role {
+    Estimated,
+    /// With the place of the time it was taken, if it has one.
+    Measured(Option<usize>),
+    Desired,
+    Output,
+}
+
+impl Role {
+    /// Whether others are drawn in the turn that this one is in.
+    const fn leads(self) -> bool {
+        matches!(self, Self::Estimated | Self::Measured(_))
+    }
+}
+
+/// The values of a record, by name.
+#[derive(Debug)]
+pub struct Quantities {
+    columns: Vec<Column>,
+}
+
+impl Quantities {
+    pub(crate) fn of<T: Schema>() -> Self {
+        Self {
+            columns: columns::<T>(),
+        }
+    }
+
+    /// The first number of that name in a part of the record.
+    fn find<'a>(&'a self, part: &'a str, name: &str) -> Option<(usize, &'a Column)> {
+        let mut numbers = self.numbers(part);
+        numbers.find(|(_, column)| column.field == name)
+    }
+
+    fn numbers<'a>(&'a self, part: &'a str) -> impl Iterator<Item = (usize, &'a Column)> {
+        let columns = self.columns.iter().enumerate();
+        columns.filter(move |(_, column)| {
+            column.kind == Kind::Number && column.path.split('.').next() == Some(part)
+        })
+    }
+
+    fn taken(&self, column: &Column) -> Option<usize> {
+        let path = format!("{}.taken", column.reading.as_ref()?);
+        self.columns.iter().position(|column| column.path == path)
+    }
+
+    /// Measurement, estimate and set point of a name.
+    pub(crate) fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
+        let measured = self.find("measurements", name);
+        let estimated = self.find("estimate", name);
+        let desired = self.find("setpoints", name);
+        let mut curves = Vec::new();
+        if let Some((value, column)) = measured {
+            let role = Role::Measured(self.taken(column));
+            let (ink, name) = match estimated {
+                Some(_) => (Ink::Measured, "measured"),
+                None => (Ink::Actual, "measured"),
+            };
+            curves.push(Curve::new(ink, name, role, value));
+        }
+        if let Some((value, _)) = estimated {
+            curves.push(Curve::new(Ink::Actual, "actual", Role::Estimated, value));
+        }
+        if let Some((value, _)) = desired {
+            curves.push(Curve::new(Ink::Desired, "desired", Role::Desired, value));
+        }
+        let column = measured.or(estimated).or(desired);
+        Panel::of(name, column.map(|(_, column)| column), units, curves)
+    }
+
+    /// An output.
+    pub(crate) fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
+        let output = self.find("outputs", name);
+        let curve = |(value, _)| Curve::new(Ink::Actual, "commanded", Role::Output, value);
+        let curves = output.map(curve).into_iter().collect();
+        Panel::of(name, output.map(|(_, column)| column), units, curves)
+    }
+}
+
+/// The plots that follow from what is declared.
+pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
+    let mut plots: Vec<Plot> = Vec::new();
+    let mut shown: Vec<&'static str> = Vec::new();
+    let mut readings: Vec<&str> = Vec::new();
+    for (_, column) in of.numbers("measurements") {
+        let name = column.field;
+        if shown.contains(&name) {
+            continue;
+        }
+        shown.push(name);
+        let reading = column.reading.as_deref().unwrap_or(&column.path);
+        let panel = of.panel(name, SI);
+        if let Some(plot) = plots.last_mut()
+            && readings.last() == Some(&reading)
+        {
+            plot.panels.push(panel);
+        } else {
+            readings.push(reading);
+            plots.push(Plot {
+                title: title_of::<C>(reading),
+                caption: column.meaning.clone(),
+                panels: vec![panel],
+            });
+        }
+    }
+    let estimates = of.numbers("estimate").chain(of.numbers("setpoints"));
+    let mut more: Vec<&'static str> = estimates.map(|(_, column)| column.field).collect();
+    more.retain(|name| !shown.contains(name));
+    more.dedup();
+    let outputs = of.numbers("outputs").map(|(_, column)| column.field);
+    plots.extend([
+        Plot {
+            title: "Other estimates and set points".to_owned(),
+            caption: "What is not measured.".to_owned(),
+            panels: more.into_iter().map(|name| of.panel(name, SI)).collect(),
+        },
+        Plot {
+            title: "Outputs".to_owned(),
+            caption: "What was commanded while the loop was in control.".to_owned(),
+            panels: outputs.map(|name| of.output(name, SI)).collect(),
+        },
+    ]);
+    plots.retain(|plot| !plot.panels.is_empty());
+    plots
+}
+
+/// The name for people of a reading at a path.
+fn title_of<C: Telemetry>(path: &str) -> String {
+    let mut readings: Vec<String> = Vec::new();
+    for column in columns::<RecordOf<C>>() {
+        if let Some(reading) = column.reading
+            && !readings.contains(&reading)
+        {
+            readings.push(reading);
+        }
+    }
+    let place = readings.iter().position(|reading| reading == path);
+    let named = place.and_then(|place| C::Measurements::NAMES.get(place));
+    let own = path.rsplit('.').next().unwrap_or(path).replace('_', " ");
+    capitalized(named.copied().unwrap_or(&own))
+}
+
+impl Panel {
+    fn of(
+        name: &'static str,
+        column: Option<&Column>,
+        units: &[Shown],
+        curves: Vec<Curve>,
+    ) -> Self {
+        let shown = column.map(|column| Shown::of(column, units));
+        let (shown_in, factor) = shown.map_or(("", 1.0), |shown| (shown.unit, shown.scale));
+        let range = column.and_then(|column| column.range);
+        let span = range.map(|(from, to)| (to - from) * factor);
+        Self {
+            quantity: unit::of(name).quantity.replace('_', " "),
+            shown_in,
+            height_px: 120.0,
+            scale: Scale::Around(
+                span.filter(|span| span.is_finite())
+                    .map_or(1e-3, |s| s / 10.0),
+            ),
+            curves,
+            factor,
+            wraps: shown_in == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
+            in_failsafe: false,
+        }
+    }
+
+    /// The quantity and its unit.
+    pub(crate) fn title(&self) -> String {
+        match self.shown_in {
+            "" => self.quantity.clone(),
+            unit => format!("{}, {unit}", self.quantity),
+        }
+    }
+
+    /// What its lines range over.
+    pub(crate) fn ranges(&self) -> impl Iterator<Item = ValueRange> {
+        self.curves.iter().filter_map(|curve| {
+            let (lowest, highest) = curve.trace.extent()?;
+            Some(ValueRange {
+                quantity: self.quantity.clone(),
+                role: curve.name,
+                unit: self.shown_in,
+                lowest,
+                highest,
+                last: curve.trace.last()?,
+            })
+        })
+    }
+
+    /// The same under another name.
+    pub(crate) fn called(mut self, quantity: &str) -> Self {
+        quantity.clone_into(&mut self.quantity);
+        self
+    }
+
+    /// The same in the record's own unit, a fraction of 1.
+    pub(crate) fn unscaled(mut self) -> Self {
+        (self.shown_in, self.factor) = ("", 1.0);
+        self
+    }
+
+    pub(crate) fn sized(mut self, height_px: f64, scale: Scale) -> Self {
+        (self.height_px, self.scale) = (height_px, scale);
+        self
+    }
+
+    /// Failsafe follows its set point, too.
+    pub(crate) fn followed_in_failsafe(mut self) -> Self {
+        self.in_failsafe = true;
+        self
+    }
+
+    /// Takes a record's values.
+    pub(crate) fn take(&mut self, values: &[Value], at: &Moment) {
+        let (factor, wraps, in_failsafe) = (self.factor, self.wraps, self.in_failsafe);
+        let number = |curve: &Curve| match values.get(curve.value) {
+            Some(Value::Number(number)) => Some(number * factor).filter(|n| n.is_finite()),
+            _ => None,
+        };
+        let measures = |curve: &Curve| matches!(curve.role, Role::Measured(_));
+        let is_measured = |curve: &Curve| match curve.role {
+            Role::Measured(Some(taken)) => at.is_fresh(values.get(taken)),
+            _ => true,
+        };
+        // What is estimated is drawn as long as something is measured.
+        let mut measured = self.curves.iter().filter(|curve| measures(curve));
+        let known = measured.all(|curve| is_measured(curve) && number(curve).is_some());
+        let mut lead = None;
+        // What leads the others comes last among its kind.
+        let leader = self.curves.iter().rposition(|curve| curve.role.leads());
+        let mut order: Vec<usize> = leader.into_iter().collect();
+        order.extend((0..self.curves.len()).filter(|place| Some(*place) != leader));
+        for place in order {
+            let Some(curve) = self.curves.get_mut(place) else {
+                continue;
+            };
+            let shown = match curve.role {
+                Role::Measured(_) | Role::Estimated => known,
+                Role::Desired => {
+                    at.state == State::Engaged || (in_failsafe && at.state.holds_control())
+                }
+                Role::Output => at.sent,
+            };
+            let mut value = number(curve).filter(|_| shown);
+            if wraps {
+                let near = lead.or(value).unwrap_or_default();
+                match (value, curve.role) {
+                    (None, Role::Desired) => curve.turns.forget(),
+                    // In the same turn as what is estimated from it.
+                    (Some(angle), Role::Measured(_)) if lead.is_some() => {
+                        value = Some(Turns::default().count(angle, near));
+                    }
+                    (Some(angle), _) => value = Some(curve.turns.count(angle, near)),
+                    (None, _) => {}
+                }
+            }
+            if Some(place) == leader {
+                lead = value;
+            }
+            curve.trace.push(at.time_s, value);
+        }
+    }
+
+    /// Records are missing here: no line leads across.
+    pub(crate) fn cut(&mut self) {
+        for curve in &mut self.curves {
+            curve.trace.cut();
+            if curve.role == Role::Desired {
+                curve.turns.forget();
+            }
+        }
+    }
+}
+
+/// What a loop was doing at a record.
+pub(crate) struct Moment {
+    time_s: f64,
+    woke: Time,
+    state: State,
+    sent: bool,
+}
+
+impl Moment {
+    pub(crate) fn of<M, E, S, O>(record: &Record<M, E, S, O>, time_s: f64) -> Self {
+        Self {
+            time_s,
+            woke: record.tick.woke,
+            state: record.state.state(),
+            sent: record.sent,
+        }
+    }
+
+    fn is_fresh(&self, taken: Option<&Value>) -> bool {
+        match taken {
+            Some(Value::Instant(ns)) => self.woke.since(Time::from_nanos(*ns)) <= OLDEST,
+            _ => false,
+        }
+    }
+}
+
+impl Default for Curve {
+    /// A line that follows from none of the values.
+    fn default() -> Self {
+        Self::new(Ink::Actual, "", Role::Output, usize::MAX)
+    }
+}
+
+impl Curve {
+    fn new(ink: Ink, name: &'static str, role: Role, value: usize) -> Self {
+        Self {
+            ink,
+            name,
+            trace: Trace::default(),
+            role,
+            value,
+            turns: Turns::default(),
+        }
+    }
+}

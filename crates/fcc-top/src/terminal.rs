@@ -1,0 +1,208 @@
+//! The terminal: keys, redrawing, and leaving it as it was.
+
+use std::fmt;
+use std::io::{self, IsTerminal as _};
+use std::mem::ManuallyDrop;
+use std::os::fd::AsFd;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use fcc_live::{WatchError, WatcherOf};
+use fcc_telemetry::Instance;
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use ratatui::DefaultTerminal;
+use ratatui::crossterm::terminal::disable_raw_mode;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
+
+use super::picture::Picture;
+use super::screen;
+use super::watched::Watched;
+
+/// Time between pictures: often enough for an attitude, seldom enough for a
+/// small board and a slow line.
+const REDRAW_EVERY: Duration = Duration::from_millis(67);
+/// How long nothing may come before it is asked whether the daemon is gone.
+const SILENCE: Duration = Duration::from_secs(1);
+/// How long a signal waits for a picture that the terminal does not take.
+const HELD: Duration = Duration::from_secs(1);
+
+/// Why a loop cannot be shown.
+#[derive(Debug)]
+pub enum TopError {
+    /// There is none to watch.
+    Watch(WatchError),
+    /// This is no terminal.
+    NoTerminal,
+    /// The terminal failed.
+    Terminal(io::Error),
+}
+
+impl fmt::Display for TopError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Watch(error) => error.fmt(f),
+            Self::NoTerminal => f.write_str("top needs a terminal: run it in one, or use --json"),
+            Self::Terminal(error) => write!(f, "the terminal: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for TopError {}
+
+/// Shows the loop of an instance until somebody presses `q`.
+///
+/// # Errors
+/// When there is no such loop or no terminal.
+pub fn top<C: Watched>(instance: &Instance) -> Result<(), TopError> {
+    let watcher = WatcherOf::<C>::open(instance).map_err(TopError::Watch)?;
+    if !io::stdout().is_terminal() || !io::stdin().is_terminal() {
+        return Err(TopError::NoTerminal);
+    }
+    watch(instance, watcher).map_err(TopError::Terminal)
+}
+
+fn watch<C: Watched>(instance: &Instance, watcher: WatcherOf<C>) -> io::Result<()> {
+    let told_to_end = end_by_signals()?;
+    // From here on a panic restores the terminal before it is printed.
+    let terminal = ratatui::try_init().inspect_err(|_| {
+        let _ = ratatui::try_restore();
+    })?;
+    // Dropped, it would complain of a terminal that is gone by a macro that
+    // panics there.
+    let mut terminal = ManuallyDrop::new(terminal);
+    show(&mut terminal, instance, watcher, &told_to_end)
+        .and(terminal.show_cursor())
+        .and(ratatui::try_restore())
+}
+
+/// A flag that a signal sets. A terminal that is held makes the drawing wait
+/// for ever: then the signal ends the program without it.
+fn end_by_signals() -> io::Result<Arc<AtomicBool>> {
+    let told_to_end = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&told_to_end);
+    let mut signals = Signals::new([SIGTERM, SIGINT, SIGHUP])?;
+    thread::Builder::new()
+        .name("top-signals".to_owned())
+        .spawn(move || {
+            if let Some(signal) = signals.forever().next() {
+                flag.store(true, Ordering::Relaxed);
+                thread::sleep(HELD);
+                let _ = disable_raw_mode();
+                low_level::exit(128 + signal);
+            }
+        })?;
+    Ok(told_to_end)
+}
+
+fn show<C: Watched>(
+    terminal: &mut DefaultTerminal,
+    instance: &Instance,
+    watcher: WatcherOf<C>,
+    told_to_end: &AtomicBool,
+) -> io::Result<()> {
+    let mut picture = Picture::new(&watcher);
+    let mut watcher = Some(watcher);
+    let mut heard = Instant::now();
+    while !told_to_end.load(Ordering::Relaxed) {
+        let next = Instant::now() + REDRAW_EVERY;
+        match watcher.as_mut().map(|watcher| picture.update(watcher)) {
+            Some(Ok(true)) => heard = Instant::now(),
+            Some(Ok(false)) if heard.elapsed() < SILENCE => {}
+            Some(Ok(false)) if watcher.as_ref().is_some_and(WatcherOf::is_alive) => {
+                heard = Instant::now();
+            }
+            Some(Ok(false) | Err(_)) => {
+                picture.ended = true;
+                watcher = None;
+                heard = Instant::now();
+            }
+            // Perhaps it is started again.
+            None if heard.elapsed() >= SILENCE => {
+                heard = Instant::now();
+                if let Ok(found) = WatcherOf::open(instance) {
+                    picture = Picture::new(&found);
+                    watcher = Some(found);
+                }
+            }
+            None => {}
+        }
+        terminal.draw(|frame| screen::draw(frame, instance, &picture))?;
+        while let Some(key) = key_before(next)? {
+            if key == Key::Quit {
+                return Ok(());
+            }
+            if Instant::now() >= next {
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What was pressed.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Key {
+    Quit,
+    Other,
+}
+
+impl Key {
+    /// What a terminal in raw mode sends.
+    fn of(bytes: &[u8]) -> Self {
+        const CTRL_C: u8 = 3;
+        const ESCAPE: u8 = 0x1b;
+        match bytes {
+            // Alone; before others it begins the name of a key.
+            [b'q' | CTRL_C, ..] | [ESCAPE] => Self::Quit,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// The next key, if one comes until then.
+///
+/// # Errors
+/// When the terminal is gone. (Crossterm's own reader would look for keys for
+/// ever there.)
+fn key_before(then: Instant) -> io::Result<Option<Key>> {
+    let input = io::stdin();
+    let mut fds = [PollFd::new(input.as_fd(), PollFlags::POLLIN)];
+    let left = then.saturating_duration_since(Instant::now());
+    // To the next millisecond: less would not wait at all.
+    let timeout =
+        PollTimeout::try_from(left + Duration::from_millis(1)).unwrap_or(PollTimeout::ZERO);
+    match poll(&mut fds, timeout) {
+        // A signal, or nothing.
+        Err(Errno::EINTR) | Ok(0) => return Ok(None),
+        Err(error) => return Err(error.into()),
+        Ok(_) => {}
+    }
+    let mut bytes = [0; 64];
+    match nix::unistd::read(&input, &mut bytes) {
+        Ok(0) => Err(io::Error::other("it is gone")),
+        Ok(length) => Ok(bytes.get(..length).map(Key::of)),
+        Err(Errno::EINTR | Errno::EAGAIN) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bytes as xterm's manual on control sequences gives them.
+    #[test]
+    fn q_escape_and_control_c_quit_and_an_arrow_does_not() {
+        for bytes in [&b"q"[..], b"\x1b", b"\x03"] {
+            assert_eq!(Key::of(bytes), Key::Quit, "{bytes:?}");
+        }
+        for bytes in [&b"\x1b[A"[..], b"x", b"\x1bOq"] {
+            assert_eq!(Key::of(bytes), Key::Other, "{bytes:?}");
+        }
+    }
+}

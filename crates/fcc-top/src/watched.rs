@@ -1,0 +1,35 @@
+//! What a controller's screen has beside what every loop's screen has.
+
+use fcc_core::framework::{Readings, RecordOf};
+use fcc_telemetry::Telemetry;
+use ratatui::Frame;
+use ratatui::layout::Rect;
+use serde_json::{Map, Value};
+
+use super::picture::Picture;
+use super::values;
+
+/// Draws a part of the screen into its place.
+pub type Part<C> = fn(&mut Frame<'_>, Rect, &Picture<C>);
+
+/// A controller whose loop can be watched in a terminal. What is declared of its
+/// values is enough; an implementation may show them otherwise.
+pub trait Watched: Telemetry + Sized {
+    /// The program that runs the loop.
+    const PROGRAM: &'static str;
+
+    /// The names of the readings, in their order; each at most 8 letters, or it
+    /// is cut off.
+    const READINGS: &'static [&'static str] = <Self::Measurements as Readings>::NAMES;
+
+    /// The parts to the left of the lateness, each with its title and how wide
+    /// it is beside the others: by default a table of all values.
+    fn parts(_record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
+        vec![("Values".to_owned(), 50, values::draw)]
+    }
+
+    /// The values for other tools.
+    fn values(record: &RecordOf<Self>) -> Map<String, Value> {
+        values::json::<Self>(record)
+    }
+}

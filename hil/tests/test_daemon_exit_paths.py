@@ -1,0 +1,119 @@
+"""On every exit path X-Plane has its controls back, as seen by X-Plane."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from daemon_under_test import assert_released, engage, flight, wait_until
+from fault_flights import AT_ONCE_S, ENGAGED, NS, Flown, assert_in_the_same_tick
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK
+from fcc_hil.fly import ENGAGE_SWITCH
+
+# As in `fccd --help`.
+SUCCESS = 0
+FAILSAFE = 3
+PANICKED = 6
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
+def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signal.Signals) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        told_ns = time.monotonic_ns()
+        ending = daemon.end(number)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    assert ending.report["timing"]["rate_hz"] == 40.0
+    assert ending.report["timing"]["ticks"] > 0
+    assert ending.report["flight"] is None, "a hold has no legs to score"
+    assert ending.report["ending"] == "interrupted by a signal"
+    assert ending.report["released"] is True
+    assert ending.report["failsafes"] == 0
+    assert "Accept incoming connections" not in ending.log
+    events = Flown.of(ending, tmp_path / "recordings").events
+    heard = next(event for event in events if event.kind.WhichOneof("kind") == "stop_requested")
+    assert (heard.time_ns - told_ns) * NS < AT_ONCE_S
+
+
+def test_a_panic_in_control_centres_and_releases(faulty_fccd: Path, tmp_path: Path) -> None:
+    with flight(faulty_fccd, tmp_path, environment={"FCCD_PANIC_AT_S": "1"}) as (simulator, daemon):
+        engage(simulator, daemon)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == PANICKED
+    assert ending.report["released"] is True
+    assert "injected panic" in ending.report["ending"]
+    assert "a part of the loop panicked" in ending.events
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert flown.records[-2].state.phase == ENGAGED
+    assert_in_the_same_tick(flown, len(flown.records) - 1, after_s=1.0)
+
+
+def test_an_output_that_is_not_a_number_is_never_sent(faulty_fccd: Path, tmp_path: Path) -> None:
+    with flight(
+        faulty_fccd,
+        tmp_path,
+        others="[failsafe]\nhold_s = 1.0",
+        environment={"FCCD_NAN_AT_S": "1"},
+    ) as (simulator, daemon):
+        engage(simulator, daemon)
+        daemon.wait_for("engaged -> failsafe: invalid output")
+        daemon.wait_for("failsafe -> standby")
+        assert_released(simulator)
+        ending = daemon.end(signal.SIGTERM)
+        # The stand-in refuses values that are not finite; there must be none.
+        assert simulator.status()["last_refusals"] == []
+        assert all(math.isfinite(write.value) for write in simulator.journal())
+    assert ending.exit_code == FAILSAFE
+    assert ending.report["failsafes"] == 1
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert_in_the_same_tick(flown, flown.failsafes[0], after_s=1.0)
+
+
+def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        killed_at_s = simulator.progress().time_s
+        ending = daemon.end(signal.SIGKILL)
+        assert_released(simulator)
+        assert simulator.releases()[0].time_s - killed_at_s < AT_ONCE_S
+        wait_until(
+            lambda: "fccd release-helper: the daemon has ended" in daemon.log,
+            "the helper's message",
+        )
+    assert ending.exit_code == -signal.SIGKILL
+
+
+def test_switching_off_releases_and_returns_to_standby(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        assert_released(simulator)
+        engage(simulator, daemon)
+        assert daemon.is_running
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        ending = daemon.end(signal.SIGTERM)
+        joystick = [r for r in simulator.releases() if r.path == OVERRIDE_JOYSTICK]
+    assert len(joystick) == 2
+    assert ending.exit_code == SUCCESS
+
+
+def test_switching_off_ends_the_program_if_configured(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others='[engage]\nswitch_off = "stop"') as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        ending = daemon.end()
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+    assert ending.report["ending"] == "switched off"
