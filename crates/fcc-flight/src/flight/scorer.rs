@@ -1,5 +1,6 @@
 //! Scores the flown pattern.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::framework::{EventKind, LoopCommand, State};
 use fcc_sim::Truth;
@@ -32,7 +33,7 @@ impl Scorer {
     }
 }
 
-impl Observer for Scorer {
+impl Observer<Autopilot> for Scorer {
     fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
         let truth = self
             .truth
