@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use comfy_table::Table;
 use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
@@ -72,9 +73,9 @@ pub trait Addition: Clone + Debug + Serialize {
         String::new()
     }
 
-    /// Its tables as HTML.
-    fn html(&self) -> String {
-        String::new()
+    /// Its tables on a page, each with a title and how to read it.
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        Vec::new()
     }
 }
 

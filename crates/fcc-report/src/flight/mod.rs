@@ -5,6 +5,7 @@ mod ground_track;
 mod legs;
 mod track;
 
+use comfy_table::Table;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
@@ -91,9 +92,14 @@ impl Addition for FlightAddition {
         format!("{table}\nof {count} legs: see the page (--html) for each")
     }
 
-    fn html(&self) -> String {
-        let table = self.flight.as_ref().map(legs::html);
-        table.map(maud::PreEscaped::into_string).unwrap_or_default()
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        const CAPTION: &str = "By what was measured: time until the heading stays within 2° and \
+            the altitude within 10 ft of the set point, how far each goes past it, and the root \
+            mean square of what is left; largest errors of a whole leg.";
+        let flight = self.flight.iter();
+        flight
+            .map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)))
+            .collect()
     }
 }
 
