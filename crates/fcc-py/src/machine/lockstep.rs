@@ -132,7 +132,7 @@ impl<C: Recorded> Lockstep<C> {
         ending: &str,
     ) -> PyResult<Vec<PathBuf>> {
         let about = About {
-            aircraft: plant.to_owned(),
+            plant: plant.to_owned(),
             ..self.about.clone()
         };
         let settings = RecorderSettings {
