@@ -73,6 +73,7 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::OverrunsOver { .. } => "overruns-over",
         EventKind::Hung { .. } => "hung",
         EventKind::SourceChanged(_) => "source-changed",
+        EventKind::ModeChanged { .. } => "mode-changed",
         _ => "other",
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use comfy_table::Table;
 use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
@@ -51,9 +52,6 @@ pub struct Words {
 /// Results that only one kind of plant has. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
-    /// A command to the controller was received.
-    fn command_received(&mut self) {}
-
     /// There are no more records.
     fn finish(&mut self) {}
 
@@ -75,9 +73,9 @@ pub trait Addition: Clone + Debug + Serialize {
         String::new()
     }
 
-    /// Its tables as HTML.
-    fn html(&self) -> String {
-        String::new()
+    /// Its tables on a page, each with a title and how to read it.
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        Vec::new()
     }
 }
 
