@@ -46,9 +46,9 @@ pub struct XPlaneConfig {
     /// The simulator counts as silent after this long without a datagram, 50 ms
     /// to 1 min. Default: 500 ms.
     pub silent_after: Duration,
-    /// The most datagrams read in one tick, 1..=1000. Default: 64, over ten
-    /// times the usual number, so that a flood of datagrams cannot delay a
-    /// tick.
+    /// The most datagrams read in one tick, 1..=1000; the rest are discarded,
+    /// so that no reading is older than a period. Default: 64, over ten times
+    /// the usual number, so that a flood of datagrams cannot delay a tick.
     pub datagrams_per_tick: u16,
     /// Where a loop has several sources of a quantity, another source is
     /// preferred after this long without a reading. Default: 100 ms, two frames
@@ -165,6 +165,12 @@ pub enum XPlaneConfigError {
          as [fe80::1%2]:49000, where 2 is its number in `ip link`"
     )]
     NoInterface(SocketAddr),
+    /// Everything sent would come back.
+    #[error(
+        "simulator {0} is the port that is received on here: give X-Plane's port, 49000 unless it \
+         was changed, or another local_port"
+    )]
+    OwnPort(SocketAddr),
     /// Input is by rows, but no port is given to receive them on.
     #[error(
         "input by Data Output needs local_port: the one that is set as the target port in X-Plane"
@@ -210,6 +216,9 @@ impl XPlaneConfig {
         })?;
         if let Simulator::At(at) = self.simulator {
             check_address(at)?;
+            if at.ip().is_loopback() && at.port() == self.local_port {
+                return Err(XPlaneConfigError::OwnPort(at));
+            }
         }
         if let Input::Data(rows) = self.input {
             check! {
@@ -274,6 +283,8 @@ mod tests {
         assert!(error_text(|c| c.engage_switch = "sim/a\0b".into()).contains("no dataref has"));
         let nowhere = (Ipv4Addr::UNSPECIFIED, 49_000).into();
         assert!(error_text(|c| c.simulator = Simulator::At(nowhere)).contains("127.0.0.1:49000"));
+        let own = error_text(|c| c.local_port = 49_000);
+        assert!(own.contains("simulator 127.0.0.1:49000 is the port that is received on"));
         let rows = Input::Data(DataRows::of(RowsVersion::XPlane12));
         assert!(error_text(|c| c.input = rows).contains("local_port"));
     }

@@ -56,6 +56,7 @@ pub(crate) const READ_BACK: [Quantity; 5] = [
 #[derive(Debug, Default)]
 pub(crate) struct Counters {
     pub(crate) received: AtomicU64,
+    pub(crate) discarded: AtomicU64,
     pub(crate) foreign: AtomicU64,
     pub(crate) malformed: AtomicU64,
     pub(crate) unknown: AtomicU64,

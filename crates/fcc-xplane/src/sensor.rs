@@ -23,6 +23,9 @@ use crate::udp_port::UdpPort;
 
 /// Longer than what X-Plane sends: 1,469 bytes of values, or 134 rows.
 const BUFFER_BYTES: usize = 8_192;
+/// More than wait in a socket at Linux's default size, 212,992 bytes, of which
+/// the shortest datagram takes 768.
+const DISCARDED_PER_TICK: usize = 300;
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
 /// Beacons of a silent simulator restart the subscriptions at most at this
@@ -33,8 +36,9 @@ const RESTART_AFTER: Duration = Duration::from_secs(1);
 /// did not.
 ///
 /// In a tick it makes system calls to receive (at most as many datagrams as
-/// configured) and to send (a few requests), none of which waits. Readings are
-/// stamped with the time of the tick in which they arrived. Only datagrams from
+/// configured; the rest are discarded) and to send (a few requests), none of
+/// which waits. Readings are stamped with the time of the tick in which they
+/// arrived. Only datagrams from
 /// the simulator's IP address are accepted, from any of its ports, since
 /// replies need not come from the port on which X-Plane listens.
 #[derive(Debug)]
@@ -132,12 +136,12 @@ impl<P: Port> XPlaneSensor<P> {
     }
 
     fn receive(&mut self, now: Time, simulator: Option<SocketAddr>) -> Result<(), SensorFault> {
-        let mut malformed = false;
+        let mut outcome = Ok(());
         for _ in 0..self.datagrams_per_tick {
             let received = self.port.receive(self.buffer.as_mut_slice());
             let (length, from) = match received {
                 Ok(Some(received)) => received,
-                Ok(None) => break,
+                Ok(None) => return outcome,
                 Err(errno) => return Err(SensorFault::Io { errno }),
             };
             if simulator.is_none_or(|simulator| simulator.ip() != from.ip()) {
@@ -148,17 +152,25 @@ impl<P: Port> XPlaneSensor<P> {
             let datagram = self.buffer.get(..length).unwrap_or_default();
             if self.inbox.accept(datagram, now, &self.link).is_err() {
                 count(&self.link.counters.malformed);
-                malformed = true;
+                outcome = Err(SensorFault::Malformed);
             }
             if let Some(Kind::Rref | Kind::Data) = Kind::of(datagram) {
                 mem::swap(&mut self.buffer, &mut self.last_values);
                 self.last_values_bytes = length;
             }
         }
-        if malformed {
-            Err(SensorFault::Malformed)
-        } else {
-            Ok(())
+        self.discard_rest();
+        outcome
+    }
+
+    /// Left until the next tick, datagrams would be stamped with a time at which
+    /// they did not arrive, and each tick would read older ones.
+    fn discard_rest(&self) {
+        for _ in 0..DISCARDED_PER_TICK {
+            let Ok(Some(_)) = self.port.receive(&mut []) else {
+                return;
+            };
+            count(&self.link.counters.discarded);
         }
     }
 

@@ -25,6 +25,8 @@ pub struct XPlaneStatus {
 pub struct Counts {
     /// Datagrams from the simulator.
     pub received: u64,
+    /// Datagrams beyond the number that a tick reads, dropped.
+    pub discarded: u64,
     /// Datagrams from elsewhere, dropped.
     pub foreign: u64,
     /// Datagrams with a wrong length or field, dropped.
@@ -114,6 +116,7 @@ impl XPlaneStatus {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Counts {
             received: read(&counters.received),
+            discarded: read(&counters.discarded),
             foreign: read(&counters.foreign),
             malformed: read(&counters.malformed),
             unknown: read(&counters.unknown),

@@ -10,6 +10,13 @@ use crate::output;
 
 /// Checks the machine, for the configured loop.
 pub(super) fn doctor(args: &DoctorArgs) -> Exit {
+    if !args.root.is_dir() {
+        output::message(format!(
+            "--root {}: there is no such folder: give the one with the machine's files",
+            args.root.display()
+        ));
+        return Exit::Usage;
+    }
     let configured = args.config.as_ref().map(|file| Config::load(file));
     let realtime = match configured.transpose() {
         Ok(config) => config.map_or_else(RealtimeSection::default, |config| config.realtime),

@@ -5,6 +5,7 @@
 
 mod damaged;
 mod output;
+mod remarks;
 mod setpoints;
 mod top;
 

@@ -48,6 +48,16 @@ impl Config {
         listed.chain((!is_complete).then_some(&SENSOR))
     }
 
+    /// The connections to an X-Plane, each with its key.
+    pub(super) fn x_planes(&self) -> impl Iterator<Item = (String, &XPlaneSection)> {
+        let own = self.x_plane.iter().map(|own| ("x-plane".to_owned(), own));
+        let listed = self.sensor.iter().enumerate();
+        own.chain(listed.filter_map(|(at, entry)| match entry {
+            SensorEntry::Simulator(_) => None,
+            SensorEntry::XPlane(section) => Some((format!("sensor[{at}]"), section.as_ref())),
+        }))
+    }
+
     /// The actuators: those of `[[actuator]]`, or the simulator's without such a
     /// list.
     pub fn actuators(&self) -> &[ActuatorEntry] {
@@ -170,6 +180,33 @@ mod tests {
             twice,
             "test:5: sensor[1].kind: is the simulator a second time: keep one"
         );
+    }
+
+    #[test]
+    fn two_connections_have_two_ports() {
+        let text = "[x-plane]\nlocal_port = 49005\n[[sensor]]\nkind = \"x-plane\"\n\
+                    simulator = \"10.0.0.2\"\nlocal_port = 49005\n";
+        assert_eq!(
+            message(text),
+            "test:6: sensor[0].local_port: is 49005, as x-plane.local_port: give each connection \
+             its own port"
+        );
+        let own = message("[x-plane]\nsimulator = \"127.0.0.1:49557\"\nlocal_port = 49557\n");
+        assert!(own.starts_with("test:3: x-plane.local_port: simulator 127.0.0.1:49557 is the"));
+    }
+
+    /// 100 frames a second in 1 tick a second, and 40.
+    #[test]
+    fn a_tick_reads_all_datagrams_that_arrive_in_a_period() {
+        let few = message("[x-plane]\n[loop]\nrate_hz = 1\n");
+        assert!(
+            few.starts_with("test:1: x-plane.datagrams_per_tick: is 64: choose at least 600 ="),
+            "{few}"
+        );
+        let one = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\ndatagrams_per_tick = ";
+        let few = message(&format!("{one}14\n"));
+        assert!(few.contains("test:4: sensor[0].datagrams_per_tick: is 14: choose at least 15 ="));
+        kinds(&format!("{one}15\n"));
     }
 
     #[test]

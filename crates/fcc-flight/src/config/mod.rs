@@ -130,6 +130,10 @@ pub enum Aircraft<'a> {
     BuiltIn(&'a BuiltInSection),
 }
 
+/// That a flight moves nothing is permitted, and said.
+pub(crate) const NO_ACTUATOR: &str =
+    "there is no actuator: engaging moves nothing (actuator is an empty list)";
+
 /// How long the thread that reads the loop's messages may be delayed before
 /// records are lost, at 200 Hz or less.
 const FETCHED_WITHIN_S: f64 = 20.0;
@@ -199,6 +203,9 @@ impl Config {
                 "x-plane.engage_switch is not given: the engage switch is {}",
                 section.engage_switch
             ));
+        }
+        if self.actuators().is_empty() {
+            remarks.push(NO_ACTUATOR.to_owned());
         }
         remarks
     }

@@ -6,7 +6,7 @@
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
 use super::places::Places;
-use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
+use super::{Config, Problem, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -119,7 +119,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("built-in.wind_kt", 0.0, 60.0),
     ("built-in.delay_ms", 0.0, 1_000.0),
     ("built-in.engage_at_s", 1.2, 3_600.0),
-    ("built-in.seed", 0.0, 9.3e18),
+    ("built-in.seed", 0.0, 9e18),
 ];
 
 /// Smallest and largest value of a numeric key.
@@ -128,6 +128,20 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
         .iter()
         .find(|(name, ..)| *name == key)
         .map(|(_, least, most)| (*least, *most))
+}
+
+/// A range, as messages give it.
+pub(super) fn in_words((least, most): (f64, f64)) -> String {
+    format!("{} to {}", number(least), number(most))
+}
+
+/// A number; a very large or small one without hundreds of zeros.
+pub(super) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
 }
 
 /// All errors in the values of a configuration, in the order of the text.
@@ -145,25 +159,21 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             for (key, least, most) in RANGES {
                 for (key, value) in numbers_at(&values, key) {
                     if !(*least..=*most).contains(&value) {
-                        report(&key, format!("is {value}: choose {least} to {most}"));
+                        let (value, range) = (number(value), in_words((*least, *most)));
+                        report(&key, format!("is {value}: choose {range}"));
                     }
                 }
             }
         }
         // TOML has no integers above i64.
-        Err(_) => report(
-            "built-in.seed",
-            format!("is too large: choose 0 to {}", i64::MAX),
-        ),
+        Err(_) => {
+            let range = range_of("built-in.seed").map_or_else(String::new, in_words);
+            report("built-in.seed", format!("is too large: choose {range}"));
+        }
     }
     relations::check(config, &mut report);
-    if let Some(section) = &config.x_plane {
-        x_plane("x-plane", section, &mut problems, places);
-    }
-    for (at, entry) in config.sensor.iter().enumerate() {
-        if let SensorEntry::XPlane(section) = entry {
-            x_plane(&format!("sensor[{at}]"), section, &mut problems, places);
-        }
+    for (at, section) in config.x_planes() {
+        x_plane(&at, section, &mut problems, places);
     }
     let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
     if !has_simulator && !config.is_without_simulator() {
@@ -187,7 +197,7 @@ fn x_plane(at: &str, section: &XPlaneSection, problems: &mut Vec<Problem>, place
     let key = match error {
         XPlaneConfigError::EngageSwitch { .. } => format!("{at}.engage_switch"),
         XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
-        XPlaneConfigError::LocalPort => format!("{at}.local_port"),
+        XPlaneConfigError::LocalPort | XPlaneConfigError::OwnPort(_) => format!("{at}.local_port"),
         _ if problems.iter().any(|problem| problem.is_in(at)) => return,
         _ => at.to_owned(),
     };

@@ -165,5 +165,12 @@ fn remove(table: &mut Spanned<DeTable<'_>>, path: &[String]) -> bool {
             _ => None,
         }
     });
-    inner.is_some_and(|inner| inner.remove(last.as_str()).is_some())
+    // Of a list's entry, the whole list.
+    let list = last.split_once('[').map_or("", |(list, _)| list);
+    inner.is_some_and(|inner| {
+        inner
+            .remove(last.as_str())
+            .or_else(|| inner.remove(list))
+            .is_some()
+    })
 }

@@ -38,7 +38,39 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
                 .to_owned(),
         );
     }
+    connections(config, report);
     lists(config, report);
+}
+
+/// X-Plane may send the values of one frame in three datagrams, since their
+/// subscriptions begin in different frames.
+const DATAGRAMS_PER_FRAME: f64 = 3.0;
+
+/// Of the connections to an X-Plane.
+fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let mut ports: Vec<(u16, String)> = Vec::new();
+    // The rate itself may be out of range here.
+    let loop_hz = config.tick.rate_hz.max(1.0);
+    for (at, section) in config.x_planes() {
+        let (most, rate_hz) = (section.datagrams_per_tick, section.rate_hz);
+        // Twice: of the datagrams of a late tick none is lost.
+        let needed = (2.0 * DATAGRAMS_PER_FRAME * f64::from(rate_hz) / loop_hz).ceil();
+        if f64::from(most) < needed {
+            let message = format!(
+                "is {most}: choose at least {needed} = 2 x {DATAGRAMS_PER_FRAME} datagrams a frame \
+                 x {rate_hz} frames a second / {loop_hz} ticks a second, or a lower {at}.rate_hz: \
+                 the readings of a tick would be incomplete and old"
+            );
+            report(&format!("{at}.datagrams_per_tick"), message);
+        }
+        let port = section.local_port;
+        if let Some((_, other)) = ports.iter().find(|(taken, _)| *taken == port) {
+            let message = format!("is {port}, as {other}: give each connection its own port");
+            report(&format!("{at}.local_port"), message);
+        } else if port != 0 {
+            ports.push((port, format!("{at}.local_port")));
+        }
+    }
 }
 
 fn budgets(config: &Config, report: &mut impl FnMut(&str, String)) {

@@ -3,13 +3,13 @@
 //! The reader's messages are about fields, variants and `f64`; users of a
 //! configuration file know keys, values and numbers.
 
-use super::ranges::range_of;
+use super::ranges::{in_words, number, range_of};
 use super::similar::{elsewhere, most_alike};
 
 /// Rewords the reader's error about `key`.
 pub(super) fn reword(message: &str, key: Option<&str>) -> String {
     let range = key.and_then(range_of);
-    let range = range.map(|(least, most)| format!("{least} to {most}"));
+    let range = range.map(in_words);
     let plain = key
         .and_then(renamed)
         .or_else(|| unknown_key(message))
@@ -81,18 +81,28 @@ fn wrong_type(message: &str, range: Option<&str>) -> Option<String> {
         .find_map(|kind| found.strip_prefix(kind))
         .unwrap_or(found)
         .replace('`', "");
+    let found = match found
+        .trim_end_matches(" as i128")
+        .trim_end_matches(" as u128")
+    {
+        "map" => "a section".to_owned(),
+        "sequence" => "a list".to_owned(),
+        other => other.parse().map_or_else(|_| other.to_owned(), number),
+    };
     let wanted = match expected {
         "f32" | "f64" => "a number",
         "i8" | "i16" | "i32" | "i64" | "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number",
         "a boolean" => "true or false",
-        "a string" => "a text in quotes",
+        "a string" | "path string" | "variant identifier" => "a text in quotes",
         "a sequence" => "a list, each entry below double square brackets such as [[sensor]]",
         section if section.starts_with("struct ") => "a section in square brackets",
         other => other,
     };
     Some(match range {
-        Some(range) => format!("is {found}: choose {wanted}, {range}"),
-        None => format!("is {found}: choose {wanted}"),
+        Some(range) if !wanted.contains(range) => {
+            format!("is {found}: choose {wanted}, {range}")
+        }
+        _ => format!("is {found}: choose {wanted}"),
     })
 }
 
@@ -101,4 +111,81 @@ fn missing_key(message: &str) -> Option<String> {
     Some(format!(
         "the key `{name}` is missing: add it as in the examples in the folder config/"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::config::Config;
+
+    fn messages(text: &str) -> Vec<String> {
+        let text = format!("[built-in]\n{text}");
+        let error = Config::parse(&text, "f").unwrap_err().to_string();
+        error.lines().map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn no_words_of_the_reader_and_no_hundreds_of_zeros() {
+        for (text, expected) in [
+            (
+                "[loop]\nrate_hz = 1e308\n",
+                "f:3: loop.rate_hz: is 1e308: choose 1 to 2000",
+            ),
+            (
+                "[loop]\nrate_hz = {}\n",
+                "f:3: loop.rate_hz: is a section: choose a number, 1 to 2000",
+            ),
+            (
+                "[realtime]\npriority = 1e300\n",
+                "f:3: realtime.priority: is 1e300: choose a whole number, 0 to 99",
+            ),
+            (
+                "[realtime]\ncpu = []\n",
+                "f:3: realtime.cpu: is a list: choose \"auto\" or the number of a CPU, 0 to 1023",
+            ),
+            (
+                "[recording]\nfolder = 5\n",
+                "f:3: recording.folder: is 5: choose a text in quotes",
+            ),
+            (
+                "seed = 9300000000000000000\n",
+                "f:2: built-in.seed: is too large: choose 0 to 9e18",
+            ),
+            (
+                "seed = 99999999999999999999\n",
+                "f:2: built-in.seed: is 1e20: choose a whole number, 0 to 9e18",
+            ),
+            (
+                "seed = 9200000000000000000\n",
+                "f:2: built-in.seed: is 9.2e18: choose 0 to 9e18",
+            ),
+        ] {
+            assert_eq!(messages(text), [expected]);
+        }
+        let timer = messages("[loop]\ntimer = 5\n");
+        assert!(
+            timer[0].starts_with("f:3: loop.timer: is 5: choose"),
+            "{timer:?}"
+        );
+        assert!(!timer[0].contains("identifier"), "{timer:?}");
+    }
+
+    #[test]
+    fn no_key_hides_a_later_error() {
+        for key in [
+            "\"a[0\" = 1",
+            "\"a[0]\" = 1",
+            "\"a.b\" = 1",
+            "a = [{ b = 1 }]",
+            "rate_hz = [{ b = 1 }]",
+            "[[x]]\na = 1",
+        ] {
+            let text = format!("[loop]\n{key}\n[failsafe]\nhold_s = -1\n");
+            let all = messages(&text);
+            assert_eq!(all.len(), 2, "{all:?}");
+            assert!(
+                all[1].ends_with("failsafe.hold_s: is -1: choose 0 to 600"),
+                "{all:?}"
+            );
+        }
+    }
 }

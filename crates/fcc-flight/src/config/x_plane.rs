@@ -33,7 +33,7 @@ pub struct XPlaneSection {
     pub resubscribe_s: f64,
     /// The simulator counts as silent after this long without a datagram.
     pub silent_after_ms: u64,
-    /// The most datagrams read in one tick.
+    /// The most datagrams read in one tick; the rest are discarded.
     pub datagrams_per_tick: u16,
     /// After this long without a reading, that of the next sensor in the order
     /// is used.

@@ -10,6 +10,7 @@ use super::host::Host;
 use super::monitor::Monitor;
 use super::observer::{Access, Facts, Observer, Reports};
 use super::outcome::Outcome;
+use crate::config::NO_ACTUATOR;
 
 /// All observers of a flight, each called in turn.
 pub(super) struct Observers {
@@ -35,6 +36,9 @@ impl Observers {
 
     pub(super) fn begin(&mut self, facts: &Facts<'_>) {
         self.each(|observer, reports| observer.begin(facts, reports));
+        if facts.actuators.is_empty() {
+            self.remark(NO_ACTUATOR);
+        }
     }
 
     /// Passes on a message of the loop.

@@ -1,0 +1,35 @@
+//! What is permitted and said, and what is not there to be checked.
+
+use super::fccd;
+
+fn printed(folder: &std::path::Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = fccd(folder, arguments).output().unwrap();
+    let both = [output.stdout, output.stderr].concat();
+    (output.status.code(), String::from_utf8(both).unwrap())
+}
+
+#[test]
+fn a_flight_that_moves_nothing_says_so() {
+    const WORDS: &str = "there is no actuator: engaging moves nothing";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("f.toml"), "actuator = []\n[built-in]\n").unwrap();
+    let (exit, checked) = printed(folder.path(), &["check", "f.toml"]);
+    assert_eq!(
+        (exit, checked.contains(WORDS)),
+        (Some(0), true),
+        "{checked}"
+    );
+    let fly = ["fly", "--lockstep", "--seconds", "1", "--config", "f.toml"];
+    let (_, flown) = printed(folder.path(), &fly);
+    assert!(flown.contains(WORDS), "{flown}");
+}
+
+#[test]
+fn a_machine_without_a_folder_is_not_checked() {
+    let (exit, words) = printed(".".as_ref(), &["doctor", "--root", "/no/such/folder"]);
+    assert_eq!(
+        (exit, words.contains("there is no such folder")),
+        (Some(2), true),
+        "{words}"
+    );
+}
