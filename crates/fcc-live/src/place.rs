@@ -123,6 +123,16 @@ impl Place {
             })
     }
 
+    /// This user's files with one of these texts in their names.
+    pub(super) fn files_of(&self, texts: &[String]) -> Vec<PathBuf> {
+        let files = entries(&self.root).chain(entries(&self.folder().join("services")));
+        let is_meant = |path: &PathBuf| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            name.starts_with(&self.prefix()) && texts.iter().any(|text| name.contains(text))
+        };
+        files.filter(is_meant).collect()
+    }
+
     /// The other users who have a folder here, as text: the daemon may be
     /// theirs.
     pub(super) fn other_users(&self) -> Vec<String> {

@@ -1,5 +1,6 @@
 //! The publishing thread.
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::SyncSender;
 use std::thread::JoinHandle;
@@ -13,6 +14,7 @@ use rtrb::Consumer;
 use super::command::{CommandServer, Rings};
 use super::item::Item;
 use super::lateness::Lateness;
+use super::place::Place;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
@@ -73,6 +75,14 @@ pub(super) fn publish<C: Telemetry>(
         if next_status <= Instant::now() || over {
             // From now on: missed intervals are not made up for after a stall.
             next_status = Instant::now() + STATUS_EVERY;
+            if !over && thread.ports.is_removed() {
+                let (again, words) = thread.publish_again(instance);
+                let _ = reports.try_send(words);
+                let Some(again) = again else {
+                    return;
+                };
+                thread = again;
+            }
             thread.publish_status(left_out.load(Ordering::Relaxed));
         }
         if over {
@@ -93,51 +103,105 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
     }
 }
 
-struct Publishing<C: Telemetry> {
-    desk: Option<CommandServer>,
+/// The services of a daemon, and this process' access to them.
+struct Ports<C: Telemetry> {
     records: Out<Published<C>>,
     service: Service<Published<C>>,
     events: Out<Event>,
     statuses: Out<Status>,
     infos: Out<Info>,
-    lateness: Lateness,
-    recorder: RecorderStatus,
-    time_ns: i64,
-    not_published: u64,
-    paused: bool,
+    /// Files that every watcher needs.
+    files: Vec<PathBuf>,
     // Dropped last: it cleans up after the others.
     access: Access,
 }
 
-impl<C: Telemetry> Publishing<C> {
-    fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
+impl<C: Telemetry> Ports<C> {
+    fn open(instance: &Instance) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
         let access = services::access().map_err(PublishError::NoSharedMemory)?;
         // First, because its layout never changes: a name that is taken is
         // found here.
-        let (_, infos) = INFO.publish(&access, instance)?;
+        let (info, infos) = INFO.publish(&access, instance)?;
         let (service, records) = RECORD.publish(&access, instance)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
-        let desk = commands
-            .map(|rings| CommandServer::open(&access, instance, rings))
-            .transpose()?;
+        let names = [
+            info.service_hash().to_string(),
+            records.id().value().to_string(),
+        ];
         Ok(Self {
-            desk,
             records,
             service,
             events,
             statuses,
             infos,
+            files: Place::of_this_user().files_of(&names),
+            access,
+        })
+    }
+
+    /// Whether somebody has removed the files, so that no program can watch.
+    fn is_removed(&self) -> bool {
+        self.files.iter().any(|file| !file.exists())
+    }
+}
+
+struct Publishing<C: Telemetry> {
+    desk: Option<CommandServer>,
+    ports: Ports<C>,
+    info: Option<Info>,
+    lateness: Lateness,
+    recorder: RecorderStatus,
+    time_ns: i64,
+    not_published: u64,
+    paused: bool,
+}
+
+impl<C: Telemetry> Publishing<C> {
+    fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
+        let ports = Ports::open(instance)?;
+        let desk = commands
+            .map(|rings| CommandServer::open(&ports.access, instance, rings))
+            .transpose()?;
+        Ok(Self {
+            desk,
+            ports,
+            info: None,
             lateness: Lateness::new(),
             recorder: RecorderStatus::default(),
             time_ns: i64::MIN,
             not_published: 0,
             paused: false,
-            access,
         })
+    }
+
+    /// Publishes under the same name after the files were removed, and says how
+    /// that went.
+    fn publish_again(self, instance: &Instance) -> (Option<Self>, String) {
+        const REMOVED: &str = "the files of live telemetry in /dev/shm were removed";
+        let rings = self.desk.map(CommandServer::into_rings);
+        // They would remove the new ones of the same names.
+        drop(self.ports);
+        match Self::open(instance, rings) {
+            Ok(Self { desk, ports, .. }) => {
+                if let Some(info) = self.info {
+                    let _ = ports.infos.send_copy(info);
+                }
+                let again = Self {
+                    desk,
+                    ports,
+                    ..self
+                };
+                (Some(again), format!("{REMOVED}: it is published again"))
+            }
+            Err(error) => (
+                None,
+                format!("{REMOVED}, and it cannot be published again: {error}"),
+            ),
+        }
     }
 
     /// Receives and answers commands; they wait while shared memory is nearly
@@ -174,6 +238,7 @@ impl<C: Telemetry> Publishing<C> {
                 self.time_ns = record.tick.woke.as_nanos();
                 if self.paused
                     || self
+                        .ports
                         .records
                         .send_copy(Published(C::Words::of_record(record)))
                         .is_err()
@@ -184,12 +249,13 @@ impl<C: Telemetry> Publishing<C> {
             Item::Event(event) => {
                 if !self.paused {
                     // A failure to publish cannot be reported to watchers.
-                    let _ = self.events.send_copy(*event);
+                    let _ = self.ports.events.send_copy(*event);
                 }
             }
             Item::Info(info) => {
+                self.info = Some(*info);
                 if !self.paused {
-                    let _ = self.infos.send_copy(*info);
+                    let _ = self.ports.infos.send_copy(*info);
                 }
             }
             Item::Recorder(status) => self.recorder = *status,
@@ -199,10 +265,10 @@ impl<C: Telemetry> Publishing<C> {
     /// Connects new watchers, and sends them the history.
     fn connect_watchers(&self) {
         if !self.paused {
-            let _ = self.infos.update_connections();
-            let _ = self.records.update_connections();
-            let _ = self.events.update_connections();
-            let _ = self.statuses.update_connections();
+            let _ = self.ports.infos.update_connections();
+            let _ = self.ports.records.update_connections();
+            let _ = self.ports.events.update_connections();
+            let _ = self.ports.statuses.update_connections();
         }
     }
 
@@ -211,7 +277,7 @@ impl<C: Telemetry> Publishing<C> {
             return;
         }
         // A killed watcher still occupies a place.
-        self.access.try_cleanup_dead_nodes();
+        self.ports.access.try_cleanup_dead_nodes();
         let status = Status {
             time_ns: self.time_ns,
             ticks: self.lateness.ticks,
@@ -223,14 +289,14 @@ impl<C: Telemetry> Publishing<C> {
             lateness_counts: self.lateness.counts,
             not_published: self.not_published + left_out,
             cpu_ns: thread_cpu_ns(),
-            watchers: self.service.dynamic_config().number_of_subscribers() as u32,
+            watchers: self.ports.service.dynamic_config().number_of_subscribers() as u32,
             recorder_state: self.recorder.state as u32,
             recorded: self.recorder.recorded,
             not_recorded: self.recorder.not_recorded,
             recording_bytes: self.recorder.bytes,
             recording: self.recorder.name,
         };
-        let _ = self.statuses.send_copy(status);
+        let _ = self.ports.statuses.send_copy(status);
     }
 }
 

@@ -257,3 +257,31 @@ fn the_signal_handlers_of_the_process_are_unchanged() {
     let _watcher = Watcher::open(&instance).unwrap();
     assert_eq!(caught(), before);
 }
+
+/// As `rm -r /dev/shm/*` does: of this instance alone, since others may fly.
+#[test]
+fn it_is_published_again_after_its_files_were_removed() {
+    let instance = instance("removed");
+    let mut publisher = started(&instance);
+    publisher.record(&record(1));
+    wait_for("the first", || Watcher::open(&instance).ok());
+    let own = format!("fcc/{instance}/");
+    let folder = format!("/dev/shm/fccd-{}/services", nix::unistd::geteuid());
+    for file in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let text = std::fs::read(file.path()).unwrap_or_default();
+        if String::from_utf8_lossy(&text).contains(&own) {
+            std::fs::remove_file(file.path()).unwrap();
+        }
+    }
+    assert!(Watcher::open(&instance).is_err());
+    let words = wait_for("the remark", || publisher.poll());
+    assert!(
+        words.contains("were removed: it is published again"),
+        "{words}"
+    );
+    let mut watcher = wait_for("the second", || Watcher::open(&instance).ok());
+    assert_eq!(watcher.info().software.as_str(), "1.2.3");
+    publisher.record(&record(2));
+    let found = wait_for("a record", || watcher.next_record().unwrap());
+    assert_eq!(found, record(2));
+}

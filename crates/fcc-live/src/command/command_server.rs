@@ -29,8 +29,8 @@ pub(in super::super) struct Ends {
     pub(in super::super) verdicts: SyncSender<(u64, Verdict)>,
 }
 
-/// The server's ends of the same rings.
-pub(in super::super) type Rings = (SyncSender<PendingCommand>, Receiver<(u64, Verdict)>);
+/// The server's ends of the same rings, and the next command's identifier.
+pub(in super::super) type Rings = (SyncSender<PendingCommand>, Receiver<(u64, Verdict)>, u64);
 
 type Waiting = ActiveRequest<Ipc, Request, (), Answer, ()>;
 
@@ -54,14 +54,20 @@ impl CommandServer {
         let room = MAX_COMMANDERS * MAX_WAITING;
         let (commands_in, commands) = sync_channel(room);
         let (verdicts, verdicts_out) = sync_channel(room);
-        (Ends { commands, verdicts }, (commands_in, verdicts_out))
+        (Ends { commands, verdicts }, (commands_in, verdicts_out, 0))
+    }
+
+    /// Ends the service, for another one with the same rings. Who waits for an
+    /// answer gets none.
+    pub(in super::super) fn into_rings(self) -> Rings {
+        (self.commands, self.verdicts, self.next_id)
     }
 
     /// Opens the service, or creates it.
     pub(in super::super) fn open(
         access: &Access,
         instance: &Instance,
-        (commands, verdicts): Rings,
+        (commands, verdicts, next_id): Rings,
     ) -> Result<Self, PublishError> {
         let unavailable = |words: String| PublishError::NoSharedMemory(words);
         let name = service_name(instance)
@@ -87,7 +93,7 @@ impl CommandServer {
             waiting: Vec::new(),
             commands,
             verdicts,
-            next_id: 0,
+            next_id,
         })
     }
 
