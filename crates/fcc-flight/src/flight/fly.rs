@@ -116,7 +116,7 @@ pub fn fly(
     let report = await_release(report, authority.as_ref(), &mut observers, host);
     let refused = observers.monitor.was_refused() && !matches!(plan.length, Length::Open);
     let released = report.released;
-    let mut outcome = Outcome::new(timer_name, plan.pace, report);
+    let mut outcome = Outcome::new(timer_name, plan.pace, &report);
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);
