@@ -173,6 +173,9 @@ doc: $(STAMPS)/rust ## Build the API documentation
 
 # Those that no registry gets: the Python module is published as a wheel.
 PRIVATE := fcc-py pendulum thermostat bench-tick
+# Where they are built from their packages. cargo takes a package of the same
+# version for the same, so what an earlier run unpacked and built is removed.
+PACKAGED := $(TARGET)/packaged
 
 package-check: $(STAMPS)/rust $(STAMPS)/python ## Build every crate from its package, and check both Python packages (10 minutes)
 	rm -rf $(PACKAGED)/package $(PACKAGED)/debug/.fingerprint/fcc-* \
