@@ -8,7 +8,7 @@ use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
 use super::RunReport;
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Plot, Quantities, declared};
 
 /// A controller whose recordings can be reported on. What is declared of its
@@ -64,11 +64,8 @@ pub trait Addition: Clone + Debug + Serialize {
     }
 
     /// Its figures, below those over time.
-    ///
-    /// # Errors
-    /// When one cannot be drawn.
-    fn figures(&self, _run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        Ok(Vec::new())
+    fn figures(&self, _run: &RunReport) -> Vec<Figure> {
+        Vec::new()
     }
 
     /// Its tables as text.
