@@ -135,8 +135,8 @@ impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
         let mut title = capitalized(self.words.run);
-        if !origin.aircraft.is_empty() {
-            title = format!("{title} of {}", origin.aircraft);
+        if !origin.plant.is_empty() {
+            title = format!("{title} of {}", origin.plant);
         }
         if !origin.started.is_empty() {
             title = format!("{title}, {}", self.started());

@@ -52,9 +52,6 @@ pub struct Words {
 /// Results that only one kind of plant has. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
-    /// A command to the controller was received.
-    fn command_received(&mut self) {}
-
     /// There are no more records.
     fn finish(&mut self) {}
 

@@ -3,15 +3,14 @@
 
 mod ground_track;
 mod legs;
-mod scoring;
 mod track;
 
 use comfy_table::Table;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
-use fcc_telemetry::units::AVIATION;
-use fcc_telemetry::{FlightScore, ScoredBy};
+use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT};
+use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
 
 use super::plot::Figure;
@@ -19,7 +18,6 @@ use super::plots::{Panel, Plot, Quantities, Scale};
 use super::reported::{Addition, Reported, Words};
 use super::{Report, RunReport, Survey};
 pub use legs::flight_table;
-use scoring::Scoring;
 use track::Track;
 
 /// The report on a flight.
@@ -40,7 +38,7 @@ pub struct FlightAddition {
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
     #[serde(skip)]
-    scoring: Option<Scoring>,
+    scorer: Option<PatternScorer>,
     #[serde(skip)]
     track: Track,
 }
@@ -49,25 +47,18 @@ impl FlightAddition {
     /// Scores the flight if it is to be along a timed pattern.
     pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
         Self {
-            scoring: pattern.map(Scoring::new),
+            scorer: pattern.map(PatternScorer::new),
             ..Self::default()
         }
     }
 }
 
 impl Addition for FlightAddition {
-    /// The pattern ends with it.
-    fn command_received(&mut self) {
-        if let Some(scoring) = &mut self.scoring {
-            scoring.command_received();
-        }
-    }
-
     fn finish(&mut self) {
-        if let Some(scoring) = &self.scoring {
-            let (score, failed) = scoring.result();
+        if let Some(scorer) = &self.scorer {
+            let (score, failed) = scorer.result();
             self.flight = Some(score).filter(|score| !score.legs.is_empty());
-            self.not_scored = failed;
+            self.not_scored = failed.map(|error| error.to_string());
         }
         self.track.finish();
     }
@@ -129,8 +120,18 @@ impl Reported for Autopilot {
         if !position.is_never() {
             addition.track.push(time_s, &position.value);
         }
-        if let Some(scoring) = &mut addition.scoring {
-            scoring.take(record, time_s);
+        if let Some(scorer) = &mut addition.scorer {
+            let sample = Sample::measured(&record.measurements, time_s);
+            // The legs lie around the set points that were captured, not around
+            // the first, noisy measurement.
+            let captured = Sample {
+                heading_deg: record.setpoints.heading_rad.to_degrees(),
+                altitude_ft: record.setpoints.altitude_m * M_FT,
+                airspeed_kt: record.setpoints.airspeed_mps * MPS_KT,
+                ..sample
+            };
+            let guidance = &record.setpoints.guidance;
+            scorer.take(record.state.state(), guidance, Some(captured), Some(sample));
         }
     }
 
