@@ -7,10 +7,11 @@ use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Detail, Figure, Figures, figures};
+use super::report::{Report, RunReport};
 use super::reported::Addition;
 use super::table::{markup, table, timing_columns};
 use super::text::percentiles_table;
-use super::{Report, RunReport};
+use super::words::capitalized;
 
 const STYLE: &str = include_str!("page.css");
 /// Lets plots be zoomed; without it, the page is the same, and still.
@@ -163,17 +164,6 @@ impl RunReport {
         }
         table
     }
-}
-
-/// With a capital first letter.
-pub(crate) fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
-    let first: String = letters
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .collect();
-    first + letters.as_str()
 }
 
 fn figure_markup(figure: &Figure) -> Markup {
