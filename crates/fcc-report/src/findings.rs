@@ -1,7 +1,7 @@
 //! What is worth saying of a recording in words, before any table.
 
-use super::RunReport;
 use super::origin::FileEnd;
+use super::report::RunReport;
 use super::states::{Phase, time_in};
 
 /// The sentences, the gravest first.

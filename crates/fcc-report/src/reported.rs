@@ -7,9 +7,10 @@ use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use super::RunReport;
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Plot, Quantities, declared};
+use super::report::RunReport;
+use super::words::Words;
 
 /// A controller whose recordings can be reported on. What is declared of its
 /// values is enough; an implementation may choose other plots and words, and add
@@ -38,17 +39,6 @@ pub trait Reported: Telemetry + Sized {
     }
 }
 
-/// What a recorded loop, its plant and its controller are called.
-#[derive(Clone, Copy, Debug)]
-pub struct Words {
-    /// What was recorded: a flight.
-    pub run: &'static str,
-    /// What was controlled: the aircraft.
-    pub plant: &'static str,
-    /// What controlled it: the autopilot.
-    pub controller: &'static str,
-}
-
 /// Results that only one kind of plant has. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
@@ -61,11 +51,8 @@ pub trait Addition: Clone + Debug + Serialize {
     }
 
     /// Its figures, below those over time.
-    ///
-    /// # Errors
-    /// When one cannot be drawn.
-    fn figures(&self, _run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        Ok(Vec::new())
+    fn figures(&self, _run: &RunReport) -> Vec<Figure> {
+        Vec::new()
     }
 
     /// Its tables as text.

@@ -7,10 +7,9 @@ use fcc_telemetry::TimingReport;
 
 use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
-use super::{Report, RunReport, Timing};
+use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
-use crate::table::{figure, table};
-use crate::timing_table;
+use crate::table::{figure, table, timing_table};
 
 /// More events than these do not fit on a screen.
 const MOST_EVENTS: usize = 20;
@@ -97,7 +96,7 @@ impl RunReport {
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            (self.words.plant, origin.aircraft.clone()),
+            (self.words.plant, origin.plant.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),

@@ -114,7 +114,7 @@ fn a_flight_is_told_as_it_was_flown() {
     assert!(worst.heading_settle_s.unwrap() < 17.5, "{worst:?}");
     assert!(worst.altitude_settle_s.unwrap() < 14.0, "{worst:?}");
 
-    let html = sound(&report.to_html().unwrap());
+    let html = sound(&report.to_html());
     assert_eq!(
         texts(&html, "figure", "h3"),
         [
@@ -156,7 +156,7 @@ fn a_gap_is_said_and_left_open() {
         &report,
         "39 ticks are missing from the file, in 1 gap, the longest of 1.00 s"
     ));
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(page.contains("records missing"));
 }
@@ -177,7 +177,7 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
         words.iter().any(|text| text.contains("failsafe")),
         "{words:?}"
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     // No line goes on where nothing is measured: ages do.
     assert!(page.contains("Ages of measurements"));
@@ -189,7 +189,7 @@ fn standby_alone_has_nothing_desired() {
     let report = report(Plan::seconds(1), all);
     assert!(says(&report, "never engaged"));
     assert!(report.addition.flight.is_none());
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
 }
@@ -199,7 +199,7 @@ fn a_recording_without_ticks_says_so() {
     let report =
         FlightSurvey::new(Origin::default(), FlightAddition::default()).finish(FileEnd::Unknown);
     assert!(says(&report, "no tick"));
-    let html = sound(&report.to_html().unwrap());
+    let html = sound(&report.to_html());
     assert!(texts(&html, "body", "figure").is_empty());
     assert!(report.to_text().contains("no tick"));
 }
@@ -212,7 +212,7 @@ fn one_tick_is_a_report_too() {
     });
     assert_eq!(report.continuity.ticks, 1);
     assert!(says(&report, "begins late, at tick 7: 6 ticks"));
-    sound(&report.to_html().unwrap());
+    sound(&report.to_html());
 }
 
 /// Each colour of a plot has one for a dark screen.
@@ -228,7 +228,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
             FlightMessage::Event(_) => true,
         },
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     let (style, plots) = page.split_once("</style>").unwrap();
     let (_, dark) = style.split_once("prefers-color-scheme: dark").unwrap();
     let mut colours = 0;
@@ -248,7 +248,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
 #[test]
 fn plots_are_svg_files() {
     let report = report(Plan::seconds(30), all);
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let names: Vec<&str> = svgs.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
@@ -293,7 +293,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
         survey.take(&FlightMessage::Tick(record)).unwrap();
     }
     let report = survey.finish(FileEnd::Unknown);
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     let paths = |class: &str| -> Vec<usize> {
         let begin = format!("<path class=\"{class}\"");
@@ -312,7 +312,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
     let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
     assert!(finer.count() >= 6, "{overview:?} {detail:?}");
     assert!(page.len() < 4_500_000, "{}", page.len());
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let mut files = svgs.iter();
     assert!(
         files.all(|(_, svg)| !svg.contains("detail")),

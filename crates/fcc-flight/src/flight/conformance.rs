@@ -202,7 +202,7 @@ impl Flight {
     }
 
     fn end(mut self) {
-        let mut outcome = Outcome::new("manual", Pace::Lockstep, self.machine.finish());
+        let mut outcome = Outcome::new("manual", Pace::Lockstep, &self.machine.finish());
         let before = outcome.conclusion;
         let own = |outcome: &Outcome| (outcome.ending.clone(), outcome.released, outcome.overruns);
         let of_the_loop = own(&outcome);

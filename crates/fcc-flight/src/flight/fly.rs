@@ -124,7 +124,7 @@ pub fn fly(
     let refused =
         observers.monitor.was_refused() && !matches!(plan.length, Length::Open | Length::Ticks(_));
     let released = report.released;
-    let mut outcome = Outcome::new(timer_name, plan.pace, report);
+    let mut outcome = Outcome::new(timer_name, plan.pace, &report);
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);

@@ -1,33 +1,19 @@
-//! Lines over time as SVG paths, which take a fraction of the room that the
-//! library's polylines do: thinned to what a plot can show, and on a page also
+//! Lines over time as SVG paths by relative moves, which take little room: thinned to what a plot can show, and on a page also
 //! in detail, for when it is zoomed.
 
 use std::fmt::Write as _;
 
-use plotters::style::RGBColor;
-
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
-use super::canvas::{ACTUAL, DESIRED, MEASURED, hex, px};
-
-/// How a line is drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Ink {
-    /// Thin and pale, behind the others.
-    Measured,
-    /// Solid.
-    Actual,
-    /// Thin and dashed.
-    Desired,
-}
+use super::sheet::{ACTUAL, Colour, DESIRED, MEASURED, Sheet, px};
 
 /// Of a recording longer than this, a fine line shows more.
 const DENSE_S: f64 = 600.0;
 
 impl Ink {
     /// Colour, and width in px on a plot that is dense or not.
-    pub(super) const fn pen(self, is_dense: bool) -> (RGBColor, f64) {
+    pub(super) const fn pen(self, is_dense: bool) -> (Colour, f64) {
         match (self, is_dense) {
             (Self::Measured, _) => (MEASURED, 0.6),
             (Self::Actual, false) => (ACTUAL, 1.3),
@@ -83,33 +69,31 @@ pub(super) fn is_dense(report: &RunReport) -> bool {
 /// half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// A curve as SVG; `on_panel` says where a point is, px.
+/// Draws a curve; `on_panel` says where a point is, px.
 pub(super) fn markup(
+    sheet: &mut Sheet,
     curve: &Curve,
     is_dense: bool,
     detail: Detail,
     on_panel: impl Fn(Point) -> (f64, f64),
-) -> String {
+) {
     let (colour, width_px) = curve.ink.pen(is_dense);
     let dashes = match curve.ink {
         Ink::Desired => format!(" stroke-dasharray=\"{} {}\"", px(5.0), px(3.0)),
         Ink::Measured | Ink::Actual => String::new(),
     };
-    let line = |class: &str, scale: i32, trace: &Trace| {
+    let mut line = |class: &str, scale: i32, trace: &Trace| {
         let grid = |point| {
             let (x, y) = on_panel(point);
             (px(x * f64::from(scale)), px(y * f64::from(scale)))
         };
-        let path = path(&trace.lines(), grid);
-        if path.is_empty() {
-            return String::new();
+        let (path, width) = (path(&trace.lines(), grid), px(width_px));
+        if !path.is_empty() {
+            sheet.raw(format_args!(
+                "<path{class} fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                 stroke-linecap=\"round\"{dashes} d=\"{path}\"/>"
+            ));
         }
-        format!(
-            "<path{class} fill=\"none\" stroke=\"{}\" \
-             stroke-width=\"{}\" stroke-linecap=\"round\"{dashes} d=\"{path}\"/>\n",
-            hex(colour),
-            px(width_px),
-        )
     };
     let overview = curve.trace.thinned(OVERVIEW_BINS);
     match detail {
@@ -118,8 +102,8 @@ pub(super) fn markup(
                 " class=\"detail\" display=\"none\" transform=\"scale({})\"",
                 1.0 / f64::from(DETAIL_PER_UNIT)
             );
-            line(" class=\"overview\"", 1, &overview)
-                + &line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins))
+            line(" class=\"overview\"", 1, &overview);
+            line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins));
         }
         _ => line("", 1, &overview),
     }

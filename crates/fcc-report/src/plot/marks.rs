@@ -1,7 +1,7 @@
 //! Events as numbered marks, as many as there is room for.
 
 use super::super::events::{EventLine, Weight};
-use super::canvas::{SMALL_PX, text_width_px};
+use super::sheet::{SMALL_PX, text_width_px};
 
 /// Events that are too close to be told apart, under one mark.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -7,30 +7,21 @@
 //! loop was not engaged, with the events numbered as in the table.
 
 pub(crate) mod axis;
-pub(crate) mod canvas;
 mod curves;
+mod figure;
 mod marks;
 pub(crate) mod panel;
 mod percentile_ranges;
+pub(crate) mod sheet;
 mod time_figure;
 mod time_plots;
 mod timeline;
 mod timing;
 
-pub use canvas::PlotError;
-pub(crate) use curves::{Detail, Ink};
+pub(crate) use curves::Detail;
+pub use figure::Figure;
 
-use super::RunReport;
-
-/// A plot with its words.
-pub struct Figure {
-    /// What it shows.
-    pub title: String,
-    /// How to read it.
-    pub caption: String,
-    /// The picture.
-    pub svg: String,
-}
+use super::report::RunReport;
 
 /// The figures of a page, by its sections.
 #[derive(Default)]
@@ -44,14 +35,14 @@ pub(super) struct Figures {
 }
 
 /// Draws all that there is to draw.
-pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Figures, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Figures {
     if report.continuity.ticks == 0 {
-        return Ok(Figures::default());
+        return Figures::default();
     }
     let detail = detail.shared_by(report);
-    Ok(Figures {
-        timeline: vec![timeline::timeline(report)?],
-        values: time_plots::figures(report, detail)?,
-        timing: timing::figures(report, detail)?,
-    })
+    Figures {
+        timeline: vec![timeline::timeline(report)],
+        values: time_plots::figures(report, detail),
+        timing: timing::figures(report, detail),
+    }
 }
