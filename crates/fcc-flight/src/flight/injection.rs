@@ -220,6 +220,10 @@ impl Controller for Faulty {
         self.autopilot.outputs_are_valid(outputs)
     }
 
+    fn plausible(&self, measurements: &Measurements) -> Flags {
+        self.autopilot.plausible(measurements)
+    }
+
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         self.autopilot.switch(measurements)
     }
