@@ -1,4 +1,4 @@
-//! A report as one page that needs nothing but itself.
+//! A report as one HTML page without other files.
 
 use std::path::Path;
 use std::{fs, io};
@@ -12,12 +12,11 @@ use super::text::VALUE_COLUMNS;
 use super::{Report, RunReport, Timing};
 
 const STYLE: &str = include_str!("page.css");
-/// Lets plots be zoomed; without it, the page is the same, and still.
+/// Zooms the plots; without it the page is the same, but static.
 const SCRIPT: &str = include_str!("page.js");
 
 impl<A: Addition> Report<A> {
-    /// The page: HTML with everything in it, plots as SVG; nothing is fetched
-    /// when it is opened.
+    /// The page: HTML with all plots as SVG; a browser loads nothing else.
     ///
     /// # Errors
     /// When a plot cannot be drawn.
@@ -43,7 +42,7 @@ impl<A: Addition> Report<A> {
                     }
                     @for figure in &figures.timeline { (figure_markup(figure)) }
                     @if !figures.values.is_empty() {
-                        h2 { (capitalized(self.words.run)) }
+                        h2 { (capitalized(self.terms.run)) }
                         @for figure in &figures.values { (figure_markup(figure)) }
                         (self.values_table())
                         (PreEscaped(self.addition.html()))
@@ -68,8 +67,8 @@ impl<A: Addition> Report<A> {
         Ok(page.into_string())
     }
 
-    /// Each plot as a file of its own, for papers: its name, which ends in
-    /// `.svg`, and what is in it.
+    /// Each plot as an SVG file: its name, which ends in `.svg`, and its
+    /// content.
     ///
     /// # Errors
     /// When a plot cannot be drawn.
@@ -95,7 +94,7 @@ impl<A: Addition> Report<A> {
         Ok(figures)
     }
 
-    /// Writes the page into a file, which must not be the recording itself.
+    /// Writes the page into a file, which must not be the recording.
     ///
     /// # Errors
     /// What could not be drawn or written.
@@ -104,15 +103,15 @@ impl<A: Addition> Report<A> {
         if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
             && page == recording
         {
-            let why = "is the recording itself: give the page another name";
+            let why = "is the recording: give the page another name";
             return Err(refused(why.to_owned()));
         }
         let page = self.to_html().map_err(|error| error.to_string())?;
         fs::write(path, page).map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
-    /// Writes each plot into a file of its own, in a folder that is made if it
-    /// is missing.
+    /// Writes each plot into a file in a folder, which is created if it is
+    /// missing.
     ///
     /// # Errors
     /// What could not be drawn or written.
@@ -131,7 +130,7 @@ impl<A: Addition> Report<A> {
 impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
-        let mut title = capitalized(self.words.run);
+        let mut title = capitalized(self.terms.run);
         if !origin.aircraft.is_empty() {
             title = format!("{title} of {}", origin.aircraft);
         }
@@ -158,7 +157,7 @@ impl RunReport {
                     thead {
                         tr {
                             @for (n, name) in VALUE_COLUMNS.iter().enumerate() {
-                                th.words[n == 0] { (name) }
+                                th.text[n == 0] { (name) }
                             }
                         }
                     }
@@ -166,7 +165,7 @@ impl RunReport {
                         @for value in &self.values {
                             tr {
                                 @for (n, cell) in value.cells().iter().enumerate() {
-                                    td.words[n == 0] { (cell) }
+                                    td.text[n == 0] { (cell) }
                                 }
                             }
                         }
@@ -179,14 +178,14 @@ impl RunReport {
     fn events_table(&self) -> Markup {
         html! {
             div.wide { table.events {
-                thead { tr { th { "No." } th { "Time, s" } th { "Tick" } th.words { "Event" } } }
+                thead { tr { th { "No." } th { "Time, s" } th { "Tick" } th.text { "Event" } } }
                 tbody {
                     @for event in &self.events {
                         tr {
                             td { (event.number) }
                             td { (format!("{:.3}", event.time_s)) }
                             td { (event.tick) }
-                            td.words { (event.text) }
+                            td.text { (event.text) }
                         }
                     }
                 }
@@ -196,8 +195,8 @@ impl RunReport {
 }
 
 /// With a capital first letter.
-pub(crate) fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
+pub(crate) fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
     let first: String = letters
         .next()
         .into_iter()
@@ -225,7 +224,7 @@ fn timing_table(timing: &Timing) -> Markup {
             div.wide { table {
                 thead {
                     tr {
-                        th.words {}
+                        th.text {}
                         @for column in &columns {
                             th { (column.rate_hz) " Hz " (column.timer) }
                         }
@@ -233,11 +232,11 @@ fn timing_table(timing: &Timing) -> Markup {
                 }
                 tbody {
                     @for (name, cells) in crate::table::timing_rows(&columns) {
-                        tr { td.words { (name) } @for cell in cells { td { (cell) } } }
+                        tr { td.text { (name) } @for cell in cells { td { (cell) } } }
                     }
                 }
             } }
-            figcaption { "The thesis' table (6.1 to 6.3), and below it what it did not measure." }
+            figcaption { "The thesis' table (6.1 to 6.3), and below it values that the thesis does not have." }
         }
     }
 }
@@ -248,13 +247,13 @@ fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Markup {
             div.wide { table {
                 thead {
                     tr {
-                        th.words { (title) }
+                        th.text { (title) }
                         @for name in ["p50", "p90", "p99", "p99.9", "max"] { th { (name) } }
                     }
                 }
                 tbody {
                     @for row in rows {
-                        tr { td.words { (row.name) } @for cell in row.figures() { td { (cell) } } }
+                        tr { td.text { (row.name) } @for cell in row.figures() { td { (cell) } } }
                     }
                 }
             } }

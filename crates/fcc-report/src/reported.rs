@@ -1,4 +1,4 @@
-//! What a controller's reports have beside what every loop's report has.
+//! The parts of a report that a controller can choose.
 
 use std::fmt::Debug;
 
@@ -10,59 +10,58 @@ use super::RunReport;
 use super::plot::{Figure, PlotError};
 use super::plots::{Plot, Quantities, declared};
 
-/// A controller whose recordings can be reported on. What is declared of its
-/// values is enough; an implementation may choose other plots and words, and add
-/// results of its own.
+/// A controller whose recordings can be reported on. Its declared values are
+/// enough; an implementation may choose other plots and terms, and add results.
 pub trait Reported: Telemetry + Sized {
-    /// Results of its own; `()` for none.
+    /// Additional results; `()` for none.
     type Addition: Addition;
 
-    /// The words for what was recorded.
-    const WORDS: Words = Words {
+    /// Terms for the recorded loop.
+    const TERMS: Terms = Terms {
         run: "run",
         plant: "Plant",
         controller: "controller",
     };
 
-    /// Whether the report has a table of what its values ranged over.
+    /// Whether the report has a table of the values' ranges.
     const TABLE_OF_VALUES: bool = true;
 
-    /// Takes a record for the results of its own; times ascend.
+    /// Takes a record for the additional results; times ascend.
     fn take(_addition: &mut Self::Addition, _record: &RecordOf<Self>, _time_s: f64) {}
 
-    /// The plots of its values over time: by default one for each reading, with
-    /// the estimates and set points of the same name, and one for the outputs.
+    /// The plots of values over time: by default one per reading, with the
+    /// estimates and set points of the same name, and one for the outputs.
     fn plots(of: &Quantities) -> Vec<Plot> {
         declared::<Self>(of)
     }
 }
 
-/// What a recorded loop, its plant and its controller are called.
+/// Terms for a recorded loop, its plant and its controller.
 #[derive(Clone, Copy, Debug)]
-pub struct Words {
-    /// What was recorded: a flight.
+pub struct Terms {
+    /// The run, such as "flight".
     pub run: &'static str,
-    /// What was controlled: the aircraft.
+    /// The plant, such as "Aircraft".
     pub plant: &'static str,
-    /// What controlled it: the autopilot.
+    /// The controller, such as "autopilot".
     pub controller: &'static str,
 }
 
-/// Results that only one kind of plant has. Serialized, they are keys of the
+/// Additional results for one kind of plant. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
     /// A command to the controller was received.
     fn command_received(&mut self) {}
 
-    /// There are no more records.
+    /// The last record was taken.
     fn finish(&mut self) {}
 
-    /// What is worth saying in words.
+    /// Sentences for the summary.
     fn findings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Its figures, below those over time.
+    /// Figures, below those over time.
     ///
     /// # Errors
     /// When one cannot be drawn.
@@ -81,5 +80,5 @@ pub trait Addition: Clone + Debug + Serialize {
     }
 }
 
-/// No results but those of every loop.
+/// No additional results.
 impl Addition for () {}

@@ -7,7 +7,7 @@ use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
 use fcc_record::{Entry, Wholeness};
 use fcc_telemetry::TimingReport;
 
-/// One line under the header, and no other.
+/// One line under the header only.
 const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
@@ -22,7 +22,7 @@ pub(crate) fn table(header: &[&str]) -> Table {
 }
 
 /// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
-/// it what the thesis did not measure.
+/// it values that the thesis does not have.
 pub fn timing_table(reports: &[TimingReport]) -> String {
     let mut header = vec![String::new()];
     header.extend(
@@ -116,7 +116,7 @@ pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<St
     rows
 }
 
-/// What a table says where nobody measured.
+/// Shown in a table for a value that was not measured.
 const UNKNOWN: &str = "–";
 
 /// A number with its unit.
@@ -128,7 +128,7 @@ pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
     }
 }
 
-/// A lateness: a spinning loop's is some nanoseconds.
+/// A lateness: in a spinning loop it is some nanoseconds.
 fn micros(us: f64) -> String {
     figure(us, if us < 10.0 { 3 } else { 1 }, "µs")
 }
@@ -198,18 +198,18 @@ mod tests {
             damages: Vec::new(),
         };
         let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
-        for words in [
+        for cell in [
             " 1:00.0 ",
             " 10:00.0 ",
             " 0:05.3 ",
             " 62:05.0 ",
             " 12.3 µs ",
         ] {
-            assert!(text.contains(words), "{words} is not in\n{text}");
+            assert!(text.contains(cell), "{cell} is not in\n{text}");
         }
     }
 
-    /// The thesis' table 6.1, its own figures through our table.
+    /// The thesis' table 6.1, from its own figures.
     #[test]
     fn prints_the_thesis_table_as_the_thesis_does() {
         let report = TimingReport {

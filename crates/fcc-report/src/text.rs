@@ -1,4 +1,4 @@
-//! A report on the terminal.
+//! A report as text for a terminal.
 
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::reported::Addition;
 use crate::table::{figure, table};
 use crate::timing_table;
 
-/// More events than these do not fit on a screen.
+/// At most this many events are shown.
 const MOST_EVENTS: usize = 20;
 
 /// The columns of the table of values.
@@ -30,7 +30,7 @@ impl ValueRange {
 }
 
 impl<A: Addition> Report<A> {
-    /// Tables for people.
+    /// The report as text.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         for (name, value) in self.header() {
@@ -84,12 +84,12 @@ impl RunReport {
         }
     }
 
-    /// When the run began, for people: `2026-11-20 04:21:33 UTC`.
+    /// The start of the run: `2026-11-20 04:21:33 UTC`.
     pub(super) fn started(&self) -> String {
         self.origin.started.replace('T', " ").replace('Z', " UTC")
     }
 
-    /// What is known of where the recording comes from, name by name.
+    /// The known properties of the recording, with their names.
     pub(super) fn header(&self) -> Vec<(&'static str, String)> {
         let origin = &self.origin;
         let realtime = &origin.realtime;
@@ -107,15 +107,15 @@ impl RunReport {
             format!("{} Hz {}", timing.table.rate_hz, origin.timer)
         });
         let end = match &self.end {
-            FileEnd::Finished(words) => words.clone(),
-            FileEnd::Cut(words) => format!("cut: {words}"),
+            FileEnd::Finished(reason) => reason.clone(),
+            FileEnd::Cut(reason) => format!("cut: {reason}"),
             FileEnd::Unknown => String::new(),
         };
         let last_state = self.states.last().map(|span| span.state.clone());
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            (self.words.plant, origin.aircraft.clone()),
+            (self.terms.plant, origin.aircraft.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),
@@ -167,7 +167,7 @@ impl NamedPercentiles {
     }
 }
 
-/// A time in the unit that suits it, in three figures or a little more.
+/// A time in a suitable unit, with three to four figures.
 pub(super) fn time(us: f64) -> String {
     match us {
         0.0 => "0 µs".to_owned(),
@@ -195,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn durations_and_times_are_said_as_people_do() {
+    fn durations_and_times_have_suitable_units() {
         assert_eq!(duration(42.04), "42.0 s");
         assert_eq!(duration(182.0), "3 min 2.0 s");
         assert_eq!(duration(3_599.99), "1 h 0 min 0 s");

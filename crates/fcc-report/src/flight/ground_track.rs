@@ -1,4 +1,4 @@
-//! The ground track, where there is position.
+//! The ground track, from measured positions.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -16,14 +16,14 @@ use crate::states::Phase;
 
 const LEFT_PX: f64 = 60.0;
 const TOP_PX: f64 = 24.0;
-const X_WORDS_PX: f64 = 36.0;
-/// The taller side at most, px.
+const X_LABELS_PX: f64 = 36.0;
+/// Largest height, px.
 const MOST_HEIGHT_PX: f64 = 460.0;
 const LEAST_HEIGHT_PX: f64 = 160.0;
-/// A track shorter than this is drawn on a map of this size, m.
+/// A shorter track is drawn on a map of this size, m.
 const LEAST_SPAN_M: f64 = 100.0;
 
-/// The ground track; none where there is no position.
+/// The ground track; `None` without positions.
 pub(super) fn figure(
     report: &RunReport,
     track: &[TrackPoint],
@@ -33,7 +33,7 @@ pub(super) fn figure(
     }
     let map = Map::of(track);
     let svg = draw(
-        TOP_PX + map.height_px + X_WORDS_PX,
+        TOP_PX + map.height_px + X_LABELS_PX,
         "Ground track",
         |area| map.paint(area, report, track),
     )?;
@@ -73,7 +73,7 @@ impl Map {
             let middle = f64::midpoint(low, high);
             (middle - reach, middle + reach)
         };
-        // A narrow track has room beside it rather than a narrow map.
+        // A narrow track gets margins, not a narrow map.
         let width_px = most_width_px;
         Self {
             east_m: widen(east_m, width_px),
@@ -128,8 +128,8 @@ impl Map {
     }
 }
 
-/// The points that are told apart on the sheet, and the last: closer ones show
-/// the noise of a receiver and no turn.
+/// Keeps the points that can be distinguished in the plot, and the last: closer
+/// points show only the receiver's noise.
 fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const APART_PX: f64 = 3.0;
     let mut kept: Vec<(f64, f64)> = Vec::new();
@@ -161,7 +161,7 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
         match pieces.last_mut() {
             Some((last, places)) if *last == phase => places.push(*place),
             Some((_, places)) => {
-                // The piece before leads up to where this one begins.
+                // The previous piece ends where this one begins.
                 places.push(*place);
                 pieces.push((phase, vec![*place]));
             }
@@ -171,7 +171,7 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
     pieces
 }
 
-/// Numbers of the events that changed the state, where they happened.
+/// Numbers the events that changed the state, at their positions.
 fn number_states(
     area: &Area<'_>,
     report: &RunReport,
@@ -187,11 +187,11 @@ fn number_states(
             continue;
         };
         let (x, y) = panel.on_sheet(at(place));
-        // One number is enough where several would lie on each other.
+        // One number where several would overlap.
         if taken.iter().all(|(u, v)| (u - x).hypot(v - y) > 14.0) {
             taken.push((x, y));
-            let words = event.number.to_string();
-            area.draw_text(&words, &style, (px(x + 5.0), px(y - 4.0)))?;
+            let labels = event.number.to_string();
+            area.draw_text(&labels, &style, (px(x + 5.0), px(y - 4.0)))?;
         }
     }
     Ok(())
@@ -199,7 +199,7 @@ fn number_states(
 
 fn legend(area: &Area<'_>) -> Drawn {
     let y = 10.0;
-    let words = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
+    let labels = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
     let line = |x: f64, style: ShapeStyle| {
         area.draw(&PathElement::new(
             [(px(x), px(y)), (px(x + 21.0), px(y))],
@@ -207,20 +207,20 @@ fn legend(area: &Area<'_>) -> Drawn {
         ))
     };
     line(LEFT_PX, pen(ACTUAL, 1.4))?;
-    area.draw_text("engaged", &words, (px(LEFT_PX + 26.0), px(y)))?;
+    area.draw_text("engaged", &labels, (px(LEFT_PX + 26.0), px(y)))?;
     line(LEFT_PX + 90.0, pen(OTHER, 1.0))?;
-    area.draw_text("not engaged", &words, (px(LEFT_PX + 116.0), px(y)))?;
+    area.draw_text("not engaged", &labels, (px(LEFT_PX + 116.0), px(y)))?;
     area.draw(&Circle::new(
         (px(LEFT_PX + 206.0), px(y)),
         px(3.5),
         pen(ACTUAL, 1.2),
     ))?;
-    area.draw_text("begin", &words, (px(LEFT_PX + 216.0), px(y)))?;
+    area.draw_text("begin", &labels, (px(LEFT_PX + 216.0), px(y)))?;
     area.draw(&Circle::new(
         (px(LEFT_PX + 266.0), px(y)),
         px(3.5),
         ACTUAL.filled(),
     ))?;
-    area.draw_text("end", &words, (px(LEFT_PX + 276.0), px(y)))?;
+    area.draw_text("end", &labels, (px(LEFT_PX + 276.0), px(y)))?;
     Ok(())
 }

@@ -19,7 +19,7 @@ const LEG_COLUMNS: [&str; 10] = [
     "lateral g",
 ];
 
-/// What the columns of a leg mean.
+/// Meanings of the columns.
 const LEG_LEGEND: &str = "\
 ≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
 overshoot        how far past the set point, in the direction of the turn or climb
@@ -28,12 +28,12 @@ turn loss        how far below the lower of the two altitudes that the leg joins
 airspeed         largest error either way
 lateral          largest sideways acceleration";
 
-/// What it is scored by, a row per leg and the worst of each column, and what
-/// the columns mean.
+/// Source of the score, a row per leg and the worst of each column, and the
+/// meanings of the columns.
 pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     let by = match by {
-        ScoredBy::Truth => "how the simulated aircraft truly flew",
-        ScoredBy::Measurement => "what the sensors measured",
+        ScoredBy::Truth => "the true values of the simulated aircraft",
+        ScoredBy::Measurement => "the measurements of the sensors",
     };
     let mut table = table(&LEG_COLUMNS);
     for (index, leg) in score.legs.iter().enumerate() {
@@ -62,7 +62,7 @@ fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
     ]
 }
 
-/// The same for a page, by what was measured.
+/// The same as HTML, by measurements.
 pub(super) fn html(flight: &FlightScore) -> Markup {
     let rows = flight
         .legs
@@ -84,7 +84,7 @@ pub(super) fn html(flight: &FlightScore) -> Markup {
                 }
             }
             figcaption {
-                "By what was measured: time until the heading stays within 2° and the altitude \
+                "By measurements: time until the heading stays within 2° and the altitude \
                  within 10 ft of the set point, how far each goes past it, and the root mean \
                  square of what is left; largest errors of a whole leg."
             }

@@ -1,4 +1,4 @@
-//! How well the timed pattern was flown, by what was measured.
+//! The score along the timed pattern, by measurements.
 
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
@@ -9,13 +9,13 @@ use fcc_telemetry::{FlightLog, FlightScore, Sample};
 
 /// Scores every engagement of a flight through the timed pattern.
 ///
-/// The legs lie around the set points that were captured on engaging, not
-/// around the first, noisy measurement.
+/// The legs begin at the set points captured at engagement, not at the first,
+/// noisy measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Scoring {
     log: FlightLog,
     engaged: bool,
-    /// A command ended the pattern: what follows is not part of it.
+    /// Whether a command ended the pattern: later ticks are not scored.
     free: bool,
     legs: FlightScore,
     failed: Option<String>,
@@ -64,7 +64,7 @@ impl Scoring {
         self.log.clear();
     }
 
-    /// The legs of all engagements, and why one could not be scored.
+    /// The legs of all engagements, and the reason if one could not be scored.
     pub(super) fn result(&self) -> (FlightScore, Option<String>) {
         let mut all = self.clone();
         if all.engaged {

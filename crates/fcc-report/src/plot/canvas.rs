@@ -1,4 +1,4 @@
-//! The sheet that plots are drawn on, and its inks.
+//! The canvas of the plots, and its colours.
 
 use std::io;
 
@@ -17,20 +17,21 @@ pub(crate) type Drawn = Result<(), PlotError>;
 /// Width of every plot, px: half a millimetre of an A4 page is about 2 px.
 pub(crate) const WIDTH_PX: f64 = 760.0;
 
-/// The library draws to whole units; with as many in a pixel, lines are smooth.
+/// The library rounds to whole units; at this many units per pixel, lines are
+/// smooth.
 const UNITS_PER_PX: f64 = 10.0;
 
-/// What is actual.
+/// Actual values.
 pub(crate) const ACTUAL: RGBColor = RGBColor(24, 66, 110);
-/// What was measured, behind what is estimated from it.
+/// Measurements, behind the estimates.
 pub(crate) const MEASURED: RGBColor = RGBColor(150, 178, 206);
-/// What is desired. Nothing else has this ink: it is what is dashed.
+/// Desired values. Only these have this colour: it selects the dashed lines.
 pub(crate) const DESIRED: RGBColor = RGBColor(200, 80, 30);
-/// What is compared with.
+/// Values to compare with.
 pub(crate) const OTHER: RGBColor = RGBColor(120, 120, 120);
-/// Axes and their words.
+/// Axes and their labels.
 pub(crate) const TEXT: RGBColor = RGBColor(45, 45, 45);
-/// Less than that.
+/// Less prominent than the text.
 pub(crate) const FAINT: RGBColor = RGBColor(130, 130, 130);
 /// The grid.
 pub(crate) const GRID: RGBColor = RGBColor(224, 224, 224);
@@ -49,9 +50,9 @@ pub(crate) fn pen(ink: RGBColor, width_px: f64) -> ShapeStyle {
     ink.stroke_width(px(width_px) as u32)
 }
 
-/// Text of a size in px, where it stands by its anchor.
+/// Text of a size in px, at its anchor.
 pub(crate) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'static> {
-    // The library writes sizes by this factor smaller.
+    // The library divides text sizes by this factor.
     const LIBRARY_FACTOR: f64 = 1.24;
     let size = size_px * UNITS_PER_PX * LIBRARY_FACTOR;
     let mut style = TextStyle::from(("sans-serif", size).into_font()).pos(Pos::new(h, v));
@@ -59,13 +60,13 @@ pub(crate) fn text(size_px: f64, ink: RGBColor, h: HPos, v: VPos) -> TextStyle<'
     style
 }
 
-/// About how wide a text is, px: sans serif letters are half as wide as high.
-pub(crate) fn text_width_px(words: &str, size_px: f64) -> f64 {
-    0.52 * size_px * words.chars().count() as f64
+/// Approximate width of a text, px: sans-serif letters are half as wide as
+/// high.
+pub(crate) fn text_width_px(text: &str, size_px: f64) -> f64 {
+    0.52 * size_px * text.chars().count() as f64
 }
 
-/// Draws a plot of a height; `label` says to those who cannot see it what it
-/// shows.
+/// Draws a plot of this height; `label` describes it for screen readers.
 pub(crate) fn draw(
     height_px: f64,
     label: &str,
@@ -81,9 +82,9 @@ pub(crate) fn draw(
     Ok(finish(&svg, height_px, label))
 }
 
-/// What the library cannot say: a picture as wide as its page, one font for
-/// all, dashes for what is desired. It can draw dashes, one element each:
-/// megabytes where a line is long.
+/// Adds what the library cannot express: a width relative to the page, one font
+/// for all, dashes for desired values. (The library draws each dash as an
+/// element: megabytes for a long line.)
 fn finish(svg: &str, height_px: f64, label: &str) -> String {
     let body = svg.split_once('>').map_or("", |(_, body)| body);
     let desired = format!(

@@ -1,6 +1,6 @@
-//! Lines over time as SVG paths, which take a fraction of the room that the
-//! library's polylines do: thinned to what a plot can show, and on a page also
-//! in detail, for when it is zoomed.
+//! Lines over time as SVG paths, which are much smaller than the library's
+//! polylines: thinned to the resolution of a plot, and on a page also in
+//! detail, for zooming.
 
 use std::fmt::Write as _;
 
@@ -22,11 +22,11 @@ pub(crate) enum Ink {
     Desired,
 }
 
-/// Of a recording longer than this, a fine line shows more.
+/// Of a recording longer than this, a thin line shows more.
 const DENSE_S: f64 = 600.0;
 
 impl Ink {
-    /// Colour, and width in px on a plot that is dense or not.
+    /// Colour, and width in px, by whether the plot is dense.
     pub(super) const fn pen(self, is_dense: bool) -> (RGBColor, f64) {
         match (self, is_dense) {
             (Self::Measured, _) => (MEASURED, 0.6),
@@ -38,24 +38,24 @@ impl Ink {
     }
 }
 
-/// What a plot has beyond the lines that are drawn on paper.
+/// The detail of a plot beyond its printed lines.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Detail {
     /// Nothing.
     None,
-    /// Finer lines, which are shown when it is zoomed.
+    /// Finer lines, shown when zoomed.
     WhenZoomed,
-    /// The same, in so many bins for each line.
+    /// The same, with this many bins per line.
     Bins(u64),
 }
 
-/// Bytes that all finer lines of a page take together, about.
+/// Approximate size of all finer lines of a page.
 const DETAIL_BYTES: u64 = 3_000_000;
-/// Bytes that a bin of a noisy line takes, about.
+/// Approximate size of a bin of a noisy line.
 const BIN_BYTES: u64 = 14;
 
 impl Detail {
-    /// The lines of a report share the room.
+    /// Divides the size among the lines of a report.
     pub(super) fn shared_by(self, report: &RunReport) -> Self {
         if self != Self::WhenZoomed {
             return self;
@@ -74,16 +74,15 @@ fn is_thinned(trace: &Trace) -> bool {
     trace.len() as u64 > OVERVIEW_BINS
 }
 
-/// Whether its lines are drawn fine.
+/// Whether its lines are drawn thin.
 pub(super) fn is_dense(report: &RunReport) -> bool {
     report.duration_s > DENSE_S
 }
 
-/// Units of a sheet in which the finer lines are placed: at the largest zoom,
-/// half a pixel.
+/// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// A curve as SVG; `on_sheet` says where a point is, px.
+/// A curve as SVG; `on_sheet` converts a point to px.
 pub(super) fn markup(
     curve: &Curve,
     is_dense: bool,
@@ -138,7 +137,7 @@ fn path(lines: &[Vec<Point>], grid: impl Fn(Point) -> (i32, i32)) -> String {
         let mut level = 0;
         let mut open = false;
         for (x, y) in points {
-            // What is no range has places beyond any sheet.
+            // A value without a range can lie far outside.
             let (across, down) = (x.saturating_sub(at.0), y.saturating_sub(at.1));
             at = (x, y);
             if down == 0 {
@@ -165,7 +164,7 @@ fn level_move(path: &mut String, level: &mut i32, open: &mut bool) {
     }
 }
 
-/// A number of a list: its sign separates it, too.
+/// A number in a list: its sign separates it, too.
 fn number(path: &mut String, number: i32) {
     let is_first = path.ends_with('l');
     if number >= 0 && !is_first {

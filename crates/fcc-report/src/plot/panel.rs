@@ -1,4 +1,4 @@
-//! One pair of axes, and what is drawn between them.
+//! One pair of axes, and the curves between them.
 
 use plotters::chart::ChartContext;
 use plotters::prelude::*;
@@ -9,8 +9,8 @@ use super::canvas::{Area, Drawn, FAINT, GRID, LABEL_PX, PlotError, TEXT, pen, px
 
 type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
 
-/// Where a panel lies on its sheet, px from the sheet's upper left, axes and
-/// their words not included.
+/// Position of a panel on its sheet, px from the upper left, without its axis
+/// labels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) left: f64,
@@ -19,11 +19,11 @@ pub(crate) struct Frame {
     pub(crate) bottom: f64,
 }
 
-/// Room for the words of an axis, px.
-const X_WORDS_PX: f64 = 34.0;
-const Y_WORDS_PX: f64 = 54.0;
+/// Room for the labels of an axis, px.
+const X_LABELS_PX: f64 = 34.0;
+const Y_LABELS_PX: f64 = 54.0;
 
-/// One pair of axes, and what is drawn between them.
+/// One pair of axes, and the curves between them.
 pub(crate) struct Panel<'a> {
     area: Area<'a>,
     chart: Chart<'a>,
@@ -35,17 +35,17 @@ pub(crate) struct Panel<'a> {
 impl<'a> Panel<'a> {
     /// A panel in its frame; nothing is drawn yet.
     pub(crate) fn new(area: &Area<'a>, frame: Frame, x: Axis, y: Axis) -> Result<Self, PlotError> {
-        let left = frame.left - Y_WORDS_PX;
+        let left = frame.left - Y_LABELS_PX;
         let cell = area.clone().shrink(
             (px(left), px(frame.top)),
             (
                 px(frame.right - left),
-                px(frame.bottom - frame.top + X_WORDS_PX),
+                px(frame.bottom - frame.top + X_LABELS_PX),
             ),
         );
         let chart = ChartBuilder::on(&cell)
-            .x_label_area_size(px(X_WORDS_PX))
-            .y_label_area_size(px(Y_WORDS_PX))
+            .x_label_area_size(px(X_LABELS_PX))
+            .y_label_area_size(px(Y_LABELS_PX))
             .build_cartesian_2d(x.clone(), y.clone())?;
         Ok(Self {
             area: area.clone(),
@@ -67,8 +67,8 @@ impl<'a> Panel<'a> {
         Ok(())
     }
 
-    /// Draws grid and axes; the words of the x axis if they are wanted.
-    pub(crate) fn axes(&mut self, with_x_words: bool) -> Drawn {
+    /// Draws grid and axes, with the labels of the x axis if wanted.
+    pub(crate) fn axes(&mut self, with_x_labels: bool) -> Drawn {
         let label = text(LABEL_PX, TEXT, HPos::Center, VPos::Center);
         let (log, silent) = (
             !self.x.light.is_empty() || !self.y.light.is_empty(),
@@ -84,11 +84,11 @@ impl<'a> Panel<'a> {
         if !log {
             mesh.light_line_style(TRANSPARENT);
         }
-        if !with_x_words {
+        if !with_x_labels {
             mesh.x_label_formatter(&silent);
         }
         mesh.draw()?;
-        self.titles(with_x_words)
+        self.titles(with_x_labels)
     }
 
     fn titles(&self, with_x_title: bool) -> Drawn {
@@ -96,14 +96,14 @@ impl<'a> Panel<'a> {
         if with_x_title && !self.x.title.is_empty() {
             let at = (
                 px(f64::midpoint(frame.left, frame.right)),
-                px(frame.bottom + X_WORDS_PX - 4.0),
+                px(frame.bottom + X_LABELS_PX - 4.0),
             );
             let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Bottom);
             self.area.draw_text(&self.x.title, &style, at)?;
         }
         if !self.y.title.is_empty() {
             let at = (
-                px(frame.left - Y_WORDS_PX + 4.0),
+                px(frame.left - Y_LABELS_PX + 4.0),
                 px(f64::midpoint(frame.top, frame.bottom)),
             );
             let style =
@@ -115,7 +115,7 @@ impl<'a> Panel<'a> {
 
     /// Draws a line through points of the axes.
     pub(crate) fn polyline(&mut self, points: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn {
-        // A line of one point would be nothing at all.
+        // A line of one point would be invisible.
         if let [(x, y)] = points.as_slice() {
             let (at, radius) = ((*x, *y), px(0.8));
             self.chart
@@ -140,12 +140,12 @@ impl<'a> Panel<'a> {
         Ok(())
     }
 
-    /// Whether the x axis reaches a value.
+    /// Whether the x axis contains a value.
     pub(crate) fn shows(&self, x: f64) -> bool {
         (self.x.from..=self.x.to).contains(&x)
     }
 
-    /// Where a point of the axes lies on the sheet, px.
+    /// Position of a point on the sheet, px.
     pub(crate) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
         let frame = self.frame;
         let share = |value: f64, axis: &Axis| (value - axis.from) / (axis.to - axis.from);

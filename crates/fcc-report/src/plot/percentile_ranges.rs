@@ -1,4 +1,4 @@
-//! Percentiles of several things, one row each, on one logarithmic scale.
+//! Percentiles of several durations, one row each, on one logarithmic scale.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -14,17 +14,17 @@ use super::panel::{Frame, Panel};
 const LEFT_PX: f64 = 110.0;
 const TOP_PX: f64 = 24.0;
 const ROW_PX: f64 = 19.0;
-const X_WORDS_PX: f64 = 24.0;
-/// What is shorter is drawn as this, µs: a logarithm knows no zero.
+const X_LABELS_PX: f64 = 24.0;
+/// Shorter durations are drawn as this, µs: a logarithmic scale has no zero.
 const LEAST_US: f64 = 0.01;
 
-/// A row for each; none where there is nothing above 0.
+/// A row for each; `None` if all are 0.
 pub(super) fn figure(
     title: &str,
     what: &str,
     rows: &[NamedPercentiles],
 ) -> Result<Option<Figure>, PlotError> {
-    // In lockstep everything is as new as it can be.
+    // In lockstep all ages are 0.
     if rows.iter().all(|row| row.of.max_us == 0.0) {
         return Ok(None);
     }
@@ -34,7 +34,7 @@ pub(super) fn figure(
         right: WIDTH_PX - 22.0,
         bottom: TOP_PX + ROW_PX * rows.len() as f64,
     };
-    let svg = draw(frame.bottom + X_WORDS_PX, title, |area| {
+    let svg = draw(frame.bottom + X_LABELS_PX, title, |area| {
         let all = rows.iter().map(|row| &row.of);
         let low = all.clone().map(|of| of.p50_us).fold(f64::MAX, f64::min);
         let high = all.map(|of| of.max_us).fold(0.0, f64::max);
@@ -84,11 +84,11 @@ fn draw_row(area: &Area<'_>, panel: &mut Panel<'_>, y: f64, row: &NamedPercentil
 
 fn legend(area: &Area<'_>) -> Drawn {
     let y = TOP_PX / 2.0 - 2.0;
-    let words = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
+    let labels = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
     let mut x = LEFT_PX;
-    let mut say = |sample: &dyn Fn(f64) -> Drawn, name: &str| -> Drawn {
+    let mut label = |sample: &dyn Fn(f64) -> Drawn, name: &str| -> Drawn {
         sample(x)?;
-        area.draw_text(name, &words, (px(x + 22.0), px(y)))?;
+        area.draw_text(name, &labels, (px(x + 22.0), px(y)))?;
         x += 22.0 + text_width_px(name, LABEL_PX) + 18.0;
         Ok(())
     };
@@ -99,19 +99,19 @@ fn legend(area: &Area<'_>) -> Drawn {
         let ends = [(px(x), px(y)), (px(x + 17.0), px(y))];
         Ok(area.draw(&PathElement::new(ends, pen(ACTUAL, width_px)))?)
     };
-    say(&|x| dot(x, ACTUAL.filled()), "median")?;
-    say(&|x| line(x, 3.2), "to p99")?;
-    say(
+    label(&|x| dot(x, ACTUAL.filled()), "median")?;
+    label(&|x| line(x, 3.2), "to p99")?;
+    label(
         &|x| {
             let ends = [(px(x + 10.0), px(y - 5.0)), (px(x + 10.0), px(y + 5.0))];
             Ok(area.draw(&PathElement::new(ends, pen(ACTUAL, 1.0)))?)
         },
         "p99.9",
     )?;
-    say(&|x| dot(x, pen(ACTUAL, 1.0)), "largest")
+    label(&|x| dot(x, pen(ACTUAL, 1.0)), "largest")
 }
 
-/// A power of ten of microseconds in words.
+/// A power of ten of microseconds as text.
 pub(super) fn decade(decade: i32) -> String {
     let (number, unit) = match decade {
         ..=-1 => (decade + 3, "ns"),

@@ -15,17 +15,17 @@ use super::curves::{Detail, Ink, is_dense, markup};
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
 
-/// Edges of all panels over time, px: the same in every figure, so that one
-/// can be laid upon another.
+/// Left and right edge of all panels over time, px: the same in every figure,
+/// so that figures can be compared.
 pub(super) const LEFT_PX: f64 = 60.0;
 pub(super) const RIGHT_PX: f64 = WIDTH_PX - 12.0;
 
 const LEGEND_PX: f64 = 20.0;
 const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// Where records are missing.
+/// Missing records.
 const GAP: RGBColor = RGBColor(255, 238, 170);
 
 /// A panel of a figure over time.
@@ -57,7 +57,7 @@ pub(super) fn time_figure(
         });
     }
     let marks = marks(&report.events, |time_s| time_px(report, time_s));
-    let mut svg = draw(bottom + X_WORDS_PX, label, |area| {
+    let mut svg = draw(bottom + X_LABELS_PX, label, |area| {
         legend(area, report, panels)?;
         for (panel, frame) in panels.iter().zip(&frames) {
             let is_last = frame.bottom == bottom;
@@ -81,7 +81,7 @@ pub(super) fn time_figure(
     let lines: String = panels.iter().zip(&frames).map(curves).collect();
     let end = svg.rfind("</svg>").unwrap_or(svg.len());
     svg.insert_str(end, &lines);
-    // For the page's script: where the axis of time is.
+    // For the page's script: the position of the time axis.
     let (left, right, end_s) = (px(LEFT_PX), px(RIGHT_PX), end_s(report));
     let axis = format!(" data-left=\"{left}\" data-right=\"{right}\" data-end=\"{end_s}\"");
     svg.insert_str("<svg".len(), &axis);
@@ -103,7 +103,7 @@ fn draw_panel(
         }
     }
     for gap in &report.continuity.gaps {
-        // A gap too short to be seen is seen all the same.
+        // Short gaps are widened so that they are visible.
         let least_s = report.duration_s / (RIGHT_PX - LEFT_PX);
         drawn.tint(gap.from_s, gap.to_s.max(gap.from_s + least_s), GAP)?;
     }
@@ -126,7 +126,7 @@ fn number_marks(area: &Area<'_>, top: f64, marks: &[Mark]) -> Drawn {
     Ok(())
 }
 
-/// What lines and tints mean, in a row above the panels.
+/// A legend of lines and tints, above the panels.
 fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Drawn {
     let curves = panels.iter().flat_map(|panel| panel.curves);
     let drawn: Vec<&Curve> = curves.filter(|curve| curve.trace.len() > 0).collect();
@@ -143,10 +143,10 @@ fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Draw
     let mut x = LEFT_PX;
     let middle = LEGEND_PX / 2.0 - 1.0;
     let style = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
-    let mut add = |sample: &dyn Fn(f64) -> Drawn, words: &str| -> Drawn {
+    let mut add = |sample: &dyn Fn(f64) -> Drawn, label: &str| -> Drawn {
         sample(x)?;
-        area.draw_text(words, &style, (px(x + 26.0), px(middle)))?;
-        x += 26.0 + text_width_px(words, LABEL_PX) + 16.0;
+        area.draw_text(label, &style, (px(x + 26.0), px(middle)))?;
+        x += 26.0 + text_width_px(label, LABEL_PX) + 16.0;
         Ok(())
     };
     for curve in inks {
@@ -160,9 +160,9 @@ fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Draw
     let tints = [Phase::Standby, Phase::Failsafe, Phase::Stopped]
         .into_iter()
         .filter(|phase| in_phase(*phase))
-        .filter_map(|phase| Some((tint(phase)?, words(phase))))
+        .filter_map(|phase| Some((tint(phase)?, phase_name(phase))))
         .chain((report.continuity.lost > 0).then_some((GAP, "records missing")));
-    for (tint, words) in tints {
+    for (tint, label) in tints {
         let sample = |x: f64| -> Drawn {
             let corners = [
                 (px(x + 5.0), px(middle - 5.0)),
@@ -171,12 +171,12 @@ fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Draw
             area.draw(&Rectangle::new(corners, tint.filled()))?;
             Ok(())
         };
-        add(&sample, words)?;
+        add(&sample, label)?;
     }
     Ok(())
 }
 
-/// The ground of a panel where the loop was not engaged.
+/// The background of a panel while the loop was not engaged.
 pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
     match phase {
         Phase::Engaged => None,
@@ -186,7 +186,7 @@ pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
     }
 }
 
-pub(super) fn words(phase: Phase) -> &'static str {
+pub(super) fn phase_name(phase: Phase) -> &'static str {
     match phase {
         Phase::Standby => "standby",
         Phase::Engaged => "engaged",
@@ -195,18 +195,19 @@ pub(super) fn words(phase: Phase) -> &'static str {
     }
 }
 
-/// Where on the sheet a time is, px.
+/// Position of a time on the sheet, px.
 pub(super) fn time_px(report: &RunReport, time_s: f64) -> f64 {
     let share = (time_s / end_s(report)).clamp(0.0, 1.0);
     LEFT_PX + share * (RIGHT_PX - LEFT_PX)
 }
 
 fn end_s(report: &RunReport) -> f64 {
-    // One tick has no duration, and its axis must have one.
+    // One tick has no duration, but the axis needs one.
     report.duration_s.max(0.1)
 }
 
-/// The axis of time: its coordinate is in seconds, its words in what suits.
+/// The axis of time: its coordinate is in seconds, its labels in a suitable
+/// unit.
 pub(super) fn time_axis(report: &RunReport) -> Axis {
     let end_s = end_s(report);
     let (unit_s, unit) = match end_s {

@@ -50,10 +50,10 @@ fn axis(panel: &Panel, plot: &Plot) -> Axis {
     }
 }
 
-/// Directions are counted on through full turns, so that no line jumps at
-/// north; the words of the axis are those of the compass.
+/// Directions are counted beyond full turns, so that no line jumps at north;
+/// the labels are 0 to 360.
 fn compass(extent: (f64, f64), title: &str) -> Axis {
-    let words = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
+    let label = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
     let axis = Axis::around(extent, 20.0, 5, title);
     let range = (axis.from, axis.to);
     let step = match range.1 - range.0 {
@@ -66,9 +66,9 @@ fn compass(extent: (f64, f64), title: &str) -> Axis {
         span if span > 40.0 => 10.0,
         _ => 5.0,
     };
-    // Where every tick is at north, its words count the turns.
+    // If every tick is at north, the labels count the turns.
     if step < 360.0 {
-        Axis::stepped(range, step, title, words)
+        Axis::stepped(range, step, title, label)
     } else {
         let title = title.replace('°', "turns");
         Axis::stepped(range, step, &title, |at| number(at / 360.0, 0))

@@ -1,5 +1,5 @@
-//! How the loop kept time: the thesis' figures 6.1 to 6.3, the lateness, the
-//! stages of a tick and the ages of measurements.
+//! Timing of the loop: the thesis' figures 6.1 to 6.3, the lateness, the stages
+//! of a tick and the ages of measurements.
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -19,9 +19,9 @@ use super::{Figure, percentile_ranges};
 
 const LEFT_PX: f64 = 90.0;
 const RIGHT_PX: f64 = WIDTH_PX - 22.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// The figures that there are data for.
+/// The figures that have data.
 pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Vec<Figure>, PlotError> {
     let Some(timing) = &report.timing else {
         return Ok(Vec::new());
@@ -29,7 +29,7 @@ pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Vec<Figure>,
     let mut figures = Vec::new();
     if !timing.is_lockstep() {
         if let Some(of) = &timing.period_box_ms {
-            figures.push(periods(timing, of, report.words.run)?);
+            figures.push(periods(timing, of, report.terms.run)?);
         }
         figures.push(lateness(timing)?);
         figures.push(lateness_over_time(report, detail)?);
@@ -78,15 +78,15 @@ fn lateness_axis((_, high): (f64, f64)) -> Axis {
     }
 }
 
-/// The periods beside the thesis', and below them by themselves.
+/// The periods next to the thesis', and below them alone.
 fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Result<Figure, PlotError> {
     let nominal_ms = 1e3 / timing.table.rate_hz;
     let thesis = timing.thesis.map(|thesis| thesis.box_plot());
     let rows = 1 + usize::from(thesis.is_some());
     let upper_px = 34.0 * rows as f64;
-    let lower_top_px = 18.0 + upper_px + X_WORDS_PX + 10.0;
+    let lower_top_px = 18.0 + upper_px + X_LABELS_PX + 10.0;
     let svg = draw(
-        lower_top_px + 40.0 + X_WORDS_PX,
+        lower_top_px + 40.0 + X_LABELS_PX,
         "Box plot of the period",
         |area| {
             let (low, high) = thesis.iter().fold((of.min, of.max), |(low, high), thesis| {
@@ -141,7 +141,7 @@ fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Result<Figure, PlotError
         },
     )?;
     let beside = if timing.thesis.is_some() {
-        " Above on one scale with the thesis, whose box is as its text tells it and whose \
+        " Above on one scale with the thesis, whose box is from its text and whose \
          whiskers reach its extremes; below by itself, as far as its whiskers and half \
          as far again."
     } else {
@@ -168,13 +168,13 @@ fn rows_axis(rows: usize) -> Axis {
     }
 }
 
-/// A box that lies around `y`, between 0.28 below and above.
+/// A box around `y`, from 0.28 below to 0.28 above.
 fn draw_box(panel: &mut Panel<'_>, y: f64, of: &BoxPlot, mean: f64, ink: RGBColor) -> Drawn {
     const HALF: f64 = 0.28;
     let line = pen(ink, 1.1);
     let mut last_px = f64::NEG_INFINITY;
     for outlier in &of.outliers {
-        // Circles on each other say no more than one.
+        // Equal values are drawn once.
         let (at_px, _) = panel.on_sheet((*outlier, y));
         if panel.shows(*outlier) && at_px - last_px >= 0.8 {
             last_px = at_px;
@@ -203,7 +203,7 @@ fn draw_box(panel: &mut Panel<'_>, y: f64, of: &BoxPlot, mean: f64, ink: RGBColo
     Ok(())
 }
 
-/// Both axes logarithmic: one late tick in a million is seen.
+/// Both axes are logarithmic: one late tick in a million is visible.
 fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
     const ROWS: usize = 4;
     const ROW_PX: f64 = 12.0;
@@ -221,14 +221,14 @@ fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
         bottom: top_px + 170.0,
     };
     let svg = draw(
-        frame.bottom + X_WORDS_PX,
+        frame.bottom + X_LABELS_PX,
         "Histogram of the lateness",
         |area| {
             let x = Axis::decades(range, "lateness", percentile_ranges::decade);
             let mut y = Axis::decades((1.0, most as f64), "ticks", |decade| {
                 format!("{}", 10_u64.saturating_pow(decade.unsigned_abs()))
             });
-            // A bin of one tick has a height too.
+            // A bin of one tick has a height, too.
             y.from = 0.5_f64.log10();
             y.to = y.to.min((most as f64).log10() + 0.25).max(0.5);
             y.ticks.retain(|(at, _)| *at <= y.to);
@@ -254,12 +254,12 @@ fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
                 ("p99.9", of.p99_9),
                 ("max", of.max),
             ] {
-                let words = format!("{name} {}", time(us));
+                let label = format!("{name} {}", time(us));
                 let at = us.max(0.1).log10();
                 let (x, bottom) = panel.on_sheet((at, floor));
                 let (_, top) = panel.on_sheet((at, ceiling));
-                // Words end at their line: what comes later is right of both.
-                let left = x - 3.0 - text_width_px(&words, SMALL_PX);
+                // Text ends at its line: later lines are to the right of it.
+                let left = x - 3.0 - text_width_px(&label, SMALL_PX);
                 let row = ends.iter().position(|end| left > end + 6.0);
                 let row = row.unwrap_or(ROWS - 1);
                 if let Some(end) = ends.get_mut(row) {
@@ -271,7 +271,7 @@ fn lateness(timing: &Timing) -> Result<Figure, PlotError> {
                     pen(TEXT, 0.7),
                 ))?;
                 let style = text(SMALL_PX, TEXT, HPos::Right, VPos::Top);
-                area.draw_text(&words, &style, (px(x - 3.0), px(y)))?;
+                area.draw_text(&label, &style, (px(x - 3.0), px(y)))?;
             }
             Ok(())
         },
