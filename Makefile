@@ -59,10 +59,10 @@ fly-jsbsim: build $(STAMPS)/python ## Fly JSBSim's Cessna over X-Plane's protoco
 test: lint test-rust check-cross test-python ## Run every check and every test
 
 test-rust: $(STAMPS)/rust
-	cargo test --locked --workspace --exclude fcc-py --all-features
+	cargo test --locked --workspace --exclude fcc-py --exclude pendulum --all-features
 	cargo build --locked -p fcc-core --no-default-features
 	cargo check --locked -p fcc-daemon --no-default-features
-	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat; do \
+	@for crate in fcc-runtime fcc-telemetry fcc-record fcc-live fcc-replay fcc-report fcc-top thermostat pendulum; do \
 	    ! cargo tree --locked -p $$crate -e features,no-dev -i fcc-core | grep 'feature "flight"' || \
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
@@ -78,7 +78,7 @@ lint: lint-rust lint-python deny ## Check formatting, lints, licences
 lint-rust: $(STAMPS)/rust
 	cargo fmt --all --check
 	cargo clippy --locked --workspace --all-targets --all-features -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features
 
 lint-python: $(STAMPS)/python-module
 	$(PYTHON) -m ruff check hil deploy
@@ -169,13 +169,17 @@ bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
 doc: $(STAMPS)/rust ## Build the API documentation
-	cargo doc --locked --workspace --exclude fcc-py --no-deps --all-features
+	cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features
 
 # Those that no registry gets: the Python module is published as a wheel.
-PRIVATE := fcc-py thermostat bench-tick
+PRIVATE := fcc-py pendulum thermostat bench-tick
 
 package-check: $(STAMPS)/rust $(STAMPS)/python ## Build every crate from its package, and check both Python packages (10 minutes)
+	rm -rf $(TARGET)/package/*.crate
 	cargo package --locked --allow-dirty --workspace $(addprefix --exclude ,$(PRIVATE))
+	@for crate in $(TARGET)/package/*.crate; do \
+	    test "$$(tar tzf $$crate | grep -c '/LICENSE-')" = 2 || { echo "$$crate lacks a licence"; exit 1; }; \
+	done
 	$(PYTHON) -m pip install --quiet 'build>=1.2' 'twine>=6.1'
 	rm -rf $(TARGET)/package-check
 	cd crates/fcc-py && $(abspath $(VENV))/bin/maturin build --locked --quiet --out $(abspath $(TARGET))/package-check
@@ -247,7 +251,8 @@ $(STAMPS)/vm:
 	    ./scripts/apt-install qemu-system-x86 mmdebstrap fakeroot uidmap e2fsprogs
 	@mkdir -p $(STAMPS) && touch $@
 
-# The module `fcc` is built anew whenever its sources changed: cargo knows.
+# The modules `fcc` and `pendulum` are built anew whenever their sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module
 $(STAMPS)/python-module: $(STAMPS)/python
-	cd crates/fcc-py && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet
+	for module in crates/fcc-py examples/pendulum; do \
+	    (cd $$module && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet) || exit 1; done

@@ -1,7 +1,10 @@
 """The flight control computer: autopilot, aircraft, recordings, a running daemon.
 
 SI and radians throughout; body axes x forward, y right, z down; headings clockwise from
-north. Whatever goes wrong and is no wrong argument is an `Error`.
+north. An error that is not a wrong argument is an `Error`.
+
+The parts between `<schema>` and `</schema>` follow from the schema:
+`FCC_UPDATE=1 python -m pytest hil/tests/test_fcc_stub.py` writes them anew.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -35,34 +38,140 @@ class TimerError(Error): ...
 
 @final
 class Measurements:
-    """What the sensors measure at one instant: rad, rad/s, m/s², m/s, m."""
+    """What the sensors measure at one instant; NaN is what is not measured."""
 
-    pitch_rad: float
-    roll_rad: float
-    heading_rad: float
-    roll_rate_radps: float
-    pitch_rate_radps: float
-    yaw_rate_radps: float
-    specific_force_x_mps2: float
-    specific_force_y_mps2: float
-    specific_force_z_mps2: float
-    airspeed_mps: float
-    altitude_m: float
+    # <schema>
     def __new__(
         cls,
         *,
-        pitch_rad: float,
-        roll_rad: float,
-        heading_rad: float,
-        roll_rate_radps: float,
-        pitch_rate_radps: float,
-        yaw_rate_radps: float,
-        specific_force_x_mps2: float,
-        specific_force_y_mps2: float,
-        specific_force_z_mps2: float,
-        airspeed_mps: float,
-        altitude_m: float,
+        pitch_rad: float = ...,
+        roll_rad: float = ...,
+        heading_rad: float = ...,
+        roll_rate_radps: float = ...,
+        pitch_rate_radps: float = ...,
+        yaw_rate_radps: float = ...,
+        specific_force_x_mps2: float = ...,
+        specific_force_y_mps2: float = ...,
+        specific_force_z_mps2: float = ...,
+        airspeed_mps: float = ...,
+        altitude_m: float = ...,
+        angle_of_attack_rad: float = ...,
+        latitude_rad: float = ...,
+        longitude_rad: float = ...,
+        position_altitude_m: float = ...,
+        north_mps: float = ...,
+        east_mps: float = ...,
+        down_mps: float = ...,
     ) -> Measurements: ...
+    @property
+    def pitch_rad(self) -> float:
+        """Nose above the horizon."""
+
+    @pitch_rad.setter
+    def pitch_rad(self, value: float) -> None: ...
+    @property
+    def roll_rad(self) -> float:
+        """Right wing down."""
+
+    @roll_rad.setter
+    def roll_rad(self, value: float) -> None: ...
+    @property
+    def heading_rad(self) -> float:
+        """Magnetic heading in rad, clockwise from magnetic north."""
+
+    @heading_rad.setter
+    def heading_rad(self, value: float) -> None: ...
+    @property
+    def roll_rate_radps(self) -> float:
+        """P, about x: right wing down."""
+
+    @roll_rate_radps.setter
+    def roll_rate_radps(self, value: float) -> None: ...
+    @property
+    def pitch_rate_radps(self) -> float:
+        """Q, about y: nose up."""
+
+    @pitch_rate_radps.setter
+    def pitch_rate_radps(self, value: float) -> None: ...
+    @property
+    def yaw_rate_radps(self) -> float:
+        """R, about z: nose right."""
+
+    @yaw_rate_radps.setter
+    def yaw_rate_radps(self, value: float) -> None: ...
+    @property
+    def specific_force_x_mps2(self) -> float:
+        """Forward."""
+
+    @specific_force_x_mps2.setter
+    def specific_force_x_mps2(self, value: float) -> None: ...
+    @property
+    def specific_force_y_mps2(self) -> float:
+        """Right."""
+
+    @specific_force_y_mps2.setter
+    def specific_force_y_mps2(self, value: float) -> None: ...
+    @property
+    def specific_force_z_mps2(self) -> float:
+        """Down."""
+
+    @specific_force_z_mps2.setter
+    def specific_force_z_mps2(self, value: float) -> None: ...
+    @property
+    def airspeed_mps(self) -> float:
+        """Indicated airspeed in m/s."""
+
+    @airspeed_mps.setter
+    def airspeed_mps(self, value: float) -> None: ...
+    @property
+    def altitude_m(self) -> float:
+        """Barometric altitude in m above the standard pressure level."""
+
+    @altitude_m.setter
+    def altitude_m(self, value: float) -> None: ...
+    @property
+    def angle_of_attack_rad(self) -> float:
+        """Angle of attack in rad, positive when the air comes from below the nose."""
+
+    @angle_of_attack_rad.setter
+    def angle_of_attack_rad(self, value: float) -> None: ...
+    @property
+    def latitude_rad(self) -> float:
+        """North of the equator."""
+
+    @latitude_rad.setter
+    def latitude_rad(self, value: float) -> None: ...
+    @property
+    def longitude_rad(self) -> float:
+        """East of Greenwich."""
+
+    @longitude_rad.setter
+    def longitude_rad(self, value: float) -> None: ...
+    @property
+    def position_altitude_m(self) -> float:
+        """Above mean sea level, m."""
+
+    @position_altitude_m.setter
+    def position_altitude_m(self, value: float) -> None: ...
+    @property
+    def north_mps(self) -> float:
+        """Towards true north."""
+
+    @north_mps.setter
+    def north_mps(self, value: float) -> None: ...
+    @property
+    def east_mps(self) -> float:
+        """Towards east."""
+
+    @east_mps.setter
+    def east_mps(self, value: float) -> None: ...
+    @property
+    def down_mps(self) -> float:
+        """Down."""
+
+    @down_mps.setter
+    def down_mps(self, value: float) -> None: ...
+    # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...
     def to_array(self) -> _Array: ...
@@ -73,82 +182,250 @@ class Measurements:
 class Surfaces:
     """Throttle 0..1; elevator (nose up), aileron (right), rudder (right) -1..1."""
 
+    # <schema>
     def __new__(
-        cls, *, throttle: float, elevator: float = 0.0, aileron: float = 0.0, rudder: float = 0.0
+        cls,
+        *,
+        throttle: float = ...,
+        elevator: float = ...,
+        aileron: float = ...,
+        rudder: float = ...,
     ) -> Surfaces: ...
     @property
-    def throttle(self) -> float: ...
+    def throttle(self) -> float:
+        """0 idle, 1 full."""
+
     @property
-    def elevator(self) -> float: ...
+    def elevator(self) -> float:
+        """Positive raises the nose."""
+
     @property
-    def aileron(self) -> float: ...
+    def aileron(self) -> float:
+        """Positive rolls right."""
+
     @property
-    def rudder(self) -> float: ...
+    def rudder(self) -> float:
+        """Positive yaws right."""
+
+    # </schema>
     def to_array(self) -> _Array: ...
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]
 
 @final
 class Setpoints:
-    """What the autopilot aims for."""
+    """The set points of the autopilot, and the mode and progress of guidance."""
+
+    # <schema>
+    @property
+    def airspeed_mps(self) -> float:
+        """Indicated airspeed, m/s."""
 
     @property
-    def airspeed_mps(self) -> float: ...
+    def heading_rad(self) -> float:
+        """Magnetic heading, rad."""
+
     @property
-    def heading_rad(self) -> float: ...
+    def altitude_m(self) -> float:
+        """Barometric altitude, m."""
+
     @property
-    def altitude_m(self) -> float: ...
+    def roll_rad(self) -> float:
+        """Bank commanded by the heading loop, rad, right wing down."""
+
     @property
-    def roll_rad(self) -> float: ...
+    def climb_rate_mps(self) -> float:
+        """Climb rate commanded by the altitude loop, m/s, up."""
+
     @property
-    def climb_rate_mps(self) -> float: ...
-    @property
-    def pitch_rad(self) -> float: ...
+    def pitch_rad(self) -> float:
+        """Pitch commanded by the climb-rate loop, rad, nose up."""
+
     @property
     def guidance_mode(self) -> str:
-        """What guidance flies: "none", "hold" or "timed-pattern"."""
+        """The mode."""
 
     @property
     def guidance_item(self) -> int:
-        """Which part of the mode is flown: of a pattern, the leg."""
+        """The present part of the mode: of a pattern, the leg."""
 
     @property
     def guidance_elapsed_s(self) -> float:
-        """For how long the mode has been flown, s of the plant's time."""
+        """How long it has been active, s of the plant's time."""
+
+    @property
+    def guidance_captured_airspeed_mps(self) -> float:
+        """Indicated airspeed, m/s."""
+
+    @property
+    def guidance_captured_heading_rad(self) -> float:
+        """Magnetic heading, rad, continuous through full turns."""
+
+    @property
+    def guidance_captured_altitude_m(self) -> float:
+        """Barometric altitude, m."""
+
+    # </schema>
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
 
 @final
 class Estimate:
-    """What navigation makes of the measurements; the heading counts on through full turns."""
+    """Navigation's estimate; the heading continues through full turns."""
+
+    # <schema>
+    @property
+    def roll_rad(self) -> float:
+        """Right wing down, rad."""
 
     @property
-    def roll_rad(self) -> float: ...
+    def pitch_rad(self) -> float:
+        """Nose up, rad."""
+
     @property
-    def pitch_rad(self) -> float: ...
+    def heading_rad(self) -> float:
+        """Magnetic heading, rad, continuous through full turns."""
+
     @property
-    def heading_rad(self) -> float: ...
+    def roll_rate_radps(self) -> float:
+        """P, about x: right wing down."""
+
     @property
-    def roll_rate_radps(self) -> float: ...
+    def pitch_rate_radps(self) -> float:
+        """Q, about y: nose up."""
+
     @property
-    def pitch_rate_radps(self) -> float: ...
+    def yaw_rate_radps(self) -> float:
+        """R, about z: nose right."""
+
     @property
-    def yaw_rate_radps(self) -> float: ...
+    def airspeed_mps(self) -> float:
+        """Indicated airspeed, m/s."""
+
     @property
-    def airspeed_mps(self) -> float: ...
+    def true_airspeed_mps(self) -> float:
+        """True airspeed, m/s."""
+
     @property
-    def true_airspeed_mps(self) -> float: ...
+    def altitude_m(self) -> float:
+        """Barometric altitude, m."""
+
     @property
-    def altitude_m(self) -> float: ...
+    def climb_rate_mps(self) -> float:
+        """Climb rate, m/s, up."""
+
     @property
-    def climb_rate_mps(self) -> float: ...
-    @property
-    def side_force_mps2(self) -> float: ...
+    def side_force_mps2(self) -> float:
+        """Specific force to the right, m/s²: 0 in a coordinated turn."""
+
+    # </schema>
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
 
 @final
 class Truth:
-    """What is true of the built-in aircraft; its attributes are `TRUTH`."""
+    """The true state of the built-in aircraft, without sensor errors."""
 
-    def __getattr__(self, name: str, /) -> float: ...
-    def __dir__(self) -> list[str]: ...
+    # <schema>
+    @property
+    def time_s(self) -> float:
+        """Simulated time, s."""
+
+    @property
+    def roll_rad(self) -> float:
+        """Right wing down, rad."""
+
+    @property
+    def pitch_rad(self) -> float:
+        """Nose up, rad."""
+
+    @property
+    def heading_rad(self) -> float:
+        """True heading, rad."""
+
+    @property
+    def roll_rate_radps(self) -> float:
+        """P, about x: right wing down."""
+
+    @property
+    def pitch_rate_radps(self) -> float:
+        """Q, about y: nose up."""
+
+    @property
+    def yaw_rate_radps(self) -> float:
+        """R, about z: nose right."""
+
+    @property
+    def specific_force_x_mps2(self) -> float:
+        """Forward."""
+
+    @property
+    def specific_force_y_mps2(self) -> float:
+        """Right."""
+
+    @property
+    def specific_force_z_mps2(self) -> float:
+        """Down."""
+
+    @property
+    def true_airspeed_mps(self) -> float:
+        """True airspeed, m/s."""
+
+    @property
+    def indicated_airspeed_mps(self) -> float:
+        """Indicated airspeed, m/s."""
+
+    @property
+    def angle_of_attack_rad(self) -> float:
+        """Angle of attack, rad."""
+
+    @property
+    def sideslip_rad(self) -> float:
+        """Sideslip, rad, positive when the air comes from the right."""
+
+    @property
+    def north_m(self) -> float:
+        """North of where the flight began, m."""
+
+    @property
+    def east_m(self) -> float:
+        """East of where the flight began, m."""
+
+    @property
+    def altitude_m(self) -> float:
+        """Above mean sea level, m."""
+
+    @property
+    def north_mps(self) -> float:
+        """Towards true north."""
+
+    @property
+    def east_mps(self) -> float:
+        """Towards east."""
+
+    @property
+    def down_mps(self) -> float:
+        """Down."""
+
+    @property
+    def throttle(self) -> float:
+        """Throttle after the engine's lag."""
+
+    @property
+    def elevator_rad(self) -> float:
+        """Elevator deflection, rad, positive trailing edge down."""
+
+    @property
+    def aileron_rad(self) -> float:
+        """Aileron deflection, rad, positive rolls right."""
+
+    @property
+    def rudder_rad(self) -> float:
+        """Rudder deflection, rad, positive trailing edge left."""
+
+    # </schema>
+    def __eq__(self, other: object, /) -> bool: ...
+    __hash__: None  # type: ignore[assignment]
 
 @final
 class Event:

@@ -164,6 +164,7 @@ def test_a_changed_configuration_is_kept(architecture: str, control: Path, files
         "usr/share/bash-completion/completions/fccd",
         "usr/share/doc/fccd/copyright",
         "usr/share/doc/fccd/deploy.md",
+        "usr/share/doc/fccd/guides/add-a-sensor.md",
         "usr/lib/sysusers.d/fccd.conf",
     ],
 )

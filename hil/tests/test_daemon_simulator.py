@@ -255,7 +255,7 @@ def test_without_a_simulator_it_waits_and_reports_it(fccd: Path, tmp_path: Path)
         nobody.bind(("127.0.0.1", 0))
         port = nobody.getsockname()[1]
         with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
-            daemon.wait_for("no aircraft yet")
+            daemon.wait_for("no measurements yet")
             log = daemon.wait_for("does not answer")
             assert "X-Plane" in log
             assert str(port) in log

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-import live
+import fcc
 import pytest
 from daemon_under_test import (
     DaemonUnderTest,
@@ -51,7 +51,7 @@ BEACON_PERIOD_S = 1.0
 """As X-Plane sends it."""
 
 HOLD = '[guidance]\nmode = "hold"\n'
-EXAMPLE = Path(live.__file__)
+WATCH = "import fcc, sys\nfor record in fcc.Watcher(sys.argv[1]): print(record, flush=True)"
 UNTIL_STOPPED = ["--seconds", "3600"]
 
 
@@ -112,7 +112,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
     with fly(fccd, scratch, f"[loop]\nrate_hz = {FAST_HZ}\n", *words) as daemon:
         daemon.wait_for("standby -> engaged")
         watcher = subprocess.Popen(
-            [sys.executable, EXAMPLE, instance],
+            [sys.executable, "-c", WATCH, instance],
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
         )
@@ -124,7 +124,7 @@ def a_hung_watcher(fccd: Path, scratch: Path) -> Flown:
             for _ in range(3):
                 assert "engaged" in daemon.wait_for("heading")
             # A new watcher still gets the newest record.
-            assert live.Watcher(instance).info.process_id == daemon.pid
+            assert fcc.Watcher(instance).info["process_id"] == daemon.pid
             return Flown.of(daemon.end(signal.SIGTERM), recordings)
         finally:
             watcher.kill()

@@ -38,7 +38,7 @@ def test_a_series_is_its_steps_to_the_last_bit() -> None:
     rows = measured[101:]
     steps = [one.step(fcc.Measurements.from_array(row)).to_array() for row in rows]
     assert np.array_equal(other.fly(rows), steps)
-    assert other.fly(np.empty((0, 11))).shape == (0, 4)
+    assert other.fly(np.empty((0, len(fcc.MEASUREMENTS)))).shape == (0, 4)
 
 
 def test_a_fleet_is_its_autopilots_to_the_last_bit() -> None:

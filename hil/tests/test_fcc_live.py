@@ -143,7 +143,7 @@ def test_a_refused_engagement_gives_the_inhibits(fccd: Path, tmp_path: Path, ins
     path.write_text('[x-plane]\nsimulator = "127.0.0.1:9"\n')
     words: list[str | Path] = [fccd, "run", "--config", path, "--instance", instance, "--json"]
     with DaemonUnderTest([*words, "--recordings", tmp_path], tmp_path) as daemon:
-        daemon.wait_for("no aircraft yet")
+        daemon.wait_for("no measurements yet")
         commander = fcc.Commander(instance)
         with pytest.raises(fcc.CommandError, match="attitude is missing or too old"):
             commander.engage()

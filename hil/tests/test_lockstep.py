@@ -171,7 +171,7 @@ def test_wrong_arguments_are_refused_with_a_message() -> None:
         autopilot.step(measurements(state))
     with pytest.raises(ValueError, match="dt is 0"):
         autopilot.observe(measurements(state), 0.0)
-    with pytest.raises(ValueError, match="throttle is 0 to 1"):
+    with pytest.raises(ValueError, match=r"throttle is 1.2: choose 0 to 1"):
         autopilot.engage(measurements(state), throttle=1.2)
     slow = replace(state, airspeed_mps=10.0)
     with pytest.raises(RuntimeError, match="airspeed is below the floor"):

@@ -69,6 +69,9 @@ pub enum EventCode {
     /// Readings are taken from another sensor than before (which, one bit each;
     /// the sensor before); the index is the sensor now.
     SourceChanged = 17,
+    /// The controller's mode changed (mode before, mode now). An autopilot's: 0
+    /// none, 1 hold, 2 timed pattern.
+    ModeChanged = 18,
 }
 
 impl Event {
@@ -156,6 +159,9 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         EventKind::SourceChanged(change) => {
             let values = [change.readings.bits().into(), change.from.into(), 0];
             (EventCode::SourceChanged, change.to.into(), values)
+        }
+        EventKind::ModeChanged { from, to } => {
+            (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
         }
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),

@@ -4,12 +4,12 @@
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::{EventKind, State, Tick, Time};
+use fcc_core::framework::{EventKind, Record, State, Tick, Time};
 use fcc_live::{
     Event, EventCode, Info, LAYOUT, MAX_WATCHERS, PublishError, Publisher, RecorderState,
     RecorderStatus, Text, WatchError, Watcher,
 };
-use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
+use fcc_telemetry::{FlightEvent, Instance};
 
 /// Long after a healthy machine has answered.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -31,15 +31,15 @@ fn started(instance: &Instance) -> Publisher {
     publisher
 }
 
-fn record(number: u64) -> FlightRecord {
-    FlightRecord {
+fn record<M: Default, E: Default, S: Default, O: Default>(number: u64) -> Record<M, E, S, O> {
+    Record {
         tick: Tick {
             number,
             scheduled: Time::from_nanos(number as i64 * 1_000_000),
             woke: Time::from_nanos(number as i64 * 1_000_000 + 5_000),
             ..Tick::default()
         },
-        ..FlightRecord::default()
+        ..Record::default()
     }
 }
 

@@ -1,4 +1,4 @@
-//! The built-in aircraft, flown on by hand.
+//! The built-in aircraft, stepped by a caller.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -12,10 +12,10 @@ use pyo3::prelude::*;
 use crate::arguments::step_s;
 use crate::config::configuration;
 use crate::errors;
-use crate::values::{PyMeasurements, PySurfaces, PyTruth, checked_surfaces};
+use crate::values::{PyMeasurements, PySurfaces, PyTruth, Values as _, checked};
 
 /// The built-in aircraft, in lockstep: a light single with six degrees of
-/// freedom, as the section `[built-in]` of the configuration says, with its
+/// freedom, by the section `[built-in]` of the configuration, with its
 /// wind, gusts, noise and delay. The same seed flies the same flight, to the
 /// last bit.
 #[pyclass(name = "BuiltInAircraft", module = "fcc")]
@@ -44,7 +44,7 @@ impl PyAircraft {
         let config = configuration(config)?;
         let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
             return Err(
-                errors::FLIGHT.say("the configuration has [x-plane]: that aircraft is not here")
+                errors::FLIGHT.say("the configuration has [x-plane]: give one with [built-in]")
             );
         };
         let simulation = Simulation::new(&SimConfig::from(section))
@@ -59,13 +59,13 @@ impl PyAircraft {
         })
     }
 
-    /// Flies on for `dt` s with these controls, and measures. None lets the
-    /// controls go: they stand at the trim.
+    /// Simulates the next `dt` s with these controls, and measures. None releases
+    /// the controls: they are at the trim.
     #[pyo3(signature = (surfaces, dt = 0.025))]
     fn step(&self, surfaces: Option<&PySurfaces>, dt: f64) -> PyResult<PyMeasurements> {
         let dt_s = step_s(dt)?;
         let commands = surfaces
-            .map(|surfaces| checked_surfaces(surfaces.to_core()))
+            .map(|surfaces| checked((*surfaces).into()))
             .transpose()?;
         let mut inner = self.inner();
         let Inner {
@@ -89,24 +89,24 @@ impl PyAircraft {
             dt_s,
         };
         simulation.sensor.sample(tick, measured).map_err(|_| {
-            errors::FLIGHT.say("the aircraft has left all bounds: its state is no number any more")
+            errors::FLIGHT.say("the aircraft is out of bounds: its state is not finite any more")
         })?;
         Ok(PyMeasurements::from_core(measured))
     }
 
-    /// What is true of it now.
+    /// Its true state.
     #[getter]
     fn truth(&self) -> PyTruth {
-        PyTruth(self.inner().simulation.truth.get())
+        self.inner().simulation.truth.get().into()
     }
 
-    /// Where its engage switch stands, by the configuration's script.
+    /// The position of its engage switch, by the configuration's script.
     #[getter]
     fn switch(&self) -> bool {
         self.inner().measured.engage_switch.value == Switch::On
     }
 
-    /// Where its controls stand: what was commanded last, or the trim.
+    /// The position of its controls: what was commanded last, or the trim.
     #[getter]
     fn controls(&self) -> PySurfaces {
         let inner = self.inner();

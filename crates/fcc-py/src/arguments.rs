@@ -5,6 +5,8 @@ use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
+use crate::values::{Values, names};
+
 /// The longest step, s: past it, nothing is a control loop any more.
 const MAX_STEP_S: f64 = 1.0;
 
@@ -61,24 +63,34 @@ pub(crate) fn numbers(name: &str, from: &Bound<'_, PyAny>) -> PyResult<(Vec<usiz
     Ok((array.shape().to_vec(), values))
 }
 
-/// An array of `N` columns; its rows.
-pub(crate) fn rows<const N: usize>(
+/// An array with a column for each value of a class, in the order of `columns`;
+/// its numbers, row by row.
+pub(crate) fn rows<V: Values>(
     name: &str,
     columns: &str,
     from: &Bound<'_, PyAny>,
-) -> PyResult<Vec<[f64; N]>> {
-    let (shape, values) = numbers(name, from)?;
+) -> PyResult<Rows> {
+    let (shape, numbers) = numbers(name, from)?;
+    let width = names::<V>().count();
     match shape.as_slice() {
-        [_, n] if *n == N => {}
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "{name} is of shape {}: give (n, {N}), the columns being {columns}",
-                shape_words(&shape)
-            )));
-        }
+        [_, n] if *n == width => Ok(Rows { numbers, width }),
+        _ => Err(PyValueError::new_err(format!(
+            "{name} is of shape {}: give (n, {width}), the columns being {columns}",
+            shape_words(&shape)
+        ))),
     }
-    let (rows, _) = values.as_chunks::<N>();
-    Ok(rows.to_vec())
+}
+
+/// The numbers of an array, row by row.
+pub(crate) struct Rows {
+    numbers: Vec<f64>,
+    width: usize,
+}
+
+impl Rows {
+    pub(crate) fn iter(&self) -> std::slice::ChunksExact<'_, f64> {
+        self.numbers.chunks_exact(self.width.max(1))
+    }
 }
 
 /// A vector of `N` numbers.

@@ -2,20 +2,21 @@
 
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::{AutopilotCommand, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
 use fcc_core::framework::Controller;
-use numpy::{PyArray2, ToPyArray};
+use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 
-use crate::arguments::{finite, rows, step_s, within};
+use crate::arguments::{Rows, finite, rows, step_s, within};
 use crate::config::autopilot_config;
 use crate::errors;
-use crate::stepped::{Stepped, names};
+use crate::machine::conditions;
+use crate::stepped::Stepped;
 use crate::values::{
-    COLUMNS, PyEstimate, PyMeasurements, PySetpoints, PySurfaces, checked_surfaces,
+    PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, as_row, checked, from_row, names,
 };
 
-/// The autopilot, stepped by hand: `observe` while somebody else flies,
+/// The autopilot, stepped by hand: `observe` while the pilot flies,
 /// `engage` once, then `step` for each tick; `observe_series` and `fly` do the
 /// same for a recorded series of measurements.
 ///
@@ -40,12 +41,12 @@ impl PyAutopilot {
     /// that the filters settle.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
-        self.stepped.observe(*measurements, step_s(dt)?);
+        self.stepped.observe(measurements, step_s(dt)?);
         Ok(())
     }
 
     /// Takes a series of measurements without controlling: an array of shape
-    /// (n, 11), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
+    /// (n, m), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe_series(
         &mut self,
@@ -55,18 +56,18 @@ impl PyAutopilot {
     ) -> PyResult<()> {
         let (series, dt_s) = (series(measurements)?, step_s(dt)?);
         py.detach(|| {
-            for row in &series {
-                self.stepped.observe(PyMeasurements::from_row(row), dt_s);
+            for row in series.iter() {
+                self.stepped.observe(&from_row(row), dt_s);
             }
         });
         Ok(())
     }
 
-    /// Takes over, `dt` seconds after the last measurements: the present
+    /// Engages, `dt` seconds after the last measurements: the present state
     /// becomes the set points. `throttle`, `elevator`, `aileron` and `rudder`
-    /// are where the controls stand.
+    /// are the present position of the controls.
     ///
-    /// Raises `EngageError` if something blocks it, with what.
+    /// Raises `EngageError` with the engage inhibits if there are any.
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
                         elevator = 0.0, aileron = 0.0, rudder = 0.0))]
     fn engage(
@@ -78,14 +79,14 @@ impl PyAutopilot {
         aileron: f64,
         rudder: f64,
     ) -> PyResult<()> {
-        let standing = checked_surfaces(Surfaces {
+        let readback = checked(Surfaces {
             throttle,
             elevator,
             aileron,
             rudder,
         })?;
         self.stepped
-            .engage(*measurements, step_s(dt)?, standing)
+            .engage(measurements, step_s(dt)?, readback)
             .map_err(|words| errors::ENGAGE.say(words))
     }
 
@@ -93,11 +94,11 @@ impl PyAutopilot {
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
         self.stepped.must_be_engaged()?;
-        Ok(self.stepped.step(*measurements, step_s(dt)?).into())
+        Ok(self.stepped.step(measurements, step_s(dt)?).into())
     }
 
     /// One tick for each row of a series, as `step` does: what the autopilot
-    /// would have set. `measurements` is an array of shape (n, 11), the columns
+    /// would have set. `measurements` is an array of shape (n, m), the columns
     /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
     /// (n, 4), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
@@ -109,11 +110,13 @@ impl PyAutopilot {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (series, dt_s) = (series(measurements)?, step_s(dt)?);
         self.stepped.must_be_engaged()?;
-        let flown: Vec<[f64; 4]> = py.detach(|| {
-            let step = |row| surface_row(self.stepped.step(PyMeasurements::from_row(row), dt_s));
-            series.iter().map(step).collect()
+        let flown = py.detach(|| {
+            let steps = series
+                .iter()
+                .map(|row| self.stepped.step(&from_row(row), dt_s));
+            table::<PySurfaces>(steps.map(Into::into))
         });
-        matrix(py, flown)
+        matrix::<PySurfaces>(py, &flown)
     }
 
     /// One tick of failsafe, `dt` seconds after the last: the safest surfaces
@@ -121,10 +124,10 @@ impl PyAutopilot {
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn failsafe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
         self.stepped.must_be_engaged()?;
-        Ok(self.stepped.failsafe(*measurements, step_s(dt)?).into())
+        Ok(self.stepped.failsafe(measurements, step_s(dt)?).into())
     }
 
-    /// Lets go.
+    /// Disengages.
     fn disengage(&mut self) {
         self.stepped.disengage();
     }
@@ -157,48 +160,45 @@ impl PyAutopilot {
         self.stepped.autopilot.setpoints().into()
     }
 
-    /// What navigation makes of the measurements.
+    /// Navigation's estimate.
     #[getter]
     fn estimate(&self) -> PyEstimate {
         self.stepped.autopilot.estimated().into()
     }
 
-    /// Why it may not engage now, in words; empty if it may.
+    /// The engage inhibits, in words; empty if it may engage.
     #[getter]
     fn engage_inhibits(&self) -> Vec<&'static str> {
-        names(self.stepped.engage_inhibits())
+        conditions::<Autopilot>(self.stepped.engage_inhibits())
     }
 
-    /// What makes flying on unsafe now, in words; empty if nothing does.
+    /// The faults that make it unsafe to stay engaged, in words.
     #[getter]
     fn faults(&self) -> Vec<&'static str> {
-        names(self.stepped.faults())
+        conditions::<Autopilot>(self.stepped.faults())
     }
 }
 
 /// A series of measurements.
-pub(crate) fn series(measurements: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; COLUMNS.len()]>> {
-    rows("measurements", "fcc.MEASUREMENTS", measurements)
+pub(crate) fn series(measurements: &Bound<'_, PyAny>) -> PyResult<Rows> {
+    rows::<PyMeasurements>("measurements", "fcc.MEASUREMENTS", measurements)
 }
 
-/// A row of surfaces.
-pub(crate) const fn surface_row(surfaces: Surfaces) -> [f64; 4] {
-    [
-        surfaces.throttle,
-        surfaces.elevator,
-        surfaces.aileron,
-        surfaces.rudder,
-    ]
+/// The numbers of objects, row by row.
+pub(crate) fn table<V: Values>(rows: impl Iterator<Item = V>) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    rows.for_each(|row| as_row(row, &mut numbers));
+    numbers
 }
 
 /// Rows as an array.
-pub(crate) fn matrix<const N: usize>(
-    py: Python<'_>,
-    rows: Vec<[f64; N]>,
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    use numpy::PyArrayMethods;
-    let count = rows.len();
-    rows.into_flattened().to_pyarray(py).reshape([count, N])
+pub(crate) fn matrix<'py, V: Values>(
+    py: Python<'py>,
+    numbers: &[f64],
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let width = names::<V>().count();
+    let rows = numbers.len() / width.max(1);
+    numbers.to_pyarray(py).reshape([rows, width])
 }
 
 /// Commands for the controller: airspeed in m/s, as the envelope allows; heading in rad, any
@@ -209,7 +209,7 @@ pub(crate) fn checked_commands(
     altitude_m: Option<f64>,
     airspeeds_mps: &RangeInclusive<f64>,
 ) -> PyResult<Vec<AutopilotCommand>> {
-    // What is said is taken: the limits are even in knots.
+    // The limits as the message gives them: they are whole in knots.
     let [least, most] =
         [airspeeds_mps.start(), airspeeds_mps.end()].map(|mps| (mps * 100.0).round() / 100.0);
     let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, least, most);

@@ -8,7 +8,7 @@ use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Sur
 use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick};
 use pyo3::prelude::*;
 
-use crate::values::{PyMeasurements, PySetpoints, PySurfaces};
+use crate::values::{PyMeasurements, PySetpoints, PySurfaces, Values as _};
 
 /// The first exception that a guest raised.
 #[derive(Clone, Default)]
@@ -132,7 +132,7 @@ impl Controller for CallbackController {
                 PySetpoints::from(self.autopilot.setpoints()),
                 PySurfaces::from(proposed),
             ))?;
-            Ok(said.cast::<PySurfaces>()?.get().to_core())
+            Ok((*said.cast::<PySurfaces>()?.get()).into())
         });
         said.unwrap_or_else(|error| {
             self.raised.keep(error);

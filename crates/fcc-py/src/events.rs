@@ -1,8 +1,7 @@
 //! Something that happened once.
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{EventKind, Time};
-use fcc_telemetry::{FlightEvent, describe_event};
+use fcc_core::framework::{Controller, EventKind, EventOf, Time};
+use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
 
 /// Something that happened once: the number of its tick, when that tick woke
@@ -10,7 +9,7 @@ use pyo3::prelude::*;
 /// of thing it was, and in words.
 #[pyclass(name = "Event", module = "fcc", frozen, get_all)]
 #[derive(Clone)]
-pub(crate) struct PyEvent {
+pub struct PyEvent {
     pub(crate) tick: u64,
     pub(crate) time_s: f64,
     pub(crate) time_ns: Option<i64>,
@@ -34,24 +33,28 @@ impl PyEvent {
 
 impl PyEvent {
     /// An event, its sensors and actuators called by their names.
-    pub(crate) fn of(event: &FlightEvent, sensors: &[String], actuators: &[String]) -> Self {
+    pub(crate) fn of<C: Controller>(
+        event: &EventOf<C>,
+        sensors: &[String],
+        actuators: &[String],
+    ) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
-            kind: kind_of(event),
-            text: describe_event::<Autopilot>(event, sensors, actuators),
+            kind: kind_of(&event.kind),
+            text: describe_event::<C>(event, sensors, actuators),
         }
     }
 }
 
 /// An instant in s on the loop's clock; 0 for never.
-pub(crate) fn seconds(time: Time) -> f64 {
+pub fn seconds(time: Time) -> f64 {
     time.as_nanos().max(0) as f64 * 1e-9
 }
 
-fn kind_of(event: &FlightEvent) -> &'static str {
-    match event.kind {
+fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
+    match kind {
         EventKind::StateChanged { .. } => "state-changed",
         EventKind::CommandReceived(_) => "ordered",
         EventKind::StopRequested => "told-to-stop",
@@ -70,6 +73,7 @@ fn kind_of(event: &FlightEvent) -> &'static str {
         EventKind::OverrunsOver { .. } => "overruns-over",
         EventKind::Hung { .. } => "hung",
         EventKind::SourceChanged(_) => "source-changed",
+        EventKind::ModeChanged { .. } => "mode-changed",
         _ => "other",
     }
 }

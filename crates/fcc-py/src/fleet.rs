@@ -1,17 +1,16 @@
 //! Many autopilots stepped together, for searches over gains and scenarios.
 
-use fcc_core::flight::Surfaces;
 use fcc_core::framework::Controller;
-use numpy::PyArray2;
+use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arguments::{rows, step_s};
-use crate::autopilot::{matrix, series, surface_row};
+use crate::arguments::{Rows, rows, step_s};
+use crate::autopilot::{matrix, series, table};
 use crate::config::autopilot_config;
 use crate::errors;
 use crate::stepped::Stepped;
-use crate::values::{COLUMNS, PyMeasurements, checked_surfaces};
+use crate::values::{PySetpoints, PySurfaces, Values as _, as_row, checked, from_row};
 
 /// Many autopilots, each with its own configuration, stepped together: row i
 /// of an array belongs to autopilot i.
@@ -42,7 +41,7 @@ impl PyFleet {
         self.autopilots.len()
     }
 
-    /// Takes measurements, an array of shape (n, 11) with the columns
+    /// Takes measurements, an array of shape (n, m) with the columns
     /// `fcc.MEASUREMENTS`, `dt` s after the last, without controlling.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(
@@ -53,15 +52,15 @@ impl PyFleet {
     ) -> PyResult<()> {
         let (each, dt_s) = (self.each(measurements)?, step_s(dt)?);
         py.detach(|| {
-            for (autopilot, row) in self.autopilots.iter_mut().zip(&each) {
-                autopilot.observe(PyMeasurements::from_row(row), dt_s);
+            for (autopilot, row) in self.autopilots.iter_mut().zip(each.iter()) {
+                autopilot.observe(&from_row(row), dt_s);
             }
         });
         Ok(())
     }
 
-    /// Takes over: all, or none. `surfaces`, of shape (n, 4) with the columns
-    /// `fcc.SURFACES`, is where the controls stand.
+    /// Engages all, or none. `surfaces`, of shape (n, 4) with the columns
+    /// `fcc.SURFACES`, is the present position of the controls.
     ///
     /// Raises `EngageError` if something blocks one of them, with what.
     #[pyo3(signature = (measurements, surfaces, dt = 0.025))]
@@ -72,21 +71,14 @@ impl PyFleet {
         dt: f64,
     ) -> PyResult<()> {
         let (each, dt_s) = (self.each(measurements)?, step_s(dt)?);
-        let standing = rows::<4>("surfaces", "fcc.SURFACES", surfaces)?;
-        self.must_be_as_many("surfaces", standing.len())?;
+        let readbacks = rows::<PySurfaces>("surfaces", "fcc.SURFACES", surfaces)?;
+        self.must_be_as_many("surfaces", readbacks.iter().len())?;
         let mut engaged = self.autopilots.clone();
-        for (n, ((autopilot, row), standing)) in
-            engaged.iter_mut().zip(&each).zip(&standing).enumerate()
-        {
-            let &[throttle, elevator, aileron, rudder] = standing;
-            let standing = checked_surfaces(Surfaces {
-                throttle,
-                elevator,
-                aileron,
-                rudder,
-            })?;
+        let rows = each.iter().zip(readbacks.iter());
+        for (n, (autopilot, (row, readback))) in engaged.iter_mut().zip(rows).enumerate() {
+            let readback = checked(from_row::<PySurfaces>(readback).into())?;
             autopilot
-                .engage(PyMeasurements::from_row(row), dt_s, standing)
+                .engage(&from_row(row), dt_s, readback)
                 .map_err(|words| errors::ENGAGE.say(format_args!("autopilot {n}: {words}")))?;
         }
         self.autopilots = engaged;
@@ -94,7 +86,7 @@ impl PyFleet {
     }
 
     /// One tick of all, `dt` s after the last: from measurements of shape
-    /// (n, 11) to surfaces of shape (n, 4).
+    /// (n, m) to surfaces of shape (n, 4).
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step<'py>(
         &mut self,
@@ -106,41 +98,37 @@ impl PyFleet {
         for autopilot in &self.autopilots {
             autopilot.must_be_engaged()?;
         }
-        let surfaces: Vec<[f64; 4]> = py.detach(|| {
-            self.autopilots
-                .iter_mut()
-                .zip(&each)
-                .map(|(autopilot, row)| {
-                    surface_row(autopilot.step(PyMeasurements::from_row(row), dt_s))
-                })
-                .collect()
+        let surfaces = py.detach(|| {
+            let rows = self.autopilots.iter_mut().zip(each.iter());
+            let steps = rows.map(|(autopilot, row)| autopilot.step(&from_row(row), dt_s));
+            table::<PySurfaces>(steps.map(Into::into))
         });
-        matrix(py, surfaces)
+        matrix::<PySurfaces>(py, &surfaces)
     }
 
     /// The set points of each, of shape (n, 6): airspeed in m/s, heading in
     /// rad, altitude in m, roll in rad, climb rate in m/s, pitch in rad.
     #[getter]
     fn setpoints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let each = self.autopilots.iter().map(|autopilot| {
-            let setpoints = autopilot.autopilot.setpoints();
-            [
-                setpoints.airspeed_mps,
-                setpoints.heading_rad,
-                setpoints.altitude_m,
-                setpoints.roll_rad,
-                setpoints.climb_rate_mps,
-                setpoints.pitch_rad,
-            ]
-        });
-        matrix(py, each.collect())
+        // Guidance's mode and progress are nested, and come after these.
+        let leaves = PySetpoints::attributes().leaves.iter();
+        let own = leaves.filter(|(_, leaf)| !leaf.column.path.contains('.'));
+        let width = own.count();
+        let mut numbers = Vec::new();
+        for (n, autopilot) in self.autopilots.iter().enumerate() {
+            as_row::<PySetpoints>(autopilot.autopilot.setpoints().into(), &mut numbers);
+            numbers.truncate((n + 1) * width);
+        }
+        numbers
+            .to_pyarray(py)
+            .reshape([self.autopilots.len(), width])
     }
 }
 
 impl PyFleet {
-    fn each(&self, measurements: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; COLUMNS.len()]>> {
+    fn each(&self, measurements: &Bound<'_, PyAny>) -> PyResult<Rows> {
         let each = series(measurements)?;
-        self.must_be_as_many("measurements", each.len())?;
+        self.must_be_as_many("measurements", each.iter().len())?;
         Ok(each)
     }
 

@@ -11,10 +11,9 @@ use fcc_core::framework::{Controller, Message, Sensor, State};
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::true_sample;
 use fcc_runtime::{Link, LoopReport, Machine, Parts};
-use fcc_sim::{SimConfig, Simulation, TruthHandle};
-use fcc_telemetry::{FlightLog, FlightMessage, FlightScore, Realtime, TimingReport};
+use fcc_sim::{SimConfig, Simulation, Truth, TruthHandle};
+use fcc_telemetry::{FlightLog, FlightMessage, FlightRecord, FlightScore, Realtime, TimingReport};
 use fcc_timer::{ManualTimer, Timer, TimerError};
-use numpy::PyArray1;
 use pyo3::exceptions::{PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 
@@ -24,7 +23,7 @@ use crate::config::configuration;
 use crate::errors;
 use crate::events::PyEvent;
 use crate::json;
-use crate::structured::{self, RecordRow, TruthRecord};
+use crate::structured::Rows;
 
 /// The legs that a flight has if nobody says how long it is to be.
 const DEFAULT_LEGS: f64 = 8.0;
@@ -51,9 +50,9 @@ const NOT_REAL_TIME: &CStr =
 #[pyclass(name = "Flight", module = "fcc", frozen)]
 pub(crate) struct PyFlight {
     #[pyo3(get)]
-    records: Py<PyArray1<RecordRow>>,
+    records: Py<PyAny>,
     #[pyo3(get)]
-    truth: Py<PyArray1<TruthRecord>>,
+    truth: Py<PyAny>,
     #[pyo3(get)]
     events: Vec<PyEvent>,
     /// How long it was flown, s.
@@ -190,7 +189,7 @@ pub(crate) fn fly(
             conduct(py, parts, &config, &raised, log)
         }
     }?;
-    Ok(flown.into_flight(py))
+    flown.into_flight(py)
 }
 
 fn default_seconds(config: &Config) -> f64 {
@@ -295,7 +294,7 @@ struct Flown {
 }
 
 impl Flown {
-    fn into_flight(self, py: Python<'_>) -> PyFlight {
+    fn into_flight(self, py: Python<'_>) -> PyResult<PyFlight> {
         let realtime = Realtime {
             policy: "not asked for".to_owned(),
             ..Realtime::default()
@@ -304,9 +303,9 @@ impl Flown {
         // A leg that was not flown to its end has no figures, and the flight
         // no score.
         let score = log.score.and_then(|score| score.score().ok());
-        PyFlight {
-            records: structured::records(py, log.rows).unbind(),
-            truth: structured::truths(py, log.truths).unbind(),
+        Ok(PyFlight {
+            records: log.records.into_array(py)?.unbind(),
+            truth: log.truths.into_array(py)?.unbind(),
             events: log.events,
             seconds: self.seconds,
             took_s: self.took.as_secs_f64(),
@@ -314,7 +313,7 @@ impl Flown {
             ending: self.report.ending.to_string(),
             score: score.filter(|score| !score.legs.is_empty()),
             timing: TimingReport::new(self.report.timer, &self.report.timing, realtime),
-        }
+        })
     }
 }
 
@@ -325,8 +324,8 @@ struct Log {
     ticks: u64,
     period_s: f64,
     keep: bool,
-    rows: Vec<RecordRow>,
-    truths: Vec<TruthRecord>,
+    records: Rows<FlightRecord>,
+    truths: Rows<Truth>,
     events: Vec<PyEvent>,
     score: Option<FlightLog>,
     engaged: bool,
@@ -352,8 +351,8 @@ impl Log {
             ticks,
             period_s: config.tick.period().as_secs_f64(),
             keep,
-            rows: Vec::with_capacity(room),
-            truths: Vec::with_capacity(room),
+            records: Rows::with_room(room),
+            truths: Rows::with_room(room),
             events: Vec::new(),
             score: match config.autopilot_config().guidance {
                 GuidanceConfig::TimedPattern(pattern) => Some(FlightLog::new(pattern)),
@@ -368,8 +367,8 @@ impl Log {
             Message::Tick(record) => {
                 let truth = self.truth.get();
                 if self.keep {
-                    self.rows.push(RecordRow::from(record));
-                    self.truths.push(TruthRecord::from(&truth));
+                    self.records.push(record);
+                    self.truths.push(&truth);
                 }
                 let engaged = record.state == State::Engaged;
                 if let Some(score) = &mut self.score {
@@ -384,8 +383,11 @@ impl Log {
                 self.engaged = engaged;
             }
             Message::Event(event) => {
-                self.events
-                    .push(PyEvent::of(event, &self.sensors, &self.sensors));
+                self.events.push(PyEvent::of::<Autopilot>(
+                    event,
+                    &self.sensors,
+                    &self.sensors,
+                ));
             }
         }
     }

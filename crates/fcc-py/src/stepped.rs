@@ -1,4 +1,4 @@
-//! An autopilot whose ticks are somebody else's calls.
+//! An autopilot whose ticks are a caller's calls.
 
 use std::time::Duration;
 
@@ -7,9 +7,10 @@ use fcc_core::framework::{Controller, Flags, Tick, Time};
 use pyo3::prelude::*;
 
 use crate::errors;
-use crate::values::{Measured, PyMeasurements};
+use crate::machine::conditions;
+use crate::values::{PyMeasurements, Shape, Values as _, with_plant};
 
-/// An autopilot, and the time that its caller has let pass.
+/// An autopilot, and the time that its caller has passed.
 #[derive(Clone)]
 pub(crate) struct Stepped {
     pub(crate) autopilot: Autopilot,
@@ -31,23 +32,23 @@ impl Stepped {
     }
 
     /// Takes measurements without controlling.
-    pub(crate) fn observe(&mut self, measured: PyMeasurements, dt_s: f64) {
+    pub(crate) fn observe(&mut self, measured: &PyMeasurements, dt_s: f64) {
         self.take(measured, dt_s, Surfaces::default());
     }
 
-    /// Takes over from controls that stand there.
+    /// Engages with the controls in this position.
     pub(crate) fn engage(
         &mut self,
-        measured: PyMeasurements,
+        measured: &PyMeasurements,
         dt_s: f64,
-        standing: Surfaces,
+        readback: Surfaces,
     ) -> Result<(), String> {
-        self.take(measured, dt_s, standing);
+        self.take(measured, dt_s, readback);
         let engage_inhibits = self.engage_inhibits();
         if !engage_inhibits.is_empty() {
             return Err(format!(
                 "not engaged: {}",
-                names(engage_inhibits).join(", ")
+                conditions::<Autopilot>(engage_inhibits).join(", ")
             ));
         }
         self.autopilot.engage(&self.tick, &self.taken);
@@ -56,19 +57,19 @@ impl Stepped {
     }
 
     /// One tick of control.
-    pub(crate) fn step(&mut self, measured: PyMeasurements, dt_s: f64) -> Surfaces {
+    pub(crate) fn step(&mut self, measured: &PyMeasurements, dt_s: f64) -> Surfaces {
         self.take(measured, dt_s, Surfaces::default());
         self.autopilot.guide(&self.tick, &self.taken);
         self.autopilot.control(&self.tick, &self.taken)
     }
 
     /// One tick of failsafe.
-    pub(crate) fn failsafe(&mut self, measured: PyMeasurements, dt_s: f64) -> Surfaces {
+    pub(crate) fn failsafe(&mut self, measured: &PyMeasurements, dt_s: f64) -> Surfaces {
         self.take(measured, dt_s, Surfaces::default());
         self.autopilot.failsafe(&self.tick, &self.taken)
     }
 
-    /// Lets go.
+    /// Disengages.
     pub(crate) fn disengage(&mut self) {
         self.autopilot.disengage();
         self.engaged = false;
@@ -99,7 +100,7 @@ impl Stepped {
         self.autopilot.faults(&self.tick, &self.taken)
     }
 
-    fn take(&mut self, measured: PyMeasurements, dt_s: f64, standing: Surfaces) {
+    fn take(&mut self, measured: &PyMeasurements, dt_s: f64, readback: Surfaces) {
         self.time_s += dt_s;
         let now = Time::from_nanos(Duration::from_secs_f64(self.time_s).as_nanos() as i64);
         self.tick = Tick {
@@ -109,17 +110,14 @@ impl Stepped {
             missed: 0,
             dt_s,
         };
-        self.taken = measured.to_core(&Measured {
-            now,
-            plant_s: self.time_s,
-            standing: Some(standing),
-            switch: None,
-        });
+        let sample = with_plant(
+            &measured.sample(|_| false),
+            self.time_s,
+            Some(readback),
+            None,
+        );
+        self.taken = Measurements::default();
+        Shape::of::<Measurements>().copy(&sample, &mut self.taken, Some(now));
         self.autopilot.estimate(&self.tick, &self.taken);
     }
-}
-
-/// Conditions in words.
-pub(crate) fn names(flags: Flags) -> Vec<&'static str> {
-    flags.iter().map(Autopilot::flag_name).collect()
 }

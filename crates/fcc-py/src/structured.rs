@@ -1,85 +1,95 @@
-//! Records and truths as numpy's structured arrays: the memory that Rust
+//! Structs with a schema as numpy's structured arrays: the memory that Rust
 //! filled is the array's, and its columns are views.
 
-#![expect(
-    unsafe_code,
-    reason = "numpy asks for a promise that a dtype says how a type is laid out"
-)]
+use std::any::TypeId;
+use std::collections::HashMap;
+use std::marker::PhantomData;
+use std::sync::{Mutex, PoisonError};
 
-use fcc_core::framework::schema::Kind;
-use fcc_sim::Truth;
-use fcc_telemetry::schema::columns;
-use fcc_telemetry::{FlightRecord, FlightWords};
-use numpy::{Element, PyArray1, PyArrayDescr};
+use fcc_core::framework::schema::{Kind, Schema};
+use fcc_telemetry::schema::{columns, words, write_words};
+use numpy::{PyArray1, PyArrayDescr};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
-use crate::values::TruthRow;
+/// Structs, as the words of the rows of an array.
+pub struct Rows<T> {
+    words: Vec<u64>,
+    of: PhantomData<fn() -> T>,
+}
 
-/// A record, as a row of an array.
-#[derive(Clone, Copy)]
-#[repr(transparent)]
-pub(crate) struct RecordRow(FlightWords);
+impl<T: Schema> Rows<T> {
+    /// None yet, and room for some.
+    pub(crate) fn with_room(rows: usize) -> Self {
+        Self {
+            words: Vec::with_capacity(rows * words::<T>()),
+            of: PhantomData,
+        }
+    }
 
-impl From<&FlightRecord> for RecordRow {
-    fn from(record: &FlightRecord) -> Self {
-        Self(FlightWords::of(record))
+    pub(crate) fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    pub(crate) fn push(&mut self, row: &T) {
+        let begin = self.words.len();
+        self.words.resize(begin + words::<T>(), 0);
+        if let Some(words) = self.words.get_mut(begin..) {
+            write_words(row, words);
+        }
+    }
+
+    /// The rows as an array, which takes their memory.
+    ///
+    /// # Errors
+    /// Those of numpy.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        PyArray1::from_vec(py, self.words).call_method1("view", (dtype::<T>(py)?,))
     }
 }
 
-/// A truth, as a row of an array.
-#[derive(Clone, Copy)]
-#[repr(transparent)]
-pub(crate) struct TruthRecord(TruthRow);
-
-impl From<&Truth> for TruthRecord {
-    fn from(truth: &Truth) -> Self {
-        Self(truth.to_array())
+impl<'a, T: Schema> FromIterator<&'a T> for Rows<T> {
+    fn from_iter<I: IntoIterator<Item = &'a T>>(rows: I) -> Self {
+        let mut all = Self::with_room(0);
+        rows.into_iter().for_each(|row| all.push(row));
+        all
     }
 }
 
-static RECORD: PyOnceLock<Py<PyArrayDescr>> = PyOnceLock::new();
-static TRUTH: PyOnceLock<Py<PyArrayDescr>> = PyOnceLock::new();
-
-/// The dtype of records.
-pub(crate) fn record_dtype(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
-    let made = RECORD.get_or_try_init(py, || {
-        let columns = columns::<FlightRecord>()
-            .into_iter()
-            .map(|column| (column.name, format_of(column.kind), column.offset));
-        make(py, columns, size_of::<FlightRecord>())
-    })?;
-    Ok(made.bind(py).clone())
+/// The dtype of a struct; made once.
+pub(crate) fn dtype<T: Schema>(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
+    static KNOWN: Mutex<Option<HashMap<TypeId, Py<PyArrayDescr>>>> = Mutex::new(None);
+    // No other thread of Python can wait for the lock while it is held: numpy is
+    // called between the two.
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let found = known().as_ref().and_then(|known| {
+        let found = known.get(&TypeId::of::<T>());
+        found.map(|dtype| dtype.clone_ref(py))
+    });
+    if let Some(dtype) = found {
+        return Ok(dtype.into_bound(py));
+    }
+    let made = make::<T>(py)?;
+    let kept = made.clone().unbind();
+    known()
+        .get_or_insert_default()
+        .insert(TypeId::of::<T>(), kept);
+    Ok(made)
 }
 
-/// The dtype of truths.
-pub(crate) fn truth_dtype(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
-    let made = TRUTH.get_or_try_init(py, || {
-        let columns = Truth::NAMES
-            .iter()
-            .enumerate()
-            .map(|(at, name)| ((*name).to_owned(), "f8".to_owned(), at * size_of::<f64>()));
-        make(py, columns, size_of::<TruthRow>())
-    })?;
-    Ok(made.bind(py).clone())
-}
-
-/// Both dtypes, so that none can fail to be made later.
-pub(crate) fn prepare(py: Python<'_>) -> PyResult<()> {
-    record_dtype(py)?;
-    truth_dtype(py)?;
-    Ok(())
-}
-
-/// Records as an array; it takes over their memory.
-pub(crate) fn records(py: Python<'_>, rows: Vec<RecordRow>) -> Bound<'_, PyArray1<RecordRow>> {
-    PyArray1::from_vec(py, rows)
-}
-
-/// Truths as an array; it takes over their memory.
-pub(crate) fn truths(py: Python<'_>, rows: Vec<TruthRecord>) -> Bound<'_, PyArray1<TruthRecord>> {
-    PyArray1::from_vec(py, rows)
+fn make<T: Schema>(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
+    let (mut names, mut formats, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
+    for column in columns::<T>() {
+        names.push(column.name);
+        formats.push(format_of(column.kind));
+        offsets.push(column.offset);
+    }
+    let layout = PyDict::new(py);
+    layout.set_item("names", names)?;
+    layout.set_item("formats", formats)?;
+    layout.set_item("offsets", offsets)?;
+    layout.set_item("itemsize", words::<T>() * size_of::<u64>())?;
+    PyArrayDescr::new(py, layout)
 }
 
 fn format_of(kind: Kind) -> String {
@@ -89,58 +99,4 @@ fn format_of(kind: Kind) -> String {
         Kind::Number => 'f',
     };
     format!("{letter}{}", kind.bytes())
-}
-
-fn make(
-    py: Python<'_>,
-    columns: impl Iterator<Item = (String, String, usize)>,
-    bytes: usize,
-) -> PyResult<Py<PyArrayDescr>> {
-    let (mut names, mut formats, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
-    for (name, format, offset) in columns {
-        names.push(name);
-        formats.push(format);
-        offsets.push(offset);
-    }
-    let layout = PyDict::new(py);
-    layout.set_item("names", names)?;
-    layout.set_item("formats", formats)?;
-    layout.set_item("offsets", offsets)?;
-    layout.set_item("itemsize", bytes)?;
-    Ok(PyArrayDescr::new(py, layout)?.unbind())
-}
-
-#[expect(
-    clippy::expect_used,
-    reason = "the module does not load where a dtype cannot be made, and later it is only looked up"
-)]
-fn prepared(dtype: PyResult<Bound<'_, PyArrayDescr>>) -> Bound<'_, PyArrayDescr> {
-    dtype.expect("made when the module was loaded")
-}
-
-// SAFETY: plain numbers of the size and with the fields of the dtype, which
-// holds no objects.
-unsafe impl Element for RecordRow {
-    const IS_COPY: bool = true;
-
-    fn get_dtype(py: Python<'_>) -> Bound<'_, PyArrayDescr> {
-        prepared(record_dtype(py))
-    }
-
-    fn clone_ref(&self, _: Python<'_>) -> Self {
-        *self
-    }
-}
-
-// SAFETY: as above.
-unsafe impl Element for TruthRecord {
-    const IS_COPY: bool = true;
-
-    fn get_dtype(py: Python<'_>) -> Bound<'_, PyArrayDescr> {
-        prepared(truth_dtype(py))
-    }
-
-    fn clone_ref(&self, _: Python<'_>) -> Self {
-        *self
-    }
 }

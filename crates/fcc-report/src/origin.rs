@@ -64,7 +64,7 @@ impl Origin {
                 refused: realtime
                     .refused
                     .iter()
-                    .map(|words| from_text(words))
+                    .map(|text| from_text(text))
                     .collect(),
             },
             sensors: about.sensors.clone(),

@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::{fs, io};
 
+use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::durations::NamedPercentiles;
 use super::plot::{Detail, Figure, Figures, PlotError, figures};
 use super::reported::Addition;
-use super::text::VALUE_COLUMNS;
-use super::{Report, RunReport, Timing};
+use super::table::{markup, table, timing_columns};
+use super::text::percentiles_table;
+use super::{Report, RunReport};
 
 const STYLE: &str = include_str!("page.css");
 /// Zooms the plots; without it the page is the same, but static.
@@ -44,21 +45,30 @@ impl<A: Addition> Report<A> {
                     @if !figures.values.is_empty() {
                         h2 { (capitalized(self.terms.run)) }
                         @for figure in &figures.values { (figure_markup(figure)) }
-                        (self.values_table())
-                        (PreEscaped(self.addition.html()))
+                        @if !self.values.is_empty() { (markup(&self.values_table(), &[0])) }
+                        @for (title, caption, table) in self.addition.tables() {
+                            (table_figure(title, caption, &table, &[]))
+                        }
                     }
                     @if let Some(timing) = &self.timing {
                         h2 { "Timing" }
-                        (timing_table(timing))
+                        (table_figure(
+                            "Period and lateness",
+                            "The thesis' table (6.1 to 6.3), and below it what it did not measure.",
+                            &timing_columns(&timing.columns()),
+                            &[0],
+                        ))
                         @for figure in &figures.timing { (figure_markup(figure)) }
-                        (percentiles_table("Stage", &self.stages))
+                        @if !self.stages.is_empty() {
+                            (markup(&percentiles_table("Stage", &self.stages), &[0]))
+                        }
                         @if self.has_ages() {
-                            (percentiles_table("Age of", &self.sensor_ages))
+                            (markup(&percentiles_table("Age of", &self.sensor_ages), &[0]))
                         }
                     }
                     @if !self.events.is_empty() {
                         h2 { "Events" }
-                        (self.events_table())
+                        (markup(&self.events_table(), &[3]))
                     }
                     script { (PreEscaped(SCRIPT)) }
                 }
@@ -150,47 +160,14 @@ impl RunReport {
         }
     }
 
-    fn values_table(&self) -> Markup {
-        html! {
-            @if !self.values.is_empty() {
-                div.wide { table {
-                    thead {
-                        tr {
-                            @for (n, name) in VALUE_COLUMNS.iter().enumerate() {
-                                th.text[n == 0] { (name) }
-                            }
-                        }
-                    }
-                    tbody {
-                        @for value in &self.values {
-                            tr {
-                                @for (n, cell) in value.cells().iter().enumerate() {
-                                    td.text[n == 0] { (cell) }
-                                }
-                            }
-                        }
-                    }
-                } }
-            }
+    fn events_table(&self) -> Table {
+        let mut table = table(&["No.", "Time, s", "Tick", "Event"]);
+        for event in &self.events {
+            let time_s = format!("{:.3}", event.time_s);
+            let (number, tick) = (event.number.to_string(), event.tick.to_string());
+            table.add_row([number, time_s, tick, event.text.clone()]);
         }
-    }
-
-    fn events_table(&self) -> Markup {
-        html! {
-            div.wide { table.events {
-                thead { tr { th { "No." } th { "Time, s" } th { "Tick" } th.text { "Event" } } }
-                tbody {
-                    @for event in &self.events {
-                        tr {
-                            td { (event.number) }
-                            td { (format!("{:.3}", event.time_s)) }
-                            td { (event.tick) }
-                            td.text { (event.text) }
-                        }
-                    }
-                }
-            } }
-        }
+        table
     }
 }
 
@@ -215,48 +192,12 @@ fn figure_markup(figure: &Figure) -> Markup {
     }
 }
 
-fn timing_table(timing: &Timing) -> Markup {
-    let mut columns = vec![timing.table.clone()];
-    columns.extend(timing.thesis.map(|thesis| thesis.timing()));
+fn table_figure(title: &str, caption: &str, table: &Table, text_columns: &[usize]) -> Markup {
     html! {
         figure {
-            h3 { "Period and lateness" }
-            div.wide { table {
-                thead {
-                    tr {
-                        th.text {}
-                        @for column in &columns {
-                            th { (column.rate_hz) " Hz " (column.timer) }
-                        }
-                    }
-                }
-                tbody {
-                    @for (name, cells) in crate::table::timing_rows(&columns) {
-                        tr { td.text { (name) } @for cell in cells { td { (cell) } } }
-                    }
-                }
-            } }
-            figcaption { "The thesis' table (6.1 to 6.3), and below it values that the thesis does not have." }
-        }
-    }
-}
-
-fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Markup {
-    html! {
-        @if !rows.is_empty() {
-            div.wide { table {
-                thead {
-                    tr {
-                        th.text { (title) }
-                        @for name in ["p50", "p90", "p99", "p99.9", "max"] { th { (name) } }
-                    }
-                }
-                tbody {
-                    @for row in rows {
-                        tr { td.text { (row.name) } @for cell in row.figures() { td { (cell) } } }
-                    }
-                }
-            } }
+            h3 { (title) }
+            (markup(table, text_columns))
+            figcaption { (caption) }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Debug;
 
+use comfy_table::Table;
 use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
@@ -50,10 +51,7 @@ pub struct Terms {
 /// Additional results for one kind of plant. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
-    /// A command to the controller was received.
-    fn command_received(&mut self) {}
-
-    /// The last record was taken.
+    /// There are no more records.
     fn finish(&mut self) {}
 
     /// Sentences for the summary.
@@ -74,9 +72,9 @@ pub trait Addition: Clone + Debug + Serialize {
         String::new()
     }
 
-    /// Its tables as HTML.
-    fn html(&self) -> String {
-        String::new()
+    /// Its tables on a page, each with a title and how to read it.
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        Vec::new()
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use fcc_core::framework::{
-    EventKind, EventOf, LoopCommand, Message, MessageOf, Readings, RecordOf, State, Tick, Time,
+    EventKind, EventOf, Message, MessageOf, Readings, RecordOf, State, Tick, Time,
 };
 use fcc_timer::{Expiry, TimerError, TimingStats};
 
@@ -208,15 +208,12 @@ impl<C: Reported> Survey<C> {
     }
 
     fn take_event(&mut self, event: &EventOf<C>) {
-        match event.kind {
-            EventKind::CommandReceived(LoopCommand::Controller(_)) => {
-                self.addition.command_received();
-            }
-            EventKind::StateChanged {
-                to: State::Failsafe(_),
-                ..
-            } => self.failsafes += 1,
-            _ => {}
+        if let EventKind::StateChanged {
+            to: State::Failsafe(_),
+            ..
+        } = event.kind
+        {
+            self.failsafes += 1;
         }
         let time_s = self.seconds(event.time);
         self.events.take::<C>(time_s, event, &self.origin);

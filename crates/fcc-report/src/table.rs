@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, LineStyle, Row, Table, TableStyle};
+use maud::{Markup, html};
 
 use fcc_record::{Entry, Wholeness};
 use fcc_telemetry::TimingReport;
@@ -21,23 +22,36 @@ pub(crate) fn table(header: &[&str]) -> Table {
     table
 }
 
+/// The same for a page, with text in these columns and numbers in the others.
+pub(crate) fn markup(table: &Table, text_columns: &[usize]) -> Markup {
+    let cells = |row: &Row| -> Vec<(bool, String)> {
+        let cells = row.cell_iter().enumerate();
+        cells
+            .map(|(n, cell)| (text_columns.contains(&n), cell.content()))
+            .collect()
+    };
+    html! {
+        div.wide { table {
+            thead { tr {
+                @for (is_text, cell) in table.header().map(cells).unwrap_or_default() {
+                    th.text[is_text] { (cell) }
+                }
+            } }
+            tbody {
+                @for row in table.row_iter().map(cells) {
+                    tr.worst[row.first().is_some_and(|(_, name)| name == "worst")] {
+                        @for (is_text, cell) in row { td.text[is_text] { (cell) } }
+                    }
+                }
+            }
+        } }
+    }
+}
+
 /// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
 /// it values that the thesis does not have.
 pub fn timing_table(reports: &[TimingReport]) -> String {
-    let mut header = vec![String::new()];
-    header.extend(
-        reports
-            .iter()
-            .map(|report| format!("{} Hz {}", report.rate_hz, report.timer)),
-    );
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut table = table(&header);
-    for (name, cells) in timing_rows(reports) {
-        let mut row = vec![name.to_owned()];
-        row.extend(cells);
-        table.add_row(row);
-    }
-    let mut text = table.to_string();
+    let mut text = timing_columns(reports).to_string();
     if let Some(realtime) = reports.first().map(|r| &r.realtime)
         && !realtime.cpu_because.is_empty()
     {
@@ -52,11 +66,17 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     text
 }
 
-/// The rows of the timing table, each with a cell per report.
-pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<String>)> {
-    let mut rows = Vec::new();
+/// The same without the text below it.
+pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
+    let name = |report: &TimingReport| format!("{} Hz {}", report.rate_hz, report.timer);
+    let header: Vec<String> = reports.iter().map(name).collect();
+    let mut header: Vec<&str> = header.iter().map(String::as_str).collect();
+    header.insert(0, "");
+    let mut table = table(&header);
     let mut row = |name: &'static str, value: &dyn Fn(&TimingReport) -> String| {
-        rows.push((name, reports.iter().map(value).collect()));
+        let mut cells = vec![name.to_owned()];
+        cells.extend(reports.iter().map(value));
+        table.add_row(cells);
     };
     row("Runtime", &|r| figure(r.runtime_s, 2, "s"));
     row("Average", &|r| figure(r.period_ms.mean, 4, "ms"));
@@ -113,7 +133,7 @@ pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<St
             )
         });
     }
-    rows
+    table
 }
 
 /// Shown in a table for a value that was not measured.

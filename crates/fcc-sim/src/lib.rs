@@ -66,5 +66,5 @@ pub use config::{
 pub use link::{SwitchHandle, TruthHandle};
 pub use simulation::{SimActuator, SimSensor, Simulation};
 pub use trim::{Trim, TrimError, trim};
-pub use truth::{NUMBERS as TRUTH_NUMBERS, Truth};
+pub use truth::Truth;
 pub use turbulence::Severity;

@@ -26,6 +26,6 @@ mod tests;
 
 pub use picture::Picture;
 pub use screen::draw;
-pub use snapshot::{Snapshot, snapshot};
+pub use snapshot::{json_of, snapshot};
 pub use terminal::{TopError, top};
 pub use watched::{Part, Watched};

@@ -81,7 +81,7 @@ mod tests {
     use fcc_record::RecordingPace;
     use fcc_runtime::{LoopCommand, LoopConfig, Machine};
     use fcc_timer::ManualTimer;
-    use fcc_top::{Picture, Snapshot, draw};
+    use fcc_top::{Picture, draw, json_of};
     use html5ever::tendril::TendrilSink as _;
     use markup5ever_rcdom::{Handle, NodeData, RcDom};
     use ratatui::Terminal;
@@ -207,7 +207,7 @@ mod tests {
         assert!(rows[0].contains("ENGAGED"), "{screen}");
         assert!(screen.contains("the room's"), "{screen}");
 
-        let json = serde_json::to_value(Snapshot::of(&picture)).unwrap();
+        let json = json_of(&picture);
         let room_c = json["tick"]["actual"]["room_c"].as_f64().unwrap();
         assert!((room_c - 20.0).abs() < 0.01, "{room_c}");
         assert_eq!(json["tick"]["setpoints"]["room_c"], 20.0);
@@ -224,7 +224,7 @@ mod tests {
         let watcher = fcc_live::WatcherOf::<Thermostat>::open(&instance).unwrap();
         heated(|message| publish_message(&mut publisher, message));
         publisher.flush();
-        let json = serde_json::to_value(fcc_top::snapshot(watcher).unwrap()).unwrap();
+        let json = fcc_top::snapshot(watcher).unwrap();
         assert_eq!(json["tick"]["state"], "engaged");
         assert!(json["tick"]["outputs"]["power"].as_f64().unwrap() > 0.0);
         assert!(!json["events"].as_array().unwrap().is_empty());

@@ -9,7 +9,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use super::{fail, outcome};
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
-use crate::observers::{Announcer, Service, StatusLine};
+use crate::observers::{Announcer, Service, StatusLine, aircraft};
 use crate::output;
 use crate::process::Process;
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
@@ -69,7 +69,7 @@ pub(super) fn conduct(
     let mut observers = assembly.observers(config, plan.pace, recording);
     observers.push(Box::new(Announcer));
     if !quiet {
-        observers.push(Box::new(StatusLine::default()));
+        observers.push(Box::new(StatusLine::new(aircraft::describe)));
     }
     observers.push(Box::new(Service::from_environment()));
     // In lockstep printing may wait: there is no real time.

@@ -1,15 +1,15 @@
 //! Prints events as they happen.
 
+use fcc_core::framework::{Controller, EventOf};
 use fcc_flight::flight::{FlightTime, Observer, Report};
-use fcc_telemetry::FlightEvent;
 
 use crate::output;
 
 /// Prints each event and report on standard error.
 pub(crate) struct Announcer;
 
-impl Observer for Announcer {
-    fn event(&mut self, _: &FlightEvent, text: &str, at: &FlightTime) {
+impl<C: Controller> Observer<C> for Announcer {
+    fn event(&mut self, _: &EventOf<C>, text: &str, at: &FlightTime) {
         announce(text, at);
     }
 

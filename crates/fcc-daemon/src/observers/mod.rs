@@ -1,5 +1,6 @@
 //! The daemon's own observers of a flight.
 
+pub(crate) mod aircraft;
 mod announcer;
 mod service;
 mod status;
@@ -17,7 +18,7 @@ mod tests {
     #[test]
     fn every_observer_conforms_to_the_trait() {
         observer_conforms(|| Box::new(Announcer));
-        observer_conforms(|| Box::new(StatusLine::default()));
+        observer_conforms(|| Box::new(StatusLine::new(aircraft::describe)));
         observer_conforms(|| Box::new(Service::from_environment()));
     }
 }

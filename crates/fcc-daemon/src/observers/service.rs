@@ -10,10 +10,8 @@ use std::sync::mpsc::{self, SyncSender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Controller, Flags, State, StateCode};
+use fcc_core::framework::{Controller, Flags, RecordOf, State, StateCode};
 use fcc_flight::flight::{Access, FlightTime, Observer};
-use fcc_telemetry::FlightRecord;
 use sd_notify::NotifyState;
 
 /// Watchdog notifications per time-out: one or two may be late.
@@ -53,18 +51,21 @@ impl Service {
     }
 }
 
-impl Observer for Service {
-    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
-        self.newest = Some(Condition::of(record));
+impl<C: Controller> Observer<C> for Service {
+    fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
+        self.newest = Some(Condition {
+            state: record.state,
+            engage_inhibits: record.engage_inhibits,
+        });
     }
 
     /// Sends what is new; nothing if no tick came since the last call.
-    fn poll(&mut self, _: &mut Access<'_>) {
+    fn poll(&mut self, _: &mut Access<'_, C::Command>) {
         let (Some(now), Some(notifier)) = (self.newest.take(), &self.notifier) else {
             return;
         };
         if self.sent != Some(now) {
-            let text = now.description();
+            let text = now.description(C::flag_name);
             let notification = match self.sent {
                 None => Notification::Ready(text),
                 Some(_) => Notification::Status(text),
@@ -134,14 +135,7 @@ impl Notifier {
 }
 
 impl Condition {
-    fn of(record: &FlightRecord) -> Self {
-        Self {
-            state: record.state,
-            engage_inhibits: record.engage_inhibits,
-        }
-    }
-
-    fn description(self) -> String {
+    fn description(self, flag_name: fn(u32) -> &'static str) -> String {
         let mut text = self.state.to_string();
         let because = match self.state.state() {
             State::Failsafe(_) => self.state.flags(),
@@ -150,7 +144,7 @@ impl Condition {
         };
         for (n, bit) in because.iter().enumerate() {
             text.push_str(if n == 0 { ": " } else { ", " });
-            text.push_str(Autopilot::flag_name(bit));
+            text.push_str(flag_name(bit));
         }
         text
     }

@@ -3,9 +3,10 @@
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::framework::LoopCommand;
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
+use fcc_core::framework::{EventKind, LoopCommand, Message};
 use fcc_flight::config::{Config, Then};
 
 use super::assert_identical;
@@ -109,6 +110,52 @@ fn failsafe_that_ends_the_loop() {
     let (run, identity) = again(&config, &messages);
     assert_eq!(run.unflown, None);
     assert_eq!(identity.first.unwrap().field, "state.phase");
+}
+
+/// Engaging begins the pattern, a commanded heading ends it and disengaging ends
+/// guidance; each in the tick whose record has it.
+#[test]
+fn a_change_of_the_guidance_mode_is_an_event_of_its_tick() {
+    let happenings = Happenings {
+        commands: vec![
+            (400, LoopCommand::Controller(AutopilotCommand::Heading(1.0))),
+            (450, LoopCommand::Disengage),
+        ],
+        steps: 500,
+        ..Happenings::default()
+    };
+    let messages = fly(&rough(), &happenings);
+    let modes = messages.iter().filter_map(|message| match message {
+        Message::Event(event) => match event.kind {
+            EventKind::ModeChanged { .. } => Some((
+                event.tick,
+                event.kind.description::<Autopilot>().to_string(),
+            )),
+            _ => None,
+        },
+        Message::Tick(_) => None,
+    });
+    let records = records(&messages);
+    let engaged = records.iter().find(|record| record.state == Engaged);
+    let expected = [
+        (
+            engaged.unwrap().tick.number,
+            "mode: timed-pattern, was none",
+        ),
+        (400, "mode: hold, was timed-pattern"),
+        (450, "mode: none, was hold"),
+    ];
+    assert_eq!(
+        modes.collect::<Vec<_>>(),
+        expected.map(|(tick, text)| (tick, text.to_owned()))
+    );
+    let mut before = Mode::None;
+    for record in &records {
+        let mode = record.setpoints.guidance.mode;
+        let is_event = expected.iter().any(|(tick, _)| *tick == record.tick.number);
+        assert_eq!(mode != before, is_event, "tick {}", record.tick.number);
+        before = mode;
+    }
 }
 
 #[test]

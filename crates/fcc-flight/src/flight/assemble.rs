@@ -5,10 +5,14 @@ use std::sync::Arc;
 
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
+#[cfg(feature = "live")]
+use fcc_live::FlightCommand;
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
+#[cfg(feature = "live")]
+use super::commands::Commands;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::live::Live;
@@ -157,22 +161,25 @@ impl Assembly {
         config: &Config,
         pace: Pace,
         recording: Option<RecordingRequest>,
-    ) -> Vec<Box<dyn Observer>> {
-        let mut observers: Vec<Box<dyn Observer>> = Vec::new();
+    ) -> Vec<Box<dyn Observer<Autopilot>>> {
+        let mut observers: Vec<Box<dyn Observer<Autopilot>>> = Vec::new();
         if let Some(request) = self.restart.take() {
             observers.push(Box::new(RestartKeeper::new(request)));
         }
         if let Some(request) = recording {
-            observers.push(Box::new(Recording::new(request)));
+            observers.push(Box::new(Recording::<Autopilot>::new(request)));
         }
         let guidance = &self.autopilot.config().guidance;
         observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
         // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
-            observers.push(Box::new(Live::new(
+            observers.push(Box::new(Live::<Autopilot>::new(
                 config,
-                self.autopilot.config().envelope.allowed_airspeeds(),
+                Commands::new(
+                    self.autopilot.config().envelope.allowed_airspeeds(),
+                    FlightCommand::for_the_loop,
+                ),
             )));
         }
         // The last, so that it receives what the others report at their end.

@@ -4,35 +4,38 @@
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 
-use fcc_core::flight::{Autopilot, AutopilotCommand};
-use fcc_core::framework::{EventKind, LoopCommand, State};
+use fcc_core::framework::{Controller, EventKind, EventOf, LoopCommand, State};
 use fcc_live::{FlightCommand, PendingCommand, Verdict};
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightEvent, FlightRecord, describe_event};
+use fcc_telemetry::describe_event;
 
 /// Commands that were sent and whose outcome is not known yet, oldest first.
-#[derive(Debug)]
-pub(super) struct Commands {
+pub(super) struct Commands<C: Controller> {
+    /// The commands to the loop for one command from outside, in order.
+    for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
     /// The airspeeds permitted by the envelope, m/s.
     airspeeds_mps: RangeInclusive<f64>,
-    waiting: VecDeque<Waiting>,
+    waiting: VecDeque<Waiting<C::Command>>,
 }
 
-#[derive(Debug)]
-struct Waiting {
+struct Waiting<R> {
     asked: PendingCommand,
     /// The number of its parts that the loop has not read yet.
-    unread: VecDeque<LoopCommand<AutopilotCommand>>,
+    unread: VecDeque<LoopCommand<R>>,
     /// The tick that read the last of it.
     read_in: Option<u64>,
     /// Why it was refused, if it was.
     refusal: Option<String>,
 }
 
-impl Commands {
+impl<C: Controller<Command: PartialEq>> Commands<C> {
     /// Commands to an aircraft that may fly at these airspeeds, m/s.
-    pub(super) const fn new(airspeeds_mps: RangeInclusive<f64>) -> Self {
+    pub(super) const fn new(
+        airspeeds_mps: RangeInclusive<f64>,
+        for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
+    ) -> Self {
         Self {
+            for_the_loop,
             airspeeds_mps,
             waiting: VecDeque::new(),
         }
@@ -42,12 +45,12 @@ impl Commands {
     pub(super) fn send(
         &mut self,
         asked: PendingCommand,
-        to: &mut CommandSender<AutopilotCommand>,
+        to: &mut CommandSender<C::Command>,
     ) -> Option<(u64, Verdict)> {
         if let Err(outside) = asked.command.check_airspeed(&self.airspeeds_mps) {
             return Some((asked.id, Verdict::Outside(outside)));
         }
-        let unread: VecDeque<_> = asked.command.for_the_loop().into();
+        let unread: VecDeque<_> = (self.for_the_loop)(&asked.command).into();
         for command in &unread {
             if let Err(error) = to.send(*command) {
                 return Some((asked.id, Verdict::Refused(error.to_string())));
@@ -63,7 +66,7 @@ impl Commands {
     }
 
     /// Processes an event of the loop; it comes before the record of its tick.
-    pub(super) fn event(&mut self, event: &FlightEvent) {
+    pub(super) fn event(&mut self, event: &EventOf<C>) {
         match event.kind {
             // The loop reads in the order of sending, and another sender's
             // command matches none that waits here.
@@ -82,19 +85,18 @@ impl Commands {
                 for waiting in self.waiting.iter_mut().filter(|w| {
                     w.read_in == Some(event.tick) && w.asked.command == FlightCommand::Engage
                 }) {
-                    waiting.refusal = Some(describe_event::<Autopilot>(event, &[], &[]));
+                    waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
                 }
             }
             _ => {}
         }
     }
 
-    /// Processes the record of a tick; returns the next verdict that it
+    /// Processes the state after a tick; returns the next verdict that it
     /// permits. Call it again until there is none.
-    pub(super) fn verdict(&mut self, record: &FlightRecord) -> Option<(u64, Verdict)> {
+    pub(super) fn verdict(&mut self, now: u64, state: State) -> Option<(u64, Verdict)> {
         let first = self.waiting.front()?;
-        let tick = first.read_in.filter(|tick| *tick <= record.tick.number)?;
-        let state = record.state.state();
+        let tick = first.read_in.filter(|tick| *tick <= now)?;
         let waiting = self.waiting.pop_front()?;
         let done = match waiting.asked.command {
             FlightCommand::Engage | FlightCommand::Set(_) => state == State::Engaged,
@@ -123,8 +125,8 @@ impl Commands {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::flight::{Autopilot, flags};
-    use fcc_core::framework::{Controller, Event, Record, Tick, Time};
+    use fcc_core::flight::{Autopilot, AutopilotCommand, flags};
+    use fcc_core::framework::{Event, Time};
     use fcc_live::NewSetpoints;
 
     use super::*;
@@ -135,7 +137,7 @@ mod tests {
         altitude_m: Some(900.0),
     });
 
-    fn waiting(commands: &mut Commands, id: u64, command: FlightCommand) {
+    fn waiting(commands: &mut Commands<Autopilot>, id: u64, command: FlightCommand) {
         commands.waiting.push_back(Waiting {
             asked: PendingCommand { id, command },
             unread: command.for_the_loop().into(),
@@ -144,7 +146,7 @@ mod tests {
         });
     }
 
-    fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> FlightEvent {
+    fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> EventOf<Autopilot> {
         Event {
             tick,
             time: Time::NEVER,
@@ -152,36 +154,31 @@ mod tests {
         }
     }
 
-    fn record(number: u64, state: State) -> FlightRecord {
-        let tick = Tick {
-            number,
-            ..Tick::default()
-        };
-        Record::new(tick, state)
+    fn commands() -> Commands<Autopilot> {
+        Commands::new(30.0..=60.0, FlightCommand::for_the_loop)
     }
 
     #[test]
     fn a_command_is_answered_by_the_record_of_the_tick_that_read_it() {
-        let mut commands = Commands::new(30.0..=60.0);
+        let mut commands = commands();
         waiting(&mut commands, 1, FlightCommand::Engage);
-        assert_eq!(commands.verdict(&record(4, State::Standby)), None);
+        assert_eq!(commands.verdict(4, State::Standby), None);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         assert_eq!(
-            commands.verdict(&record(5, State::Engaged)),
+            commands.verdict(5, State::Engaged),
             Some((1, Verdict::CarriedOut { tick: 5 }))
         );
-        assert_eq!(commands.verdict(&record(5, State::Engaged)), None);
+        assert_eq!(commands.verdict(5, State::Engaged), None);
     }
 
     #[test]
     fn a_refusal_names_the_engage_inhibits() {
-        let mut commands = Commands::new(30.0..=60.0);
+        let mut commands = commands();
         waiting(&mut commands, 1, FlightCommand::Engage);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         let engage_inhibits = flags::TOO_SLOW;
         commands.event(&event(5, EventKind::EngageRefused { engage_inhibits }));
-        let Some((1, Verdict::Refused(words))) = commands.verdict(&record(5, State::Standby))
-        else {
+        let Some((1, Verdict::Refused(words))) = commands.verdict(5, State::Standby) else {
             panic!("not refused");
         };
         assert!(words.contains(Autopilot::flag_name(8)), "{words}");
@@ -189,7 +186,7 @@ mod tests {
 
     #[test]
     fn set_points_wait_for_the_last_of_them_and_need_an_engaged_loop() {
-        let mut commands = Commands::new(30.0..=60.0);
+        let mut commands = commands();
         waiting(&mut commands, 1, HEADING);
         waiting(&mut commands, 2, HEADING);
         let [heading, altitude] = HEADING.for_the_loop()[..] else {
@@ -201,14 +198,13 @@ mod tests {
             EventKind::CommandReceived(LoopCommand::Disengage),
         ));
         commands.event(&event(3, EventKind::CommandReceived(heading)));
-        assert_eq!(commands.verdict(&record(3, State::Engaged)), None);
+        assert_eq!(commands.verdict(3, State::Engaged), None);
         commands.event(&event(4, EventKind::CommandReceived(altitude)));
         let carried_out = Some((1, Verdict::CarriedOut { tick: 4 }));
-        assert_eq!(commands.verdict(&record(4, State::Engaged)), carried_out);
+        assert_eq!(commands.verdict(4, State::Engaged), carried_out);
         commands.event(&event(6, EventKind::CommandReceived(heading)));
         commands.event(&event(6, EventKind::CommandReceived(altitude)));
-        let Some((2, Verdict::Refused(words))) = commands.verdict(&record(6, State::Standby))
-        else {
+        let Some((2, Verdict::Refused(words))) = commands.verdict(6, State::Standby) else {
             panic!("not refused");
         };
         assert!(

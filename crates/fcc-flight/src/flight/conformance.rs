@@ -11,12 +11,11 @@ use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, AutopilotConfig};
 use fcc_core::framework::{
-    ActuatorFault, Cause, Event, EventKind, Flags, LoopCommand, Reading, Record, SensorFault,
-    State, Tick, Time,
+    ActuatorFault, Cause, Event, EventKind, Flags, LoopCommand, Reading, Record, RecordOf,
+    SensorFault, State, Tick, Time,
 };
 use fcc_record::RecorderStatus;
 use fcc_runtime::{Link, LoopConfig, Machine, Parts};
-use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::{ManualTimer, RealtimeGranted};
 
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
@@ -27,7 +26,7 @@ use super::plan::Pace;
 /// Takes an observer through every flight that the trait allows; `new` makes
 /// one for each. It may not panic, give a command that nobody gave it, report
 /// again what has not changed, or change what is not its own in the outcome.
-pub fn observer_conforms(new: impl Fn() -> Box<dyn Observer>) {
+pub fn observer_conforms(new: impl Fn() -> Box<dyn Observer<Autopilot>>) {
     for pace in [Pace::RealTime, Pace::Lockstep] {
         let mut flight = Flight::of(new());
         flight.prepare();
@@ -60,14 +59,14 @@ pub fn observer_conforms(new: impl Fn() -> Box<dyn Observer>) {
 
 /// An observer, and a loop that it observes.
 struct Flight {
-    observer: Box<dyn Observer>,
+    observer: Box<dyn Observer<Autopilot>>,
     machine: Machine<Pilot>,
     link: Link<Pilot>,
     reports: Reports,
 }
 
 impl Flight {
-    fn of(observer: Box<dyn Observer>) -> Self {
+    fn of(observer: Box<dyn Observer<Autopilot>>) -> Self {
         let timer = ManualTimer::new(Duration::from_millis(25)).expect("a period");
         let parts = Parts {
             timer: Box::new(timer),
@@ -136,7 +135,7 @@ impl Flight {
     /// What no healthy loop reports: ticks that are missing or come again,
     /// numbers that are none, events of no time.
     fn goes_wrong(&mut self) {
-        let mut record = record(u64::MAX, State::Engaged);
+        let mut record: RecordOf<Autopilot> = record(u64::MAX, State::Engaged);
         record.measurements.altitude_m = Reading::new(f64::NAN, Time::from_nanos(i64::MAX));
         record.outputs.elevator = f64::INFINITY;
         record.setpoints.heading_rad = f64::NAN;
@@ -148,7 +147,7 @@ impl Flight {
         };
         self.observer.record(&record, &at);
         self.observer
-            .record(&FlightRecord::default(), &FlightTime::default());
+            .record(&Record::default(), &FlightTime::default());
         let long = "ä".repeat(10_000);
         for event in events(0) {
             self.observer.event(&event, &long, &FlightTime::default());
@@ -215,7 +214,10 @@ impl Flight {
     }
 }
 
-fn record(number: u64, state: State) -> FlightRecord {
+fn record<M: Default, E: Default, S: Default, O: Default>(
+    number: u64,
+    state: State,
+) -> Record<M, E, S, O> {
     let time = Time::from_nanos(number.min(1 << 32) as i64 * 25_000_000);
     let tick = Tick {
         number,
@@ -226,7 +228,7 @@ fn record(number: u64, state: State) -> FlightRecord {
     Record::new(tick, state)
 }
 
-fn events(tick: u64) -> Vec<FlightEvent> {
+fn events<R: Copy>(tick: u64) -> Vec<Event<R>> {
     let state_changed = EventKind::StateChanged {
         from: State::Standby,
         to: State::Engaged,

@@ -1,6 +1,6 @@
 //! The event log of a flight, for its outcome.
 
-use fcc_telemetry::FlightEvent;
+use fcc_core::framework::{Controller, EventOf};
 
 use super::observer::{FlightTime, Observer, Report, Reports};
 use super::outcome::{EventEntry, Outcome};
@@ -25,8 +25,8 @@ impl EventLog {
     }
 }
 
-impl Observer for EventLog {
-    fn event(&mut self, _: &FlightEvent, words: &str, at: &FlightTime) {
+impl<C: Controller> Observer<C> for EventLog {
+    fn event(&mut self, _: &EventOf<C>, words: &str, at: &FlightTime) {
         self.keep(words, at);
     }
 

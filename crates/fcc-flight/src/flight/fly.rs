@@ -4,6 +4,7 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::{ControlAuthority, PlantId, State};
 use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
@@ -55,7 +56,7 @@ pub fn fly(
     assembly: Assembly,
     tick: &LoopSection,
     plan: Plan,
-    observers: Vec<Box<dyn Observer>>,
+    observers: Vec<Box<dyn Observer<Autopilot>>>,
     host: &mut dyn Host,
 ) -> Result<Outcome, FlyError> {
     let period = tick.period();
@@ -160,7 +161,7 @@ impl RealTime<'_> {
             host.last_resort(),
         )
         .map_err(FlyError::Watchdog)?;
-        let mut run_statistics = RunStatistics::new(self.period)?;
+        let mut run_statistics = RunStatistics::<Pilot>::new(self.period)?;
         let handle = self.flight_loop.spawn()?;
         let granted = handle.granted().clone();
         // Reported at once, not only at the end of a flight that may take days.

@@ -26,7 +26,7 @@ pub(super) struct Follower<'a> {
     pub(super) host: &'a mut dyn Host,
     /// Only for a loop in real time: one in lockstep returns its own
     /// statistics.
-    pub(super) run_statistics: Option<&'a mut RunStatistics>,
+    pub(super) run_statistics: Option<&'a mut RunStatistics<Pilot>>,
     pub(super) length: Length,
 }
 

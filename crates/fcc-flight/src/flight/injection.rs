@@ -168,6 +168,14 @@ impl Controller for Faulty {
         Autopilot::write_command(command, f)
     }
 
+    fn mode(&self) -> u8 {
+        self.autopilot.mode()
+    }
+
+    fn mode_name(mode: u8) -> &'static str {
+        Autopilot::mode_name(mode)
+    }
+
     fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
         self.engaged_at = tick.woke;
         self.autopilot.engage(tick, measurements);

@@ -1,10 +1,9 @@
 //! Live telemetry of a flight.
 
-use std::ops::RangeInclusive;
-
-use fcc_live::{Event, Info, Publisher, RecorderState, RecorderStatus, Text};
+use fcc_core::framework::{EventOf, RecordOf};
+use fcc_live::{Event, Info, PublisherOf, RecorderState, RecorderStatus, Text};
 use fcc_record as recording;
-use fcc_telemetry::{FlightEvent, FlightRecord, Instance};
+use fcc_telemetry::{Instance, Telemetry};
 
 use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
@@ -16,38 +15,37 @@ use crate::config::Config;
 const PUBLISHED_WITHIN_S: f64 = 2.0;
 const MOST_WAITING: usize = 2_048;
 
-/// Publishes a flight and receives commands; without effect if that is not
-/// possible.
-pub(super) struct Live {
+/// Publishes the run of a loop and receives commands; without effect if that is
+/// not possible.
+pub(super) struct Live<C: Telemetry> {
     instance: Instance,
     takes_commands: bool,
     /// The most records that wait to be published.
     waiting: usize,
-    publisher: Option<Publisher>,
-    commands: Commands,
+    publisher: Option<PublisherOf<C>>,
+    commands: Commands<C>,
 }
 
-impl Live {
-    /// Commands are limited to these airspeeds, m/s.
-    pub(super) fn new(config: &Config, airspeeds_mps: RangeInclusive<f64>) -> Self {
+impl<C: Telemetry> Live<C> {
+    pub(super) fn new(config: &Config, commands: Commands<C>) -> Self {
         Self {
             instance: config.telemetry.instance.clone(),
             takes_commands: config.telemetry.commands,
             waiting: config.tick.ticks_in(PUBLISHED_WITHIN_S, MOST_WAITING),
             publisher: None,
-            commands: Commands::new(airspeeds_mps),
+            commands,
         }
     }
 }
 
-impl Observer for Live {
+impl<C: Telemetry<Command: PartialEq>> Observer<C> for Live<C> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
         let start = if self.takes_commands {
-            Publisher::start_with_commands
+            PublisherOf::start_with_commands
         } else {
-            Publisher::start
+            PublisherOf::start
         };
         match start(&self.instance, self.waiting) {
             Ok(publisher) => self.publisher = Some(publisher),
@@ -77,16 +75,17 @@ impl Observer for Live {
         });
     }
 
-    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+    fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
         if let Some(publisher) = &mut self.publisher {
             publisher.record(record);
-            while let Some((id, verdict)) = self.commands.verdict(record) {
+            let (tick, state) = (record.tick.number, record.state.state());
+            while let Some((id, verdict)) = self.commands.verdict(tick, state) {
                 publisher.answer(id, verdict);
             }
         }
     }
 
-    fn event(&mut self, event: &FlightEvent, words: &str, _: &FlightTime) {
+    fn event(&mut self, event: &EventOf<C>, words: &str, _: &FlightTime) {
         if let Some(publisher) = &mut self.publisher {
             publisher.event(Event::new(event, words));
             self.commands.event(event);
@@ -108,7 +107,7 @@ impl Observer for Live {
 
     /// Sends other programs' commands to the loop, and publishes what was
     /// collected.
-    fn poll(&mut self, access: &mut Access<'_>) {
+    fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         let Some(publisher) = &mut self.publisher else {
             return;
         };

@@ -1,7 +1,6 @@
 //! The elapsed time of a flight, and whether it is over.
 
 use fcc_core::framework::{EventKind, Message, State};
-use fcc_telemetry::FlightMessage;
 
 use super::observer::FlightTime;
 use super::plan::Length;
@@ -17,7 +16,7 @@ pub(super) struct Monitor {
 
 impl Monitor {
     /// Processes a message of the loop; returns its time.
-    pub(super) fn take(&mut self, message: &FlightMessage) -> FlightTime {
+    pub(super) fn take<M, E, S, O, R>(&mut self, message: &Message<M, E, S, O, R>) -> FlightTime {
         match message {
             Message::Tick(record) => {
                 let woke_ns = record.tick.woke.as_nanos();

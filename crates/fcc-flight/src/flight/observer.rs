@@ -1,21 +1,21 @@
 //! The observers of a flight.
 
-use fcc_core::flight::AutopilotCommand;
+use fcc_core::framework::{Controller, EventOf, RecordOf};
 use fcc_record::RecorderStatus;
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightEvent, FlightRecord};
 use fcc_timer::RealtimeGranted;
 
 use super::outcome::Outcome;
 use super::plan::Pace;
 
-/// Observes a flight: a recorder, live telemetry, a status line, a score.
+/// Observes a run of a loop with the controller `C`, here a flight: a recorder,
+/// live telemetry, a status line, a score.
 ///
 /// Called in the thread that reads the loop's messages, never in the loop's.
 /// Observers are independent of each other: what one [reports](Reports), all
 /// others receive. The calls of a flight may be incomplete: an event before any
 /// record, reports before the beginning, an end without a record.
-pub trait Observer {
+pub trait Observer<C: Controller> {
     /// The flight is about to begin, and no loop runs yet: time-consuming
     /// preparations are done here.
     fn prepare(&mut self, _reports: &mut Reports) {}
@@ -24,17 +24,17 @@ pub trait Observer {
     fn begin(&mut self, _facts: &Facts<'_>, _reports: &mut Reports) {}
 
     /// A tick.
-    fn record(&mut self, _record: &FlightRecord, _at: &FlightTime) {}
+    fn record(&mut self, _record: &RecordOf<C>, _at: &FlightTime) {}
 
     /// An event of the loop, and its description.
-    fn event(&mut self, _event: &FlightEvent, _description: &str, _at: &FlightTime) {}
+    fn event(&mut self, _event: &EventOf<C>, _description: &str, _at: &FlightTime) {}
 
     /// Something reported from outside the loop.
     fn report(&mut self, _report: &Report, _at: &FlightTime) {}
 
     /// All available messages have been passed on; called 50 times a second,
     /// and in lockstep after each tick.
-    fn poll(&mut self, _access: &mut Access<'_>) {}
+    fn poll(&mut self, _access: &mut Access<'_, C::Command>) {}
 
     /// The loop ends, or hangs.
     fn stopping(&mut self) {}
@@ -130,9 +130,9 @@ impl Reports {
 }
 
 /// What an observer may do in addition to observing.
-pub struct Access<'a> {
+pub struct Access<'a, R> {
     /// Commands to the loop.
-    pub commands: &'a mut CommandSender<AutopilotCommand>,
+    pub commands: &'a mut CommandSender<R>,
     /// The reports.
     pub reports: &'a mut Reports,
     /// To be called directly before a command that takes control by itself.

@@ -13,14 +13,14 @@ use super::outcome::Outcome;
 
 /// All observers of a flight, each called in turn.
 pub(super) struct Observers {
-    all: Vec<Box<dyn Observer>>,
+    all: Vec<Box<dyn Observer<Autopilot>>>,
     names: Names,
     pub(super) monitor: Monitor,
     reports: Reports,
 }
 
 impl Observers {
-    pub(super) fn new(all: Vec<Box<dyn Observer>>, names: Names) -> Self {
+    pub(super) fn new(all: Vec<Box<dyn Observer<Autopilot>>>, names: Names) -> Self {
         Self {
             all,
             names,
@@ -87,7 +87,7 @@ impl Observers {
         self.each(|observer, reports| observer.end(ending, outcome, reports));
     }
 
-    fn each(&mut self, mut act: impl FnMut(&mut dyn Observer, &mut Reports)) {
+    fn each(&mut self, mut act: impl FnMut(&mut dyn Observer<Autopilot>, &mut Reports)) {
         for number in 0..self.all.len() {
             if let Some(observer) = self.all.get_mut(number) {
                 act(observer.as_mut(), &mut self.reports);
@@ -146,12 +146,15 @@ mod tests {
     use super::super::assemble::assemble;
     use super::super::conformance::observer_conforms;
     use super::super::event_log::EventLog;
-    #[cfg(feature = "live")]
-    use super::super::live::Live;
     use super::super::recording::{Recording, RecordingRequest};
     use super::super::restart::{RestartKeeper, RestartRequest};
     use super::super::scorer::Scorer;
+    #[cfg(feature = "live")]
+    use super::super::{commands::Commands, live::Live};
     use crate::config::Config;
+    use fcc_core::flight::Autopilot;
+    #[cfg(feature = "live")]
+    use fcc_live::FlightCommand;
 
     /// Files in a folder of the test's own, and a name of its own.
     fn config(folder: &tempfile::TempDir) -> Config {
@@ -180,10 +183,14 @@ mod tests {
             Box::new(Scorer::new(&guidance, None))
         });
         observer_conforms(|| {
-            Box::new(Recording::new(RecordingRequest::of(&config, None).unwrap()))
+            let request = RecordingRequest::of(&config, None).unwrap();
+            Box::new(Recording::<Autopilot>::new(request))
         });
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
-        observer_conforms(|| Box::new(Live::new(&config, 30.0..=80.0)));
+        observer_conforms(|| {
+            let commands = Commands::new(30.0..=80.0, FlightCommand::for_the_loop);
+            Box::new(Live::<Autopilot>::new(&config, commands))
+        });
     }
 }

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::Message;
-use fcc_record::{About, Notice, Realtime, Recorder, RecorderSettings, RecordingPace, repair_last};
-use fcc_telemetry::{FlightEvent, FlightRecord};
+use fcc_core::framework::{EventOf, MessageOf, RecordOf};
+use fcc_record::{
+    About, Notice, Realtime, Recorded, RecorderOf, RecorderSettings, RecordingPace, repair_last,
+};
 use fcc_timer::RealtimeGranted;
 use fcc_timer::realtime::LatencyLimit;
 use nix::sys::utsname::{UtsName, uname};
@@ -102,16 +103,16 @@ fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>
 /// The interval at which the recorder's status is reported.
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
-/// Records a flight.
-pub(super) struct Recording {
+/// Records the run of a loop.
+pub(super) struct Recording<C: Recorded> {
     settings: RecorderSettings,
     about: About,
-    recorder: Option<Recorder>,
+    recorder: Option<RecorderOf<C>>,
     /// When its status was last reported.
     reported: Instant,
 }
 
-impl Recording {
+impl<C: Recorded> Recording<C> {
     pub(super) fn new(request: RecordingRequest) -> Self {
         Self {
             settings: request.settings,
@@ -122,7 +123,7 @@ impl Recording {
     }
 }
 
-impl Observer for Recording {
+impl<C: Recorded> Observer<C> for Recording<C> {
     /// Repairs what the last flight may have left unfinished.
     fn prepare(&mut self, reports: &mut Reports) {
         match repair_last(&self.settings.folder) {
@@ -155,21 +156,21 @@ impl Observer for Recording {
             },
             ..self.settings.clone()
         };
-        match Recorder::start(about, settings) {
+        match RecorderOf::start(about, settings) {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(error) => reports.remark(format!("not recorded: no thread: {error}")),
         }
     }
 
-    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+    fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
         if let Some(recorder) = &mut self.recorder {
-            recorder.take(&Message::Tick(*record));
+            recorder.take(&MessageOf::<C>::Tick(*record));
         }
     }
 
-    fn event(&mut self, event: &FlightEvent, _: &str, _: &FlightTime) {
+    fn event(&mut self, event: &EventOf<C>, _: &str, _: &FlightTime) {
         if let Some(recorder) = &mut self.recorder {
-            recorder.take(&Message::Event(*event));
+            recorder.take(&MessageOf::<C>::Event(*event));
         }
     }
 
@@ -179,7 +180,7 @@ impl Observer for Recording {
         }
     }
 
-    fn poll(&mut self, access: &mut Access<'_>) {
+    fn poll(&mut self, access: &mut Access<'_, C::Command>) {
         let Some(recorder) = &self.recorder else {
             return;
         };

@@ -2,24 +2,23 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::{Cause, EventKind, Message, State};
+use fcc_core::framework::{Cause, Controller, EventKind, Message, MessageOf, RecordOf, State};
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{FlightMessage, FlightRecord};
 use fcc_timer::{Expiry, RealtimeGranted, TimerError, TimingStats};
 
 use super::hang::Hung;
 
 /// Collects, from the loop's messages, the statistics that the loop would
 /// return at its end: for one that hangs.
-pub(super) struct RunStatistics {
+pub(super) struct RunStatistics<C: Controller> {
     timing: TimingStats,
     ticks: u64,
     failsafes: u64,
     last_failsafe: Option<Cause>,
-    last: FlightRecord,
+    last: RecordOf<C>,
 }
 
-impl RunStatistics {
+impl<C: Controller> RunStatistics<C> {
     /// Empty statistics.
     ///
     /// # Errors
@@ -30,12 +29,12 @@ impl RunStatistics {
             ticks: 0,
             failsafes: 0,
             last_failsafe: None,
-            last: FlightRecord::default(),
+            last: RecordOf::<C>::default(),
         })
     }
 
     /// Processes a message of the loop.
-    pub(super) fn take(&mut self, message: &FlightMessage) {
+    pub(super) fn take(&mut self, message: &MessageOf<C>) {
         match message {
             Message::Tick(record) => {
                 let tick = &record.tick;
@@ -64,7 +63,7 @@ impl RunStatistics {
     }
 
     /// The last record.
-    pub(super) const fn last(&self) -> &FlightRecord {
+    pub(super) const fn last(&self) -> &RecordOf<C> {
         &self.last
     }
 

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use fcc_core::framework::Time;
 use fcc_live::{Event, Info, RecorderState, Status, WatchError, Watcher};
 use fcc_telemetry::{FlightRecord, Instance};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -14,7 +13,7 @@ use super::instance;
 use crate::arguments::within;
 use crate::errors;
 use crate::events::{PyEvent, seconds};
-use crate::structured::{self, RecordRow};
+use crate::structured::Rows;
 
 /// How often it looks while it waits.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
@@ -66,17 +65,17 @@ impl PyWatcher {
 
     /// All records that came since they were last asked for, oldest first, as
     /// a structured array (`fcc.RECORD`). 1,024 wait, then the oldest make room.
-    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<RecordRow>>> {
-        let mut rows = Vec::new();
+    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let mut rows = Rows::with_room(0);
         let read = py.detach(|| {
             let mut watcher = self.watcher();
             while let Some(record) = watcher.next_record()? {
-                rows.push(RecordRow::from(&record));
+                rows.push(&record);
             }
             Ok(())
         });
         self.must_live(py, read, rows.is_empty())?;
-        Ok(structured::records(py, rows))
+        rows.into_array(py)
     }
 
     /// All events that came since they were last asked for, oldest first.
@@ -196,9 +195,7 @@ impl PyWatcher {
 
 /// One record as numpy's scalar.
 fn row<'py>(py: Python<'py>, record: &FlightRecord) -> PyResult<Bound<'py, PyAny>> {
-    structured::records(py, vec![RecordRow::from(record)])
-        .as_any()
-        .get_item(0)
+    Rows::from_iter([record]).into_array(py)?.get_item(0)
 }
 
 fn event_of(event: &Event) -> PyEvent {

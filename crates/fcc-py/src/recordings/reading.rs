@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use fcc_core::flight::Autopilot;
 use fcc_core::framework::Message;
 use fcc_record::{About, Damage, End, Recording};
-use numpy::PyArray1;
+use fcc_telemetry::{FlightMessage, FlightRecord};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
@@ -14,7 +15,7 @@ use crate::config::{PyConfig, refused};
 use crate::errors;
 use crate::events::PyEvent;
 use crate::json;
-use crate::structured::{self, RecordRow};
+use crate::structured::Rows;
 
 /// Rows that are asked room for at most before they are there: an hour at
 /// 40 Hz. What a file says of itself is not believed further.
@@ -33,7 +34,7 @@ pub(crate) struct PyRecording {
 }
 
 struct Contents {
-    records: Py<PyArray1<RecordRow>>,
+    records: Py<PyAny>,
     events: Vec<PyEvent>,
     cut: Option<String>,
     damages: Vec<Damage>,
@@ -41,7 +42,7 @@ struct Contents {
 
 /// What is in a file.
 struct Read {
-    rows: Vec<RecordRow>,
+    rows: Rows<FlightRecord>,
     events: Vec<PyEvent>,
     cut: Option<String>,
     damages: Vec<Damage>,
@@ -65,7 +66,7 @@ impl PyRecording {
     /// name. Instants are ns on the loop's clock, the smallest number standing
     /// for never; the value beside such a time means nothing.
     #[getter]
-    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<RecordRow>>> {
+    fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(self.contents(py)?.records.bind(py).clone())
     }
 
@@ -153,7 +154,7 @@ impl PyRecording {
         self.contents.get_or_try_init(py, || {
             let read = py.detach(|| self.read())?;
             Ok(Contents {
-                records: structured::records(py, read.rows).unbind(),
+                records: read.rows.into_array(py)?.unbind(),
                 events: read.events,
                 cut: read.cut,
                 damages: read.damages,
@@ -164,17 +165,21 @@ impl PyRecording {
     fn read(&self) -> PyResult<Read> {
         let about = self.recording.about();
         let said = self.recording.end().map_or(0, |end| end.ticks);
-        let mut rows = Vec::with_capacity(said.min(ROOM) as usize);
+        let mut rows = Rows::with_room(said.min(ROOM) as usize);
         let mut events = Vec::new();
         let mut messages = self
             .recording
-            .messages::<fcc_telemetry::FlightMessage>()
+            .messages::<FlightMessage>()
             .map_err(|error| errors::RECORDING.say(error))?;
         for message in &mut messages {
             match message {
-                Message::Tick(record) => rows.push(RecordRow::from(&record)),
+                Message::Tick(record) => rows.push(&record),
                 Message::Event(event) => {
-                    events.push(PyEvent::of(&event, &about.sensors, &about.actuators));
+                    events.push(PyEvent::of::<Autopilot>(
+                        &event,
+                        &about.sensors,
+                        &about.actuators,
+                    ));
                 }
             }
         }

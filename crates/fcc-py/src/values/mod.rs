@@ -1,13 +1,19 @@
-//! The values that travel, as Python sees them: SI and radians.
+//! Structs with a schema as classes of Python: their attributes, columns and
+//! checks follow from the declaration.
 
-mod estimate;
-mod measurements;
-mod setpoints;
-mod surfaces;
-mod truth;
+#[macro_use]
+mod class;
+#[cfg(feature = "flight")]
+mod flight;
+mod shape;
 
-pub(crate) use estimate::PyEstimate;
-pub(crate) use measurements::{COLUMNS, Measured, PyMeasurements};
-pub(crate) use setpoints::PySetpoints;
-pub(crate) use surfaces::{PySurfaces, SURFACE_COLUMNS, checked_surfaces};
-pub(crate) use truth::{PyTruth, TruthRow};
+pub(crate) use class::names;
+pub use class::{
+    Attributes, Values, are_equal, from_array, from_keywords, register, to_array, written,
+};
+#[cfg(feature = "flight")]
+pub(crate) use class::{as_row, from_row};
+#[cfg(feature = "flight")]
+pub(crate) use flight::{PyEstimate, PyMeasurements, PySetpoints, PySurfaces, PyTruth, with_plant};
+pub(crate) use shape::Shape;
+pub use shape::checked;

@@ -1,17 +1,21 @@
 //! Records with arbitrary bits.
 
-use fcc_core::framework::schema::{Field, Kind, Schema, Source, Type, Value, Values};
-use fcc_core::framework::{Cause, Flags, State};
-use fcc_telemetry::FlightRecord;
+use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Source, Type, Value};
+use fcc_core::framework::{Cause, Flags, Record, State};
 use proptest::prelude::*;
 
 /// The bits of a record: comparing floats would treat -0 as 0, and NaN as
 /// different from itself.
-pub(crate) fn bits(record: &FlightRecord) -> Vec<u64> {
-    const LEAVES: usize = FlightRecord::TYPE.leaves();
-    let mut values = Values::<LEAVES>::default();
-    record.visit(&mut values);
-    values.as_slice().iter().map(|value| value.bits()).collect()
+pub(crate) fn bits(record: &impl Schema) -> Vec<u64> {
+    struct Bits(Vec<u64>);
+    impl Sink for Bits {
+        fn value(&mut self, _: &'static Field, value: Value) {
+            self.0.push(value.bits());
+        }
+    }
+    let mut bits = Bits(Vec::new());
+    record.visit(&mut bits);
+    bits.0
 }
 
 /// Numbers that file formats tend to change.
@@ -69,14 +73,16 @@ fn any_state() -> impl Strategy<Value = State> {
     ]
 }
 
-pub(crate) fn any_record() -> impl Strategy<Value = FlightRecord> {
-    let bits = proptest::collection::vec(any::<(u64, bool)>(), FlightRecord::TYPE.leaves());
+pub(crate) fn any_record<M: Schema, E: Schema, S: Schema, O: Schema>()
+-> impl Strategy<Value = Record<M, E, S, O>> {
+    let leaves = Record::<M, E, S, O>::TYPE.leaves();
+    let bits = proptest::collection::vec(any::<(u64, bool)>(), leaves);
     (bits, any_state()).prop_map(|(bits, state)| {
         let mut source = AnyBits {
             bits: bits.into_iter(),
             in_state: false,
         };
-        let mut record = FlightRecord::from_source(&mut source).unwrap();
+        let mut record = Record::from_source(&mut source).unwrap();
         record.state = state.into();
         record
     })

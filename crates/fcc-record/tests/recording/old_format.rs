@@ -30,6 +30,6 @@ fn a_recording_in_the_first_format_is_refused_with_what_to_do() {
 
     let refused = Recording::open(&path).map(drop).unwrap_err().to_string();
     assert!(refused.contains("fccd 0.0.9 wrote it"), "{refused}");
-    assert!(refused.contains("a format before fcc.v2"), "{refused}");
+    assert!(refused.contains("older than fcc.v2"), "{refused}");
     assert!(refused.contains("read it with that version"), "{refused}");
 }

@@ -8,7 +8,7 @@ use crate::RunReport;
 use crate::events::Weight;
 use crate::plot::axis::Axis;
 use crate::plot::canvas::{
-    ACTUAL, Area, Drawn, FAINT, LABEL_PX, OTHER, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
+    ACTUAL, Area, Drawn, FAINT, OTHER, SMALL_PX, Sample, WIDTH_PX, draw, legend, pen, px, text,
 };
 use crate::plot::panel::{Frame, Panel};
 use crate::plot::{Figure, PlotError};
@@ -123,7 +123,13 @@ impl Map {
             };
             panel.dot(at(place), 3.5, style)?;
         }
-        legend(area)?;
+        let entries = [
+            (Sample::Line(pen(ACTUAL, 1.4)), "engaged"),
+            (Sample::Line(pen(OTHER, 1.0)), "not engaged"),
+            (Sample::Dot(pen(ACTUAL, 1.2)), "begin"),
+            (Sample::Dot(ACTUAL.filled()), "end"),
+        ];
+        legend(area, LEFT_PX, 10.0, entries)?;
         number_states(area, report, track, &panel, at)
     }
 }
@@ -194,33 +200,5 @@ fn number_states(
             area.draw_text(&labels, &style, (px(x + 5.0), px(y - 4.0)))?;
         }
     }
-    Ok(())
-}
-
-fn legend(area: &Area<'_>) -> Drawn {
-    let y = 10.0;
-    let labels = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
-    let line = |x: f64, style: ShapeStyle| {
-        area.draw(&PathElement::new(
-            [(px(x), px(y)), (px(x + 21.0), px(y))],
-            style,
-        ))
-    };
-    line(LEFT_PX, pen(ACTUAL, 1.4))?;
-    area.draw_text("engaged", &labels, (px(LEFT_PX + 26.0), px(y)))?;
-    line(LEFT_PX + 90.0, pen(OTHER, 1.0))?;
-    area.draw_text("not engaged", &labels, (px(LEFT_PX + 116.0), px(y)))?;
-    area.draw(&Circle::new(
-        (px(LEFT_PX + 206.0), px(y)),
-        px(3.5),
-        pen(ACTUAL, 1.2),
-    ))?;
-    area.draw_text("begin", &labels, (px(LEFT_PX + 216.0), px(y)))?;
-    area.draw(&Circle::new(
-        (px(LEFT_PX + 266.0), px(y)),
-        px(3.5),
-        ACTUAL.filled(),
-    ))?;
-    area.draw_text("end", &labels, (px(LEFT_PX + 276.0), px(y)))?;
     Ok(())
 }

@@ -3,14 +3,14 @@
 
 mod ground_track;
 mod legs;
-mod scoring;
 mod track;
 
+use comfy_table::Table;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
-use fcc_telemetry::units::AVIATION;
-use fcc_telemetry::{FlightScore, ScoredBy};
+use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT};
+use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
 
 use super::plot::{Figure, PlotError};
@@ -18,7 +18,6 @@ use super::plots::{Panel, Plot, Quantities, Scale};
 use super::reported::{Addition, Reported, Terms};
 use super::{Report, RunReport, Survey};
 pub use legs::flight_table;
-use scoring::Scoring;
 use track::Track;
 
 /// The report on a flight.
@@ -38,7 +37,7 @@ pub struct FlightAddition {
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
     #[serde(skip)]
-    scoring: Option<Scoring>,
+    scorer: Option<PatternScorer>,
     #[serde(skip)]
     track: Track,
 }
@@ -47,25 +46,18 @@ impl FlightAddition {
     /// Scores the flight if `pattern` is given.
     pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
         Self {
-            scoring: pattern.map(Scoring::new),
+            scorer: pattern.map(PatternScorer::new),
             ..Self::default()
         }
     }
 }
 
 impl Addition for FlightAddition {
-    /// The pattern ends with a command.
-    fn command_received(&mut self) {
-        if let Some(scoring) = &mut self.scoring {
-            scoring.command_received();
-        }
-    }
-
     fn finish(&mut self) {
-        if let Some(scoring) = &self.scoring {
-            let (score, failed) = scoring.result();
+        if let Some(scorer) = &self.scorer {
+            let (score, failed) = scorer.result();
             self.flight = Some(score).filter(|score| !score.legs.is_empty());
-            self.not_scored = failed;
+            self.not_scored = failed.map(|error| error.to_string());
         }
         self.track.finish();
     }
@@ -99,9 +91,14 @@ impl Addition for FlightAddition {
         format!("{table}\nof {count} legs: see the page (--html) for each")
     }
 
-    fn html(&self) -> String {
-        let table = self.flight.as_ref().map(legs::html);
-        table.map(maud::PreEscaped::into_string).unwrap_or_default()
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        const CAPTION: &str = "By what was measured: time until the heading stays within 2° and \
+            the altitude within 10 ft of the set point, how far each goes past it, and the root \
+            mean square of what is left; largest errors of a whole leg.";
+        let flight = self.flight.iter();
+        flight
+            .map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)))
+            .collect()
     }
 }
 
@@ -121,8 +118,18 @@ impl Reported for Autopilot {
         if !position.is_never() {
             addition.track.push(time_s, &position.value);
         }
-        if let Some(scoring) = &mut addition.scoring {
-            scoring.take(record, time_s);
+        if let Some(scorer) = &mut addition.scorer {
+            let sample = Sample::measured(&record.measurements, time_s);
+            // The legs lie around the set points that were captured, not around
+            // the first, noisy measurement.
+            let captured = Sample {
+                heading_deg: record.setpoints.heading_rad.to_degrees(),
+                altitude_ft: record.setpoints.altitude_m * M_FT,
+                airspeed_kt: record.setpoints.airspeed_mps * MPS_KT,
+                ..sample
+            };
+            let guidance = &record.setpoints.guidance;
+            scorer.take(record.state.state(), guidance, Some(captured), Some(sample));
         }
     }
 

@@ -66,7 +66,53 @@ pub(crate) fn text_width_px(text: &str, size_px: f64) -> f64 {
     0.52 * size_px * text.chars().count() as f64
 }
 
-/// Draws a plot of this height; `label` describes it for screen readers.
+/// A colour in the notation of SVG.
+pub(crate) fn hex(RGBColor(red, green, blue): RGBColor) -> String {
+    format!("#{red:02X}{green:02X}{blue:02X}")
+}
+
+/// The symbol before a text of a legend.
+pub(crate) enum Sample {
+    /// A line.
+    Line(ShapeStyle),
+    /// A short upright line.
+    Upright(ShapeStyle),
+    /// A dot, filled or not.
+    Dot(ShapeStyle),
+    /// A tint.
+    Block(RGBColor),
+}
+
+/// Draws a legend: lines, dots and tints, in a row.
+pub(crate) fn legend<'a>(
+    area: &Area<'_>,
+    left_px: f64,
+    middle_px: f64,
+    entries: impl IntoIterator<Item = (Sample, &'a str)>,
+) -> Drawn {
+    let style = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
+    let mut left = left_px;
+    for (sample, label) in entries {
+        let at = |x: f64, y: f64| (px(left + x), px(middle_px + y));
+        match sample {
+            Sample::Line(pen) => area.draw(&PathElement::new([at(0.0, 0.0), at(21.0, 0.0)], pen)),
+            Sample::Upright(pen) => {
+                area.draw(&PathElement::new([at(12.0, -5.0), at(12.0, 5.0)], pen))
+            }
+            Sample::Dot(style) => area.draw(&Circle::new(at(12.0, 0.0), px(3.0), style)),
+            Sample::Block(tint) => area.draw(&Rectangle::new(
+                [at(5.0, -5.0), at(21.0, 5.0)],
+                tint.filled(),
+            )),
+        }?;
+        area.draw_text(label, &style, at(26.0, 0.0))?;
+        left += 42.0 + text_width_px(label, LABEL_PX);
+    }
+    Ok(())
+}
+
+/// Draws a plot of a height; `label` says to those who cannot see it what it
+/// shows.
 pub(crate) fn draw(
     height_px: f64,
     label: &str,
@@ -87,10 +133,7 @@ pub(crate) fn draw(
 /// element: megabytes for a long line.)
 fn finish(svg: &str, height_px: f64, label: &str) -> String {
     let body = svg.split_once('>').map_or("", |(_, body)| body);
-    let desired = format!(
-        "stroke=\"#{:02X}{:02X}{:02X}\"",
-        DESIRED.0, DESIRED.1, DESIRED.2
-    );
+    let desired = format!("stroke=\"{}\"", hex(DESIRED));
     let dashed = format!("{desired} stroke-dasharray=\"{} {}\"", px(5.0), px(3.0));
     let body = body
         .replace("font-family=\"sans-serif\" ", "")

@@ -9,7 +9,7 @@ use plotters::style::RGBColor;
 use super::super::RunReport;
 use super::super::plots::Curve;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
-use super::canvas::{ACTUAL, DESIRED, MEASURED, px};
+use super::canvas::{ACTUAL, DESIRED, MEASURED, hex, px};
 
 /// How a line is drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -82,22 +82,21 @@ pub(super) fn is_dense(report: &RunReport) -> bool {
 /// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// A curve as SVG; `on_sheet` converts a point to px.
+/// A curve as SVG; `on_panel` says where a point is, px.
 pub(super) fn markup(
     curve: &Curve,
     is_dense: bool,
     detail: Detail,
-    on_sheet: impl Fn(Point) -> (f64, f64),
+    on_panel: impl Fn(Point) -> (f64, f64),
 ) -> String {
     let (colour, width_px) = curve.ink.pen(is_dense);
-    let RGBColor(red, green, blue) = colour;
     let dashes = match curve.ink {
         Ink::Desired => format!(" stroke-dasharray=\"{} {}\"", px(5.0), px(3.0)),
         Ink::Measured | Ink::Actual => String::new(),
     };
     let line = |class: &str, scale: i32, trace: &Trace| {
         let grid = |point| {
-            let (x, y) = on_sheet(point);
+            let (x, y) = on_panel(point);
             (px(x * f64::from(scale)), px(y * f64::from(scale)))
         };
         let path = path(&trace.lines(), grid);
@@ -105,8 +104,9 @@ pub(super) fn markup(
             return String::new();
         }
         format!(
-            "<path{class} fill=\"none\" stroke=\"#{red:02X}{green:02X}{blue:02X}\" \
+            "<path{class} fill=\"none\" stroke=\"{}\" \
              stroke-width=\"{}\" stroke-linecap=\"round\"{dashes} d=\"{path}\"/>\n",
+            hex(colour),
             px(width_px),
         )
     };

@@ -7,7 +7,7 @@ use super::super::durations::NamedPercentiles;
 use super::Figure;
 use super::axis::Axis;
 use super::canvas::{
-    ACTUAL, Area, Drawn, LABEL_PX, PlotError, TEXT, WIDTH_PX, draw, pen, px, text, text_width_px,
+    ACTUAL, Area, Drawn, LABEL_PX, PlotError, Sample, TEXT, WIDTH_PX, draw, legend, pen, px, text,
 };
 use super::panel::{Frame, Panel};
 
@@ -51,7 +51,13 @@ pub(super) fn figure(
         for (number, row) in rows.iter().enumerate() {
             draw_row(area, &mut panel, (rows.len() - number) as f64 - 0.5, row)?;
         }
-        legend(area)
+        let entries = [
+            (Sample::Dot(ACTUAL.filled()), "median"),
+            (Sample::Line(pen(ACTUAL, 3.2)), "to p99"),
+            (Sample::Upright(pen(ACTUAL, 1.0)), "p99.9"),
+            (Sample::Dot(pen(ACTUAL, 1.0)), "largest"),
+        ];
+        legend(area, LEFT_PX, TOP_PX / 2.0 - 2.0, entries)
     })?;
     Ok(Some(Figure {
         title: title.to_owned(),
@@ -80,35 +86,6 @@ fn draw_row(area: &Area<'_>, panel: &mut Panel<'_>, y: f64, row: &NamedPercentil
     let style = text(LABEL_PX, TEXT, HPos::Right, VPos::Center);
     area.draw_text(&row.name, &style, (px(LEFT_PX - 8.0), px(middle)))?;
     Ok(())
-}
-
-fn legend(area: &Area<'_>) -> Drawn {
-    let y = TOP_PX / 2.0 - 2.0;
-    let labels = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
-    let mut x = LEFT_PX;
-    let mut label = |sample: &dyn Fn(f64) -> Drawn, name: &str| -> Drawn {
-        sample(x)?;
-        area.draw_text(name, &labels, (px(x + 22.0), px(y)))?;
-        x += 22.0 + text_width_px(name, LABEL_PX) + 18.0;
-        Ok(())
-    };
-    let dot = |x: f64, style: ShapeStyle| -> Drawn {
-        Ok(area.draw(&Circle::new((px(x + 10.0), px(y)), px(2.8), style))?)
-    };
-    let line = |x: f64, width_px: f64| -> Drawn {
-        let ends = [(px(x), px(y)), (px(x + 17.0), px(y))];
-        Ok(area.draw(&PathElement::new(ends, pen(ACTUAL, width_px)))?)
-    };
-    label(&|x| dot(x, ACTUAL.filled()), "median")?;
-    label(&|x| line(x, 3.2), "to p99")?;
-    label(
-        &|x| {
-            let ends = [(px(x + 10.0), px(y - 5.0)), (px(x + 10.0), px(y + 5.0))];
-            Ok(area.draw(&PathElement::new(ends, pen(ACTUAL, 1.0)))?)
-        },
-        "p99.9",
-    )?;
-    label(&|x| dot(x, pen(ACTUAL, 1.0)), "largest")
 }
 
 /// A power of ten of microseconds as text.

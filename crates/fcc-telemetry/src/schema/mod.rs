@@ -11,7 +11,7 @@ mod words;
 pub use columns::{Column, Leaves, columns};
 pub use layout::{layout_table, spaced};
 pub use row::{Row, header};
-pub use words::{Words, words};
+pub use words::{Words, words, write_words};
 
 /// The first paragraph of a doc comment in one line, without markup.
 pub(crate) fn meaning(lines: &str) -> String {

@@ -25,13 +25,10 @@ impl<T: Schema, const N: usize> Words<T, N> {
     /// The words of a struct.
     pub fn of(value: &T) -> Self {
         const { assert!(N == words::<T>(), "the words of the struct") };
-        let mut memory = Memory::<N> {
-            words: [0; N],
-            offset: 0,
-        };
-        value.visit(&mut memory);
+        let mut words = [0; N];
+        write_words(value, &mut words);
         Self {
-            words: memory.words,
+            words,
             of: PhantomData,
         }
     }
@@ -42,7 +39,7 @@ impl<T: Schema, const N: usize> Words<T, N> {
     /// When a value is not one of those declared.
     pub fn get(&self) -> Result<T, Unknown> {
         T::from_source(&mut Memory {
-            words: self.words,
+            words: &mut self.words.clone(),
             offset: 0,
         })
     }
@@ -53,13 +50,19 @@ impl<T: Schema, const N: usize> Words<T, N> {
     }
 }
 
-struct Memory<const N: usize> {
-    words: [u64; N],
+/// Writes a struct into words that are 0; those beyond the first
+/// [`words`] stay so.
+pub fn write_words<T: Schema>(value: &T, words: &mut [u64]) {
+    value.visit(&mut Memory { words, offset: 0 });
+}
+
+struct Memory<'a> {
+    words: &'a mut [u64],
     /// Offset of the struct being written or read.
     offset: usize,
 }
 
-impl<const N: usize> Memory<N> {
+impl Memory<'_> {
     /// The word that contains a field, and the bits before it. No field is in
     /// two words, because each is aligned to its size.
     fn place(&mut self, field: &Field) -> Option<(&mut u64, usize)> {
@@ -81,7 +84,7 @@ const fn kind(field: &Field) -> Option<Kind> {
     }
 }
 
-impl<const N: usize> Sink for Memory<N> {
+impl Sink for Memory<'_> {
     fn begin(&mut self, field: &'static Field) {
         self.offset += field.offset;
     }
@@ -105,7 +108,7 @@ impl<const N: usize> Sink for Memory<N> {
     }
 }
 
-impl<const N: usize> Source for Memory<N> {
+impl Source for Memory<'_> {
     fn begin(&mut self, field: &'static Field) {
         self.offset += field.offset;
     }

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use fcc_core::framework::{State, StateCode};
-use fcc_telemetry::FlightRecord;
 use serde_json::{Value, json};
 
+use crate::daemon::LoopRecord;
 use crate::wire::Times;
 
 /// Surfaces and throttle: datagrams of a tick without overrides.
@@ -28,12 +28,12 @@ pub(crate) struct Report {
 
 /// The figures of the ticks that steered.
 pub(crate) fn report(
-    records: &[FlightRecord],
+    records: &[LoopRecord],
     times: &Times,
     rate_hz: u32,
 ) -> Result<Report, Box<dyn Error>> {
     let engaged = StateCode::from(State::Engaged);
-    let steered: Vec<&FlightRecord> = records
+    let steered: Vec<&LoopRecord> = records
         .iter()
         .filter(|record| record.sent && record.state == engaged)
         .skip(SKIPPED_TICKS)
@@ -41,7 +41,7 @@ pub(crate) fn report(
     if steered.is_empty() {
         return Err("the autopilot never engaged: is the machine too slow, or the switch?".into());
     }
-    let stage = |name, of: fn(&FlightRecord) -> u64| Figure {
+    let stage = |name, of: fn(&LoopRecord) -> u64| Figure {
         name,
         us: steered
             .iter()

@@ -6,9 +6,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use fcc_core::framework::Message;
+use fcc_core::framework::{Message, Record};
 use fcc_record::Recording;
-use fcc_telemetry::{FlightMessage, FlightRecord};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
@@ -17,6 +16,9 @@ use crate::wire::Wire;
 
 /// How long it may take to end.
 const PATIENCE: Duration = Duration::from_secs(30);
+
+/// What the loop of any plant records: ticks, stages, states.
+pub(crate) type LoopRecord = Record<(), (), (), ()>;
 
 /// A running daemon.
 pub(crate) struct Daemon {
@@ -54,7 +56,7 @@ mode = \"hold\"\n"
     }
 
     /// Ends it and reads its recording; the simulator continues meanwhile.
-    pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<FlightRecord>, Box<dyn Error>> {
+    pub(crate) fn stop(mut self, wire: &mut Wire) -> Result<Vec<LoopRecord>, Box<dyn Error>> {
         kill(
             Pid::from_raw(self.process.id().cast_signed()),
             Signal::SIGTERM,
@@ -81,7 +83,7 @@ mode = \"hold\"\n"
             {
                 records.extend(
                     Recording::open(&path)?
-                        .messages::<FlightMessage>()?
+                        .messages::<Message<(), (), (), (), ()>>()?
                         .filter_map(|message| match message {
                             Message::Tick(record) => Some(record),
                             Message::Event(_) => None,

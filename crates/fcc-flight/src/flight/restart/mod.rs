@@ -19,9 +19,9 @@ use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{EventKind, Message, State, Switch};
+use fcc_core::framework::{EventKind, Message, Reading, State, Switch};
 use fcc_runtime::CommandSender;
-use fcc_telemetry::{FlightEvent, FlightMessage, FlightRecord};
+use fcc_telemetry::{FlightEvent, FlightMessage};
 
 use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
@@ -152,7 +152,7 @@ impl Restart {
         match message {
             Message::Event(event) => self.event(event),
             Message::Tick(record) => {
-                self.switch_on = is_on(record);
+                self.switch_on = is_on(record.measurements.engage_switch);
                 if record.state == State::Engaged {
                     self.keep(Resume {
                         progress: record.setpoints.guidance,
@@ -320,8 +320,7 @@ fn evaluate(
     (Some(Recovery::new(saved)), Some(message))
 }
 
-fn is_on(record: &FlightRecord) -> bool {
-    let switch = record.measurements.engage_switch;
+fn is_on(switch: Reading<Switch>) -> bool {
     !switch.is_never() && switch.value == Switch::On
 }
 

@@ -1,5 +1,6 @@
 //! In-flight recovery as an observer of the flight.
 
+use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::Message;
 use fcc_telemetry::{FlightEvent, FlightRecord};
 
@@ -23,7 +24,7 @@ impl RestartKeeper {
     }
 }
 
-impl Observer for RestartKeeper {
+impl Observer<Autopilot> for RestartKeeper {
     fn begin(&mut self, _: &Facts<'_>, reports: &mut Reports) {
         if let Some(request) = self.request.take() {
             let (restart, words) = Restart::begin(request);
@@ -46,7 +47,7 @@ impl Observer for RestartKeeper {
         }
     }
 
-    fn poll(&mut self, access: &mut Access<'_>) {
+    fn poll(&mut self, access: &mut Access<'_, AutopilotCommand>) {
         if let Some(restart) = &mut self.restart
             && let Some(words) = restart.poll(access.commands, &mut *access.before_control)
         {

@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::Mode;
 use fcc_core::flight::{Setpoints, Surfaces};
-use fcc_core::framework::{Event, Tick, Time};
+use fcc_core::framework::{Event, Record, Tick, Time};
 use tempfile::TempDir;
 
 use super::*;
@@ -174,13 +174,13 @@ fn event(kind: EventKind<AutopilotCommand>) -> FlightMessage {
 
 /// A tick with this state engaged.
 fn engaged(resume: &Resume) -> FlightMessage {
-    Message::Tick(FlightRecord {
+    Message::Tick(Record {
         setpoints: Setpoints {
             guidance: resume.progress,
             ..Setpoints::default()
         },
         outputs: resume.surfaces,
-        ..FlightRecord::new(Tick::default(), State::Engaged)
+        ..Record::new(Tick::default(), State::Engaged)
     })
 }
 

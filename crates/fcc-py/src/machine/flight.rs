@@ -1,0 +1,139 @@
+//! The loop of the autopilot.
+
+use std::ops::RangeInclusive;
+use std::sync::Mutex;
+
+use fcc_core::flight::{Autopilot, Surfaces};
+use fcc_core::framework::{LoopCommand, Switch};
+use fcc_flight::flight::about;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyString;
+
+use super::Lockstep;
+use crate::autopilot::checked_commands;
+use crate::config::{configuration, refused};
+use crate::values::{
+    PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
+};
+
+machine_class! {
+    /// The loop that `fccd` runs, one call a tick, on a clock that does not move
+    /// between calls.
+    ///
+    /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
+    /// it. Its aircraft is not used: the plant is in Python.
+    #[pyclass(name = "Machine", module = "fcc")]
+    struct PyMachine(Autopilot) {
+        /// The airspeeds that may be commanded.
+        airspeeds_mps: RangeInclusive<f64>,
+        /// When the next tick is due, s.
+        next_s: f64,
+    }
+    setpoints PySetpoints, estimate PyEstimate;
+
+    #[new]
+    #[pyo3(signature = (config = None))]
+    fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let parsed = configuration(config)?;
+        let autopilot = parsed.autopilot_config();
+        let period = parsed.tick.period();
+        let about = about(&parsed, Some(as_given(config)?));
+        Ok(Self {
+            airspeeds_mps: autopilot.envelope.allowed_airspeeds(),
+            lockstep: Mutex::new(Lockstep::new(
+                Autopilot::new(autopilot),
+                period,
+                &parsed.loop_config(),
+                about,
+            )?),
+            next_s: period.as_secs_f64(),
+        })
+    }
+
+    /// One tick: gives the surfaces to set, or `None` if the loop sends none,
+    /// because it does not hold the controls.
+    ///
+    /// `measurements` are those of the sensors; `None` if nothing arrives.
+    /// `missing` names the readings that do not arrive in this tick: attitude,
+    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `standing`
+    /// is the readback of the controls: throttle 0..1, elevator, aileron and
+    /// rudder -1..1, as `Surfaces` or as four numbers; `None` if the aircraft
+    /// has none. `switch` is the engage switch; `None` if there is none.
+    #[pyo3(signature = (measurements = None, *, missing = Vec::new(), standing = None,
+                        switch = None))]
+    fn step(
+        &mut self,
+        measurements: Option<&PyMeasurements>,
+        missing: Vec<String>,
+        standing: Option<&Bound<'_, PyAny>>,
+        switch: Option<bool>,
+    ) -> PyResult<Option<PySurfaces>> {
+        let missing = known_readings(missing)?;
+        let readback = standing.map(surfaces).transpose()?;
+        let switch = switch.map(|on| if on { Switch::On } else { Switch::Off });
+        let sample = measurements.map(|measurements| {
+            let sample = measurements.sample(|name| missing.iter().any(|missing| missing == name));
+            with_plant(&sample, self.next_s, readback, switch)
+        });
+        self.next_s += self.lockstep().period_s();
+        Ok(self.lockstep().step(sample).map(PySurfaces::from))
+    }
+
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
+    /// pattern.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    fn command(
+        &mut self,
+        airspeed_mps: Option<f64>,
+        heading_rad: Option<f64>,
+        altitude_m: Option<f64>,
+    ) -> PyResult<()> {
+        let allowed = self.airspeeds_mps.clone();
+        for command in checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)? {
+            self.lockstep().send(LoopCommand::Controller(command))?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses names that no reading has.
+fn known_readings(missing: Vec<String>) -> PyResult<Vec<String>> {
+    let without = PyMeasurements::WITHOUT;
+    let readings = PyMeasurements::attributes().shape.readings.iter();
+    let known: Vec<_> = readings
+        .filter(|name| !without.contains(name))
+        .copied()
+        .collect();
+    match missing.iter().find(|name| !known.contains(&name.as_str())) {
+        None => Ok(missing),
+        Some(name) => Err(PyValueError::new_err(format!(
+            "missing: there is no sensor '{name}'; choose of {}",
+            known.join(", ")
+        ))),
+    }
+}
+
+/// The readback of the controls, as `Surfaces` or as four numbers.
+fn surfaces(readback: &Bound<'_, PyAny>) -> PyResult<Surfaces> {
+    if let Ok(surfaces) = readback.cast::<PySurfaces>() {
+        return Ok((*surfaces.get()).into());
+    }
+    let (throttle, elevator, aileron, rudder) = readback.extract()?;
+    checked(Surfaces {
+        throttle,
+        elevator,
+        aileron,
+        rudder,
+    })
+}
+
+/// The text of a configuration, as a recording keeps it.
+fn as_given(config: Option<&Bound<'_, PyAny>>) -> PyResult<String> {
+    match config.map(|config| config.cast::<PyString>()) {
+        Some(Ok(text)) => Ok(text.to_str()?.to_owned()),
+        _ => configuration(config)?
+            .to_toml()
+            .map_err(|error| refused(&error)),
+    }
+}
