@@ -95,10 +95,13 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
         entry = f'[[sensor]]\nkind = "x-plane"\nsimulator = "127.0.0.1:{other.port}"\n'
         config = write_config(scratch, flown.port, others=f"{PATIENT}{entry}")
         with start(fccd, scratch, config) as daemon:
-            other.write(ENGAGE_SWITCH, 1.0)
-            engage(flown, daemon)
+            daemon.wait_until_ready()
+            for simulator in (flown, other):
+                simulator.write(ENGAGE_SWITCH, 1.0)
+            daemon.wait_for("standby -> engaged")
             preferred.close()
-            assert "airspeed" in daemon.wait_for(": from sensor 1 instead of 0")
+            while "airspeed" not in daemon.wait_for("from X-Plane 2 instead of X-Plane"):
+                pass
             for _ in range(3):
                 assert "engaged" in daemon.wait_for("heading")
             ending = daemon.end(signal.SIGTERM)

@@ -17,8 +17,8 @@ pub struct About {
     pub host: String,
     /// Its kernel: `Linux 6.18.44 #1 SMP PREEMPT_RT aarch64`.
     pub kernel: String,
-    /// The aircraft.
-    pub aircraft: String,
+    /// The plant.
+    pub plant: String,
     /// Nominal ticks per second.
     pub rate_hz: f64,
     /// The timer that woke the loop.
@@ -105,7 +105,7 @@ impl About {
             ("git_hash", self.git_hash.clone()),
             ("host", self.host.clone()),
             ("kernel", self.kernel.clone()),
-            ("aircraft", self.aircraft.clone()),
+            ("plant", self.plant.clone()),
             ("rate_hz", self.rate_hz.to_string()),
             ("timer", self.timer.clone()),
             ("sensors", self.sensors.join(SEPARATOR)),
@@ -153,7 +153,7 @@ impl About {
                 self.git_hash = text("git_hash");
                 self.host = text("host");
                 self.kernel = text("kernel");
-                self.aircraft = text("aircraft");
+                self.plant = text("plant");
                 self.rate_hz = number(&fields, "rate_hz");
                 self.timer = text("timer");
                 self.sensors = list("sensors");

@@ -50,7 +50,7 @@ pub use events::EventLine;
 pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
-pub use plot::{Figure, PlotError};
+pub use plot::Figure;
 pub use plots::{Panel, Plot, Quantities, ValueRange};
 pub use reported::{Addition, Reported, Terms};
 pub use spread::Percentiles;

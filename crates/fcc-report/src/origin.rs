@@ -13,7 +13,7 @@ pub struct Origin {
     /// Start, in UTC.
     pub started: String,
     /// The aircraft.
-    pub aircraft: String,
+    pub plant: String,
     /// The program that recorded.
     pub software: String,
     /// The commit it was built from.
@@ -45,7 +45,7 @@ impl Origin {
         Self {
             file: of_file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
             started: about.started(),
-            aircraft: about.aircraft.clone(),
+            plant: about.plant.clone(),
             software: about.software.clone(),
             git_hash: about.git_hash.clone(),
             config_sha256: about.config_sha256(),

@@ -6,7 +6,7 @@ use std::{fs, io};
 use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::plot::{Detail, Figure, Figures, PlotError, figures};
+use super::plot::{Detail, Figure, Figures, figures};
 use super::reported::Addition;
 use super::table::{markup, table, timing_columns};
 use super::text::percentiles_table;
@@ -18,11 +18,8 @@ const SCRIPT: &str = include_str!("page.js");
 
 impl<A: Addition> Report<A> {
     /// The page: HTML with all plots as SVG; a browser loads nothing else.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_html(&self) -> Result<String, PlotError> {
-        let figures = self.figures(Detail::WhenZoomed)?;
+    pub fn to_html(&self) -> String {
+        let figures = self.figures(Detail::WhenZoomed);
         let title = self.title();
         let page = html! {
             (DOCTYPE)
@@ -74,40 +71,37 @@ impl<A: Addition> Report<A> {
                 }
             }
         };
-        Ok(page.into_string())
+        page.into_string()
     }
 
     /// Each plot as an SVG file: its name, which ends in `.svg`, and its
     /// content.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_svgs(&self) -> Result<Vec<(String, String)>, PlotError> {
+    pub fn to_svgs(&self) -> Vec<(String, String)> {
         let Figures {
             timeline,
             values,
             timing,
-        } = self.figures(Detail::None)?;
+        } = self.figures(Detail::None);
         let named = |figure: Figure| {
             let name = figure.title.to_lowercase().replace([' ', '\''], "-");
             (format!("{name}.svg"), figure.svg)
         };
         let figures = timeline.into_iter().chain(values).chain(timing);
-        Ok(figures.map(named).collect())
+        figures.map(named).collect()
     }
 
-    fn figures(&self, detail: Detail) -> Result<Figures, PlotError> {
-        let mut figures = figures(&self.run, detail)?;
+    fn figures(&self, detail: Detail) -> Figures {
+        let mut figures = figures(&self.run, detail);
         if !figures.values.is_empty() {
-            figures.values.extend(self.addition.figures(&self.run)?);
+            figures.values.extend(self.addition.figures(&self.run));
         }
-        Ok(figures)
+        figures
     }
 
     /// Writes the page into a file, which must not be the recording.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
         let refused = |why: String| format!("{}: {why}", path.display());
         if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
@@ -116,21 +110,20 @@ impl<A: Addition> Report<A> {
             let why = "is the recording: give the page another name";
             return Err(refused(why.to_owned()));
         }
-        let page = self.to_html().map_err(|error| error.to_string())?;
-        fs::write(path, page).map_err(|error| refused(format!("cannot be written: {error}")))
+        fs::write(path, self.to_html())
+            .map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
     /// Writes each plot into a file in a folder, which is created if it is
     /// missing.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_svgs(&self, folder: &Path) -> Result<(), String> {
         let refused =
             |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
-        let svgs = self.to_svgs().map_err(|error| error.to_string())?;
         fs::create_dir_all(folder).map_err(refused)?;
-        for (name, svg) in svgs {
+        for (name, svg) in self.to_svgs() {
             fs::write(folder.join(name), svg).map_err(refused)?;
         }
         Ok(())
@@ -141,8 +134,8 @@ impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
         let mut title = capitalized(self.terms.run);
-        if !origin.aircraft.is_empty() {
-            title = format!("{title} of {}", origin.aircraft);
+        if !origin.plant.is_empty() {
+            title = format!("{title} of {}", origin.plant);
         }
         if !origin.started.is_empty() {
             title = format!("{title}, {}", self.started());

@@ -8,7 +8,7 @@ use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
 use super::RunReport;
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Plot, Quantities, declared};
 
 /// A controller whose recordings can be reported on. Its declared values are
@@ -51,7 +51,7 @@ pub struct Terms {
 /// Additional results for one kind of plant. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
-    /// There are no more records.
+    /// The last record was taken.
     fn finish(&mut self) {}
 
     /// Sentences for the summary.
@@ -60,11 +60,8 @@ pub trait Addition: Clone + Debug + Serialize {
     }
 
     /// Figures, below those over time.
-    ///
-    /// # Errors
-    /// When one cannot be drawn.
-    fn figures(&self, _run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        Ok(Vec::new())
+    fn figures(&self, _run: &RunReport) -> Vec<Figure> {
+        Vec::new()
     }
 
     /// Its tables as text.
@@ -72,7 +69,7 @@ pub trait Addition: Clone + Debug + Serialize {
         String::new()
     }
 
-    /// Its tables on a page, each with a title and how to read it.
+    /// Its tables for the page, each with a title and a caption.
     fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
         Vec::new()
     }

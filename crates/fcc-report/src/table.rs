@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Tables as text and HTML.
 
 use std::fmt::Write as _;
 
@@ -166,7 +166,7 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     let mut table = table(&[
         "Recording",
         "started (UTC)",
-        "aircraft",
+        "plant",
         "duration",
         "ticks",
         "worst late",
@@ -179,7 +179,7 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         table.add_row(vec![
             name.to_string_lossy().into_owned(),
             entry.started.replace('T', " ").replace('Z', ""),
-            entry.aircraft.clone(),
+            entry.plant.clone(),
             format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
@@ -207,7 +207,7 @@ mod tests {
             path: "flight.mcap".into(),
             started: "2026-11-20T04:21:33Z".to_owned(),
             part: 1,
-            aircraft: "built-in".to_owned(),
+            plant: "built-in".to_owned(),
             duration_s,
             ticks: 2_400,
             worst_lateness_us: 12.34,

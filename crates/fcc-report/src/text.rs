@@ -97,7 +97,7 @@ impl RunReport {
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            (self.terms.plant, origin.aircraft.clone()),
+            (self.terms.plant, origin.plant.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),

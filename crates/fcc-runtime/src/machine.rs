@@ -12,7 +12,6 @@ use rtrb::{Consumer, RingBuffer};
 use crate::actuators::Actuators;
 use crate::commands;
 use crate::config::{AfterFailsafe, LoopConfig, Parts};
-use crate::decide::ReleaseReport;
 use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
@@ -362,4 +361,12 @@ impl<C: Controller> Drop for Machine<C> {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// Which result of a release is reported.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ReleaseReport {
+    Always,
+    /// For repeated attempts: the failure was reported already.
+    OnSuccess,
 }

@@ -100,7 +100,7 @@ fn head_line<'a, C: Watched>(instance: &Instance, picture: &Picture<C>) -> Line<
     spans.push(
         format!(
             "{}  {} Hz  {}  {scheduling}",
-            info.aircraft, info.rate_hz, info.timer
+            info.plant, info.rate_hz, info.timer
         )
         .into(),
     );

@@ -40,7 +40,7 @@ pub fn json_of<C: Watched>(picture: &Picture<C>) -> Value {
     let record = picture.record.as_ref();
     json!({
         "software": info.software.to_string(),
-        "aircraft": info.aircraft.to_string(),
+        "plant": info.plant.to_string(),
         "process_id": info.process_id,
         "rate_hz": info.rate_hz,
         "timer": info.timer.to_string(),

@@ -18,7 +18,7 @@ fn picture() -> Picture<Autopilot> {
         timer: Text::new("timerfd"),
         policy: Text::new("SCHED_FIFO"),
         priority: 80,
-        aircraft: Text::new("built-in aircraft"),
+        plant: Text::new("built-in aircraft"),
         ..Info::default()
     });
     for (at_s, code, text) in [

@@ -14,6 +14,7 @@ mod replay;
 mod room;
 mod show;
 mod thermostat;
+mod values;
 
 use std::error::Error;
 use std::io::{self, Write};
@@ -225,7 +226,7 @@ mod tests {
 
     use super::*;
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
-    use thermostat::Heating;
+    use values::Heating;
 
     /// After one time constant a first-order room has covered 1 - 1/e of the
     /// difference.

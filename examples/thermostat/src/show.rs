@@ -53,7 +53,7 @@ pub(crate) fn publish(
     let mut publisher = PublisherOf::start(instance, WAITING).map_err(|error| error.to_string())?;
     publisher.describe(Info {
         software: Text::new(env!("CARGO_PKG_VERSION")),
-        aircraft: Text::new("room"),
+        plant: Text::new("room"),
         rate_hz: 1.0 / parts.timer.period().as_secs_f64(),
         timer: Text::new(parts.timer.name()),
         ..Info::of_this_process()
@@ -179,7 +179,7 @@ mod tests {
     fn the_screen_shows_the_room_with_its_units() {
         let mut picture = Picture::<Thermostat>::of(&Info {
             rate_hz: 40.0,
-            aircraft: Text::new("room"),
+            plant: Text::new("room"),
             ..Info::default()
         });
         heated(|message| {

@@ -21,7 +21,7 @@ fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<
     let about = About {
         software: format!("fccd {}", env!("CARGO_PKG_VERSION")),
         git_hash: "unknown".to_owned(),
-        aircraft: "built-in".to_owned(),
+        plant: "built-in".to_owned(),
         rate_hz: config.tick.rate_hz,
         timer: "manual".to_owned(),
         sensors: vec!["built-in".to_owned()],

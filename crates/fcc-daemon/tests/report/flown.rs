@@ -98,7 +98,7 @@ fn about(rate_hz: u32) -> About {
         git_hash: "0123456789ab".to_owned(),
         host: "bench".to_owned(),
         kernel: "Linux".to_owned(),
-        aircraft: "built-in".to_owned(),
+        plant: "built-in".to_owned(),
         rate_hz: f64::from(rate_hz),
         timer: "manual".to_owned(),
         sensors: vec!["built-in aircraft".to_owned()],

@@ -31,7 +31,7 @@ fn all(_: &FlightMessage) -> bool {
 }
 
 fn contains(report: &FlightReport, text: &str) -> bool {
-    report.findings.iter().any(|said| said.contains(text))
+    report.findings.iter().any(|finding| finding.contains(text))
 }
 
 /// Parses a page; it must be valid and need no other files.
@@ -115,7 +115,7 @@ fn a_flight_is_reported_as_it_was_flown() {
     assert!(worst.heading_settle_s.unwrap() < 17.5, "{worst:?}");
     assert!(worst.altitude_settle_s.unwrap() < 14.0, "{worst:?}");
 
-    let html = sound(&report.to_html().unwrap());
+    let html = sound(&report.to_html());
     assert_eq!(
         texts(&html, "figure", "h3"),
         [
@@ -157,7 +157,7 @@ fn a_gap_is_reported_and_visible() {
         &report,
         "39 ticks are missing from the file, in 1 gap, the longest of 1.00 s"
     ));
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(page.contains("records missing"));
 }
@@ -178,7 +178,7 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
         text.iter().any(|text| text.contains("failsafe")),
         "{text:?}"
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     // No line continues without measurements: ages do.
     assert!(page.contains("Ages of measurements"));
@@ -190,7 +190,7 @@ fn standby_alone_has_nothing_desired() {
     let report = report(Plan::seconds(1), all);
     assert!(contains(&report, "never engaged"));
     assert!(report.addition.flight.is_none());
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
 }
@@ -200,7 +200,7 @@ fn a_recording_without_ticks_is_reported() {
     let report =
         FlightSurvey::new(Origin::default(), FlightAddition::default()).finish(FileEnd::Unknown);
     assert!(contains(&report, "no tick"));
-    let html = sound(&report.to_html().unwrap());
+    let html = sound(&report.to_html());
     assert!(texts(&html, "body", "figure").is_empty());
     assert!(report.to_text().contains("no tick"));
 }
@@ -213,7 +213,7 @@ fn one_tick_is_a_report_too() {
     });
     assert_eq!(report.continuity.ticks, 1);
     assert!(contains(&report, "begins late, at tick 7: 6 ticks"));
-    sound(&report.to_html().unwrap());
+    sound(&report.to_html());
 }
 
 /// Each colour of a plot has another for a dark screen.
@@ -229,7 +229,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
             FlightMessage::Event(_) => true,
         },
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     let (style, plots) = page.split_once("</style>").unwrap();
     let (_, dark) = style.split_once("prefers-color-scheme: dark").unwrap();
     let mut colours = 0;
@@ -249,7 +249,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
 #[test]
 fn plots_are_svg_files() {
     let report = report(Plan::seconds(30), all);
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let names: Vec<&str> = svgs.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
@@ -294,7 +294,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
         survey.take(&FlightMessage::Tick(record)).unwrap();
     }
     let report = survey.finish(FileEnd::Unknown);
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     let paths = |class: &str| -> Vec<usize> {
         let begin = format!("<path class=\"{class}\"");
@@ -313,7 +313,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
     let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
     assert!(finer.count() >= 6, "{overview:?} {detail:?}");
     assert!(page.len() < 4_500_000, "{}", page.len());
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let mut files = svgs.iter();
     assert!(
         files.all(|(_, svg)| !svg.contains("detail")),

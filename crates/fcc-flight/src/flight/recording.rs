@@ -45,7 +45,7 @@ impl RecordingRequest {
 
 /// Facts about a flight from its configuration and its machine.
 pub fn about(config: &Config, as_given: Option<String>) -> About {
-    let aircraft = match config.aircraft() {
+    let plant = match config.aircraft() {
         Some(Aircraft::XPlane(_)) => "x-plane",
         Some(Aircraft::BuiltIn(_)) => "built-in",
         None => "none",
@@ -71,7 +71,7 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
             said(machine.as_ref().map(UtsName::machine)),
         ]
         .join(" "),
-        aircraft: aircraft.to_owned(),
+        plant: plant.to_owned(),
         rate_hz: config.tick.rate_hz,
         config_as_given: as_given,
         config: toml::to_string(config).unwrap_or_default(),

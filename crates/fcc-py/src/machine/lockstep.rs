@@ -136,7 +136,7 @@ impl<C: Recorded> Lockstep<C> {
     /// When the folder cannot be written to.
     pub fn record_to(&self, folder: PathBuf, plant: &str, ending: &str) -> PyResult<Vec<PathBuf>> {
         let about = About {
-            aircraft: plant.to_owned(),
+            plant: plant.to_owned(),
             ..self.about.clone()
         };
         let settings = RecorderSettings {

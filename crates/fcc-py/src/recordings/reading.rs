@@ -198,7 +198,7 @@ fn about<'py>(py: Python<'py>, about: &About) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("git_hash", &about.git_hash)?;
     dict.set_item("host", &about.host)?;
     dict.set_item("kernel", &about.kernel)?;
-    dict.set_item("aircraft", &about.aircraft)?;
+    dict.set_item("plant", &about.plant)?;
     dict.set_item("rate_hz", about.rate_hz)?;
     dict.set_item("timer", &about.timer)?;
     dict.set_item("sensors", &about.sensors)?;

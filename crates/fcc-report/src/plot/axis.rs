@@ -1,9 +1,5 @@
 //! Axes: their ranges, ticks and labels.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
 use super::super::trace::Trace;
 
 /// An axis: a range, ticks with their labels, and a title.
@@ -33,6 +29,17 @@ impl Axis {
         let span = (high - low).max(least_span);
         let reach = span * (0.5 + MARGIN);
         Self::exactly((middle - reach, middle + reach), count, title)
+    }
+
+    /// So many rows, without ticks.
+    pub(crate) fn rows(count: usize) -> Self {
+        Self {
+            from: 0.0,
+            to: count as f64,
+            ticks: Vec::new(),
+            light: Vec::new(),
+            title: String::new(),
+        }
     }
 
     /// From one value to another, with about `count` ticks.
@@ -85,38 +92,6 @@ impl Axis {
                 .collect(),
             title: title.to_owned(),
         }
-    }
-}
-
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        let share = (value - self.from) / (self.to - self.from);
-        from.saturating_add((share * f64::from(to - from)).round() as i32)
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() {
-            self.light.clone()
-        } else {
-            self.ticks.iter().map(|(at, _)| *at).collect()
-        }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.from..self.to
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, at: &f64) -> String {
-        self.ticks
-            .iter()
-            .find(|(tick, _)| tick == at)
-            .map(|(_, labels)| labels.clone())
-            .unwrap_or_default()
     }
 }
 

@@ -111,8 +111,7 @@ pub(crate) fn legend<'a>(
     Ok(())
 }
 
-/// Draws a plot of a height; `label` says to those who cannot see it what it
-/// shows.
+/// Draws a plot of this height; `label` describes it for screen readers.
 pub(crate) fn draw(
     height_px: f64,
     label: &str,

@@ -1,15 +1,12 @@
-//! Lines over time as SVG paths, which are much smaller than the library's
-//! polylines: thinned to the resolution of a plot, and on a page also in
-//! detail, for zooming.
+//! Lines over time as SVG paths by relative moves, which take little room: thinned to what a plot can show, and on a page also
+//! in detail, for when it is zoomed.
 
 use std::fmt::Write as _;
-
-use plotters::style::RGBColor;
 
 use super::super::RunReport;
 use super::super::plots::Curve;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
-use super::canvas::{ACTUAL, DESIRED, MEASURED, hex, px};
+use super::sheet::{ACTUAL, Colour, DESIRED, MEASURED, Sheet, px};
 
 /// How a line is drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -27,7 +24,7 @@ const DENSE_S: f64 = 600.0;
 
 impl Ink {
     /// Colour, and width in px, by whether the plot is dense.
-    pub(super) const fn pen(self, is_dense: bool) -> (RGBColor, f64) {
+    pub(super) const fn pen(self, is_dense: bool) -> (Colour, f64) {
         match (self, is_dense) {
             (Self::Measured, _) => (MEASURED, 0.6),
             (Self::Actual, false) => (ACTUAL, 1.3),
@@ -82,33 +79,31 @@ pub(super) fn is_dense(report: &RunReport) -> bool {
 /// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// A curve as SVG; `on_panel` says where a point is, px.
+/// Draws a curve; `on_panel` converts a point to px.
 pub(super) fn markup(
+    sheet: &mut Sheet,
     curve: &Curve,
     is_dense: bool,
     detail: Detail,
     on_panel: impl Fn(Point) -> (f64, f64),
-) -> String {
+) {
     let (colour, width_px) = curve.ink.pen(is_dense);
     let dashes = match curve.ink {
         Ink::Desired => format!(" stroke-dasharray=\"{} {}\"", px(5.0), px(3.0)),
         Ink::Measured | Ink::Actual => String::new(),
     };
-    let line = |class: &str, scale: i32, trace: &Trace| {
+    let mut line = |class: &str, scale: i32, trace: &Trace| {
         let grid = |point| {
             let (x, y) = on_panel(point);
             (px(x * f64::from(scale)), px(y * f64::from(scale)))
         };
-        let path = path(&trace.lines(), grid);
-        if path.is_empty() {
-            return String::new();
+        let (path, width) = (path(&trace.lines(), grid), px(width_px));
+        if !path.is_empty() {
+            sheet.raw(format_args!(
+                "<path{class} fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                 stroke-linecap=\"round\"{dashes} d=\"{path}\"/>"
+            ));
         }
-        format!(
-            "<path{class} fill=\"none\" stroke=\"{}\" \
-             stroke-width=\"{}\" stroke-linecap=\"round\"{dashes} d=\"{path}\"/>\n",
-            hex(colour),
-            px(width_px),
-        )
     };
     let overview = curve.trace.thinned(OVERVIEW_BINS);
     match detail {
@@ -117,8 +112,8 @@ pub(super) fn markup(
                 " class=\"detail\" display=\"none\" transform=\"scale({})\"",
                 1.0 / f64::from(DETAIL_PER_UNIT)
             );
-            line(" class=\"overview\"", 1, &overview)
-                + &line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins))
+            line(" class=\"overview\"", 1, &overview);
+            line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins));
         }
         _ => line("", 1, &overview),
     }

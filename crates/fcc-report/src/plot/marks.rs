@@ -1,7 +1,7 @@
 //! Events as numbered marks, as far as there is room.
 
 use super::super::events::{EventLine, Weight};
-use super::canvas::{SMALL_PX, text_width_px};
+use super::sheet::{SMALL_PX, text_width_px};
 
 /// One mark for events that are too close to be distinguished.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -7,17 +7,16 @@
 //! events numbered as in the table.
 
 pub(crate) mod axis;
-pub(crate) mod canvas;
 mod curves;
 mod marks;
 pub(crate) mod panel;
 mod percentile_ranges;
+pub(crate) mod sheet;
 mod time_figure;
 mod time_plots;
 mod timeline;
 mod timing;
 
-pub use canvas::PlotError;
 pub(crate) use curves::{Detail, Ink};
 
 use super::RunReport;
@@ -44,14 +43,14 @@ pub(super) struct Figures {
 }
 
 /// Draws all figures that have data.
-pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Figures, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Figures {
     if report.continuity.ticks == 0 {
-        return Ok(Figures::default());
+        return Figures::default();
     }
     let detail = detail.shared_by(report);
-    Ok(Figures {
-        timeline: vec![timeline::timeline(report)?],
-        values: time_plots::figures(report, detail)?,
-        timing: timing::figures(report, detail)?,
-    })
+    Figures {
+        timeline: vec![timeline::timeline(report)],
+        values: time_plots::figures(report, detail),
+        timing: timing::figures(report, detail),
+    }
 }

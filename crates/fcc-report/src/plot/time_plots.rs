@@ -4,17 +4,16 @@ use super::super::RunReport;
 use super::super::plots::{Panel, Plot, Scale};
 use super::Figure;
 use super::axis::{Axis, extent, number};
-use super::canvas::PlotError;
 use super::curves::Detail;
 use super::time_figure::{TimePanel, time_figure};
 
 /// The figures of all plots of a report.
-pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Vec<Figure>, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
     let plots = report.plots.iter();
     plots.map(|plot| figure(report, plot, detail)).collect()
 }
 
-fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Result<Figure, PlotError> {
+fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
     let panels = plot.panels.iter().map(|panel| TimePanel {
         height_px: panel.height_px,
         y: axis(panel, plot),
@@ -22,11 +21,11 @@ fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Result<Figure, Plo
     });
     let panels: Vec<_> = panels.collect();
     let label = format!("{} over time", plot.title);
-    Ok(Figure {
+    Figure {
         title: plot.title.clone(),
         caption: plot.caption.clone(),
-        svg: time_figure(report, &label, detail, &panels)?,
-    })
+        svg: time_figure(report, &label, detail, &panels),
+    }
 }
 
 fn axis(panel: &Panel, plot: &Plot) -> Axis {

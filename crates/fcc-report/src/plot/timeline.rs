@@ -1,15 +1,12 @@
 //! The timeline of a flight: its states as a bar, and events as text below it.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
 use super::super::RunReport;
 use super::super::events::EventLine;
 use super::super::states::Phase;
 use super::Figure;
 use super::axis::Axis;
-use super::canvas::{
-    Area, Drawn, FAINT, LABEL_PX, PlotError, SMALL_PX, TEXT, draw, pen, px, text, text_width_px,
+use super::sheet::{
+    Anchor, Colour, FAINT, Font, Height, LABEL_PX, SMALL_PX, Sheet, TEXT, text_width_px,
 };
 use super::time_figure::{LEFT_PX, RIGHT_PX, phase_name, time_axis, time_px};
 
@@ -24,18 +21,16 @@ const MOST_TRIED: usize = 80;
 const MOST_LETTERS: usize = 70;
 
 /// States and events over time.
-pub(super) fn timeline(report: &RunReport) -> Result<Figure, PlotError> {
+pub(super) fn timeline(report: &RunReport) -> Figure {
     let notes = place_notes(report);
     let rows = notes.iter().map(|note| note.row + 1).max().unwrap_or(0);
     let height_px = BAR_TOP_PX + BAR_PX + LEAD_PX + rows as f64 * ROW_PX + 6.0;
-    let svg = draw(height_px, "States and events over time", |area| {
-        axis(area, &time_axis(report), report)?;
-        bar(area, report)?;
-        for note in &notes {
-            note.paint(area)?;
-        }
-        Ok(())
-    })?;
+    let mut sheet = Sheet::default();
+    axis(&mut sheet, &time_axis(report), report);
+    bar(&mut sheet, report);
+    for note in &notes {
+        note.paint(&mut sheet);
+    }
     let caption = if notes.len() < report.event_count {
         format!(
             "States of the loop, and the {} most important of {} events; all are in the table.",
@@ -47,54 +42,55 @@ pub(super) fn timeline(report: &RunReport) -> Result<Figure, PlotError> {
          events."
             .to_owned()
     };
-    Ok(Figure {
+    Figure {
         title: "Timeline".to_owned(),
         caption,
-        svg,
-    })
+        svg: sheet.finish(height_px, "States and events over time", &[]),
+    }
 }
 
 /// Above the bar: the text is below it.
-fn axis(area: &Area<'_>, axis: &Axis, report: &RunReport) -> Drawn {
-    let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Bottom);
+fn axis(sheet: &mut Sheet, axis: &Axis, report: &RunReport) {
+    let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Bottom);
     for (at, label) in &axis.ticks {
-        let x = px(time_px(report, *at));
-        let tick = [(x, px(BAR_TOP_PX - 3.0)), (x, px(BAR_TOP_PX))];
-        area.draw(&PathElement::new(tick, pen(FAINT, 0.8)))?;
-        area.draw_text(label, &style, (x, px(BAR_TOP_PX - 4.0)))?;
+        let x = time_px(report, *at);
+        sheet.line(&[(x, BAR_TOP_PX - 3.0), (x, BAR_TOP_PX)], FAINT, 0.8);
+        sheet.text((x, BAR_TOP_PX - 4.0), label, font);
     }
-    let middle = px(f64::midpoint(LEFT_PX, RIGHT_PX));
-    area.draw_text(&axis.title, &style, (middle, px(BAR_TOP_PX - 19.0)))?;
-    Ok(())
+    let middle = f64::midpoint(LEFT_PX, RIGHT_PX);
+    sheet.text((middle, BAR_TOP_PX - 19.0), &axis.title, font);
 }
 
-fn bar(area: &Area<'_>, report: &RunReport) -> Drawn {
-    let (top, bottom) = (px(BAR_TOP_PX), px(BAR_TOP_PX + BAR_PX));
+fn bar(sheet: &mut Sheet, report: &RunReport) {
+    let (top, bottom) = (BAR_TOP_PX, BAR_TOP_PX + BAR_PX);
     for span in &report.states {
-        let (from, to) = (
-            time_px(report, span.from_s),
-            time_px(report, span.to_s).max(time_px(report, span.from_s) + 1.0),
-        );
-        let corners = [(px(from), top), (px(to), bottom)];
-        area.draw(&Rectangle::new(corners, ink(span.phase).filled()))?;
+        let from = time_px(report, span.from_s);
+        let to = time_px(report, span.to_s).max(from + 1.0);
+        sheet.rectangle((from, top), (to, bottom), ink(span.phase));
         let name = phase_name(span.phase);
         if text_width_px(name, LABEL_PX) + 6.0 < to - from {
-            let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Center);
-            let middle = (px(f64::midpoint(from, to)), px(BAR_TOP_PX + BAR_PX / 2.0));
-            area.draw_text(name, &style, middle)?;
+            let middle = (f64::midpoint(from, to), f64::midpoint(top, bottom));
+            let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Middle);
+            sheet.text(middle, name, font);
         }
     }
-    let corners = [(px(LEFT_PX), top), (px(RIGHT_PX), bottom)];
-    area.draw(&Rectangle::new(corners, pen(FAINT, 0.8)))?;
-    Ok(())
+    let (left, right) = (LEFT_PX, RIGHT_PX);
+    let outline = [
+        (left, top),
+        (right, top),
+        (right, bottom),
+        (left, bottom),
+        (left, top),
+    ];
+    sheet.line(&outline, FAINT, 0.8);
 }
 
-fn ink(phase: Phase) -> RGBColor {
+fn ink(phase: Phase) -> Colour {
     match phase {
-        Phase::Standby => RGBColor(232, 232, 230),
-        Phase::Engaged => RGBColor(200, 219, 238),
-        Phase::Failsafe => RGBColor(240, 160, 140),
-        Phase::Stopped => RGBColor(190, 190, 188),
+        Phase::Standby => "#E8E8E6",
+        Phase::Engaged => "#C8DBEE",
+        Phase::Failsafe => "#F0A08C",
+        Phase::Stopped => "#BEBEBC",
     }
 }
 
@@ -108,20 +104,18 @@ struct Note {
 }
 
 impl Note {
-    fn paint(&self, area: &Area<'_>) -> Drawn {
+    fn paint(&self, sheet: &mut Sheet) {
         let bar_bottom = BAR_TOP_PX + BAR_PX;
         let middle = bar_bottom + LEAD_PX + (self.row as f64 + 0.5) * ROW_PX;
-        let x = px(self.at_px);
-        let lead = [(x, px(bar_bottom)), (x, px(middle + 3.0))];
-        area.draw(&PathElement::new(lead, pen(FAINT, 0.6)))?;
-        let (at, side) = if self.left_px < self.at_px {
-            (self.right_px, HPos::Right)
+        let x = self.at_px;
+        sheet.line(&[(x, bar_bottom), (x, middle + 3.0)], FAINT, 0.6);
+        let (at, side) = if self.left_px < x {
+            (self.right_px, Anchor::End)
         } else {
-            (self.left_px, HPos::Left)
+            (self.left_px, Anchor::Start)
         };
-        let style = text(SMALL_PX, TEXT, side, VPos::Center);
-        area.draw_text(&self.label, &style, (px(at), px(middle)))?;
-        Ok(())
+        let font = Font(SMALL_PX, TEXT, side, Height::Middle);
+        sheet.text((at, middle), &self.label, font);
     }
 
     /// Whether neither the text nor the lead of one overlaps those of the

@@ -1,4 +1,4 @@
-//! One quantity over time.
+//! A panel: one quantity over time.
 
 use std::time::Duration;
 
@@ -78,7 +78,7 @@ pub(crate) struct Curve {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Role {
     Estimated,
-    /// With the place of the time it was taken, if it has one.
+    /// With the place of its time, if it has one.
     Measured(Option<usize>),
     Desired,
     Output,
