@@ -173,11 +173,16 @@ doc: $(STAMPS)/rust ## Build the API documentation
 
 # Those that no registry gets: the Python module is published as a wheel.
 PRIVATE := fcc-py pendulum thermostat bench-tick
+# Where they are built from their packages. cargo takes a package of the same
+# version for the same, so what an earlier run unpacked and built is removed.
+PACKAGED := $(TARGET)/packaged
 
 package-check: $(STAMPS)/rust $(STAMPS)/python ## Build every crate from its package, and check both Python packages (10 minutes)
-	rm -rf $(TARGET)/package/*.crate
-	cargo package --locked --allow-dirty --workspace $(addprefix --exclude ,$(PRIVATE))
-	@for crate in $(TARGET)/package/*.crate; do \
+	rm -rf $(PACKAGED)/package $(PACKAGED)/debug/.fingerprint/fcc-* \
+	    $${CARGO_HOME:-$$HOME/.cargo}/registry/src/-*/fcc-*
+	cargo package --locked --allow-dirty --target-dir $(PACKAGED) --workspace \
+	    $(addprefix --exclude ,$(PRIVATE))
+	@for crate in $(PACKAGED)/package/*.crate; do \
 	    test "$$(tar tzf $$crate | grep -c '/LICENSE-')" = 2 || { echo "$$crate lacks a licence"; exit 1; }; \
 	done
 	$(PYTHON) -m pip install --quiet 'build>=1.2' 'twine>=6.1'

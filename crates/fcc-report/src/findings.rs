@@ -1,7 +1,7 @@
 //! The summary of a recording: sentences above the tables.
 
-use super::RunReport;
 use super::origin::FileEnd;
+use super::report::RunReport;
 use super::states::{Phase, time_in};
 
 /// The sentences, the most important first.

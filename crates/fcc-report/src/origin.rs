@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use fcc_record::{About, Recording};
-use fcc_telemetry::{DeniedRequest, Realtime};
+use fcc_telemetry::Realtime;
 
 /// The origin of a recording. Unknown texts are empty.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
@@ -40,7 +40,6 @@ impl Origin {
     /// Reads the header of a recording.
     pub fn of(recording: &Recording) -> Self {
         let about: &About = recording.about();
-        let realtime = &about.realtime;
         let of_file = recording.path().file_name();
         Self {
             file: of_file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
@@ -52,33 +51,11 @@ impl Origin {
             host: about.host.clone(),
             kernel: about.kernel.clone(),
             timer: about.timer.clone(),
-            realtime: Realtime {
-                policy: realtime.policy.clone(),
-                priority: realtime.priority,
-                cpu: realtime.cpu,
-                cpu_because: realtime.cpu_because.clone(),
-                memory_locked: realtime.memory_locked,
-                stack_prefaulted: realtime.stack_prefaulted,
-                timer_slack_ns: realtime.timer_slack_ns,
-                cpu_dma_latency_us: realtime.cpu_dma_latency_us,
-                refused: realtime
-                    .refused
-                    .iter()
-                    .map(|text| from_text(text))
-                    .collect(),
-            },
+            realtime: about.realtime.clone(),
             sensors: about.sensors.clone(),
             actuators: about.actuators.clone(),
             part: about.part,
         }
-    }
-}
-
-/// A recording holds only the text.
-fn from_text(refused: &str) -> DeniedRequest {
-    DeniedRequest {
-        request: refused.to_owned(),
-        ..DeniedRequest::default()
     }
 }
 

@@ -7,10 +7,11 @@ use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Detail, Figure, Figures, figures};
+use super::report::{Report, RunReport};
 use super::reported::Addition;
 use super::table::{markup, table, timing_columns};
+use super::terms::capitalized;
 use super::text::percentiles_table;
-use super::{Report, RunReport};
 
 const STYLE: &str = include_str!("page.css");
 /// Zooms the plots; without it the page is the same, but static.
@@ -162,17 +163,6 @@ impl RunReport {
         }
         table
     }
-}
-
-/// With a capital first letter.
-pub(crate) fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    let first: String = letters
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .collect();
-    first + letters.as_str()
 }
 
 fn figure_markup(figure: &Figure) -> Markup {

@@ -7,9 +7,10 @@ use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use super::RunReport;
 use super::plot::Figure;
 use super::plots::{Plot, Quantities, declared};
+use super::report::RunReport;
+use super::terms::Terms;
 
 /// A controller whose recordings can be reported on. Its declared values are
 /// enough; an implementation may choose other plots and terms, and add results.
@@ -35,17 +36,6 @@ pub trait Reported: Telemetry + Sized {
     fn plots(of: &Quantities) -> Vec<Plot> {
         declared::<Self>(of)
     }
-}
-
-/// Terms for a recorded loop, its plant and its controller.
-#[derive(Clone, Copy, Debug)]
-pub struct Terms {
-    /// The run, such as "flight".
-    pub run: &'static str,
-    /// The plant, such as "Aircraft".
-    pub plant: &'static str,
-    /// The controller, such as "autopilot".
-    pub controller: &'static str,
 }
 
 /// Additional results for one kind of plant. Serialized, they are keys of the

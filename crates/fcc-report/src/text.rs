@@ -7,10 +7,9 @@ use fcc_telemetry::TimingReport;
 
 use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
-use super::{Report, RunReport, Timing};
+use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
-use crate::table::{figure, table};
-use crate::timing_table;
+use crate::table::{figure, table, timing_table};
 
 /// At most this many events are shown.
 const MOST_EVENTS: usize = 20;

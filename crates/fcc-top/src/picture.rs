@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use fcc_core::framework::{RecordOf, StageTimes};
 use fcc_live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, WatcherOf};
 
-use super::watched::Watched;
+use fcc_telemetry::Telemetry;
 
 /// What is known of a loop, from its live telemetry.
-pub struct Picture<C: Watched> {
+pub struct Picture<C: Telemetry> {
     pub(super) info: Info,
     /// The newest.
     pub(super) record: Option<RecordOf<C>>,
@@ -24,7 +24,7 @@ pub struct Picture<C: Watched> {
     pub(super) ended: bool,
 }
 
-impl<C: Watched> Picture<C> {
+impl<C: Telemetry> Picture<C> {
     pub(super) fn new(watcher: &WatcherOf<C>) -> Self {
         Self::of(watcher.info())
     }

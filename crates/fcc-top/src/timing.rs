@@ -10,11 +10,11 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Paragraph;
 
 use super::picture::Picture;
-use super::watched::Watched;
+use fcc_telemetry::Telemetry;
 
 /// Draws the figures of the whole run and, below them, how many ticks woke how
 /// late: both scales logarithmic, or the few late ones would not show.
-pub(super) fn draw<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
+pub(super) fn draw<C: Telemetry>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(status) = &picture.status else {
         frame.render_widget(Paragraph::new("each second; not yet"), area);
         return;
@@ -25,7 +25,7 @@ pub(super) fn draw<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Pict
     draw_histogram(frame, histogram, &status.lateness_counts);
 }
 
-fn lines<C: Watched>(status: &Status, picture: &Picture<C>) -> Vec<Line<'static>> {
+fn lines<C: Telemetry>(status: &Status, picture: &Picture<C>) -> Vec<Line<'static>> {
     let figure = |name: &'static str, ns: u64| {
         [
             format!("{name:<6}").dim(),

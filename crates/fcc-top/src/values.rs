@@ -2,6 +2,7 @@
 
 use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_core::framework::{RecordOf, State};
+use fcc_telemetry::Telemetry;
 use fcc_telemetry::schema::{Column, Leaves, columns};
 use fcc_telemetry::units::{SI, Shown};
 use ratatui::Frame;
@@ -12,14 +13,13 @@ use ratatui::widgets::Paragraph;
 use serde_json::{Map, Value as Json};
 
 use super::picture::Picture;
-use super::watched::Watched;
 
 /// Characters of a quantity's name.
 const WORDS: usize = 16;
 
 /// Draws a row for each number that is measured, estimated, desired or
 /// commanded.
-pub(super) fn draw<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
+pub(super) fn draw<C: Telemetry>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
         return;
     };
@@ -30,7 +30,7 @@ pub(super) fn draw<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Pict
 }
 
 /// The same for other tools, with the unit in each name.
-pub(super) fn json<C: Watched>(record: &RecordOf<C>) -> Map<String, Json> {
+pub(super) fn json<C: Telemetry>(record: &RecordOf<C>) -> Map<String, Json> {
     let rows = rows::<C>(record);
     let group = |of: fn(&Row) -> Option<f64>, is_output: bool| -> Json {
         let rows = rows.iter().filter(|row| row.is_output == is_output);
@@ -77,7 +77,7 @@ impl Row {
 
 /// The measured values, each with the estimate and the set point of its name,
 /// and then what has no measurement, and the outputs.
-fn rows<C: Watched>(record: &RecordOf<C>) -> Vec<Row> {
+fn rows<C: Telemetry>(record: &RecordOf<C>) -> Vec<Row> {
     let mut leaves = Leaves::default();
     leaves.take(record);
     let values = leaves.as_slice();

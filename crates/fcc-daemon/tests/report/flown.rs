@@ -7,9 +7,9 @@ use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::assemble;
-use fcc_record::{About, Realtime, Recorder, RecorderSettings, RecordingPace};
+use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_runtime::{Machine, Parts};
-use fcc_telemetry::FlightMessage;
+use fcc_telemetry::{DeniedRequest, FlightMessage, Realtime};
 use fcc_timer::ManualTimer;
 
 /// A remark at the end of a recorded flight.
@@ -105,7 +105,11 @@ fn about(rate_hz: u32) -> About {
         actuators: vec!["built-in aircraft".to_owned()],
         realtime: Realtime {
             policy: "SCHED_OTHER".to_owned(),
-            refused: vec!["SCHED_FIFO 80 was refused: give CAP_SYS_NICE".to_owned()],
+            refused: vec![DeniedRequest {
+                request: "SCHED_FIFO 80 was refused".to_owned(),
+                remedy: "give CAP_SYS_NICE".to_owned(),
+                ..DeniedRequest::default()
+            }],
             ..Realtime::default()
         },
         started_unix_ns: 1_795_148_493_000_000_000,

@@ -1,7 +1,6 @@
 //! The ground track, from measured positions.
 
 use super::track::TrackPoint;
-use crate::RunReport;
 use crate::events::Weight;
 use crate::plot::Figure;
 use crate::plot::axis::Axis;
@@ -9,6 +8,7 @@ use crate::plot::panel::{Frame, Panel};
 use crate::plot::sheet::{
     ACTUAL, Anchor, Dot, FAINT, Font, Height, OTHER, SMALL_PX, Sample, Sheet, WIDTH_PX,
 };
+use crate::report::RunReport;
 use crate::states::Phase;
 
 const LEFT_PX: f64 = 60.0;

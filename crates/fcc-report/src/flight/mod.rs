@@ -15,8 +15,10 @@ use serde::Serialize;
 
 use super::plot::Figure;
 use super::plots::{Panel, Plot, Quantities, Scale};
-use super::reported::{Addition, Reported, Terms};
-use super::{Report, RunReport, Survey};
+use super::report::{Report, RunReport};
+use super::reported::{Addition, Reported};
+use super::survey::Survey;
+use super::terms::Terms;
 pub use legs::flight_table;
 use track::Track;
 

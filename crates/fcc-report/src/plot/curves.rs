@@ -3,21 +3,10 @@
 
 use std::fmt::Write as _;
 
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
 use super::sheet::{ACTUAL, Colour, DESIRED, MEASURED, Sheet, px};
-
-/// How a line is drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Ink {
-    /// Thin and pale, behind the others.
-    Measured,
-    /// Solid.
-    Actual,
-    /// Thin and dashed.
-    Desired,
-}
 
 /// Of a recording longer than this, a thin line shows more.
 const DENSE_S: f64 = 600.0;

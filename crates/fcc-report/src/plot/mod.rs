@@ -8,6 +8,7 @@
 
 pub(crate) mod axis;
 mod curves;
+mod figure;
 mod marks;
 pub(crate) mod panel;
 mod percentile_ranges;
@@ -17,19 +18,10 @@ mod time_plots;
 mod timeline;
 mod timing;
 
-pub(crate) use curves::{Detail, Ink};
+pub(crate) use curves::Detail;
+pub use figure::Figure;
 
-use super::RunReport;
-
-/// A plot with its title and caption.
-pub struct Figure {
-    /// Title.
-    pub title: String,
-    /// How to read it.
-    pub caption: String,
-    /// The SVG.
-    pub svg: String,
-}
+use super::report::RunReport;
 
 /// The figures of a page, by section.
 #[derive(Default)]

@@ -1,8 +1,8 @@
 //! Percentiles of several durations, one row each, on one logarithmic scale.
 
 use super::super::durations::NamedPercentiles;
-use super::Figure;
 use super::axis::Axis;
+use super::figure::Figure;
 use super::panel::{Frame, Panel};
 use super::sheet::{
     ACTUAL, Anchor, Dot, Font, Height, LABEL_PX, Sample, Sheet, TEXT, WHITE, WIDTH_PX,

@@ -1,12 +1,12 @@
 //! Plots over time, one panel above another.
 
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::states::Phase;
 use super::super::trace::Point;
 use super::axis::Axis;
 
-use super::curves::{Detail, Ink, is_dense, markup};
+use super::curves::{Detail, is_dense, markup};
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
 use super::sheet::{

@@ -1,10 +1,10 @@
 //! Measurements, set points and outputs over time.
 
-use super::super::RunReport;
 use super::super::plots::{Panel, Plot, Scale};
-use super::Figure;
+use super::super::report::RunReport;
 use super::axis::{Axis, extent, number};
 use super::curves::Detail;
+use super::figure::Figure;
 use super::time_figure::{TimePanel, time_figure};
 
 /// The figures of all plots of a report.

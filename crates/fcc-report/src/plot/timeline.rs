@@ -1,10 +1,10 @@
 //! The timeline of a flight: its states as a bar, and events as text below it.
 
-use super::super::RunReport;
 use super::super::events::EventLine;
+use super::super::report::RunReport;
 use super::super::states::Phase;
-use super::Figure;
 use super::axis::Axis;
+use super::figure::Figure;
 use super::sheet::{
     Anchor, Colour, FAINT, Font, Height, LABEL_PX, SMALL_PX, Sheet, TEXT, text_width_px,
 };

@@ -2,17 +2,18 @@
 //! of a tick and the ages of measurements.
 
 use super::super::box_plot::BoxPlot;
+use super::super::report::{RunReport, Timing};
 use super::super::text::time;
-use super::super::{RunReport, Timing};
 use super::axis::{Axis, extent};
 use super::curves::Detail;
+use super::figure::Figure;
 use super::panel::{Frame, Panel};
+use super::percentile_ranges;
 use super::sheet::{
     ACTUAL, Anchor, Colour, Dot, FAINT, Font, Height, OTHER, SMALL_PX, Sheet, TEXT, WHITE,
     WIDTH_PX, text_width_px,
 };
 use super::time_figure::{TimePanel, time_figure};
-use super::{Figure, percentile_ranges};
 
 const LEFT_PX: f64 = 90.0;
 const RIGHT_PX: f64 = WIDTH_PX - 22.0;

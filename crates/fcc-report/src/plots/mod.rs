@@ -8,10 +8,9 @@ use fcc_telemetry::Telemetry;
 use fcc_telemetry::schema::{Column, columns};
 use fcc_telemetry::units::{SI, Shown};
 
-use super::page::capitalized;
-use super::plot::Ink;
+use super::terms::capitalized;
 use panel::Role;
-pub(crate) use panel::{Curve, Moment, Scale};
+pub(crate) use panel::{Curve, Ink, Moment, Scale};
 pub use panel::{Panel, ValueRange};
 
 /// Values over time in panels, one above another.

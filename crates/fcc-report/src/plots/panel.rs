@@ -8,7 +8,6 @@ use fcc_telemetry::schema::Column;
 use fcc_telemetry::units::Shown;
 use serde::Serialize;
 
-use crate::plot::Ink;
 use crate::trace::Trace;
 use crate::turns::Turns;
 
@@ -61,6 +60,17 @@ pub(crate) enum Scale {
     Percent,
     /// Around directions, with the labels of a compass.
     Compass,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Ink {
+    /// Thin and pale, behind the others.
+    Measured,
+    /// Solid.
+    Actual,
+    /// Thin and dashed.
+    Desired,
 }
 
 /// One line of a panel.
