@@ -68,11 +68,32 @@ pub(super) fn is_dense(report: &RunReport) -> bool {
 /// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// Draws a curve; `on_panel` converts a point to px.
+/// Directions of many turns within one, and the lines broken at north.
+fn folded(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
+    let mut folded: Vec<Vec<Point>> = Vec::new();
+    for line in lines {
+        let mut last: Option<f64> = None;
+        for Point { time_s, value } in line {
+            let value = value.rem_euclid(360.0);
+            let point = Point { time_s, value };
+            let continues = last.is_some_and(|last| (value - last).abs() < 180.0);
+            last = Some(value);
+            match folded.last_mut().filter(|_| continues) {
+                Some(line) => line.push(point),
+                None => folded.push(vec![point]),
+            }
+        }
+    }
+    folded
+}
+
+/// Draws a curve, of directions within one turn if they `fold`; `on_panel`
+/// converts a point to px.
 pub(super) fn markup(
     sheet: &mut Sheet,
     curve: &Curve,
     is_dense: bool,
+    fold: bool,
     detail: Detail,
     on_panel: impl Fn(Point) -> (f64, f64),
 ) {
@@ -86,7 +107,9 @@ pub(super) fn markup(
             let (x, y) = on_panel(point);
             (px(x * f64::from(scale)), px(y * f64::from(scale)))
         };
-        let (path, width) = (path(&trace.lines(), grid), px(width_px));
+        let lines = trace.lines();
+        let lines = if fold { folded(lines) } else { lines };
+        let (path, width) = (path(&lines, grid), px(width_px));
         if !path.is_empty() {
             sheet.raw(format_args!(
                 "<path{class} fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
@@ -160,6 +183,16 @@ fn number(path: &mut String, number: i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_direction_past_north_begins_a_line_in_the_next_turn() {
+        let line = [350.0, 355.0, 370.0, 380.0].map(|value| Point { time_s: 0.0, value });
+        let values: Vec<Vec<f64>> = folded(vec![line.to_vec()])
+            .iter()
+            .map(|line| line.iter().map(|point| point.value).collect())
+            .collect();
+        assert_eq!(values, [[350.0, 355.0], [10.0, 20.0]]);
+    }
 
     /// By the path grammar of SVG 1.1, section 8.3.
     #[test]

@@ -31,6 +31,8 @@ const GAP: Colour = "#FFEEAA";
 pub(super) struct TimePanel<'a> {
     pub(super) height_px: f64,
     pub(super) y: Axis,
+    /// Whether they are directions, drawn within one turn.
+    pub(super) fold: bool,
     /// Drawn in this order.
     pub(super) curves: &'a [Curve],
 }
@@ -74,7 +76,7 @@ pub(super) fn time_figure(
                     let (x, y) = axes.place((point.time_s, point.value));
                     (x - LEFT_PX, y - top)
                 };
-                markup(sheet, curve, is_dense(report), detail, on_panel);
+                markup(sheet, curve, is_dense(report), panel.fold, detail, on_panel);
             }
         });
     }

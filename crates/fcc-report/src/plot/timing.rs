@@ -49,6 +49,7 @@ fn lateness_over_time(report: &RunReport, detail: Detail) -> Figure {
     let panel = TimePanel {
         height_px: 100.0,
         y: lateness_axis(extent([&report.lateness.trace])),
+        fold: false,
         curves: std::slice::from_ref(&report.lateness),
     };
     Figure {
