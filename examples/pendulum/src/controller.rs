@@ -8,7 +8,7 @@ use fcc_core::framework::{Controller, Flags, Reading, RecordOf, Tick};
 use fcc_core::schema;
 use fcc_record::Recorded;
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Terms, words};
+use fcc_telemetry::schema::{Words, words};
 
 schema! {
     /// The measurements of a pendulum.
@@ -138,7 +138,7 @@ impl Controller for Balance {
 }
 
 impl Telemetry for Balance {
-    type Terms = Terms<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
+    type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
 }
 
 impl Recorded for Balance {

@@ -7,12 +7,12 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use fcc_record::{About, Recorded, RecorderOf, RecorderSettings, RecorderStatus, RecordingPace};
 use fcc_runtime::{Parts, RecordOf};
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Terms, words};
+use fcc_telemetry::schema::{Words, words};
 
 use crate::thermostat::{Config, Thermostat};
 
 impl Telemetry for Thermostat {
-    type Terms = Terms<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
+    type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
 }
 
 impl Recorded for Thermostat {
