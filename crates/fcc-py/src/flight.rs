@@ -12,7 +12,9 @@ use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::true_sample;
 use fcc_runtime::{Link, LoopReport, Machine, Parts};
 use fcc_sim::{SimConfig, Simulation, Truth, TruthHandle};
-use fcc_telemetry::{FlightLog, FlightMessage, FlightRecord, FlightScore, Realtime, TimingReport};
+use fcc_telemetry::{
+    FlightMessage, FlightRecord, FlightScore, PatternScorer, Realtime, TimingReport,
+};
 use fcc_timer::{ManualTimer, Timer, TimerError};
 use pyo3::exceptions::{PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
@@ -302,7 +304,7 @@ impl Flown {
         let log = self.log;
         // A leg that was not flown to its end has no figures, and the flight
         // no score.
-        let score = log.score.and_then(|score| score.score().ok());
+        let score = log.scorer.and_then(|scorer| scorer.score());
         Ok(PyFlight {
             records: log.records.into_array(py)?.unbind(),
             truth: log.truths.into_array(py)?.unbind(),
@@ -327,8 +329,7 @@ struct Log {
     records: Rows<FlightRecord>,
     truths: Rows<Truth>,
     events: Vec<PyEvent>,
-    score: Option<FlightLog>,
-    engaged: bool,
+    scorer: Option<PatternScorer>,
 }
 
 impl Log {
@@ -354,11 +355,10 @@ impl Log {
             records: Rows::with_room(room),
             truths: Rows::with_room(room),
             events: Vec::new(),
-            score: match config.autopilot_config().guidance {
-                GuidanceConfig::TimedPattern(pattern) => Some(FlightLog::new(pattern)),
+            scorer: match config.autopilot_config().guidance {
+                GuidanceConfig::TimedPattern(pattern) => Some(PatternScorer::new(pattern)),
                 GuidanceConfig::Hold => None,
             },
-            engaged: false,
         })
     }
 
@@ -370,17 +370,12 @@ impl Log {
                     self.records.push(record);
                     self.truths.push(&truth);
                 }
-                let engaged = record.state == State::Engaged;
-                if let Some(score) = &mut self.score {
-                    if engaged && !self.engaged {
-                        score.clear();
-                    }
-                    if engaged {
-                        let now_s = record.tick.number as f64 * self.period_s;
-                        score.push(true_sample(now_s, &truth));
-                    }
+                if let Some(scorer) = &mut self.scorer {
+                    let now_s = record.tick.number as f64 * self.period_s;
+                    let sample = Some(true_sample(now_s, &truth));
+                    let guidance = &record.setpoints.guidance;
+                    scorer.take(record.state.state(), guidance, sample, sample);
                 }
-                self.engaged = engaged;
             }
             Message::Event(event) => {
                 self.events.push(PyEvent::of::<Autopilot>(
