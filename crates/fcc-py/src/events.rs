@@ -38,12 +38,17 @@ impl PyEvent {
         sensors: &[String],
         actuators: &[String],
     ) -> Self {
+        Self::described::<C>(event, describe_event::<C>(event, sensors, actuators))
+    }
+
+    /// An event with its description.
+    pub(crate) fn described<C: Controller>(event: &EventOf<C>, text: String) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(&event.kind),
-            text: describe_event::<C>(event, sensors, actuators),
+            text,
         }
     }
 }

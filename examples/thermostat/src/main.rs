@@ -198,6 +198,9 @@ fn receive(
         }
     }
     if let Some(publisher) = publisher {
+        if let Some(recorder) = recorder {
+            publisher.recorder(show::recorder(&recorder.status()));
+        }
         publisher.flush();
     }
     last
