@@ -49,7 +49,7 @@ pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
 pub use plot::Figure;
-pub use plots::{Panel, Plot, Quantities, ValueRange};
+pub use plots::{Panel, Plot, Quantities, Scale, ValueRange};
 pub use report::{Report, RunReport, Timing};
 pub use reported::{Addition, Reported};
 pub use spread::Percentiles;

@@ -10,15 +10,18 @@ use fcc_telemetry::units::{SI, Shown};
 
 use super::terms::capitalized;
 use panel::Role;
-pub(crate) use panel::{Curve, Ink, Moment, Scale};
-pub use panel::{Panel, ValueRange};
+pub(crate) use panel::{Curve, Ink, Moment};
+pub use panel::{Panel, Scale, ValueRange};
 
 /// Values over time in panels, one above another.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    pub(crate) title: String,
-    pub(crate) caption: String,
-    pub(crate) panels: Vec<Panel>,
+    /// What it shows.
+    pub title: String,
+    /// How to read it.
+    pub caption: String,
+    /// From the top.
+    pub panels: Vec<Panel>,
 }
 
 /// The values of a record, by name.
@@ -53,7 +56,7 @@ impl Quantities {
     }
 
     /// Measurement, estimate and set point of this name.
-    pub(crate) fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
+    pub fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
         let measured = self.find("measurements", name);
         let estimated = self.find("estimate", name);
         let desired = self.find("setpoints", name);
@@ -76,8 +79,8 @@ impl Quantities {
         Panel::of(name, column.map(|(_, column)| column), units, curves)
     }
 
-    /// An output.
-    pub(crate) fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
+    /// An output, as `units` have it.
+    pub fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
         let output = self.find("outputs", name);
         let curve = |(value, _)| Curve::new(Ink::Actual, "commanded", Role::Output, value);
         let curves = output.map(curve).into_iter().collect();

@@ -51,7 +51,7 @@ pub struct ValueRange {
 
 /// The vertical axis of a panel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Scale {
+pub enum Scale {
     /// Around the values, at least this long.
     Around(f64),
     /// Around the values, the same for all such panels of a plot.
@@ -116,10 +116,10 @@ impl Panel {
             quantity: unit::of(name).quantity.replace('_', " "),
             shown_in,
             height_px: 120.0,
-            scale: Scale::Around(
-                span.filter(|span| span.is_finite())
-                    .map_or(1e-3, |s| s / 10.0),
-            ),
+            scale: match (shown_in, range) {
+                ("%", Some((0.0, _))) => Scale::Percent,
+                _ => Scale::Around(span.filter(|s| s.is_finite()).map_or(1e-3, |s| s / 10.0)),
+            },
             curves,
             factor,
             wraps: shown_in == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
@@ -151,24 +151,29 @@ impl Panel {
     }
 
     /// The same with another name.
-    pub(crate) fn called(mut self, quantity: &str) -> Self {
+    #[must_use]
+    pub fn called(mut self, quantity: &str) -> Self {
         quantity.clone_into(&mut self.quantity);
         self
     }
 
     /// The same in the record's own unit, a fraction of 1.
-    pub(crate) fn unscaled(mut self) -> Self {
+    #[must_use]
+    pub fn unscaled(mut self) -> Self {
         (self.shown_in, self.factor) = ("", 1.0);
         self
     }
 
-    pub(crate) fn sized(mut self, height_px: f64, scale: Scale) -> Self {
+    /// The same with a height, px, and a vertical axis.
+    #[must_use]
+    pub fn sized(mut self, height_px: f64, scale: Scale) -> Self {
         (self.height_px, self.scale) = (height_px, scale);
         self
     }
 
     /// Draws the set point in failsafe, too.
-    pub(crate) fn followed_in_failsafe(mut self) -> Self {
+    #[must_use]
+    pub fn followed_in_failsafe(mut self) -> Self {
         self.in_failsafe = true;
         self
     }
