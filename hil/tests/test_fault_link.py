@@ -118,7 +118,8 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
             daemon.wait_for("altitude: from X-Plane 2 instead of X-Plane")
             assert "engaged" in daemon.wait_for("heading")
             preferred.close()
-            daemon.wait_for("from X-Plane 2 instead of X-Plane")
+            while "airspeed" not in daemon.wait_for("from X-Plane 2 instead of X-Plane"):
+                pass
             for _ in range(3):
                 assert "engaged" in daemon.wait_for("heading")
             ending = daemon.end(signal.SIGTERM)

@@ -124,7 +124,7 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     assert sum(message.topic == RECORD for message in messages) == 81
     assert sum(message.topic == EVENT for message in messages) == 1
     log = metadata(files[0])
-    assert log["fcc.recording"]["aircraft"] == "a Cessna"
+    assert log["fcc.recording"]["plant"] == "a Cessna"
     assert log["fcc.end"]["ending"] == "enough"
 
 

@@ -33,7 +33,7 @@ pub enum EventCode {
     /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
     StateChanged = 1,
     /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
-    Ordered = 2,
+    CommandReceived = 2,
     /// Engaging was refused (the engage inhibits).
     EngageRefused = 3,
     /// A sensor failed.
@@ -69,6 +69,9 @@ pub enum EventCode {
     /// Readings are taken from another sensor than before (which, one bit each;
     /// the sensor before); the index is the sensor now.
     SourceChanged = 17,
+    /// The controller's mode changed (mode before, mode now). An autopilot's: 0
+    /// none, 1 hold, 2 timed pattern.
+    ModeChanged = 18,
 }
 
 impl Event {
@@ -115,7 +118,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
                 LoopCommand::Stop => 2,
                 LoopCommand::Controller(_) => 3,
             };
-            (EventCode::Ordered, 0, [which, 0, 0])
+            (EventCode::CommandReceived, 0, [which, 0, 0])
         }
         EventKind::EngageRefused { engage_inhibits } => (
             EventCode::EngageRefused,
@@ -156,6 +159,9 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         EventKind::SourceChanged(change) => {
             let values = [change.readings.bits().into(), change.from.into(), 0];
             (EventCode::SourceChanged, change.to.into(), values)
+        }
+        EventKind::ModeChanged { from, to } => {
+            (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
         }
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),

@@ -43,8 +43,8 @@ pub struct Info {
     pub timer: Text<16>,
     /// Scheduling policy of the loop's thread: `SCHED_FIFO`, `SCHED_OTHER`.
     pub policy: Text<16>,
-    /// The name of the aircraft.
-    pub aircraft: Text<64>,
+    /// The name of the plant.
+    pub plant: Text<64>,
     /// The denied requests, as text.
     pub refusals: Text<280>,
 }
@@ -68,7 +68,7 @@ impl Default for Info {
             commit: Text::default(),
             timer: Text::default(),
             policy: Text::default(),
-            aircraft: Text::default(),
+            plant: Text::default(),
             refusals: Text::default(),
         }
     }

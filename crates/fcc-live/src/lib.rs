@@ -24,6 +24,7 @@ mod command;
 mod error;
 mod event;
 mod info;
+mod item;
 mod lateness;
 mod place;
 mod publisher;

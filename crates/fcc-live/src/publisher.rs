@@ -10,6 +10,7 @@ use fcc_core::framework::RecordOf;
 use rtrb::{Producer, RingBuffer};
 
 use super::command::{CommandServer, Ends, PendingCommand, Verdict};
+use super::item::Item;
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
 use fcc_telemetry::{Instance, Telemetry};
@@ -17,25 +18,6 @@ use fcc_telemetry::{Instance, Telemetry};
 /// How long the start and the end of publishing may take. A flight waits no
 /// longer.
 const PATIENCE: Duration = Duration::from_secs(2);
-
-/// Input of the publishing thread: plain data of a fixed size, which another
-/// process could take as well.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are records, and the ring's slots have their size"
-)]
-pub(super) enum Item<C: Telemetry> {
-    /// A tick.
-    Record(RecordOf<C>),
-    /// An event.
-    Event(Event),
-    /// The publishing daemon; again if it changes.
-    Info(Info),
-    /// The state of recording.
-    Recorder(RecorderStatus),
-}
 
 /// Publishes a flight.
 #[cfg(feature = "flight")]

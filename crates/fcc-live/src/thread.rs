@@ -11,8 +11,8 @@ use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
 use super::command::{CommandServer, Rings};
+use super::item::Item;
 use super::lateness::Lateness;
-use super::publisher::Item;
 use super::record::Published;
 use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;

@@ -93,7 +93,7 @@ fn info() {
         commit: "char[48]", "the commit it was built from; empty if unknown";
         timer: "char[16]", "timerfd, posix or nanosleep";
         policy: "char[16]", "scheduling of the loop's thread";
-        aircraft: "char[64]", "name of the aircraft";
+        plant: "char[64]", "name of the plant";
         refusals: "char[280]", "the denied requests, as text";
     ));
 }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 /// of thing it was, and in words.
 #[pyclass(name = "Event", module = "fcc", frozen, get_all)]
 #[derive(Clone)]
-pub(crate) struct PyEvent {
+pub struct PyEvent {
     pub(crate) tick: u64,
     pub(crate) time_s: f64,
     pub(crate) time_ns: Option<i64>,
@@ -38,18 +38,23 @@ impl PyEvent {
         sensors: &[String],
         actuators: &[String],
     ) -> Self {
+        Self::described::<C>(event, describe_event::<C>(event, sensors, actuators))
+    }
+
+    /// An event with its description.
+    pub(crate) fn described<C: Controller>(event: &EventOf<C>, text: String) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(&event.kind),
-            text: describe_event::<C>(event, sensors, actuators),
+            text,
         }
     }
 }
 
 /// An instant in s on the loop's clock; 0 for never.
-pub(crate) fn seconds(time: Time) -> f64 {
+pub fn seconds(time: Time) -> f64 {
     time.as_nanos().max(0) as f64 * 1e-9
 }
 
@@ -73,6 +78,7 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::OverrunsOver { .. } => "overruns-over",
         EventKind::Hung { .. } => "hung",
         EventKind::SourceChanged(_) => "source-changed",
+        EventKind::ModeChanged { .. } => "mode-changed",
         _ => "other",
     }
 }

@@ -1,116 +1,62 @@
-//! The Python module `fcc`: what the flight control computer computes, records
-//! and tells, for tests and experiments.
+//! The Python module `fcc`: what the flight control computer computes and
+//! records, for tests and experiments.
 //!
 //! | module | what Python gets |
 //! |---|---|
 //! | `autopilot`, `fleet` | the autopilot stepped by hand; many of them together |
-//! | `machine` | the daemon's loop, a call a tick, around a plant of one's own |
-//! | `flight`, `guests` | a whole flight of the built-in aircraft in one call, with Python in the loop if it must be |
+//! | `machine` | the daemon's loop, one call a tick, around a plant in Python: for the autopilot, and for any controller whose types have a schema |
+//! | `flight`, `callbacks` | a whole flight of the built-in aircraft in one call, with sensors or a controller in Python |
 //! | `aircraft` | the built-in aircraft alone |
 //! | `config` | configurations, by key |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
 //! | `timers` | the kernel's timers |
 //! | `recordings` | recordings as numpy arrays; list, recover, report, replay |
 //! | `live` | a running daemon, watched and given commands |
-//! | `values`, `structured`, `events`, `errors`, `arguments`, `json` | what they all speak with |
+//! | `values`, `structured` | structs with a schema as classes and as structured arrays |
+//! | `events`, `errors`, `arguments`, `json` | events, exceptions, checks, dicts |
 //!
-//! Nothing here computes anything of its own: each call hands on to the crate
-//! that the daemon uses.
+//! Nothing is computed here: each call goes to the crate that the daemon uses.
+//! Without the feature `flight` only what the loop of any controller needs is
+//! compiled: `examples/pendulum` is a module of its own on it.
 
+#![cfg_attr(
+    not(feature = "flight"),
+    allow(dead_code, reason = "the aircraft uses more of it than other plants")
+)]
+
+#[cfg(feature = "flight")]
 mod aircraft;
 mod arguments;
+#[cfg(feature = "flight")]
 mod autopilot;
+#[cfg(feature = "flight")]
 mod blocks;
+#[cfg(feature = "flight")]
 mod callbacks;
+#[cfg(feature = "flight")]
 mod config;
 mod errors;
-mod events;
+pub mod events;
+#[cfg(feature = "flight")]
 mod fleet;
+#[cfg(feature = "flight")]
 mod flight;
+#[cfg(feature = "flight")]
 mod formulas;
 mod json;
 #[cfg(feature = "live")]
 mod live;
 #[macro_use]
-mod machine;
+pub mod machine;
+#[cfg(feature = "flight")]
 mod recordings;
+#[cfg(feature = "flight")]
 mod stepped;
-mod structured;
+pub mod structured;
+#[cfg(feature = "flight")]
 mod timers;
 #[macro_use]
-mod values;
+pub mod values;
 
-use fcc_sim::Truth;
-use fcc_telemetry::FlightRecord;
-use pyo3::prelude::*;
-use pyo3::types::PyTuple;
-
-/// The flight control computer: its autopilot and aircraft in lockstep, its
-/// recordings, a running daemon. SI and radians throughout.
-#[pymodule]
-fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    let py = module.py();
-    errors::register(module)?;
-
-    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("MEASUREMENTS", columns::<values::PyMeasurements>(py)?)?;
-    module.add("SURFACES", columns::<values::PySurfaces>(py)?)?;
-    module.add("TRUTH", columns::<values::PyTruth>(py)?)?;
-    module.add(
-        "STATES",
-        PyTuple::new(py, ["standby", "engaged", "failsafe", "stopped"])?,
-    )?;
-    module.add("RECORD", structured::dtype::<FlightRecord>(py)?)?;
-    module.add("TRUTH_RECORD", structured::dtype::<Truth>(py)?)?;
-
-    values::register::<values::PyMeasurements>(module)?;
-    values::register::<values::PySurfaces>(module)?;
-    values::register::<values::PySetpoints>(module)?;
-    values::register::<values::PyEstimate>(module)?;
-    values::register::<values::PyTruth>(module)?;
-    module.add_class::<events::PyEvent>()?;
-    module.add_class::<config::PyConfig>()?;
-    module.add_class::<autopilot::PyAutopilot>()?;
-    module.add_class::<fleet::PyFleet>()?;
-    module.add_class::<machine::PyMachine>()?;
-    module.add_class::<aircraft::PyAircraft>()?;
-    module.add_class::<flight::PyFlight>()?;
-    module.add_function(wrap_pyfunction!(flight::fly, module)?)?;
-
-    module.add_class::<blocks::PyPid>()?;
-    module.add_class::<blocks::PyLowPass>()?;
-    module.add_class::<blocks::PyHighPass>()?;
-    module.add_class::<blocks::PyRateLimit>()?;
-    module.add_class::<blocks::PyComplementary>()?;
-    module.add_class::<blocks::PySquareRootProfile>()?;
-    module.add_function(wrap_pyfunction!(formulas::pressure_pa, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::pressure_altitude_m, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::density_ratio, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::true_airspeed_mps, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::wrap_pi, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::wrap_two_pi, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::quaternion_from_euler, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::euler_from_quaternion, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::body_to_earth, module)?)?;
-    module.add_function(wrap_pyfunction!(formulas::earth_to_body, module)?)?;
-
-    module.add_class::<timers::PyTimer>()?;
-    module.add_class::<timers::PyExpiry>()?;
-    module.add_class::<timers::PyTimingSummary>()?;
-    module.add_class::<recordings::PyRecording>()?;
-    module.add_function(wrap_pyfunction!(recordings::list_recordings, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::recover, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::report, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::replay, module)?)?;
-    #[cfg(feature = "live")]
-    {
-        module.add_class::<live::PyWatcher>()?;
-        module.add_class::<live::PyCommander>()?;
-    }
-    Ok(())
-}
-
-/// The names of a class's values.
-fn columns<V: values::Values>(py: Python<'_>) -> PyResult<Bound<'_, PyTuple>> {
-    PyTuple::new(py, values::names::<V>().collect::<Vec<_>>())
-}
+#[cfg(feature = "flight")]
+mod module;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::errors;
 use crate::machine::conditions;
-use crate::values::{PyMeasurements, Shape, with_plant};
+use crate::values::{PyMeasurements, Shape, Values as _, with_plant};
 
 /// An autopilot, and the time that its caller has passed.
 #[derive(Clone)]

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Structs, as the words of the rows of an array.
-pub(crate) struct Rows<T> {
+pub struct Rows<T> {
     words: Vec<u64>,
     of: PhantomData<fn() -> T>,
 }
@@ -40,14 +40,23 @@ impl<T: Schema> Rows<T> {
     }
 
     /// The rows as an array, which takes their memory.
-    pub(crate) fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    ///
+    /// # Errors
+    /// Those of numpy.
+    pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         PyArray1::from_vec(py, self.words).call_method1("view", (dtype::<T>(py)?,))
+    }
+}
+
+impl<T: Schema> Default for Rows<T> {
+    fn default() -> Self {
+        Self::with_room(0)
     }
 }
 
 impl<'a, T: Schema> FromIterator<&'a T> for Rows<T> {
     fn from_iter<I: IntoIterator<Item = &'a T>>(rows: I) -> Self {
-        let mut all = Self::with_room(0);
+        let mut all = Self::default();
         rows.into_iter().for_each(|row| all.push(row));
         all
     }

@@ -7,8 +7,8 @@ use fcc_core::framework::{Event, EventKind, Tick, Time};
 use serde::Serialize;
 
 use super::end::End;
-use super::items::Remark;
 use super::raw::DamagedBytes;
+use super::remark::Remark;
 
 /// Bytes of a recording that are not what was written, and the part of the
 /// flight that is missing because of it.

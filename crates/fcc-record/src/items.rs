@@ -11,6 +11,7 @@ use super::damage::Damage;
 use super::end::End;
 use super::foxglove::REMARK;
 use super::raw::{DamagedBytes, Next, RawReader};
+use super::remark::Remark;
 use super::schema::{self, Topic};
 use super::wire;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
@@ -65,16 +66,6 @@ pub enum Item<M> {
     Remark(Remark),
     /// Damage; the items that were here are missing.
     Damage(Damage),
-}
-
-/// Text that is not an event of the loop: from the recorder, or about the
-/// connection to a simulator.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Remark {
-    /// On the loop's clock: the log time of the message before it.
-    pub time: Time,
-    /// For users.
-    pub text: String,
 }
 
 /// The most items that are held back until it is known which ticks are missing

@@ -18,8 +18,8 @@ pub struct Entry {
     pub started: String,
     /// The part number, from 1.
     pub part: u32,
-    /// The aircraft.
-    pub aircraft: String,
+    /// The plant.
+    pub plant: String,
     /// From the first tick in the file to the last, s.
     pub duration_s: f64,
     /// Records in the file.
@@ -111,7 +111,7 @@ fn describe(recording: &Recording, verified: Verified) -> Entry {
         path: path.to_owned(),
         started: utc::timestamp(about.started_unix_ns),
         part: about.part,
-        aircraft: about.aircraft.clone(),
+        plant: about.plant.clone(),
         duration_s: account.duration_ns as f64 * 1e-9,
         ticks: account.ticks,
         worst_lateness_us: account.worst_lateness_ns as f64 * 1e-3,

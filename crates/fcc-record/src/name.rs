@@ -7,15 +7,15 @@ use super::utc;
 /// The file extension of recordings.
 pub(crate) const EXTENSION: &str = "mcap";
 
-/// `2026-11-20T04-21-33.512Z-built-in-01.mcap`: start of the flight, aircraft
+/// `2026-11-20T04-21-33.512Z-built-in-01.mcap`: start of the flight, plant
 /// and part number. Names sort by date.
-pub(super) fn file_name(started_unix_ns: u64, aircraft: &str, part: u32) -> String {
-    let aircraft: String = aircraft
+pub(super) fn file_name(started_unix_ns: u64, plant: &str, part: u32) -> String {
+    let plant: String = plant
         .chars()
         .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
         .collect();
     let stamp = utc::file_stamp(started_unix_ns);
-    format!("{stamp}-{aircraft}-{part:02}.{EXTENSION}")
+    format!("{stamp}-{plant}-{part:02}.{EXTENSION}")
 }
 
 /// Whether a file has the name of a recording. No other file is deleted or

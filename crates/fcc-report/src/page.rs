@@ -1,28 +1,26 @@
-//! A report as one page that needs nothing but itself.
+//! A report as one HTML page without other files.
 
 use std::path::Path;
 use std::{fs, io};
 
+use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::durations::NamedPercentiles;
-use super::plot::{Detail, Figure, Figures, PlotError, figures};
+use super::plot::{Detail, Figure, Figures, figures};
+use super::report::{Report, RunReport};
 use super::reported::Addition;
-use super::text::VALUE_COLUMNS;
-use super::{Report, RunReport, Timing};
+use super::table::{markup, table, timing_columns};
+use super::terms::capitalized;
+use super::text::percentiles_table;
 
 const STYLE: &str = include_str!("page.css");
-/// Lets plots be zoomed; without it, the page is the same, and still.
+/// Zooms the plots; without it the page is the same, but static.
 const SCRIPT: &str = include_str!("page.js");
 
 impl<A: Addition> Report<A> {
-    /// The page: HTML with everything in it, plots as SVG; nothing is fetched
-    /// when it is opened.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_html(&self) -> Result<String, PlotError> {
-        let figures = self.figures(Detail::WhenZoomed)?;
+    /// The page: HTML with all plots as SVG; a browser loads nothing else.
+    pub fn to_html(&self) -> String {
+        let figures = self.figures(Detail::WhenZoomed);
         let title = self.title();
         let page = html! {
             (DOCTYPE)
@@ -43,85 +41,90 @@ impl<A: Addition> Report<A> {
                     }
                     @for figure in &figures.timeline { (figure_markup(figure)) }
                     @if !figures.values.is_empty() {
-                        h2 { (capitalized(self.words.run)) }
+                        h2 { (capitalized(self.terms.run)) }
                         @for figure in &figures.values { (figure_markup(figure)) }
-                        (self.values_table())
-                        (PreEscaped(self.addition.html()))
+                        @if !self.values.is_empty() { (markup(&self.values_table(), &[0])) }
+                        @for (title, caption, table) in self.addition.tables() {
+                            (table_figure(title, caption, &table, &[]))
+                        }
                     }
                     @if let Some(timing) = &self.timing {
                         h2 { "Timing" }
-                        (timing_table(timing))
+                        (table_figure(
+                            "Period and lateness",
+                            "The thesis' table (6.1 to 6.3), and below it what it did not measure.",
+                            &timing_columns(&timing.columns()),
+                            &[0],
+                        ))
                         @for figure in &figures.timing { (figure_markup(figure)) }
-                        (percentiles_table("Stage", &self.stages))
+                        @if !self.stages.is_empty() {
+                            (markup(&percentiles_table("Stage", &self.stages), &[0]))
+                        }
                         @if self.has_ages() {
-                            (percentiles_table("Age of", &self.sensor_ages))
+                            (markup(&percentiles_table("Age of", &self.sensor_ages), &[0]))
                         }
                     }
                     @if !self.events.is_empty() {
                         h2 { "Events" }
-                        (self.events_table())
+                        (markup(&self.events_table(), &[3]))
                     }
                     script { (PreEscaped(SCRIPT)) }
                 }
             }
         };
-        Ok(page.into_string())
+        page.into_string()
     }
 
-    /// Each plot as a file of its own, for papers: its name, which ends in
-    /// `.svg`, and what is in it.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_svgs(&self) -> Result<Vec<(String, String)>, PlotError> {
+    /// Each plot as an SVG file: its name, which ends in `.svg`, and its
+    /// content.
+    pub fn to_svgs(&self) -> Vec<(String, String)> {
         let Figures {
             timeline,
             values,
             timing,
-        } = self.figures(Detail::None)?;
+        } = self.figures(Detail::None);
         let named = |figure: Figure| {
             let name = figure.title.to_lowercase().replace([' ', '\''], "-");
             (format!("{name}.svg"), figure.svg)
         };
         let figures = timeline.into_iter().chain(values).chain(timing);
-        Ok(figures.map(named).collect())
+        figures.map(named).collect()
     }
 
-    fn figures(&self, detail: Detail) -> Result<Figures, PlotError> {
-        let mut figures = figures(&self.run, detail)?;
+    fn figures(&self, detail: Detail) -> Figures {
+        let mut figures = figures(&self.run, detail);
         if !figures.values.is_empty() {
-            figures.values.extend(self.addition.figures(&self.run)?);
+            figures.values.extend(self.addition.figures(&self.run));
         }
-        Ok(figures)
+        figures
     }
 
-    /// Writes the page into a file, which must not be the recording itself.
+    /// Writes the page into a file, which must not be the recording.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
         let refused = |why: String| format!("{}: {why}", path.display());
         if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
             && page == recording
         {
-            let why = "is the recording itself: give the page another name";
+            let why = "is the recording: give the page another name";
             return Err(refused(why.to_owned()));
         }
-        let page = self.to_html().map_err(|error| error.to_string())?;
-        fs::write(path, page).map_err(|error| refused(format!("cannot be written: {error}")))
+        fs::write(path, self.to_html())
+            .map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
-    /// Writes each plot into a file of its own, in a folder that is made if it
-    /// is missing.
+    /// Writes each plot into a file in a folder, which is created if it is
+    /// missing.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_svgs(&self, folder: &Path) -> Result<(), String> {
         let refused =
             |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
-        let svgs = self.to_svgs().map_err(|error| error.to_string())?;
         fs::create_dir_all(folder).map_err(refused)?;
-        for (name, svg) in svgs {
+        for (name, svg) in self.to_svgs() {
             fs::write(folder.join(name), svg).map_err(refused)?;
         }
         Ok(())
@@ -131,9 +134,9 @@ impl<A: Addition> Report<A> {
 impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
-        let mut title = capitalized(self.words.run);
-        if !origin.aircraft.is_empty() {
-            title = format!("{title} of {}", origin.aircraft);
+        let mut title = capitalized(self.terms.run);
+        if !origin.plant.is_empty() {
+            title = format!("{title} of {}", origin.plant);
         }
         if !origin.started.is_empty() {
             title = format!("{title}, {}", self.started());
@@ -151,59 +154,15 @@ impl RunReport {
         }
     }
 
-    fn values_table(&self) -> Markup {
-        html! {
-            @if !self.values.is_empty() {
-                div.wide { table {
-                    thead {
-                        tr {
-                            @for (n, name) in VALUE_COLUMNS.iter().enumerate() {
-                                th.words[n == 0] { (name) }
-                            }
-                        }
-                    }
-                    tbody {
-                        @for value in &self.values {
-                            tr {
-                                @for (n, cell) in value.cells().iter().enumerate() {
-                                    td.words[n == 0] { (cell) }
-                                }
-                            }
-                        }
-                    }
-                } }
-            }
+    fn events_table(&self) -> Table {
+        let mut table = table(&["No.", "Time, s", "Tick", "Event"]);
+        for event in &self.events {
+            let time_s = format!("{:.3}", event.time_s);
+            let (number, tick) = (event.number.to_string(), event.tick.to_string());
+            table.add_row([number, time_s, tick, event.text.clone()]);
         }
+        table
     }
-
-    fn events_table(&self) -> Markup {
-        html! {
-            div.wide { table.events {
-                thead { tr { th { "No." } th { "Time, s" } th { "Tick" } th.words { "Event" } } }
-                tbody {
-                    @for event in &self.events {
-                        tr {
-                            td { (event.number) }
-                            td { (format!("{:.3}", event.time_s)) }
-                            td { (event.tick) }
-                            td.words { (event.text) }
-                        }
-                    }
-                }
-            } }
-        }
-    }
-}
-
-/// With a capital first letter.
-pub(crate) fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
-    let first: String = letters
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .collect();
-    first + letters.as_str()
 }
 
 fn figure_markup(figure: &Figure) -> Markup {
@@ -216,48 +175,12 @@ fn figure_markup(figure: &Figure) -> Markup {
     }
 }
 
-fn timing_table(timing: &Timing) -> Markup {
-    let mut columns = vec![timing.table.clone()];
-    columns.extend(timing.thesis.map(|thesis| thesis.timing()));
+fn table_figure(title: &str, caption: &str, table: &Table, text_columns: &[usize]) -> Markup {
     html! {
         figure {
-            h3 { "Period and lateness" }
-            div.wide { table {
-                thead {
-                    tr {
-                        th.words {}
-                        @for column in &columns {
-                            th { (column.rate_hz) " Hz " (column.timer) }
-                        }
-                    }
-                }
-                tbody {
-                    @for (name, cells) in crate::table::timing_rows(&columns) {
-                        tr { td.words { (name) } @for cell in cells { td { (cell) } } }
-                    }
-                }
-            } }
-            figcaption { "The thesis' table (6.1 to 6.3), and below it what it did not measure." }
-        }
-    }
-}
-
-fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Markup {
-    html! {
-        @if !rows.is_empty() {
-            div.wide { table {
-                thead {
-                    tr {
-                        th.words { (title) }
-                        @for name in ["p50", "p90", "p99", "p99.9", "max"] { th { (name) } }
-                    }
-                }
-                tbody {
-                    @for row in rows {
-                        tr { td.words { (row.name) } @for cell in row.figures() { td { (cell) } } }
-                    }
-                }
-            } }
+            h3 { (title) }
+            (markup(table, text_columns))
+            figcaption { (caption) }
         }
     }
 }

@@ -1,13 +1,14 @@
-//! Tables for people.
+//! Tables as text and HTML.
 
 use std::fmt::Write as _;
 
-use comfy_table::{CellAlignment, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, LineStyle, Row, Table, TableStyle};
+use maud::{Markup, html};
 
 use fcc_record::{Entry, Wholeness};
 use fcc_telemetry::TimingReport;
 
-/// One line under the header, and no other.
+/// One line under the header only.
 const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
@@ -21,23 +22,36 @@ pub(crate) fn table(header: &[&str]) -> Table {
     table
 }
 
-/// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
-/// it what the thesis did not measure.
-pub fn timing_table(reports: &[TimingReport]) -> String {
-    let mut header = vec![String::new()];
-    header.extend(
-        reports
-            .iter()
-            .map(|report| format!("{} Hz {}", report.rate_hz, report.timer)),
-    );
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut table = table(&header);
-    for (name, cells) in timing_rows(reports) {
-        let mut row = vec![name.to_owned()];
-        row.extend(cells);
-        table.add_row(row);
+/// The same for a page, with text in these columns and numbers in the others.
+pub(crate) fn markup(table: &Table, text_columns: &[usize]) -> Markup {
+    let cells = |row: &Row| -> Vec<(bool, String)> {
+        let cells = row.cell_iter().enumerate();
+        cells
+            .map(|(n, cell)| (text_columns.contains(&n), cell.content()))
+            .collect()
+    };
+    html! {
+        div.wide { table {
+            thead { tr {
+                @for (is_text, cell) in table.header().map(cells).unwrap_or_default() {
+                    th.text[is_text] { (cell) }
+                }
+            } }
+            tbody {
+                @for row in table.row_iter().map(cells) {
+                    tr.worst[row.first().is_some_and(|(_, name)| name == "worst")] {
+                        @for (is_text, cell) in row { td.text[is_text] { (cell) } }
+                    }
+                }
+            }
+        } }
     }
-    let mut text = table.to_string();
+}
+
+/// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
+/// it values that the thesis does not have.
+pub fn timing_table(reports: &[TimingReport]) -> String {
+    let mut text = timing_columns(reports).to_string();
     if let Some(realtime) = reports.first().map(|r| &r.realtime)
         && !realtime.cpu_because.is_empty()
     {
@@ -52,11 +66,17 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     text
 }
 
-/// The rows of the timing table, each with a cell per report.
-pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<String>)> {
-    let mut rows = Vec::new();
+/// The same without the text below it.
+pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
+    let name = |report: &TimingReport| format!("{} Hz {}", report.rate_hz, report.timer);
+    let header: Vec<String> = reports.iter().map(name).collect();
+    let mut header: Vec<&str> = header.iter().map(String::as_str).collect();
+    header.insert(0, "");
+    let mut table = table(&header);
     let mut row = |name: &'static str, value: &dyn Fn(&TimingReport) -> String| {
-        rows.push((name, reports.iter().map(value).collect()));
+        let mut cells = vec![name.to_owned()];
+        cells.extend(reports.iter().map(value));
+        table.add_row(cells);
     };
     row("Runtime", &|r| figure(r.runtime_s, 2, "s"));
     row("Average", &|r| figure(r.period_ms.mean, 4, "ms"));
@@ -113,10 +133,10 @@ pub(crate) fn timing_rows(reports: &[TimingReport]) -> Vec<(&'static str, Vec<St
             )
         });
     }
-    rows
+    table
 }
 
-/// What a table says where nobody measured.
+/// Shown in a table for a value that was not measured.
 const UNKNOWN: &str = "–";
 
 /// A number with its unit.
@@ -128,7 +148,7 @@ pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
     }
 }
 
-/// A lateness: a spinning loop's is some nanoseconds.
+/// A lateness: in a spinning loop it is some nanoseconds.
 fn micros(us: f64) -> String {
     figure(us, if us < 10.0 { 3 } else { 1 }, "µs")
 }
@@ -146,7 +166,7 @@ pub fn recordings_table(entries: &[Entry]) -> String {
     let mut table = table(&[
         "Recording",
         "started (UTC)",
-        "aircraft",
+        "plant",
         "duration",
         "ticks",
         "worst late",
@@ -159,7 +179,7 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         table.add_row(vec![
             name.to_string_lossy().into_owned(),
             entry.started.replace('T', " ").replace('Z', ""),
-            entry.aircraft.clone(),
+            entry.plant.clone(),
             format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),
@@ -187,7 +207,7 @@ mod tests {
             path: "flight.mcap".into(),
             started: "2026-11-20T04:21:33Z".to_owned(),
             part: 1,
-            aircraft: "built-in".to_owned(),
+            plant: "built-in".to_owned(),
             duration_s,
             ticks: 2_400,
             worst_lateness_us: 12.34,
@@ -198,18 +218,18 @@ mod tests {
             damages: Vec::new(),
         };
         let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
-        for words in [
+        for cell in [
             " 1:00.0 ",
             " 10:00.0 ",
             " 0:05.3 ",
             " 62:05.0 ",
             " 12.3 µs ",
         ] {
-            assert!(text.contains(words), "{words} is not in\n{text}");
+            assert!(text.contains(cell), "{cell} is not in\n{text}");
         }
     }
 
-    /// The thesis' table 6.1, its own figures through our table.
+    /// The thesis' table 6.1, from its own figures.
     #[test]
     fn prints_the_thesis_table_as_the_thesis_does() {
         let report = TimingReport {

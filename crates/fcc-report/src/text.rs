@@ -1,36 +1,21 @@
-//! A report on the terminal.
+//! A report as text for a terminal.
 
 use std::fmt::Write as _;
 
+use comfy_table::Table;
+use fcc_telemetry::TimingReport;
+
 use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
-use super::{Report, RunReport, Timing, ValueRange};
+use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
-use crate::table::{figure, table};
-use crate::timing_table;
+use crate::table::{figure, table, timing_table};
 
-/// More events than these do not fit on a screen.
+/// At most this many events are shown.
 const MOST_EVENTS: usize = 20;
 
-/// The columns of the table of values.
-pub(super) const VALUE_COLUMNS: [&str; 5] = ["Value", "Unit", "Lowest", "Highest", "Last"];
-
-impl ValueRange {
-    /// Its cells, under [`VALUE_COLUMNS`].
-    pub(super) fn cells(&self) -> [String; 5] {
-        let number = |value: f64| format!("{value:.3}");
-        [
-            format!("{}, {}", self.quantity, self.role),
-            self.unit.to_owned(),
-            number(self.lowest),
-            number(self.highest),
-            number(self.last),
-        ]
-    }
-}
-
 impl<A: Addition> Report<A> {
-    /// Tables for people.
+    /// The report as text.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         for (name, value) in self.header() {
@@ -41,7 +26,7 @@ impl<A: Addition> Report<A> {
             let _ = writeln!(text, "{finding}");
         }
         if let Some(timing) = &self.timing {
-            let _ = writeln!(text, "\n{}", timing.table_text());
+            let _ = writeln!(text, "\n{}", timing_table(&timing.columns()));
         }
         if !self.stages.is_empty() {
             let _ = writeln!(text, "\n{}", percentiles_table("Stage", &self.stages));
@@ -50,11 +35,7 @@ impl<A: Addition> Report<A> {
             let _ = writeln!(text, "\n{}", percentiles_table("Age of", &self.sensor_ages));
         }
         if !self.values.is_empty() {
-            let mut table = table(&VALUE_COLUMNS);
-            for value in &self.values {
-                table.add_row(value.cells());
-            }
-            let _ = writeln!(text, "\n{table}");
+            let _ = writeln!(text, "\n{}", self.values_table());
         }
         let of_this_plant = self.addition.text();
         if !of_this_plant.is_empty() {
@@ -84,12 +65,12 @@ impl RunReport {
         }
     }
 
-    /// When the run began, for people: `2026-11-20 04:21:33 UTC`.
+    /// The start of the run: `2026-11-20 04:21:33 UTC`.
     pub(super) fn started(&self) -> String {
         self.origin.started.replace('T', " ").replace('Z', " UTC")
     }
 
-    /// What is known of where the recording comes from, name by name.
+    /// The known properties of the recording, with their names.
     pub(super) fn header(&self) -> Vec<(&'static str, String)> {
         let origin = &self.origin;
         let realtime = &origin.realtime;
@@ -107,15 +88,15 @@ impl RunReport {
             format!("{} Hz {}", timing.table.rate_hz, origin.timer)
         });
         let end = match &self.end {
-            FileEnd::Finished(words) => words.clone(),
-            FileEnd::Cut(words) => format!("cut: {words}"),
+            FileEnd::Finished(reason) => reason.clone(),
+            FileEnd::Cut(reason) => format!("cut: {reason}"),
             FileEnd::Unknown => String::new(),
         };
         let last_state = self.states.last().map(|span| span.state.clone());
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            (self.words.plant, origin.aircraft.clone()),
+            (self.terms.plant, origin.plant.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),
@@ -140,34 +121,42 @@ impl RunReport {
     }
 }
 
+impl RunReport {
+    /// What each value ranged over.
+    pub(super) fn values_table(&self) -> Table {
+        let mut table = table(&["Value", "Unit", "Lowest", "Highest", "Last"]);
+        for value in &self.values {
+            let name = format!("{}, {}", value.quantity, value.role);
+            let numbers = [value.lowest, value.highest, value.last];
+            let mut cells = vec![name, value.unit.to_owned()];
+            cells.extend(numbers.map(|number| format!("{number:.3}")));
+            table.add_row(cells);
+        }
+        table
+    }
+}
+
 impl Timing {
-    /// The timing table, beside the thesis' where it measured at this rate.
-    fn table_text(&self) -> String {
+    /// The columns of its table: beside it the thesis', where it measured at
+    /// this rate.
+    pub(super) fn columns(&self) -> Vec<TimingReport> {
         let mut columns = vec![self.table.clone()];
         columns.extend(self.thesis.map(|thesis| thesis.timing()));
-        timing_table(&columns)
+        columns
     }
 }
 
-fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> String {
+/// Median to largest of each, with units.
+pub(super) fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Table {
     let mut table = table(&[title, "p50", "p90", "p99", "p99.9", "max"]);
-    for row in rows {
-        let mut cells = vec![row.name.clone()];
-        cells.extend(row.figures());
-        table.add_row(cells);
+    for NamedPercentiles { name, of } in rows {
+        let times = [of.p50_us, of.p90_us, of.p99_us, of.p99_9_us, of.max_us].map(time);
+        table.add_row(std::iter::once(name.clone()).chain(times));
     }
-    table.to_string()
+    table
 }
 
-impl NamedPercentiles {
-    /// Median to largest, with units.
-    pub(super) fn figures(&self) -> [String; 5] {
-        let of = &self.of;
-        [of.p50_us, of.p90_us, of.p99_us, of.p99_9_us, of.max_us].map(time)
-    }
-}
-
-/// A time in the unit that suits it, in three figures or a little more.
+/// A time in a suitable unit, with three to four figures.
 pub(super) fn time(us: f64) -> String {
     match us {
         0.0 => "0 µs".to_owned(),
@@ -195,11 +184,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn durations_and_times_are_said_as_people_do() {
+    fn durations_and_times_have_suitable_units() {
         assert_eq!(duration(42.04), "42.0 s");
         assert_eq!(duration(182.0), "3 min 2.0 s");
         assert_eq!(duration(3_599.99), "1 h 0 min 0 s");
-        for (us, said) in [
+        for (us, expected) in [
             (0.0, "0 µs"),
             (2.345, "2.35 µs"),
             (54.321, "54.3 µs"),
@@ -207,7 +196,7 @@ mod tests {
             (250_000.0, "250 ms"),
             (12_000_000.0, "12.0 s"),
         ] {
-            assert_eq!(time(us), said);
+            assert_eq!(time(us), expected);
         }
     }
 }

@@ -4,7 +4,7 @@ use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tic
 
 use crate::commands::StateRequest;
 use crate::config::AfterFailsafe;
-use crate::machine::Machine;
+use crate::machine::{Machine, ReleaseReport};
 use crate::report::Ending;
 use crate::switch::SwitchEdge;
 
@@ -169,12 +169,4 @@ impl<C: Controller> Machine<C> {
             self.enter(State::Stopped, at);
         }
     }
-}
-
-/// Which result of a release is reported.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ReleaseReport {
-    Always,
-    /// For repeated attempts: the failure was reported already.
-    OnSuccess,
 }

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Cause, Controller, LoopCommand, Record, RecordOf, StageTimes, State, SwitchOff, Tick, Time,
+    Cause, Controller, EventKind, LoopCommand, Record, RecordOf, StageTimes, State, SwitchOff,
+    Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
@@ -11,7 +12,6 @@ use rtrb::{Consumer, RingBuffer};
 use crate::actuators::Actuators;
 use crate::commands;
 use crate::config::{AfterFailsafe, LoopConfig, Parts};
-use crate::decide::ReleaseReport;
 use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
@@ -46,6 +46,8 @@ pub struct Machine<C: Controller> {
 
     pub(crate) state: State,
     pub(crate) switch: EngageSwitch,
+    /// The controller's mode in the last tick.
+    mode: u8,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
     pub(crate) record: RecordOf<C>,
@@ -79,6 +81,7 @@ impl<C: Controller> Machine<C> {
             heartbeat: heartbeat.clone(),
         };
         let period = parts.timer.period();
+        let mode = parts.controller.mode();
         let machine = Self {
             timer: parts.timer,
             period_s: period.as_secs_f64(),
@@ -94,6 +97,7 @@ impl<C: Controller> Machine<C> {
             heartbeat,
             state: State::Standby,
             switch: EngageSwitch::new(config.switch_max_age),
+            mode,
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
@@ -258,6 +262,16 @@ impl<C: Controller> Machine<C> {
         self.record.stages.total_ns = stopwatch.since(tick.woke.as_nanos());
         self.record.estimate = self.controller.estimated();
         self.record.setpoints = self.controller.setpoints();
+        self.report_mode(tick);
+    }
+
+    fn report_mode(&mut self, tick: &Tick) {
+        let (from, to) = (self.mode, self.controller.mode());
+        if from != to {
+            self.mode = to;
+            let kind = EventKind::ModeChanged { from, to };
+            self.telemetry.events.push(tick, kind);
+        }
     }
 
     /// Computes the outputs for the present state; never returns invalid ones.
@@ -351,4 +365,12 @@ impl<C: Controller> Drop for Machine<C> {
     fn drop(&mut self) {
         self.close();
     }
+}
+
+/// Which result of a release is reported.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ReleaseReport {
+    Always,
+    /// For repeated attempts: the failure was reported already.
+    OnSuccess,
 }

@@ -11,6 +11,8 @@
 mod flight;
 mod instance;
 mod message;
+#[cfg(feature = "flight")]
+mod pattern_scorer;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
@@ -18,12 +20,12 @@ mod telemetry;
 mod timing;
 pub mod units;
 
-#[cfg(feature = "flight")]
-pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]
 pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
+#[cfg(feature = "flight")]
+pub use pattern_scorer::PatternScorer;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::{RecordWords, Telemetry};

@@ -3,9 +3,9 @@
 //! Angles are compared the shorter way. A sample on the border of two legs
 //! counts for the later one.
 
+use fcc_core::flight::Measurements;
 use serde::Serialize;
 
-use crate::FlightRecord;
 use crate::units::{G_MPS2, M_FT, MPS_KT};
 
 /// The state at one instant, in the units of the score.
@@ -25,8 +25,7 @@ pub struct Sample {
 
 impl Sample {
     /// From the measurements of a tick.
-    pub fn measured(record: &FlightRecord, time_s: f64) -> Self {
-        let measured = &record.measurements;
+    pub fn measured(measured: &Measurements, time_s: f64) -> Self {
         Self {
             time_s,
             heading_deg: measured.heading_rad.value.to_degrees(),

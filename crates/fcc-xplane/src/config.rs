@@ -173,36 +173,35 @@ pub enum XPlaneConfigError {
     LocalPort,
 }
 
+/// Returns an error that names the first value that is out of its range: names,
+/// values, least and most, and the range in words.
+macro_rules! check {
+    ($($key:literal, $value:expr => $least:expr, $most:expr, $range:literal;)+) => {$(
+        let value = $value;
+        if !($least..=$most).contains(&value) {
+            return Err(XPlaneConfigError::Range {
+                key: $key,
+                value: format!("{value:?}"),
+                range: $range,
+            });
+        }
+    )+};
+}
+
 impl XPlaneConfig {
     /// Checks that every field is within its range.
     ///
     /// # Errors
     /// The first field that is not, with the permitted range.
     pub fn validate(&self) -> Result<(), XPlaneConfigError> {
-        range("rate_hz", self.rate_hz, 1, 1_000, "1 to 1000")?;
-        range("engines", self.engines, 1, 8, "1 to 8")?;
-        let most = self.datagrams_per_tick;
-        range("datagrams_per_tick", most, 1, 1_000, "1 to 1000")?;
-        let (least, most) = (Duration::from_millis(100), Duration::from_secs(3_600));
-        let again = Span(self.resubscribe);
-        range(
-            "resubscribe",
-            again,
-            Span(least),
-            Span(most),
-            "100 ms to 1 h",
-        )?;
-        let (least, most) = (Duration::from_millis(50), Duration::from_secs(60));
-        let silent = Span(self.silent_after);
-        range(
-            "silent_after",
-            silent,
-            Span(least),
-            Span(most),
-            "50 ms to 1 min",
-        )?;
-        if self.beacon.port() == 0 {
-            range("beacon port", 0, 1, u16::MAX, "1 to 65535")?;
+        let (ms, second) = (Duration::from_millis, Duration::from_secs(1));
+        check! {
+            "rate_hz", self.rate_hz => 1, 1_000, "1 to 1000";
+            "engines", self.engines => 1, 8, "1 to 8";
+            "datagrams_per_tick", self.datagrams_per_tick => 1, 1_000, "1 to 1000";
+            "resubscribe", self.resubscribe => ms(100), 3_600 * second, "100 ms to 1 h";
+            "silent_after", self.silent_after => ms(50), 60 * second, "50 ms to 1 min";
+            "beacon port", self.beacon.port() => 1, u16::MAX, "1 to 65535";
         }
         check_path(&self.engage_switch, rref::PATH_BYTES).map_err(|source| {
             XPlaneConfigError::EngageSwitch {
@@ -214,8 +213,9 @@ impl XPlaneConfig {
             check_address(at)?;
         }
         if let Input::Data(rows) = self.input {
-            let column = rows.magnetic_heading_column;
-            range("magnetic_heading_column", column, 2, 7, "2 to 7")?;
+            check! {
+                "magnetic_heading_column", rows.magnetic_heading_column => 2, 7, "2 to 7";
+            }
             if self.local_port == 0 {
                 return Err(XPlaneConfigError::LocalPort);
             }
@@ -238,30 +238,6 @@ pub(crate) fn check_address(address: SocketAddr) -> Result<(), XPlaneConfigError
         }
         _ => Ok(()),
     }
-}
-
-/// A duration with a `Display` implementation.
-#[derive(Clone, Copy, PartialEq, PartialOrd)]
-struct Span(Duration);
-
-impl core::fmt::Display for Span {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(f, "{:?}", self.0)
-    }
-}
-
-fn range<T: Copy + PartialOrd + core::fmt::Display>(
-    key: &'static str,
-    value: T,
-    least: T,
-    most: T,
-    range: &'static str,
-) -> Result<(), XPlaneConfigError> {
-    if value < least || value > most {
-        let value = value.to_string();
-        return Err(XPlaneConfigError::Range { key, value, range });
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use fcc_conformance::{ActuatorBench, SensorBench, actuator_conformance, sensor_c
 use fcc_core::framework::{Actuator, Sensor, Time};
 
 use crate::room::{Heater, Thermometer};
-use crate::thermostat::{Heating, Measured};
+use crate::values::{Heating, Measured};
 
 struct Room {
     thermometer: Thermometer,

@@ -14,6 +14,7 @@ mod replay;
 mod room;
 mod show;
 mod thermostat;
+mod values;
 
 use std::error::Error;
 use std::io::{self, Write};
@@ -197,6 +198,9 @@ fn receive(
         }
     }
     if let Some(publisher) = publisher {
+        if let Some(recorder) = recorder {
+            publisher.recorder(show::recorder(&recorder.status()));
+        }
         publisher.flush();
     }
     last
@@ -225,7 +229,7 @@ mod tests {
 
     use super::*;
     use room::{HEATER_W, OUTSIDE_C, RESISTANCE_K_PER_W};
-    use thermostat::Heating;
+    use values::Heating;
 
     /// After one time constant a first-order room has covered 1 - 1/e of the
     /// difference.

@@ -32,7 +32,7 @@ pub(crate) fn start(
     let about = About {
         software: concat!("thermostat ", env!("CARGO_PKG_VERSION")).to_owned(),
         git_hash: "unknown".to_owned(),
-        aircraft: "thermostat".to_owned(),
+        plant: "thermostat".to_owned(),
         rate_hz: 1.0 / parts.timer.period().as_secs_f64(),
         timer: parts.timer.name().to_owned(),
         sensors: names(&mut parts.sensors.iter().map(|sensor| sensor.name())),

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use fcc_core::framework::{Actuator, ActuatorFault, Reading, Sensor, SensorFault, Tick};
 
-use crate::thermostat::{Heating, Measured};
+use crate::values::{Heating, Measured};
 
 /// How much faster time passes in the room: 1.8 s for an hour.
 pub(crate) const TIME_SCALE: f64 = 2_000.0;

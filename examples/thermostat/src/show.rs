@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use fcc_live::{Info, PublisherOf, Text};
+use fcc_live::{Info, PublisherOf, RecorderState, RecorderStatus, Text};
 use fcc_record::Recording;
-use fcc_report::{Report, Reported, Survey, Words};
+use fcc_report::{Report, Reported, Survey, Terms};
 use fcc_runtime::{Message, MessageOf, Parts};
 use fcc_telemetry::{Instance, describe_event};
 use fcc_top::Watched;
@@ -15,7 +15,7 @@ use crate::thermostat::Thermostat;
 impl Reported for Thermostat {
     type Addition = ();
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "run",
         plant: "Plant",
         controller: "thermostat",
@@ -53,7 +53,7 @@ pub(crate) fn publish(
     let mut publisher = PublisherOf::start(instance, WAITING).map_err(|error| error.to_string())?;
     publisher.describe(Info {
         software: Text::new(env!("CARGO_PKG_VERSION")),
-        aircraft: Text::new("room"),
+        plant: Text::new("room"),
         rate_hz: 1.0 / parts.timer.period().as_secs_f64(),
         timer: Text::new(parts.timer.name()),
         ..Info::of_this_process()
@@ -75,13 +75,29 @@ pub(crate) fn publish_message(
     }
 }
 
+/// The recorder's status, for whoever watches.
+pub(crate) fn recorder(now: &fcc_record::RecorderStatus) -> RecorderStatus {
+    let file = now.file.as_ref().and_then(|file| file.file_name());
+    let name = file.unwrap_or_default().to_string_lossy();
+    RecorderStatus {
+        state: match now.stopped {
+            None => RecorderState::Recording,
+            Some(_) => RecorderState::Stopped,
+        },
+        recorded: now.ticks,
+        not_recorded: now.not_recorded,
+        bytes: now.bytes,
+        name: Text::new(now.stopped.as_ref().unwrap_or(&name.into_owned())),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use fcc_core::framework::State;
     use fcc_record::RecordingPace;
     use fcc_runtime::{LoopCommand, LoopConfig, Machine};
     use fcc_timer::ManualTimer;
-    use fcc_top::{Picture, Snapshot, draw};
+    use fcc_top::{Picture, draw, json_of};
     use html5ever::tendril::TendrilSink as _;
     use markup5ever_rcdom::{Handle, NodeData, RcDom};
     use ratatui::Terminal;
@@ -179,7 +195,7 @@ mod tests {
     fn the_screen_shows_the_room_with_its_units() {
         let mut picture = Picture::<Thermostat>::of(&Info {
             rate_hz: 40.0,
-            aircraft: Text::new("room"),
+            plant: Text::new("room"),
             ..Info::default()
         });
         heated(|message| {
@@ -207,7 +223,7 @@ mod tests {
         assert!(rows[0].contains("ENGAGED"), "{screen}");
         assert!(screen.contains("the room's"), "{screen}");
 
-        let json = serde_json::to_value(Snapshot::of(&picture)).unwrap();
+        let json = json_of(&picture);
         let room_c = json["tick"]["actual"]["room_c"].as_f64().unwrap();
         assert!((room_c - 20.0).abs() < 0.01, "{room_c}");
         assert_eq!(json["tick"]["setpoints"]["room_c"], 20.0);
@@ -224,7 +240,7 @@ mod tests {
         let watcher = fcc_live::WatcherOf::<Thermostat>::open(&instance).unwrap();
         heated(|message| publish_message(&mut publisher, message));
         publisher.flush();
-        let json = serde_json::to_value(fcc_top::snapshot(watcher).unwrap()).unwrap();
+        let json = fcc_top::snapshot(watcher).unwrap();
         assert_eq!(json["tick"]["state"], "engaged");
         assert!(json["tick"]["outputs"]["power"].as_f64().unwrap() > 0.0);
         assert!(!json["events"].as_array().unwrap().is_empty());

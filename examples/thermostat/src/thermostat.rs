@@ -4,45 +4,11 @@ use std::time::Duration;
 
 use fcc_core::blocks::{Pid, PidConfig};
 use fcc_core::framework::schema::in_range;
-use fcc_core::framework::{Controller, Flags, Reading, Tick};
-use fcc_core::schema;
+use fcc_core::framework::{Controller, Flags, Tick};
 use serde::{Deserialize, Serialize};
 
 use crate::room::{HEATER_W, RESISTANCE_K_PER_W, TIME_CONSTANT_S, TIME_SCALE};
-
-schema! {
-    /// Measurements of a room.
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
-    pub(crate) struct Measured {
-        /// Temperature of its air.
-        #[field(1)]
-        pub(crate) room_c: Reading<f64>,
-    }
-}
-
-schema! {
-    /// Set points of a room.
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
-    pub(crate) struct Wanted {
-        /// Temperature of its air.
-        #[field(1)]
-        pub(crate) room_c: f64,
-    }
-}
-
-schema! {
-    /// Outputs.
-    #[derive(Clone, Copy, PartialEq, Debug, Default)]
-    pub(crate) struct Heating {
-        /// Power of the heater: 0 off, 1 full.
-        #[field(1, range = 0.0..=1.0)]
-        pub(crate) power: f64,
-    }
-}
-
-fcc_core::readings!(Measured {
-    room_c: "the room's temperature"
-});
+use crate::values::{Heating, Measured, Wanted};
 
 const MAX_AGE: Duration = Duration::from_secs(1);
 const NO_TEMPERATURE: Flags = Flags::bit(0);

@@ -163,6 +163,20 @@ pub trait Controller: Send {
     /// The present set points.
     fn setpoints(&self) -> Self::Setpoints;
 
+    /// The present mode, by a number of the controller's own; each change is an
+    /// event.
+    fn mode(&self) -> u8 {
+        0
+    }
+
+    /// The name of a mode, as text for users.
+    fn mode_name(_mode: u8) -> &'static str
+    where
+        Self: Sized,
+    {
+        "unknown"
+    }
+
     /// Whether these outputs may be sent: all finite and within their ranges.
     fn outputs_are_valid(&self, outputs: &Self::Outputs) -> bool;
 

@@ -241,5 +241,15 @@ schema! {
         /// one's became too old, or a preferred one returned.
         #[field(27)]
         SourceChanged(change: SourceChange),
+        /// The controller's mode changed: [`Controller::mode_name`] names them.
+        #[field(28)]
+        ModeChanged {
+            /// The mode before.
+            #[field(1)]
+            from: u8,
+            /// The mode now.
+            #[field(2)]
+            to: u8,
+        },
     }
 }

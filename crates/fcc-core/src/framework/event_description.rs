@@ -123,6 +123,9 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 "the loop hung: no progress for {:.1} s",
                 ms(silent_ns) * 1e-3
             ),
+            EventKind::ModeChanged { from, to } => {
+                write!(f, "mode: {}, was {}", C::mode_name(to), C::mode_name(from))
+            }
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {
                     let separator = if n > 0 { ", " } else { "" };

@@ -4,7 +4,7 @@ use fcc_timer::CpuRequest;
 use fcc_timer::realtime::cpus::{BestCpu, Cpus, parse_list};
 
 use super::board::not_known;
-use super::interrupts::fewest_interrupts;
+use super::busy_devices::fewest_interrupts;
 use super::machine::Machine;
 use super::{CONFIGURATION, Finding, Grade};
 

@@ -18,6 +18,7 @@
 //! | `show` | the findings for people |
 
 mod board;
+mod busy_devices;
 mod cpus;
 mod host_environment;
 mod interrupts;

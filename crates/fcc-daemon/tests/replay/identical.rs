@@ -1,11 +1,12 @@
-//! What was flown is the same in every bit when it is replayed.
+//! A replay reproduces every bit.
 
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
-use fcc_core::flight::AutopilotCommand;
-use fcc_core::framework::LoopCommand;
+use fcc_core::flight::guidance::Mode;
+use fcc_core::flight::{Autopilot, AutopilotCommand};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
+use fcc_core::framework::{EventKind, LoopCommand, Message};
 use fcc_flight::config::{Config, Then};
 
 use super::assert_identical;
@@ -25,7 +26,7 @@ fn ten_minutes_in_gusts_noise_and_delay() {
 }
 
 #[test]
-fn every_way_of_being_ordered_about() {
+fn every_kind_of_command() {
     let targets = [
         AutopilotCommand::Heading(FRAC_PI_2),
         AutopilotCommand::Altitude(1_000.0),
@@ -41,7 +42,7 @@ fn every_way_of_being_ordered_about() {
         (900, LoopCommand::Engage),
         (900, LoopCommand::Controller(targets[0])),
         (1_000, LoopCommand::Controller(targets[3])),
-        // Refused: control is let go in the same tick.
+        // Refused: control is released in the same tick.
         (1_100, LoopCommand::Disengage),
         (1_100, LoopCommand::Engage),
         (1_600, LoopCommand::Stop),
@@ -72,7 +73,8 @@ fn failsafe_and_back() {
     let messages = fly(
         &config,
         &Happenings {
-            // One too short to matter, one that ends in time, one that does not.
+            // One too short to matter, one that ends in time, one that does
+            // not.
             silent: vec![300..=305, 400..=440, 600..=800],
             commands: vec![(450, LoopCommand::Engage), (900, LoopCommand::Engage)],
             steps: 1_200,
@@ -103,11 +105,57 @@ fn failsafe_that_ends_the_loop() {
     let states = assert_identical(&config, &messages);
     assert_eq!(states.last(), Some(&Stopped));
 
-    // The stop came from the configuration and not from the recording.
+    // The stop came from the configuration, not from the recording.
     config.failsafe.hold_s = 2.0;
     let (run, identity) = again(&config, &messages);
     assert_eq!(run.unflown, None);
     assert_eq!(identity.first.unwrap().field, "state.phase");
+}
+
+/// Engaging begins the pattern, a commanded heading ends it and disengaging ends
+/// guidance; each in the tick whose record has it.
+#[test]
+fn a_change_of_the_guidance_mode_is_an_event_of_its_tick() {
+    let happenings = Happenings {
+        commands: vec![
+            (400, LoopCommand::Controller(AutopilotCommand::Heading(1.0))),
+            (450, LoopCommand::Disengage),
+        ],
+        steps: 500,
+        ..Happenings::default()
+    };
+    let messages = fly(&rough(), &happenings);
+    let modes = messages.iter().filter_map(|message| match message {
+        Message::Event(event) => match event.kind {
+            EventKind::ModeChanged { .. } => Some((
+                event.tick,
+                event.kind.description::<Autopilot>().to_string(),
+            )),
+            _ => None,
+        },
+        Message::Tick(_) => None,
+    });
+    let records = records(&messages);
+    let engaged = records.iter().find(|record| record.state == Engaged);
+    let expected = [
+        (
+            engaged.unwrap().tick.number,
+            "mode: timed-pattern, was none",
+        ),
+        (400, "mode: hold, was timed-pattern"),
+        (450, "mode: none, was hold"),
+    ];
+    assert_eq!(
+        modes.collect::<Vec<_>>(),
+        expected.map(|(tick, text)| (tick, text.to_owned()))
+    );
+    let mut before = Mode::None;
+    for record in &records {
+        let mode = record.setpoints.guidance.mode;
+        let is_event = expected.iter().any(|(tick, _)| *tick == record.tick.number);
+        assert_eq!(mode != before, is_event, "tick {}", record.tick.number);
+        before = mode;
+    }
 }
 
 #[test]
@@ -127,7 +175,7 @@ fn the_stop_flag_in_flight() {
 fn late_and_missed_ticks() {
     let ms = Duration::from_millis;
     let happenings = Happenings {
-        // The very first among them.
+        // The first tick among them.
         late: vec![
             (1, ms(60)),
             (200, ms(10)),

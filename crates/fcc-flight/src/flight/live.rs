@@ -70,7 +70,7 @@ impl<C: Telemetry<Command: PartialEq>> Observer<C> for Live<C> {
             requests_denied: refusals.len() as u32,
             refusals: Text::new(&refusals.join("\n")),
             // Named by its sensors.
-            aircraft: Text::new(&facts.sensors.join(", ")),
+            plant: Text::new(&facts.sensors.join(", ")),
             ..Info::of_this_process()
         });
     }

@@ -37,7 +37,7 @@ pub use fly::{FlyError, fly};
 pub use host::Host;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
-pub use pilot::Pilot;
+pub use pilot::{ControlOverride, Pilot};
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};
 pub use scorer::true_sample;

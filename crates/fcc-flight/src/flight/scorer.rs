@@ -2,71 +2,44 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::framework::{EventKind, LoopCommand, State};
 use fcc_sim::Truth;
 use fcc_telemetry::units::{G_MPS2, M_FT, MPS_KT};
-use fcc_telemetry::{FlightEvent, FlightLog, FlightRecord, Sample, ScoredBy};
+use fcc_telemetry::{FlightRecord, PatternScorer, Sample, ScoredBy};
 
 use super::observer::{FlightTime, Observer, Reports};
 use super::outcome::Outcome;
 use super::truth_recorder::TruthReceiver;
 
-/// Scores a pattern from the truth, or from the measurements if there is no
-/// truth.
+/// Scores the timed pattern from the truth, or from the measurements if there is
+/// no truth.
 pub(super) struct Scorer {
-    log: Option<FlightLog>,
+    pattern: Option<PatternScorer>,
     truth: Option<TruthReceiver>,
-    was_engaged: bool,
 }
 
 impl Scorer {
     pub(super) fn new(guidance: &GuidanceConfig, truth: Option<TruthReceiver>) -> Self {
         let pattern = match guidance {
-            GuidanceConfig::TimedPattern(pattern) => Some(*pattern),
+            GuidanceConfig::TimedPattern(pattern) => Some(PatternScorer::new(*pattern)),
             GuidanceConfig::Hold => None,
         };
-        Self {
-            log: pattern.map(FlightLog::new),
-            truth,
-            was_engaged: false,
-        }
+        Self { pattern, truth }
     }
 }
 
 impl Observer<Autopilot> for Scorer {
     fn record(&mut self, record: &FlightRecord, at: &FlightTime) {
-        let truth = self
-            .truth
-            .as_mut()
-            .and_then(|truth| truth.of_tick(record.tick.number));
-        let is_engaged = record.state == State::Engaged;
-        let is_first = is_engaged && !self.was_engaged;
-        self.was_engaged = is_engaged;
-        let Some(log) = self.log.as_mut().filter(|_| is_engaged) else {
-            return;
+        // A tick without its truth has no sample: measurements and truth are not
+        // mixed in one score.
+        let sample = match &mut self.truth {
+            Some(truth) => truth
+                .of_tick(record.tick.number)
+                .map(|truth| true_sample(at.time_s, &truth)),
+            None => Some(Sample::measured(&record.measurements, at.time_s)),
         };
-        if is_first {
-            log.clear();
-        }
-        // If there is truth, a tick without it is left out: measurements and
-        // truth are not mixed in one score.
-        let sample = match truth {
-            Some(truth) => Some(true_sample(at.time_s, &truth)),
-            None if self.truth.is_some() => None,
-            None => Some(Sample::measured(record, at.time_s)),
-        };
-        if let Some(sample) = sample {
-            log.push(sample);
-        }
-    }
-
-    fn event(&mut self, event: &FlightEvent, _: &str, _: &FlightTime) {
-        if matches!(
-            event.kind,
-            EventKind::CommandReceived(LoopCommand::Controller(_))
-        ) {
-            // The pattern is not flown from its beginning: no score.
-            self.log = None;
+        if let Some(pattern) = &mut self.pattern {
+            let guidance = &record.setpoints.guidance;
+            pattern.take(record.state.state(), guidance, sample, sample);
         }
     }
 
@@ -76,7 +49,7 @@ impl Observer<Autopilot> for Scorer {
             None => ScoredBy::Measurement,
         };
         // A flight with an incomplete leg has no score.
-        outcome.flight = self.log.take().and_then(|log| log.score().ok());
+        outcome.flight = self.pattern.as_ref().and_then(PatternScorer::score);
     }
 }
 

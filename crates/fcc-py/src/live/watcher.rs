@@ -245,7 +245,7 @@ fn info_dict<'py>(py: Python<'py>, info: &Info) -> PyResult<Bound<'py, PyDict>> 
     dict.set_item("policy", info.policy.as_str())?;
     dict.set_item("priority", info.priority)?;
     dict.set_item("memory_locked", info.memory_locked != 0)?;
-    dict.set_item("aircraft", info.aircraft.as_str())?;
+    dict.set_item("plant", info.plant.as_str())?;
     dict.set_item("layout", info.layout)?;
     let refusals = info.refusals.as_str();
     dict.set_item("refused", refusals.lines().collect::<Vec<_>>())?;

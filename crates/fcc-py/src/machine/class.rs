@@ -2,14 +2,16 @@
 
 /// Declares a class around the [`Lockstep`](super::Lockstep) of a controller,
 /// with what the loops of all controllers have in common. Its own constructor,
-/// steps and commands are given as methods.
+/// steps and commands are given as methods. Needs pyo3's prelude and
+/// `LoopCommand` in scope.
+#[macro_export]
 macro_rules! machine_class {
     (
         $(#[$meta:meta])*
         struct $name:ident($controller:ty) {
             $($(#[doc = $fdoc:literal])* $field:ident: $type:ty,)*
         }
-        setpoints $setpoints:ty, estimate $estimate:ty;
+        setpoints $setpoints:ty $(, estimate $estimate:ty)?;
         $($methods:tt)*
     ) => {
         $(#[$meta])*
@@ -111,11 +113,13 @@ macro_rules! machine_class {
                 self.lockstep().record().setpoints.into()
             }
 
-            /// The present estimate.
-            #[getter]
-            fn estimate(&mut self) -> $estimate {
-                self.lockstep().estimated().into()
-            }
+            $(
+                /// The present estimate.
+                #[getter]
+                fn estimate(&mut self) -> $estimate {
+                    self.lockstep().estimated().into()
+                }
+            )?
 
             /// The number of the last tick; 0 before the first.
             #[getter]

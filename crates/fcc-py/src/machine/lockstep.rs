@@ -20,7 +20,7 @@ use crate::structured::Rows;
 
 /// The loop of a controller on a clock that moves by one period a tick, with
 /// every record and event kept: 20 kB a second for an aircraft at 40 Hz.
-pub(crate) struct Lockstep<C: Recorded> {
+pub struct Lockstep<C: Recorded> {
     machine: Machine<C>,
     link: Link<C>,
     samples: Producer<C::Measurements>,
@@ -34,7 +34,10 @@ pub(crate) struct Lockstep<C: Recorded> {
 
 impl<C: Recorded> Lockstep<C> {
     /// The loop of a controller; `about` is completed for its recording.
-    pub(crate) fn new(
+    ///
+    /// # Errors
+    /// When there is no timer of this period.
+    pub fn new(
         controller: C,
         period: Duration,
         config: &LoopConfig,
@@ -77,7 +80,7 @@ impl<C: Recorded> Lockstep<C> {
 
     /// One tick; the outputs, if the loop sends any. Readings of the sample that
     /// are never taken are missing, and without a sample the sensor is silent.
-    pub(crate) fn step(&mut self, sample: Option<C::Measurements>) -> Option<C::Outputs> {
+    pub fn step(&mut self, sample: Option<C::Measurements>) -> Option<C::Outputs> {
         if let Some(sample) = sample {
             // Full only once the loop has ended and reads no more.
             let _ = self.samples.push(sample);
@@ -91,7 +94,10 @@ impl<C: Recorded> Lockstep<C> {
     }
 
     /// Gives a command, which the next tick executes.
-    pub(crate) fn send(&mut self, command: LoopCommand<C::Command>) -> PyResult<()> {
+    ///
+    /// # Errors
+    /// When the loop has stopped, or too many commands wait.
+    pub fn send(&mut self, command: LoopCommand<C::Command>) -> PyResult<()> {
         if self.machine.state() == State::Stopped {
             return Err(errors::ENGAGE
                 .say("the loop has stopped and takes no commands: make another Machine"));
@@ -101,7 +107,7 @@ impl<C: Recorded> Lockstep<C> {
     }
 
     /// The events since the last call.
-    pub(crate) fn events(&mut self) -> Vec<PyEvent> {
+    pub fn events(&mut self) -> Vec<PyEvent> {
         let new = self.messages.get(self.searched..).unwrap_or_default();
         let events = new.iter().filter_map(|message| match message {
             Message::Tick(_) => None,
@@ -116,7 +122,7 @@ impl<C: Recorded> Lockstep<C> {
     }
 
     /// The record of every tick so far.
-    pub(crate) fn records(&self) -> Rows<RecordOf<C>> {
+    pub fn records(&self) -> Rows<RecordOf<C>> {
         let records = self.messages.iter().filter_map(|message| match message {
             Message::Tick(record) => Some(record),
             Message::Event(_) => None,
@@ -125,14 +131,12 @@ impl<C: Recorded> Lockstep<C> {
     }
 
     /// Writes all of it into a folder, as the daemon records; the files.
-    pub(crate) fn record_to(
-        &self,
-        folder: PathBuf,
-        plant: &str,
-        ending: &str,
-    ) -> PyResult<Vec<PathBuf>> {
+    ///
+    /// # Errors
+    /// When the folder cannot be written to.
+    pub fn record_to(&self, folder: PathBuf, plant: &str, ending: &str) -> PyResult<Vec<PathBuf>> {
         let about = About {
-            aircraft: plant.to_owned(),
+            plant: plant.to_owned(),
             ..self.about.clone()
         };
         let settings = RecorderSettings {
@@ -151,28 +155,33 @@ impl<C: Recorded> Lockstep<C> {
         }
     }
 
-    pub(crate) fn state(&self) -> State {
+    /// The state of the loop.
+    pub fn state(&self) -> State {
         self.machine.state()
     }
 
-    pub(crate) fn is_held(&self) -> bool {
+    /// Whether the loop holds the actuator.
+    pub fn is_held(&self) -> bool {
         self.held.load(Ordering::Relaxed)
     }
 
-    pub(crate) fn record(&self) -> &RecordOf<C> {
+    /// The record of the last tick.
+    pub fn record(&self) -> &RecordOf<C> {
         self.machine.record()
     }
 
-    pub(crate) fn estimated(&self) -> C::Estimate {
+    /// The present estimate.
+    pub fn estimated(&self) -> C::Estimate {
         self.machine.controller().estimated()
     }
 
-    pub(crate) const fn period_s(&self) -> f64 {
+    /// Time from a tick to the next, s.
+    pub const fn period_s(&self) -> f64 {
         self.period_s
     }
 }
 
 /// Conditions of a controller in words.
-pub(crate) fn conditions<C: Controller>(flags: Flags) -> Vec<&'static str> {
+pub fn conditions<C: Controller>(flags: Flags) -> Vec<&'static str> {
     flags.iter().map(C::flag_name).collect()
 }

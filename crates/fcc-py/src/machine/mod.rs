@@ -3,9 +3,13 @@
 
 #[macro_use]
 mod class;
+#[cfg(feature = "flight")]
 mod flight;
 mod lockstep;
 mod python_io;
+mod replay;
 
+#[cfg(feature = "flight")]
 pub(crate) use flight::PyMachine;
-pub(crate) use lockstep::{Lockstep, conditions};
+pub use lockstep::{Lockstep, conditions};
+pub use replay::replay;

@@ -198,7 +198,7 @@ fn about<'py>(py: Python<'py>, about: &About) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("git_hash", &about.git_hash)?;
     dict.set_item("host", &about.host)?;
     dict.set_item("kernel", &about.kernel)?;
-    dict.set_item("aircraft", &about.aircraft)?;
+    dict.set_item("plant", &about.plant)?;
     dict.set_item("rate_hz", about.rate_hz)?;
     dict.set_item("timer", &about.timer)?;
     dict.set_item("sensors", &about.sensors)?;
@@ -206,7 +206,8 @@ fn about<'py>(py: Python<'py>, about: &About) -> PyResult<Bound<'py, PyDict>> {
     dict.set_item("policy", &about.realtime.policy)?;
     dict.set_item("priority", about.realtime.priority)?;
     dict.set_item("memory_locked", about.realtime.memory_locked)?;
-    dict.set_item("refused", &about.realtime.refused)?;
+    let denied = about.realtime.refused.iter().map(ToString::to_string);
+    dict.set_item("refused", denied.collect::<Vec<_>>())?;
     dict.set_item("started", about.started())?;
     dict.set_item("started_unix_ns", about.started_unix_ns)?;
     dict.set_item("clock_offset_ns", about.clock_offset_ns)?;

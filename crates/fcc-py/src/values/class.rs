@@ -13,7 +13,7 @@ use crate::arguments::{numbers, shape_words};
 
 /// A class of Python whose attributes are the values of a struct. Made by
 /// `values_class!`.
-pub(crate) trait Values: PyClass + Copy + Into<Self::Of> + From<Self::Of> {
+pub trait Values: PyClass + Copy + Into<Self::Of> + From<Self::Of> {
     /// The struct.
     type Of: Schema;
     /// The names of readings that are no attributes.
@@ -39,17 +39,26 @@ pub(crate) trait Values: PyClass + Copy + Into<Self::Of> + From<Self::Of> {
         Self::attributes().shape.copy(core, &mut of, None);
         of.into()
     }
+
+    /// The measurements of one tick, before their time is known: what is not
+    /// measured, or is `missing`, is never taken.
+    fn sample(&self, missing: impl Fn(&str) -> bool) -> Self::Of {
+        let mut sample = (*self).into();
+        Self::attributes().shape.forget(&mut sample, missing);
+        sample
+    }
 }
 
 /// The attributes of a class.
-pub(crate) struct Attributes {
+pub struct Attributes {
     pub(crate) shape: &'static Shape,
     /// Each with its index among the values of the struct.
     pub(crate) leaves: Vec<(usize, &'static Leaf)>,
 }
 
 impl Attributes {
-    pub(crate) fn new<V: Values>() -> Self {
+    /// The attributes of a class.
+    pub fn new<V: Values>() -> Self {
         let shape = Shape::of::<V::Of>();
         let name = |leaf: &Leaf| shape.readings.get(leaf.reading?).copied();
         let is_attribute = |leaf: &Leaf| {
@@ -65,6 +74,8 @@ impl Attributes {
 
 /// Declares a class whose attributes are the values of a struct, read-only
 /// unless it is `settable`. Readings `without` which it is are no attributes.
+/// Needs pyo3's prelude in scope.
+#[macro_export]
 macro_rules! values_class {
     (@settable) => {};
     (@settable settable) => {
@@ -98,7 +109,7 @@ macro_rules! values_class {
         impl $crate::values::Values for $name {
             type Of = $core;
             $(const WITHOUT: &'static [&'static str] = &$without;)?
-            values_class!(@settable $($settable)?);
+            $crate::values_class!(@settable $($settable)?);
 
             fn attributes() -> &'static $crate::values::Attributes {
                 static KNOWN: std::sync::OnceLock<$crate::values::Attributes> =
@@ -129,7 +140,10 @@ pub(crate) fn names<V: Values>() -> impl Iterator<Item = &'static str> {
 }
 
 /// Adds the class to the module, with a property for each value.
-pub(crate) fn register<V: Values>(module: &Bound<'_, PyModule>) -> PyResult<()> {
+///
+/// # Errors
+/// Those of Python.
+pub fn register<V: Values>(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<V>()?;
     let py = module.py();
     let property = py.import("builtins")?.getattr("property")?;
@@ -179,7 +193,10 @@ fn set<T: Schema>(
 
 /// An object from its values by their names; those that are not given are as in
 /// [`Values::blank`].
-pub(crate) fn from_keywords<V: Values>(given: Option<&Bound<'_, PyDict>>) -> PyResult<V> {
+///
+/// # Errors
+/// When a name or value is none of the struct's.
+pub fn from_keywords<V: Values>(given: Option<&Bound<'_, PyDict>>) -> PyResult<V> {
     let mut of = V::blank();
     for (name, value) in given.into_iter().flatten() {
         let name: String = name.extract()?;
@@ -211,7 +228,10 @@ pub(crate) fn from_row<V: Values>(row: &[f64]) -> V {
 }
 
 /// An object from an array, with one number for each attribute.
-pub(crate) fn from_array<V: Values>(row: &Bound<'_, PyAny>) -> PyResult<V> {
+///
+/// # Errors
+/// When it is of another shape.
+pub fn from_array<V: Values>(row: &Bound<'_, PyAny>) -> PyResult<V> {
     let (shape, values) = numbers("row", row)?;
     let count = names::<V>().count();
     if shape == [count] {
@@ -232,21 +252,24 @@ pub(crate) fn as_row<V: Values>(of: V, row: &mut Vec<f64>) {
 }
 
 /// An object as an array, one number for each attribute.
-pub(crate) fn to_array<V: Values>(py: Python<'_>, of: V) -> Bound<'_, PyArray1<f64>> {
+pub fn to_array<V: Values>(py: Python<'_>, of: V) -> Bound<'_, PyArray1<f64>> {
     let mut row = Vec::new();
     as_row(of, &mut row);
     row.to_pyarray(py)
 }
 
 /// Whether all values are equal; NaN never is.
-pub(crate) fn are_equal<V: Values>(one: V, other: V) -> bool {
+pub fn are_equal<V: Values>(one: V, other: V) -> bool {
     let (one, other) = (flat(&one.into()), flat(&other.into()));
     let mut leaves = V::attributes().leaves.iter();
     leaves.all(|(index, _)| one.as_slice().get(*index) == other.as_slice().get(*index))
 }
 
 /// An object as Python writes it.
-pub(crate) fn written<V: Values>(py: Python<'_>, of: V) -> PyResult<String> {
+///
+/// # Errors
+/// Those of Python.
+pub fn written<V: Values>(py: Python<'_>, of: V) -> PyResult<String> {
     let values = flat(&of.into());
     let fields = V::attributes().leaves.iter().map(|(index, leaf)| {
         let value = values.as_slice().get(*index).copied();

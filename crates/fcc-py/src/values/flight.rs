@@ -79,14 +79,6 @@ values_class! {
 }
 
 impl PyMeasurements {
-    /// The measurements of one tick, before their time is known: what is not
-    /// measured, or is `missing`, is never taken.
-    pub(crate) fn sample(&self, missing: impl Fn(&str) -> bool) -> Measurements {
-        let mut sample = self.0;
-        Self::attributes().shape.forget(&mut sample, missing);
-        sample
-    }
-
     /// Replaces the values of the core's measurements; their times stay.
     pub(crate) fn write_over(&self, core: &mut Measurements) {
         Self::attributes().shape.copy(&self.0, core, None);

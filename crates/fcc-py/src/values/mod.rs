@@ -3,12 +3,17 @@
 
 #[macro_use]
 mod class;
+#[cfg(feature = "flight")]
 mod flight;
 mod shape;
 
-pub(crate) use class::{
-    Attributes, Values, are_equal, as_row, from_array, from_keywords, from_row, names, register,
-    to_array, written,
+pub(crate) use class::names;
+pub use class::{
+    Attributes, Values, are_equal, from_array, from_keywords, register, to_array, written,
 };
+#[cfg(feature = "flight")]
+pub(crate) use class::{as_row, from_row};
+#[cfg(feature = "flight")]
 pub(crate) use flight::{PyEstimate, PyMeasurements, PySetpoints, PySurfaces, PyTruth, with_plant};
-pub(crate) use shape::{Shape, checked};
+pub(crate) use shape::Shape;
+pub use shape::checked;

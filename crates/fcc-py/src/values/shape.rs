@@ -184,7 +184,10 @@ pub(super) fn fill<T: Schema>(
 }
 
 /// A struct, each of its numbers finite and in its declared range.
-pub(crate) fn checked<T: Schema>(of: T) -> PyResult<T> {
+///
+/// # Errors
+/// When one is not.
+pub fn checked<T: Schema>(of: T) -> PyResult<T> {
     let values = flat(&of);
     for (leaf, value) in Shape::of::<T>().leaves.iter().zip(values.as_slice()) {
         let (least, most) = leaf.column.range.unwrap_or((f64::MIN, f64::MAX));

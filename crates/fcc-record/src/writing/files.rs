@@ -88,7 +88,7 @@ impl<C: Recorded> Writing<C> {
     fn begin_file(&mut self) -> Result<RecordingFile<C>, (PathBuf, io::Error)> {
         for _ in 0..MAX_ATTEMPTS {
             let about = &self.about;
-            let name = file_name(about.started_unix_ns, &about.aircraft, about.part);
+            let name = file_name(about.started_unix_ns, &about.plant, about.part);
             let path = self.settings.folder.join(name);
             let compression = self.settings.compression;
             match RecordingFile::begin(&mut *self.disk, &path, about, compression) {

@@ -20,7 +20,7 @@ pub(crate) fn about() -> About {
         git_hash: "0123456789ab".to_owned(),
         host: "bench".to_owned(),
         kernel: "Linux 6.18".to_owned(),
-        aircraft: "built-in".to_owned(),
+        plant: "built-in".to_owned(),
         rate_hz: 40.0,
         timer: "timerfd".to_owned(),
         sensors: vec!["built-in aircraft".to_owned()],

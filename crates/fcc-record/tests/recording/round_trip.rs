@@ -98,6 +98,10 @@ fn every_event_comes_back() {
         EventKind::Hung {
             silent_ns: u64::MAX,
         },
+        EventKind::ModeChanged {
+            from: 0,
+            to: u8::MAX,
+        },
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];

@@ -1,7 +1,7 @@
 //! The legs of a timed pattern as a table.
 
+use comfy_table::Table;
 use fcc_telemetry::{FlightScore, LegScore, ScoredBy};
-use maud::{Markup, html};
 
 use crate::table::table;
 
@@ -19,7 +19,7 @@ const LEG_COLUMNS: [&str; 10] = [
     "lateral g",
 ];
 
-/// What the columns of a leg mean.
+/// Meanings of the columns.
 const LEG_LEGEND: &str = "\
 ≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
 overshoot        how far past the set point, in the direction of the turn or climb
@@ -28,13 +28,19 @@ turn loss        how far below the lower of the two altitudes that the leg joins
 airspeed         largest error either way
 lateral          largest sideways acceleration";
 
-/// What it is scored by, a row per leg and the worst of each column, and what
-/// the columns mean.
+/// Source of the score, a row per leg and the worst of each column, and the
+/// meanings of the columns.
 pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     let by = match by {
-        ScoredBy::Truth => "how the simulated aircraft truly flew",
-        ScoredBy::Measurement => "what the sensors measured",
+        ScoredBy::Truth => "the true values of the simulated aircraft",
+        ScoredBy::Measurement => "the measurements of the sensors",
     };
+    let table = legs(score);
+    format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")
+}
+
+/// A row per leg, and the worst of each column.
+pub(super) fn legs(score: &FlightScore) -> Table {
     let mut table = table(&LEG_COLUMNS);
     for (index, leg) in score.legs.iter().enumerate() {
         table.add_row(leg_cells((index + 1).to_string(), leg));
@@ -42,7 +48,7 @@ pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     if let Some(worst) = &score.worst {
         table.add_row(leg_cells("worst".to_owned(), worst));
     }
-    format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")
+    table
 }
 
 /// The cells of a leg, under [`LEG_COLUMNS`].
@@ -60,42 +66,4 @@ fn leg_cells(name: String, leg: &LegScore) -> Vec<String> {
         format!("{:.2}", leg.airspeed_error_kt),
         format!("{:.3}", leg.lateral_acceleration_g),
     ]
-}
-
-/// The same for a page, by what was measured.
-pub(super) fn html(flight: &FlightScore) -> Markup {
-    let rows = flight
-        .legs
-        .iter()
-        .enumerate()
-        .map(|(number, leg)| ((number + 1).to_string(), leg))
-        .chain(flight.worst.iter().map(|worst| ("worst".to_owned(), worst)));
-    html! {
-        figure {
-            h3 { "Legs of the timed pattern" }
-            div.wide {
-                table {
-                    thead {
-                        tr {
-                            @for name in LEG_COLUMNS { th { (name) } }
-                        }
-                    }
-                    tbody { @for (name, leg) in rows { (leg_row(name, leg)) } }
-                }
-            }
-            figcaption {
-                "By what was measured: time until the heading stays within 2° and the altitude \
-                 within 10 ft of the set point, how far each goes past it, and the root mean \
-                 square of what is left; largest errors of a whole leg."
-            }
-        }
-    }
-}
-
-fn leg_row(name: String, leg: &LegScore) -> Markup {
-    html! {
-        tr.worst[name == "worst"] {
-            @for cell in leg_cells(name, leg) { td { (cell) } }
-        }
-    }
 }

@@ -1,24 +1,25 @@
-//! What a flight's report has beside that of any loop: the plots that pilots
-//! and the thesis have, the score along a timed pattern, and the ground track.
+//! Additions to a flight's report: the plots of pilots and of the thesis, the
+//! score along a timed pattern, and the ground track.
 
 mod ground_track;
 mod legs;
-mod scoring;
 mod track;
 
+use comfy_table::Table;
 use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
-use fcc_telemetry::units::AVIATION;
-use fcc_telemetry::{FlightScore, ScoredBy};
+use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT};
+use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
 
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Panel, Plot, Quantities, Scale};
-use super::reported::{Addition, Reported, Words};
-use super::{Report, RunReport, Survey};
+use super::report::{Report, RunReport};
+use super::reported::{Addition, Reported};
+use super::survey::Survey;
+use super::terms::Terms;
 pub use legs::flight_table;
-use scoring::Scoring;
 use track::Track;
 
 /// The report on a flight.
@@ -27,46 +28,38 @@ pub type FlightReport = Report<FlightAddition>;
 /// Takes the messages of a flight's recording.
 pub type FlightSurvey = Survey<Autopilot>;
 
-/// More legs than these do not fit on a screen.
+/// At most this many legs are shown.
 const MOST_LEGS: usize = 16;
 
-/// What only a flight's report has.
+/// Additions to a flight's report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct FlightAddition {
-    /// How well the timed pattern was flown, by what was measured; none
-    /// without a whole leg.
+    /// Score of the timed pattern, by measurements; `None` without a whole leg.
     pub flight: Option<FlightScore>,
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
     #[serde(skip)]
-    scoring: Option<Scoring>,
+    scorer: Option<PatternScorer>,
     #[serde(skip)]
     track: Track,
 }
 
 impl FlightAddition {
-    /// Scores the flight if it is to be along a timed pattern.
+    /// Scores the flight if `pattern` is given.
     pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
         Self {
-            scoring: pattern.map(Scoring::new),
+            scorer: pattern.map(PatternScorer::new),
             ..Self::default()
         }
     }
 }
 
 impl Addition for FlightAddition {
-    /// The pattern ends with it.
-    fn command_received(&mut self) {
-        if let Some(scoring) = &mut self.scoring {
-            scoring.command_received();
-        }
-    }
-
     fn finish(&mut self) {
-        if let Some(scoring) = &self.scoring {
-            let (score, failed) = scoring.result();
+        if let Some(scorer) = &self.scorer {
+            let (score, failed) = scorer.result();
             self.flight = Some(score).filter(|score| !score.legs.is_empty());
-            self.not_scored = failed;
+            self.not_scored = failed.map(|error| error.to_string());
         }
         self.track.finish();
     }
@@ -80,8 +73,9 @@ impl Addition for FlightAddition {
         unscored.into_iter().chain(nowhere).collect()
     }
 
-    fn figures(&self, run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        ground_track::figure(run, self.track.places()).map(|figure| figure.into_iter().collect())
+    fn figures(&self, run: &RunReport) -> Vec<Figure> {
+        let figure = ground_track::figure(run, self.track.places());
+        figure.into_iter().collect()
     }
 
     fn text(&self) -> String {
@@ -100,16 +94,21 @@ impl Addition for FlightAddition {
         format!("{table}\nof {count} legs: see the page (--html) for each")
     }
 
-    fn html(&self) -> String {
-        let table = self.flight.as_ref().map(legs::html);
-        table.map(maud::PreEscaped::into_string).unwrap_or_default()
+    fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
+        const CAPTION: &str = "By what was measured: time until the heading stays within 2° and \
+            the altitude within 10 ft of the set point, how far each goes past it, and the root \
+            mean square of what is left; largest errors of a whole leg.";
+        let flight = self.flight.iter();
+        flight
+            .map(|flight| ("Legs of the timed pattern", CAPTION, legs::legs(flight)))
+            .collect()
     }
 }
 
 impl Reported for Autopilot {
     type Addition = FlightAddition;
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "flight",
         plant: "Aircraft",
         controller: "autopilot",
@@ -122,8 +121,18 @@ impl Reported for Autopilot {
         if !position.is_never() {
             addition.track.push(time_s, &position.value);
         }
-        if let Some(scoring) = &mut addition.scoring {
-            scoring.take(record, time_s);
+        if let Some(scorer) = &mut addition.scorer {
+            let sample = Sample::measured(&record.measurements, time_s);
+            // The legs lie around the set points that were captured, not around
+            // the first, noisy measurement.
+            let captured = Sample {
+                heading_deg: record.setpoints.heading_rad.to_degrees(),
+                altitude_ft: record.setpoints.altitude_m * M_FT,
+                airspeed_kt: record.setpoints.airspeed_mps * MPS_KT,
+                ..sample
+            };
+            let guidance = &record.setpoints.guidance;
+            scorer.take(record.state.state(), guidance, Some(captured), Some(sample));
         }
     }
 
@@ -141,13 +150,13 @@ impl Reported for Autopilot {
         vec![
             plot(
                 "Heading",
-                "Magnetic heading, desired and actual, which is what the navigation made of what \
-                 was measured (thesis, figure 6.4).",
+                "Magnetic heading, desired and actual, as the navigation estimated it from the \
+                 measurements (thesis, figure 6.4).",
                 vec![panel("heading_rad", "heading").sized(200.0, Scale::Compass)],
             ),
             plot(
                 "Altitude and pitch",
-                "Barometric altitude, desired and actual, and below it the pitch that makes it \
+                "Barometric altitude, desired and actual, and below it the pitch \
                  (thesis, figure 6.5).",
                 vec![
                     panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
@@ -189,7 +198,7 @@ mod tests {
     use super::*;
     use crate::{FileEnd, Origin};
 
-    /// A record of anything at all: a damaged file can hold it.
+    /// A record of any values: a damaged file can hold it.
     fn record() -> impl Strategy<Value = RecordOf<Autopilot>> {
         let numbers = || prop::array::uniform8(any::<f64>());
         let times = (any::<i64>(), any::<i64>(), any::<i64>());
@@ -263,7 +272,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Nothing that a file can hold makes a report panic or grow.
+        /// No content of a file makes a report panic or grow.
         #[test]
         fn anything_can_be_reported_on(
             records in prop::collection::vec(record(), 0..40),
@@ -276,7 +285,8 @@ mod tests {
             let mut due_ns = 0_i64;
             for (n, mut record) in records.into_iter().enumerate() {
                 if n == 0 {
-                    // The first says how long a period is; a loop cannot have any.
+                    // The first record determines the period; it may be
+                    // invalid.
                     record.tick.missed %= 5;
                 }
                 if in_order {
@@ -288,7 +298,7 @@ mod tests {
                 survey.take(&Message::Tick(record)).unwrap();
             }
             let report = survey.finish(FileEnd::Unknown);
-            let page = report.to_html().unwrap();
+            let page = report.to_html();
             prop_assert!(page.len() < 5_000_000);
             prop_assert!(!report.to_text().is_empty());
             prop_assert!(serde_json::to_string(&report).is_ok());

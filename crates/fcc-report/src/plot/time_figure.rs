@@ -1,37 +1,38 @@
 //! Plots over time, one panel above another.
 
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::states::Phase;
+use super::super::trace::Point;
 use super::axis::Axis;
-use super::canvas::{
-    Area, Drawn, FAINT, LABEL_PX, PlotError, SMALL_PX, TEXT, WIDTH_PX, draw, pen, px, text,
-    text_width_px,
-};
-use super::curves::{Detail, Ink, is_dense, markup};
+
+use super::curves::{Detail, is_dense, markup};
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
+use super::sheet::{
+    Anchor, Colour, FAINT, Font, GRID, Height, LABEL_PX, MARK, SMALL_PX, Sample, Sheet, TEXT,
+    WIDTH_PX, px,
+};
 
-/// Edges of all panels over time, px: the same in every figure, so that one
-/// can be laid upon another.
+/// Left and right edge of all panels over time, px: the same in every figure,
+/// so that figures can be compared.
 pub(super) const LEFT_PX: f64 = 60.0;
 pub(super) const RIGHT_PX: f64 = WIDTH_PX - 12.0;
 
 const LEGEND_PX: f64 = 20.0;
 const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// Where records are missing.
-const GAP: RGBColor = RGBColor(255, 238, 170);
+/// Missing records.
+const GAP: Colour = "#FFEEAA";
 
 /// A panel of a figure over time.
 pub(super) struct TimePanel<'a> {
     pub(super) height_px: f64,
     pub(super) y: Axis,
+    /// Whether they are directions, drawn within one turn.
+    pub(super) fold: bool,
     /// Drawn in this order.
     pub(super) curves: &'a [Curve],
 }
@@ -42,151 +43,145 @@ pub(super) fn time_figure(
     label: &str,
     detail: Detail,
     panels: &[TimePanel<'_>],
-) -> Result<String, PlotError> {
+) -> String {
     let top = LEGEND_PX + MARKS_PX;
     let mut bottom = top - BETWEEN_PX;
-    let mut frames = Vec::new();
-    for panel in panels {
+    let axis = time_axis(report);
+    let marks = marks(&report.events, |time_s| time_px(report, time_s));
+    let mut sheet = Sheet::default();
+    sheet.legend((LEFT_PX, LEGEND_PX / 2.0 - 1.0), legend(report, panels));
+    for (number, panel) in panels.iter().enumerate() {
         let top = bottom + BETWEEN_PX;
         bottom = top + panel.height_px;
-        frames.push(Frame {
+        let frame = Frame {
             left: LEFT_PX,
             top,
             right: RIGHT_PX,
             bottom,
+        };
+        ground(&mut sheet, report, frame, &axis, &marks);
+        // The ticks of the time are drawn apart: they move when it is zoomed.
+        let axes = Panel {
+            frame,
+            x: Axis {
+                ticks: Vec::new(),
+                ..axis.clone()
+            },
+            y: panel.y.clone(),
+        };
+        axes.axes(&mut sheet, number + 1 == panels.len());
+        zoomable(&mut sheet, frame, |sheet| {
+            for curve in panel.curves {
+                let on_panel = |point: Point| {
+                    let (x, y) = axes.place((point.time_s, point.value));
+                    (x - LEFT_PX, y - top)
+                };
+                markup(sheet, curve, is_dense(report), panel.fold, detail, on_panel);
+            }
         });
     }
-    let marks = marks(&report.events, |time_s| time_px(report, time_s));
-    let mut svg = draw(bottom + X_WORDS_PX, label, |area| {
-        legend(area, report, panels)?;
-        for (panel, frame) in panels.iter().zip(&frames) {
-            let is_last = frame.bottom == bottom;
-            draw_panel(area, report, panel, *frame, is_last, &marks)?;
-        }
-        number_marks(area, top, &marks)
-    })?;
-    let curves = |(panel, frame): (&TimePanel<'_>, &Frame)| -> String {
-        let (y, frame) = (panel.y.clone(), *frame);
-        let curves = panel.curves.iter();
-        curves
-            .map(|curve| {
-                markup(curve, is_dense(report), detail, |point| {
-                    let share = (point.value - y.from) / (y.to - y.from);
-                    let height = frame.bottom - frame.top;
-                    (time_px(report, point.time_s), frame.bottom - share * height)
-                })
-            })
-            .collect()
+    sheet.raw(format_args!("<g class=\"times\">"));
+    for (at_s, label) in &axis.ticks {
+        let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
+        sheet.text((time_px(report, *at_s), bottom + 6.0), label, font);
+    }
+    sheet.raw(format_args!("</g>"));
+    for mark in &marks {
+        let font = Font(SMALL_PX, FAINT, Anchor::Middle, Height::Bottom);
+        sheet.transformed_text((mark.at_px, top - 1.0), &mark.label(), font, "mark", "");
+    }
+    // For the page's script: the position of the time axis.
+    let data = [
+        ("left", f64::from(px(LEFT_PX))),
+        ("right", f64::from(px(RIGHT_PX))),
+        ("end", end_s(report)),
+        ("unit", unit(report).0),
+    ];
+    sheet.finish(bottom + X_LABELS_PX, label, &data)
+}
+
+/// The content of a panel, from its upper left corner: a part of the sheet that
+/// can be zoomed by itself.
+fn zoomable(sheet: &mut Sheet, frame: Frame, draw: impl FnOnce(&mut Sheet)) {
+    let (x, y) = (px(frame.left), px(frame.top));
+    let (width, height) = (px(frame.right - frame.left), px(frame.bottom - frame.top));
+    sheet.raw(format_args!(
+        "<svg class=\"time\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" preserveAspectRatio=\"none\">"
+    ));
+    draw(sheet);
+    sheet.raw(format_args!("</svg>"));
+}
+
+/// Tints, the grid of the time and the marks of events.
+fn ground(sheet: &mut Sheet, report: &RunReport, frame: Frame, axis: &Axis, marks: &[Mark]) {
+    let height = frame.bottom - frame.top;
+    let at = |time_s: f64| time_px(report, time_s) - LEFT_PX;
+    let states = report.states.iter();
+    let tints = states.filter_map(|span| Some((span.from_s, span.to_s, tint(span.phase)?)));
+    let gaps = report.continuity.gaps.iter();
+    let gaps = gaps.map(|gap| (gap.from_s, gap.to_s, GAP));
+    let upright = |sheet: &mut Sheet, class: &str, colour: Colour, places: Vec<f64>| {
+        let moves = places
+            .iter()
+            .map(|x| format!("M{} 0v{}", px(*x), px(height)));
+        let path = moves.collect::<Vec<_>>().concat();
+        sheet.raw(format_args!(
+            "<path class=\"{class}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"6\" \
+             d=\"{path}\"/>"
+        ));
     };
-    let lines: String = panels.iter().zip(&frames).map(curves).collect();
-    let end = svg.rfind("</svg>").unwrap_or(svg.len());
-    svg.insert_str(end, &lines);
-    // For the page's script: where the axis of time is.
-    let (left, right, end_s) = (px(LEFT_PX), px(RIGHT_PX), end_s(report));
-    let axis = format!(" data-left=\"{left}\" data-right=\"{right}\" data-end=\"{end_s}\"");
-    svg.insert_str("<svg".len(), &axis);
-    Ok(svg)
-}
-
-fn draw_panel(
-    area: &Area<'_>,
-    report: &RunReport,
-    panel: &TimePanel<'_>,
-    frame: Frame,
-    is_last: bool,
-    marks: &[Mark],
-) -> Drawn {
-    let mut drawn = Panel::new(area, frame, time_axis(report), panel.y.clone())?;
-    for span in &report.states {
-        if let Some(tint) = tint(span.phase) {
-            drawn.tint(span.from_s, span.to_s, tint)?;
+    zoomable(sheet, frame, |sheet| {
+        for (from_s, to_s, colour) in tints.chain(gaps) {
+            // Short gaps are widened so that they are visible.
+            let right = at(to_s).max(at(from_s) + 1.0);
+            sheet.rectangle((at(from_s), 0.0), (right, height), colour);
         }
-    }
-    for gap in &report.continuity.gaps {
-        // A gap too short to be seen is seen all the same.
-        let least_s = report.duration_s / (RIGHT_PX - LEFT_PX);
-        drawn.tint(gap.from_s, gap.to_s.max(gap.from_s + least_s), GAP)?;
-    }
-    drawn.axes(is_last)?;
-    for mark in marks {
-        let (x, top, bottom) = (px(mark.at_px), px(frame.top), px(frame.bottom));
-        area.draw(&PathElement::new(
-            [(x, top), (x, bottom)],
-            pen(RGBColor(190, 190, 190), 0.6),
-        ))?;
-    }
-    Ok(())
+        let ticks = axis.ticks.iter().map(|(time_s, _)| at(*time_s));
+        upright(sheet, "grid", GRID, ticks.collect());
+        let marks = marks.iter().map(|mark| mark.at_px - LEFT_PX);
+        upright(sheet, "marks", MARK, marks.collect());
+    });
 }
 
-fn number_marks(area: &Area<'_>, top: f64, marks: &[Mark]) -> Drawn {
-    let style = text(SMALL_PX, FAINT, HPos::Center, VPos::Bottom);
-    for mark in marks {
-        area.draw_text(&mark.label(), &style, (px(mark.at_px), px(top - 1.0)))?;
-    }
-    Ok(())
-}
-
-/// What lines and tints mean, in a row above the panels.
-fn legend(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Drawn {
+/// A legend of lines and tints, above the panels.
+fn legend(report: &RunReport, panels: &[TimePanel<'_>]) -> Vec<(Sample, &'static str)> {
     let curves = panels.iter().flat_map(|panel| panel.curves);
     let drawn: Vec<&Curve> = curves.filter(|curve| curve.trace.len() > 0).collect();
     let of = |ink: Ink| drawn.iter().find(|curve| curve.ink == ink);
-    let mut inks: Vec<_> = [Ink::Measured, Ink::Actual, Ink::Desired]
+    let mut entries: Vec<_> = [Ink::Measured, Ink::Actual, Ink::Desired]
         .into_iter()
         .filter_map(of)
+        .map(|curve| {
+            let (colour, width_px) = curve.ink.pen(false);
+            (Sample::Line(colour, width_px), curve.name)
+        })
         .collect();
     // One line needs no name.
-    if inks.len() == 1 {
-        inks.clear();
+    if entries.len() == 1 {
+        entries.clear();
     }
     let in_phase = |phase: Phase| report.states.iter().any(|span| span.phase == phase);
-    let mut x = LEFT_PX;
-    let middle = LEGEND_PX / 2.0 - 1.0;
-    let style = text(LABEL_PX, TEXT, HPos::Left, VPos::Center);
-    let mut add = |sample: &dyn Fn(f64) -> Drawn, words: &str| -> Drawn {
-        sample(x)?;
-        area.draw_text(words, &style, (px(x + 26.0), px(middle)))?;
-        x += 26.0 + text_width_px(words, LABEL_PX) + 16.0;
-        Ok(())
-    };
-    for curve in inks {
-        let (colour, width_px) = curve.ink.pen(false);
-        let sample = |x: f64| -> Drawn {
-            let ends = [(px(x), px(middle)), (px(x + 21.0), px(middle))];
-            Ok(area.draw(&PathElement::new(ends, pen(colour, width_px)))?)
-        };
-        add(&sample, curve.name)?;
-    }
-    let tints = [Phase::Standby, Phase::Failsafe, Phase::Stopped]
-        .into_iter()
+    let phases = [Phase::Standby, Phase::Failsafe, Phase::Stopped].into_iter();
+    let tints = phases
         .filter(|phase| in_phase(*phase))
-        .filter_map(|phase| Some((tint(phase)?, words(phase))))
+        .filter_map(|phase| Some((tint(phase)?, phase_name(phase))))
         .chain((report.continuity.lost > 0).then_some((GAP, "records missing")));
-    for (tint, words) in tints {
-        let sample = |x: f64| -> Drawn {
-            let corners = [
-                (px(x + 5.0), px(middle - 5.0)),
-                (px(x + 21.0), px(middle + 5.0)),
-            ];
-            area.draw(&Rectangle::new(corners, tint.filled()))?;
-            Ok(())
-        };
-        add(&sample, words)?;
-    }
-    Ok(())
+    entries.extend(tints.map(|(tint, name)| (Sample::Block(tint), name)));
+    entries
 }
 
-/// The ground of a panel where the loop was not engaged.
-pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
+/// The background of a panel while the loop was not engaged.
+pub(super) fn tint(phase: Phase) -> Option<Colour> {
     match phase {
         Phase::Engaged => None,
-        Phase::Standby => Some(RGBColor(240, 240, 238)),
-        Phase::Failsafe => Some(RGBColor(251, 222, 214)),
-        Phase::Stopped => Some(RGBColor(216, 216, 214)),
+        Phase::Standby => Some("#F0F0EE"),
+        Phase::Failsafe => Some("#FBDED6"),
+        Phase::Stopped => Some("#D8D8D6"),
     }
 }
 
-pub(super) fn words(phase: Phase) -> &'static str {
+pub(super) fn phase_name(phase: Phase) -> &'static str {
     match phase {
         Phase::Standby => "standby",
         Phase::Engaged => "engaged",
@@ -195,25 +190,21 @@ pub(super) fn words(phase: Phase) -> &'static str {
     }
 }
 
-/// Where on the sheet a time is, px.
+/// Position of a time on the sheet, px.
 pub(super) fn time_px(report: &RunReport, time_s: f64) -> f64 {
     let share = (time_s / end_s(report)).clamp(0.0, 1.0);
     LEFT_PX + share * (RIGHT_PX - LEFT_PX)
 }
 
 fn end_s(report: &RunReport) -> f64 {
-    // One tick has no duration, and its axis must have one.
+    // One tick has no duration, but the axis needs one.
     report.duration_s.max(0.1)
 }
 
-/// The axis of time: its coordinate is in seconds, its words in what suits.
+/// The axis of time: its coordinate is in seconds, its labels in a suitable
+/// unit.
 pub(super) fn time_axis(report: &RunReport) -> Axis {
-    let end_s = end_s(report);
-    let (unit_s, unit) = match end_s {
-        end_s if end_s <= 300.0 => (1.0, "s"),
-        end_s if end_s <= 10_800.0 => (60.0, "min"),
-        _ => (3_600.0, "h"),
-    };
+    let (end_s, (unit_s, unit)) = (end_s(report), unit(report));
     let mut axis = Axis::exactly(
         (0.0, end_s / unit_s),
         12,
@@ -224,4 +215,13 @@ pub(super) fn time_axis(report: &RunReport) -> Axis {
         *at *= unit_s;
     }
     axis
+}
+
+/// The unit of the time axis, s, and its symbol.
+fn unit(report: &RunReport) -> (f64, &'static str) {
+    match end_s(report) {
+        end_s if end_s <= 300.0 => (1.0, "s"),
+        end_s if end_s <= 10_800.0 => (60.0, "min"),
+        _ => (3_600.0, "h"),
+    }
 }

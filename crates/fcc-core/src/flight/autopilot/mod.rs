@@ -20,7 +20,7 @@ pub use resume::Resume;
 pub use scale::Scale;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
-use super::guidance::{ActiveMode, ModeInput, Targets};
+use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
@@ -218,6 +218,15 @@ impl Controller for Autopilot {
                 write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
             }
         }
+    }
+
+    /// The mode of guidance.
+    fn mode(&self) -> u8 {
+        self.guidance.mode() as u8
+    }
+
+    fn mode_name(mode: u8) -> &'static str {
+        Mode::from_number(mode).map_or("unknown", Mode::name)
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
