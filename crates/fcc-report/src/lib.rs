@@ -1,4 +1,4 @@
-//! After a run: what a recording says, for people, for tools and for paper.
+//! Reports on recordings: as text, JSON, an HTML page, SVG and CSV.
 //!
 //! ```text
 //! messages ─► Survey ─► Report ─► tables, JSON, one HTML page
@@ -6,13 +6,13 @@
 //! ```
 //!
 //! A [`Survey`] reads the messages once, in memory that does not grow with the
-//! recording: lines are thinned to what a plot can show, and durations are
+//! recording: lines are thinned to the resolution of a plot, and durations are
 //! counted in histograms. It works for every controller whose values are
-//! declared; what only one plant has, as the score of a flight, is its
-//! [`Addition`].
+//! declared; results of one kind of plant, such as the score of a flight, are
+//! an [`Addition`].
 //!
-//! Inside is SI; a report has the units that people read, with the unit in
-//! every name.
+//! Values inside are in SI; a report has display units, with the unit in every
+//! name.
 
 mod box_plot;
 mod continuity;
@@ -33,11 +33,11 @@ mod spread;
 mod states;
 mod survey;
 mod table;
+mod terms;
 mod text;
 mod thesis;
 mod trace;
 mod turns;
-mod words;
 
 pub use box_plot::BoxPlot;
 pub use continuity::{Continuity, Gap};
@@ -49,12 +49,12 @@ pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
 pub use plot::Figure;
-pub use plots::{Panel, Plot, Quantities, ValueRange};
+pub use plots::{Panel, Plot, Quantities, Scale, ValueRange};
 pub use report::{Report, RunReport, Timing};
 pub use reported::{Addition, Reported};
 pub use spread::Percentiles;
 pub use states::StateSpan;
 pub use survey::Survey;
 pub use table::{recordings_table, timing_table};
+pub use terms::Terms;
 pub use thesis::ThesisFigures;
-pub use words::Words;

@@ -1,4 +1,4 @@
-//! A report as one page that needs nothing but itself.
+//! A report as one HTML page without other files.
 
 use std::path::Path;
 use std::{fs, io};
@@ -10,16 +10,15 @@ use super::plot::{Detail, Figure, Figures, figures};
 use super::report::{Report, RunReport};
 use super::reported::Addition;
 use super::table::{markup, table, timing_columns};
+use super::terms::capitalized;
 use super::text::percentiles_table;
-use super::words::capitalized;
 
 const STYLE: &str = include_str!("page.css");
-/// Lets plots be zoomed; without it, the page is the same, and still.
+/// Zooms the plots; without it the page is the same, but static.
 const SCRIPT: &str = include_str!("page.js");
 
 impl<A: Addition> Report<A> {
-    /// The page: HTML with everything in it, plots as SVG; nothing is fetched
-    /// when it is opened.
+    /// The page: HTML with all plots as SVG; a browser loads nothing else.
     pub fn to_html(&self) -> String {
         let figures = self.figures(Detail::WhenZoomed);
         let title = self.title();
@@ -42,7 +41,7 @@ impl<A: Addition> Report<A> {
                     }
                     @for figure in &figures.timeline { (figure_markup(figure)) }
                     @if !figures.values.is_empty() {
-                        h2 { (capitalized(self.words.run)) }
+                        h2 { (capitalized(self.terms.run)) }
                         @for figure in &figures.values { (figure_markup(figure)) }
                         @if !self.values.is_empty() { (markup(&self.values_table(), &[0])) }
                         @for (title, caption, table) in self.addition.tables() {
@@ -76,8 +75,8 @@ impl<A: Addition> Report<A> {
         page.into_string()
     }
 
-    /// Each plot as a file of its own, for papers: its name, which ends in
-    /// `.svg`, and what is in it.
+    /// Each plot as an SVG file: its name, which ends in `.svg`, and its
+    /// content.
     pub fn to_svgs(&self) -> Vec<(String, String)> {
         let Figures {
             timeline,
@@ -100,7 +99,7 @@ impl<A: Addition> Report<A> {
         figures
     }
 
-    /// Writes the page into a file, which must not be the recording itself.
+    /// Writes the page into a file, which must not be the recording.
     ///
     /// # Errors
     /// What could not be written.
@@ -109,15 +108,15 @@ impl<A: Addition> Report<A> {
         if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
             && page == recording
         {
-            let why = "is the recording itself: give the page another name";
+            let why = "is the recording: give the page another name";
             return Err(refused(why.to_owned()));
         }
         fs::write(path, self.to_html())
             .map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
-    /// Writes each plot into a file of its own, in a folder that is made if it
-    /// is missing.
+    /// Writes each plot into a file in a folder, which is created if it is
+    /// missing.
     ///
     /// # Errors
     /// What could not be written.
@@ -135,7 +134,7 @@ impl<A: Addition> Report<A> {
 impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
-        let mut title = capitalized(self.words.run);
+        let mut title = capitalized(self.terms.run);
         if !origin.plant.is_empty() {
             title = format!("{title} of {}", origin.plant);
         }
@@ -176,11 +175,11 @@ fn figure_markup(figure: &Figure) -> Markup {
     }
 }
 
-fn table_figure(title: &str, caption: &str, table: &Table, words: &[usize]) -> Markup {
+fn table_figure(title: &str, caption: &str, table: &Table, text_columns: &[usize]) -> Markup {
     html! {
         figure {
             h3 { (title) }
-            (markup(table, words))
+            (markup(table, text_columns))
             figcaption { (caption) }
         }
     }

@@ -14,17 +14,17 @@ use super::log_histogram::LogBin;
 use super::origin::{FileEnd, Origin};
 use super::plots::{Curve, Plot, ValueRange};
 use super::states::StateSpan;
+use super::terms::Terms;
 use super::thesis::ThesisFigures;
-use super::words::Words;
 
-/// All that is said of a recorded run. Serialized, it is every statistic in it;
-/// the plots are in the page.
+/// A report on a recorded run. Serialized, it holds every statistic; the plots
+/// are in the page.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report<A> {
-    /// What every loop's recording says.
+    /// The part for every loop.
     #[serde(flatten)]
     pub run: RunReport,
-    /// What only this plant's recording says.
+    /// The part for this kind of plant.
     #[serde(flatten)]
     pub addition: A,
 }
@@ -37,10 +37,10 @@ impl<A> Deref for Report<A> {
     }
 }
 
-/// What is said of a recorded run, whatever the plant.
+/// The part of a report for every plant.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunReport {
-    /// Where the recording comes from.
+    /// Origin of the recording.
     pub origin: Origin,
     /// How the file ends.
     pub end: FileEnd,
@@ -48,30 +48,30 @@ pub struct RunReport {
     pub damages: Vec<Damage>,
     /// First tick to last, s.
     pub duration_s: f64,
-    /// What is worth saying first, in words.
+    /// The summary.
     pub findings: Vec<String>,
     /// Whether every tick is there.
     pub continuity: Continuity,
-    /// How well the loop kept time; none without a tick.
+    /// Timing of the loop; `None` without a tick.
     pub timing: Option<Timing>,
-    /// How long the stages of a tick took.
+    /// Durations of the stages of a tick.
     pub stages: Vec<NamedPercentiles>,
-    /// How old the measurements were when the loop woke.
+    /// Ages of the measurements when the loop woke.
     pub sensor_ages: Vec<NamedPercentiles>,
-    /// Which state the loop was in, and when.
+    /// The states of the loop over time.
     pub states: Vec<StateSpan>,
-    /// How often the loop fell into failsafe.
+    /// How often the loop entered failsafe.
     pub failsafes: u64,
-    /// What happened; the first two thousand.
+    /// The first two thousand events.
     pub events: Vec<EventLine>,
-    /// How many events there were.
+    /// Number of events.
     pub event_count: usize,
-    /// What measurements, set points and outputs ranged over; empty for a
-    /// plant whose results say it better.
+    /// Ranges of measurements, set points and outputs; empty for a plant whose
+    /// addition shows them better.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub values: Vec<ValueRange>,
     #[serde(skip)]
-    pub(super) words: Words,
+    pub(super) terms: Terms,
     #[serde(skip)]
     pub(super) plots: Vec<Plot>,
     #[serde(skip)]
@@ -79,7 +79,7 @@ pub struct RunReport {
 }
 
 impl RunReport {
-    /// Whether all that was recorded could be read.
+    /// Whether the whole recording was read.
     pub fn is_complete(&self) -> bool {
         self.damages.is_empty() && !matches!(self.end, FileEnd::Cut(_))
     }
@@ -91,23 +91,23 @@ impl RunReport {
 }
 
 impl Timing {
-    /// Whether the loop never waited for a clock: its timing is none.
+    /// Whether the loop ran in lockstep, without a clock.
     pub(super) fn is_lockstep(&self) -> bool {
         self.table.lateness_us.max == 0.0 && self.table.period_ms.range == 0.0
     }
 }
 
-/// How well the loop kept time.
+/// Timing of the loop.
 #[derive(Clone, Debug, Serialize)]
 pub struct Timing {
     /// The thesis' table and the lateness.
     #[serde(flatten)]
     pub table: TimingReport,
-    /// Box plot of the period, ms (thesis, figures 6.1 to 6.3); none before
+    /// Box plot of the period, ms (thesis, figures 6.1 to 6.3); `None` before
     /// the second tick.
     pub period_box_ms: Option<BoxPlot>,
     /// Lateness of the wake-ups.
     pub lateness_histogram: Vec<LogBin>,
-    /// What the thesis measured at this rate.
+    /// The thesis' measurements at this rate.
     pub thesis: Option<ThesisFigures>,
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fcc_live::{Info, PublisherOf, RecorderState, RecorderStatus, Text};
 use fcc_record::Recording;
-use fcc_report::{Report, Reported, Survey, Words};
+use fcc_report::{Report, Reported, Survey, Terms};
 use fcc_runtime::{Message, MessageOf, Parts};
 use fcc_telemetry::{Instance, describe_event};
 use fcc_top::Watched;
@@ -15,7 +15,7 @@ use crate::thermostat::Thermostat;
 impl Reported for Thermostat {
     type Addition = ();
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "run",
         plant: "Plant",
         controller: "thermostat",

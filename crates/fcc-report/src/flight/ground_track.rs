@@ -1,4 +1,4 @@
-//! The ground track, where there is position.
+//! The ground track, from measured positions.
 
 use super::track::TrackPoint;
 use crate::events::Weight;
@@ -13,14 +13,14 @@ use crate::states::Phase;
 
 const LEFT_PX: f64 = 60.0;
 const TOP_PX: f64 = 24.0;
-const X_WORDS_PX: f64 = 36.0;
-/// The taller side at most, px.
+const X_LABELS_PX: f64 = 36.0;
+/// Largest height, px.
 const MOST_HEIGHT_PX: f64 = 460.0;
 const LEAST_HEIGHT_PX: f64 = 160.0;
-/// A track shorter than this is drawn on a map of this size, m.
+/// A shorter track is drawn on a map of this size, m.
 const LEAST_SPAN_M: f64 = 100.0;
 
-/// The ground track; none where there is no position.
+/// The ground track; `None` without positions.
 pub(super) fn figure(report: &RunReport, track: &[TrackPoint]) -> Option<Figure> {
     if track.is_empty() {
         return None;
@@ -33,7 +33,7 @@ pub(super) fn figure(report: &RunReport, track: &[TrackPoint]) -> Option<Figure>
         caption: "Over the ground, north up, from the first measured position; numbers are \
                   the changes of state in the table of events."
             .to_owned(),
-        svg: sheet.finish(TOP_PX + map.height_px + X_WORDS_PX, "Ground track", &[]),
+        svg: sheet.finish(TOP_PX + map.height_px + X_LABELS_PX, "Ground track", &[]),
     })
 }
 
@@ -64,7 +64,7 @@ impl Map {
             let middle = f64::midpoint(low, high);
             (middle - reach, middle + reach)
         };
-        // A narrow track has room beside it rather than a narrow map.
+        // A narrow track gets margins, not a narrow map.
         let width_px = most_width_px;
         Self {
             east_m: widen(east_m, width_px),
@@ -124,8 +124,8 @@ impl Map {
     }
 }
 
-/// The points that are told apart on the sheet, and the last: closer ones show
-/// the noise of a receiver and no turn.
+/// Keeps the points that can be distinguished in the plot, and the last: closer
+/// points show only the receiver's noise.
 fn smooth(panel: &Panel, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const APART_PX: f64 = 3.0;
     let mut kept: Vec<(f64, f64)> = Vec::new();
@@ -157,7 +157,7 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
         match pieces.last_mut() {
             Some((last, places)) if *last == phase => places.push(*place),
             Some((_, places)) => {
-                // The piece before leads up to where this one begins.
+                // The previous piece ends where this one begins.
                 places.push(*place);
                 pieces.push((phase, vec![*place]));
             }
@@ -167,7 +167,7 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
     pieces
 }
 
-/// Numbers of the events that changed the state, where they happened.
+/// Numbers the events that changed the state, at their positions.
 fn number_states(
     sheet: &mut Sheet,
     report: &RunReport,
@@ -183,11 +183,11 @@ fn number_states(
             continue;
         };
         let (x, y) = panel.place(at(place));
-        // One number is enough where several would lie on each other.
+        // One number where several would overlap.
         if taken.iter().all(|(u, v)| (u - x).hypot(v - y) > 14.0) {
             taken.push((x, y));
-            let words = event.number.to_string();
-            sheet.text((x + 5.0, y - 4.0), &words, font);
+            let number = event.number.to_string();
+            sheet.text((x + 5.0, y - 4.0), &number, font);
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What a flight's report has beside that of any loop: the plots that pilots
-//! and the thesis have, the score along a timed pattern, and the ground track.
+//! Additions to a flight's report: the plots of pilots and of the thesis, the
+//! score along a timed pattern, and the ground track.
 
 mod ground_track;
 mod legs;
@@ -18,7 +18,7 @@ use super::plots::{Panel, Plot, Quantities, Scale};
 use super::report::{Report, RunReport};
 use super::reported::{Addition, Reported};
 use super::survey::Survey;
-use super::words::Words;
+use super::terms::Terms;
 pub use legs::flight_table;
 use track::Track;
 
@@ -28,14 +28,13 @@ pub type FlightReport = Report<FlightAddition>;
 /// Takes the messages of a flight's recording.
 pub type FlightSurvey = Survey<Autopilot>;
 
-/// More legs than these do not fit on a screen.
+/// At most this many legs are shown.
 const MOST_LEGS: usize = 16;
 
-/// What only a flight's report has.
+/// Additions to a flight's report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct FlightAddition {
-    /// How well the timed pattern was flown, by what was measured; none
-    /// without a whole leg.
+    /// Score of the timed pattern, by measurements; `None` without a whole leg.
     pub flight: Option<FlightScore>,
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
@@ -46,7 +45,7 @@ pub struct FlightAddition {
 }
 
 impl FlightAddition {
-    /// Scores the flight if it is to be along a timed pattern.
+    /// Scores the flight if `pattern` is given.
     pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
         Self {
             scorer: pattern.map(PatternScorer::new),
@@ -109,7 +108,7 @@ impl Addition for FlightAddition {
 impl Reported for Autopilot {
     type Addition = FlightAddition;
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "flight",
         plant: "Aircraft",
         controller: "autopilot",
@@ -151,13 +150,13 @@ impl Reported for Autopilot {
         vec![
             plot(
                 "Heading",
-                "Magnetic heading, desired and actual, which is what the navigation made of what \
-                 was measured (thesis, figure 6.4).",
+                "Magnetic heading, desired and actual, as the navigation estimated it from the \
+                 measurements (thesis, figure 6.4).",
                 vec![panel("heading_rad", "heading").sized(200.0, Scale::Compass)],
             ),
             plot(
                 "Altitude and pitch",
-                "Barometric altitude, desired and actual, and below it the pitch that makes it \
+                "Barometric altitude, desired and actual, and below it the pitch \
                  (thesis, figure 6.5).",
                 vec![
                     panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
@@ -199,7 +198,7 @@ mod tests {
     use super::*;
     use crate::{FileEnd, Origin};
 
-    /// A record of anything at all: a damaged file can hold it.
+    /// A record of any values: a damaged file can hold it.
     fn record() -> impl Strategy<Value = RecordOf<Autopilot>> {
         let numbers = || prop::array::uniform8(any::<f64>());
         let times = (any::<i64>(), any::<i64>(), any::<i64>());
@@ -273,7 +272,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Nothing that a file can hold makes a report panic or grow.
+        /// No content of a file makes a report panic or grow.
         #[test]
         fn anything_can_be_reported_on(
             records in prop::collection::vec(record(), 0..40),
@@ -286,7 +285,8 @@ mod tests {
             let mut due_ns = 0_i64;
             for (n, mut record) in records.into_iter().enumerate() {
                 if n == 0 {
-                    // The first says how long a period is; a loop cannot have any.
+                    // The first record determines the period; it may be
+                    // invalid.
                     record.tick.missed %= 5;
                 }
                 if in_order {

@@ -8,11 +8,11 @@ use super::super::report::RunReport;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
 use super::sheet::{ACTUAL, Colour, DESIRED, MEASURED, Sheet, px};
 
-/// Of a recording longer than this, a fine line shows more.
+/// Of a recording longer than this, a thin line shows more.
 const DENSE_S: f64 = 600.0;
 
 impl Ink {
-    /// Colour, and width in px on a plot that is dense or not.
+    /// Colour, and width in px, by whether the plot is dense.
     pub(super) const fn pen(self, is_dense: bool) -> (Colour, f64) {
         match (self, is_dense) {
             (Self::Measured, _) => (MEASURED, 0.6),
@@ -24,24 +24,24 @@ impl Ink {
     }
 }
 
-/// What a plot has beyond the lines that are drawn on paper.
+/// The detail of a plot beyond its printed lines.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Detail {
     /// Nothing.
     None,
-    /// Finer lines, which are shown when it is zoomed.
+    /// Finer lines, shown when zoomed.
     WhenZoomed,
-    /// The same, in so many bins for each line.
+    /// The same, with this many bins per line.
     Bins(u64),
 }
 
-/// Bytes that all finer lines of a page take together, about.
+/// Approximate size of all finer lines of a page.
 const DETAIL_BYTES: u64 = 3_000_000;
-/// Bytes that a bin of a noisy line takes, about.
+/// Approximate size of a bin of a noisy line.
 const BIN_BYTES: u64 = 14;
 
 impl Detail {
-    /// The lines of a report share the room.
+    /// Divides the size among the lines of a report.
     pub(super) fn shared_by(self, report: &RunReport) -> Self {
         if self != Self::WhenZoomed {
             return self;
@@ -60,13 +60,12 @@ fn is_thinned(trace: &Trace) -> bool {
     trace.len() as u64 > OVERVIEW_BINS
 }
 
-/// Whether its lines are drawn fine.
+/// Whether its lines are drawn thin.
 pub(super) fn is_dense(report: &RunReport) -> bool {
     report.duration_s > DENSE_S
 }
 
-/// Units of a sheet in which the finer lines are placed: at the largest zoom,
-/// half a pixel.
+/// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
 /// Directions of many turns within one, and the lines broken at north.
@@ -77,9 +76,9 @@ fn folded(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
         for Point { time_s, value } in line {
             let value = value.rem_euclid(360.0);
             let point = Point { time_s, value };
-            let goes_on = last.is_some_and(|last| (value - last).abs() < 180.0);
+            let continues = last.is_some_and(|last| (value - last).abs() < 180.0);
             last = Some(value);
-            match folded.last_mut().filter(|_| goes_on) {
+            match folded.last_mut().filter(|_| continues) {
                 Some(line) => line.push(point),
                 None => folded.push(vec![point]),
             }
@@ -88,7 +87,8 @@ fn folded(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     folded
 }
 
-/// Draws a curve, of directions within one turn if they `fold`; `on_panel` says where a point is, px.
+/// Draws a curve, of directions within one turn if they `fold`; `on_panel`
+/// converts a point to px.
 pub(super) fn markup(
     sheet: &mut Sheet,
     curve: &Curve,
@@ -144,7 +144,7 @@ fn path(lines: &[Vec<Point>], grid: impl Fn(Point) -> (i32, i32)) -> String {
         let mut level = 0;
         let mut open = false;
         for (x, y) in points {
-            // What is no range has places beyond any sheet.
+            // A value without a range can lie far outside.
             let (across, down) = (x.saturating_sub(at.0), y.saturating_sub(at.1));
             at = (x, y);
             if down == 0 {
@@ -171,7 +171,7 @@ fn level_move(path: &mut String, level: &mut i32, open: &mut bool) {
     }
 }
 
-/// A number of a list: its sign separates it, too.
+/// A number in a list: its sign separates it, too.
 fn number(path: &mut String, number: i32) {
     let is_first = path.ends_with('l');
     if number >= 0 && !is_first {

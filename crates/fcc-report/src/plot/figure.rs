@@ -1,6 +1,6 @@
-//! A plot with its words.
+//! A plot with its title and caption.
 
-/// A plot with its words.
+/// A plot with its title and caption.
 pub struct Figure {
     /// What it shows.
     pub title: String,

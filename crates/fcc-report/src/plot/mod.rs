@@ -1,10 +1,10 @@
-//! The plots of a report: SVG that stands inside a page, prints in black and
-//! white as well as in colour, and needs nothing from elsewhere.
+//! The plots of a report: SVG inside a page, without other files, legible in
+//! black and white as well as in colour.
 //!
-//! One style for all: what is actual is a dark solid line, what is desired a
-//! thin dashed one; legends stand above the data and never on it; axes carry
-//! their unit; every plot over time has the same time axis, tinted where the
-//! loop was not engaged, with the events numbered as in the table.
+//! One style for all: actual values are a dark solid line, desired ones a thin
+//! dashed line; legends are above the data; axes have units; every plot over
+//! time has the same time axis, tinted while the loop was not engaged, with the
+//! events numbered as in the table.
 
 pub(crate) mod axis;
 mod curves;
@@ -23,18 +23,18 @@ pub use figure::Figure;
 
 use super::report::RunReport;
 
-/// The figures of a page, by its sections.
+/// The figures of a page, by section.
 #[derive(Default)]
 pub(super) struct Figures {
     /// States and events.
     pub(super) timeline: Vec<Figure>,
     /// Measurements, set points and outputs.
     pub(super) values: Vec<Figure>,
-    /// How the loop kept time.
+    /// Timing of the loop.
     pub(super) timing: Vec<Figure>,
 }
 
-/// Draws all that there is to draw.
+/// Draws all figures that have data.
 pub(super) fn figures(report: &RunReport, detail: Detail) -> Figures {
     if report.continuity.ticks == 0 {
         return Figures::default();

@@ -5,8 +5,8 @@ use super::sheet::{
     Anchor, Colour, Dot, FAINT, FINE_GRID, Font, GRID, Height, LABEL_PX, Place, Sheet, TEXT, px,
 };
 
-/// Where a panel lies on its sheet, px from the sheet's upper left, axes and
-/// their words not included.
+/// Position of a panel on its sheet, px from the upper left, without its axis
+/// labels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) left: f64,
@@ -15,9 +15,9 @@ pub(crate) struct Frame {
     pub(crate) bottom: f64,
 }
 
-/// Room for the words of an axis, px.
-const X_WORDS_PX: f64 = 34.0;
-const Y_WORDS_PX: f64 = 54.0;
+/// Room for the labels of an axis, px.
+const X_LABELS_PX: f64 = 34.0;
+const Y_LABELS_PX: f64 = 54.0;
 /// Length of a tick, px.
 const TICK_PX: f64 = 3.0;
 
@@ -39,7 +39,7 @@ impl Panel {
         )
     }
 
-    /// Whether the x axis reaches a value.
+    /// Whether the x axis contains a value.
     pub(crate) fn shows(&self, x: f64) -> bool {
         (self.x.from..=self.x.to).contains(&x)
     }
@@ -60,9 +60,9 @@ impl Panel {
         sheet.dot(self.place(at), radius_px, dot);
     }
 
-    /// Draws both axes with their grids; the words of the x axis if they are
+    /// Draws both axes with their grids; the label of the x axis if they are
     /// wanted.
-    pub(crate) fn axes(&self, sheet: &mut Sheet, with_x_words: bool) {
+    pub(crate) fn axes(&self, sheet: &mut Sheet, with_x_labels: bool) {
         let (x, y) = (&self.x, &self.y);
         let grid = |sheet: &mut Sheet, xs: &[f64], ys: &[f64], ink| {
             for at in xs {
@@ -76,7 +76,7 @@ impl Panel {
         grid(sheet, &x.light, &y.light, FINE_GRID);
         grid(sheet, &ticks(x), &ticks(y), GRID);
         self.y_axis(sheet);
-        self.x_axis(sheet, with_x_words);
+        self.x_axis(sheet, with_x_labels);
     }
 
     fn y_axis(&self, sheet: &mut Sheet) {
@@ -84,21 +84,21 @@ impl Panel {
             left, top, bottom, ..
         } = self.frame;
         sheet.line(&[(left, top), (left, bottom)], FAINT, 0.8);
-        for (at, words) in &self.y.ticks {
+        for (at, label) in &self.y.ticks {
             let (_, y) = self.place((self.x.from, *at));
             sheet.line(&[(left - TICK_PX, y), (left, y)], FAINT, 0.8);
             let font = Font(LABEL_PX, TEXT, Anchor::End, Height::Middle);
-            sheet.text((left - 6.0, y), words, font);
+            sheet.text((left - 6.0, y), label, font);
         }
         if !self.y.title.is_empty() {
-            let (x, y) = (left - Y_WORDS_PX + 4.0, f64::midpoint(top, bottom));
+            let (x, y) = (left - Y_LABELS_PX + 4.0, f64::midpoint(top, bottom));
             let turned = format!("rotate(270, {}, {})", px(x), px(y));
             let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
-            sheet.words((x, y), &self.y.title, font, "", &turned);
+            sheet.transformed_text((x, y), &self.y.title, font, "", &turned);
         }
     }
 
-    fn x_axis(&self, sheet: &mut Sheet, with_words: bool) {
+    fn x_axis(&self, sheet: &mut Sheet, with_labels: bool) {
         let Frame {
             left,
             right,
@@ -106,16 +106,16 @@ impl Panel {
             ..
         } = self.frame;
         sheet.line(&[(left, bottom), (right, bottom)], FAINT, 0.8);
-        for (at, words) in &self.x.ticks {
+        for (at, label) in &self.x.ticks {
             let (x, _) = self.place((*at, self.y.from));
             sheet.line(&[(x, bottom), (x, bottom + TICK_PX)], FAINT, 0.8);
-            if with_words {
+            if with_labels {
                 let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
-                sheet.text((x, bottom + 6.0), words, font);
+                sheet.text((x, bottom + 6.0), label, font);
             }
         }
-        if with_words {
-            let at = (f64::midpoint(left, right), bottom + X_WORDS_PX - 4.0);
+        if with_labels {
+            let at = (f64::midpoint(left, right), bottom + X_LABELS_PX - 4.0);
             let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Bottom);
             sheet.text(at, &self.x.title, font);
         }

@@ -1,4 +1,4 @@
-//! Percentiles of several things, one row each, on one logarithmic scale.
+//! Percentiles of several durations, one row each, on one logarithmic scale.
 
 use super::super::durations::NamedPercentiles;
 use super::axis::Axis;
@@ -11,13 +11,13 @@ use super::sheet::{
 const LEFT_PX: f64 = 110.0;
 const TOP_PX: f64 = 24.0;
 const ROW_PX: f64 = 19.0;
-const X_WORDS_PX: f64 = 24.0;
-/// What is shorter is drawn as this, µs: a logarithm knows no zero.
+const X_LABELS_PX: f64 = 24.0;
+/// Shorter durations are drawn as this, µs: a logarithmic scale has no zero.
 const LEAST_US: f64 = 0.01;
 
-/// A row for each; none where there is nothing above 0.
+/// A row for each; `None` if all are 0.
 pub(super) fn figure(title: &str, what: &str, rows: &[NamedPercentiles]) -> Option<Figure> {
-    // In lockstep everything is as new as it can be.
+    // In lockstep all ages are 0.
     if rows.iter().all(|row| row.of.max_us == 0.0) {
         return None;
     }
@@ -49,7 +49,7 @@ pub(super) fn figure(title: &str, what: &str, rows: &[NamedPercentiles]) -> Opti
     Some(Figure {
         title: title.to_owned(),
         caption: format!("{what}; the scale is logarithmic."),
-        svg: sheet.finish(panel.frame.bottom + X_WORDS_PX, title, &[]),
+        svg: sheet.finish(panel.frame.bottom + X_LABELS_PX, title, &[]),
     })
 }
 
@@ -69,7 +69,7 @@ fn draw_row(sheet: &mut Sheet, panel: &Panel, y: f64, row: &NamedPercentiles) {
     sheet.text((LEFT_PX - 8.0, middle), &row.name, font);
 }
 
-/// A power of ten of microseconds in words.
+/// A power of ten of microseconds as text.
 pub(super) fn decade(decade: i32) -> String {
     let (number, unit) = match decade {
         ..=-1 => (decade + 3, "ns"),

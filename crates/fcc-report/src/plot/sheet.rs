@@ -13,13 +13,13 @@ pub(crate) type Colour = &'static str;
 
 /// What is actual.
 pub(crate) const ACTUAL: Colour = "#18426E";
-/// What was measured, behind what is estimated from it.
+/// Measurements, behind the estimates.
 pub(crate) const MEASURED: Colour = "#96B2CE";
 /// What is desired: the only lines that are dashed.
 pub(crate) const DESIRED: Colour = "#C8501E";
 /// What is compared with.
 pub(crate) const OTHER: Colour = "#787878";
-/// Axes and their words.
+/// Axes and their labels.
 pub(crate) const TEXT: Colour = "#2D2D2D";
 /// Less than that.
 pub(crate) const FAINT: Colour = "#828282";
@@ -39,9 +39,10 @@ pub(crate) fn px(pixels: f64) -> i32 {
     (pixels * 10.0).round() as i32
 }
 
-/// About how wide a text is, px: sans serif letters are half as wide as high.
-pub(crate) fn text_width_px(words: &str, size_px: f64) -> f64 {
-    0.52 * size_px * words.chars().count() as f64
+/// Approximate width of a text, px: sans-serif letters are half as wide as
+/// high.
+pub(crate) fn text_width_px(text: &str, size_px: f64) -> f64 {
+    0.52 * size_px * text.chars().count() as f64
 }
 
 /// Which end of a text its place is.
@@ -77,7 +78,7 @@ pub(crate) enum Dot {
     Open(Colour, f64),
 }
 
-/// What stands before the words of a legend.
+/// The symbol before a text of a legend.
 pub(crate) enum Sample {
     Line(Colour, f64),
     /// A short upright line.
@@ -137,16 +138,16 @@ impl Sheet {
         ));
     }
 
-    /// Words at a place.
-    pub(crate) fn text(&mut self, place: Place, words: &str, font: Font) {
-        self.words(place, words, font, "", "");
+    /// Text at a place.
+    pub(crate) fn text(&mut self, place: Place, text: &str, font: Font) {
+        self.transformed_text(place, text, font, "", "");
     }
 
-    /// Words at a place, with a class and a transformation.
-    pub(crate) fn words(
+    /// Text at a place, with a class and a transformation.
+    pub(crate) fn transformed_text(
         &mut self,
         (x, y): Place,
-        words: &str,
+        text: &str,
         Font(size_px, colour, anchor, height): Font,
         class: &str,
         transform: &str,
@@ -165,7 +166,7 @@ impl Sheet {
         let text = html! {
             text class=[some(class)] x=(px(x)) y=(px(y)) dy=(dy) text-anchor=(anchor)
                 font-size=(px(size_px)) fill=(colour) transform=[some(transform)]
-                { (words) }
+                { (text) }
         };
         self.raw(format_args!("{}", text.into_string()));
     }
@@ -182,7 +183,7 @@ impl Sheet {
         entries: impl IntoIterator<Item = (Sample, &'a str)>,
     ) {
         let mut x = left_px;
-        for (sample, words) in entries {
+        for (sample, text) in entries {
             match sample {
                 Sample::Line(ink, width) => self.line(&[(x, y), (x + 21.0, y)], ink, width),
                 Sample::Upright(ink, width) => {
@@ -194,13 +195,12 @@ impl Sheet {
                 }
             }
             let font = Font(LABEL_PX, TEXT, Anchor::Start, Height::Middle);
-            self.text((x + 26.0, y), words, font);
-            x += 42.0 + text_width_px(words, LABEL_PX);
+            self.text((x + 26.0, y), text, font);
+            x += 42.0 + text_width_px(text, LABEL_PX);
         }
     }
 
-    /// The finished plot; `label` says to those who cannot see it what it
-    /// shows, and `data` is for the page's script.
+    /// The finished plot; `label` describes it for screen readers, and `data` is for the page's script.
     pub(crate) fn finish(self, height_px: f64, label: &str, data: &[(&str, f64)]) -> String {
         let mut attributes = String::new();
         for (name, value) in data {

@@ -14,17 +14,17 @@ use super::sheet::{
     WIDTH_PX, px,
 };
 
-/// Edges of all panels over time, px: the same in every figure, so that one
-/// can be laid upon another.
+/// Left and right edge of all panels over time, px: the same in every figure,
+/// so that figures can be compared.
 pub(super) const LEFT_PX: f64 = 60.0;
 pub(super) const RIGHT_PX: f64 = WIDTH_PX - 12.0;
 
 const LEGEND_PX: f64 = 20.0;
 const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// Where records are missing.
+/// Missing records.
 const GAP: Colour = "#FFEEAA";
 
 /// A panel of a figure over time.
@@ -81,27 +81,27 @@ pub(super) fn time_figure(
         });
     }
     sheet.raw(format_args!("<g class=\"times\">"));
-    for (at_s, words) in &axis.ticks {
+    for (at_s, label) in &axis.ticks {
         let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
-        sheet.text((time_px(report, *at_s), bottom + 6.0), words, font);
+        sheet.text((time_px(report, *at_s), bottom + 6.0), label, font);
     }
     sheet.raw(format_args!("</g>"));
     for mark in &marks {
         let font = Font(SMALL_PX, FAINT, Anchor::Middle, Height::Bottom);
-        sheet.words((mark.at_px, top - 1.0), &mark.label(), font, "mark", "");
+        sheet.transformed_text((mark.at_px, top - 1.0), &mark.label(), font, "mark", "");
     }
-    // For the page's script: where the axis of time is.
+    // For the page's script: the position of the time axis.
     let data = [
         ("left", f64::from(px(LEFT_PX))),
         ("right", f64::from(px(RIGHT_PX))),
         ("end", end_s(report)),
         ("unit", unit(report).0),
     ];
-    sheet.finish(bottom + X_WORDS_PX, label, &data)
+    sheet.finish(bottom + X_LABELS_PX, label, &data)
 }
 
-/// What is drawn over time in a panel, from its upper left corner: a part of the
-/// sheet that is zoomed by itself.
+/// The content of a panel, from its upper left corner: a part of the sheet that
+/// can be zoomed by itself.
 fn zoomable(sheet: &mut Sheet, frame: Frame, draw: impl FnOnce(&mut Sheet)) {
     let (x, y) = (px(frame.left), px(frame.top));
     let (width, height) = (px(frame.right - frame.left), px(frame.bottom - frame.top));
@@ -133,7 +133,7 @@ fn ground(sheet: &mut Sheet, report: &RunReport, frame: Frame, axis: &Axis, mark
     };
     zoomable(sheet, frame, |sheet| {
         for (from_s, to_s, colour) in tints.chain(gaps) {
-            // One too short to be seen is seen all the same.
+            // Short gaps are widened so that they are visible.
             let right = at(to_s).max(at(from_s) + 1.0);
             sheet.rectangle((at(from_s), 0.0), (right, height), colour);
         }
@@ -144,7 +144,7 @@ fn ground(sheet: &mut Sheet, report: &RunReport, frame: Frame, axis: &Axis, mark
     });
 }
 
-/// What lines and tints mean.
+/// A legend of lines and tints, above the panels.
 fn legend(report: &RunReport, panels: &[TimePanel<'_>]) -> Vec<(Sample, &'static str)> {
     let curves = panels.iter().flat_map(|panel| panel.curves);
     let drawn: Vec<&Curve> = curves.filter(|curve| curve.trace.len() > 0).collect();
@@ -165,13 +165,13 @@ fn legend(report: &RunReport, panels: &[TimePanel<'_>]) -> Vec<(Sample, &'static
     let phases = [Phase::Standby, Phase::Failsafe, Phase::Stopped].into_iter();
     let tints = phases
         .filter(|phase| in_phase(*phase))
-        .filter_map(|phase| Some((tint(phase)?, words(phase))))
+        .filter_map(|phase| Some((tint(phase)?, phase_name(phase))))
         .chain((report.continuity.lost > 0).then_some((GAP, "records missing")));
-    entries.extend(tints.map(|(tint, words)| (Sample::Block(tint), words)));
+    entries.extend(tints.map(|(tint, name)| (Sample::Block(tint), name)));
     entries
 }
 
-/// The ground of a panel where the loop was not engaged.
+/// The background of a panel while the loop was not engaged.
 pub(super) fn tint(phase: Phase) -> Option<Colour> {
     match phase {
         Phase::Engaged => None,
@@ -181,7 +181,7 @@ pub(super) fn tint(phase: Phase) -> Option<Colour> {
     }
 }
 
-pub(super) fn words(phase: Phase) -> &'static str {
+pub(super) fn phase_name(phase: Phase) -> &'static str {
     match phase {
         Phase::Standby => "standby",
         Phase::Engaged => "engaged",
@@ -190,18 +190,19 @@ pub(super) fn words(phase: Phase) -> &'static str {
     }
 }
 
-/// Where on the sheet a time is, px.
+/// Position of a time on the sheet, px.
 pub(super) fn time_px(report: &RunReport, time_s: f64) -> f64 {
     let share = (time_s / end_s(report)).clamp(0.0, 1.0);
     LEFT_PX + share * (RIGHT_PX - LEFT_PX)
 }
 
 fn end_s(report: &RunReport) -> f64 {
-    // One tick has no duration, and its axis must have one.
+    // One tick has no duration, but the axis needs one.
     report.duration_s.max(0.1)
 }
 
-/// The axis of time: its coordinate is in seconds, its words in what suits.
+/// The axis of time: its coordinate is in seconds, its labels in a suitable
+/// unit.
 pub(super) fn time_axis(report: &RunReport) -> Axis {
     let (end_s, (unit_s, unit)) = (end_s(report), unit(report));
     let mut axis = Axis::exactly(

@@ -58,13 +58,12 @@ fn axis(panel: &Panel, plot: &Plot) -> Axis {
     }
 }
 
-/// Directions are counted on through full turns, so that no line jumps at
-/// north, unless there are many of them; the words of the axis are those of the
-/// compass.
+/// Directions are counted beyond full turns, so that no line jumps at north,
+/// unless there are many turns; the labels are 0 to 360.
 fn compass(extent: (f64, f64), title: &str) -> Axis {
-    let words = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
+    let label = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
     if turns_often(extent) {
-        return Axis::stepped((0.0, 360.0), 90.0, title, words);
+        return Axis::stepped((0.0, 360.0), 90.0, title, label);
     }
     let axis = Axis::around(extent, 20.0, 5, title);
     let range = (axis.from, axis.to);
@@ -76,5 +75,5 @@ fn compass(extent: (f64, f64), title: &str) -> Axis {
         span if span > 40.0 => 10.0,
         _ => 5.0,
     };
-    Axis::stepped(range, step, title, words)
+    Axis::stepped(range, step, title, label)
 }

@@ -1,4 +1,4 @@
-//! The timeline of a flight: its states as a bar, and events in words below it.
+//! The timeline of a flight: its states as a bar, and events as text below it.
 
 use super::super::events::EventLine;
 use super::super::report::RunReport;
@@ -8,15 +8,15 @@ use super::figure::Figure;
 use super::sheet::{
     Anchor, Colour, FAINT, Font, Height, LABEL_PX, SMALL_PX, Sheet, TEXT, text_width_px,
 };
-use super::time_figure::{LEFT_PX, RIGHT_PX, time_axis, time_px, words};
+use super::time_figure::{LEFT_PX, RIGHT_PX, phase_name, time_axis, time_px};
 
 const BAR_TOP_PX: f64 = 34.0;
 const BAR_PX: f64 = 22.0;
 const ROW_PX: f64 = 14.0;
-/// Room between the bar and the first row of words, px.
+/// Room between the bar and the first row of text, px.
 const LEAD_PX: f64 = 10.0;
 const MOST_ROWS: usize = 9;
-/// More events than these are not tried for room.
+/// At most this many events are placed.
 const MOST_TRIED: usize = 80;
 const MOST_LETTERS: usize = 70;
 
@@ -33,12 +33,12 @@ pub(super) fn timeline(report: &RunReport) -> Figure {
     }
     let caption = if notes.len() < report.event_count {
         format!(
-            "States of the loop, and the weightiest {} of {} events; all are in the table.",
+            "States of the loop, and the {} most important of {} events; all are in the table.",
             notes.len(),
             report.event_count
         )
     } else {
-        "States of the loop, and what happened; numbers as in the plots and in the table of \
+        "States of the loop and events; numbers as in the plots and in the table of \
          events."
             .to_owned()
     };
@@ -49,13 +49,13 @@ pub(super) fn timeline(report: &RunReport) -> Figure {
     }
 }
 
-/// Above the bar, so that the words below it have room.
+/// Above the bar: the text is below it.
 fn axis(sheet: &mut Sheet, axis: &Axis, report: &RunReport) {
     let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Bottom);
-    for (at, words) in &axis.ticks {
+    for (at, label) in &axis.ticks {
         let x = time_px(report, *at);
         sheet.line(&[(x, BAR_TOP_PX - 3.0), (x, BAR_TOP_PX)], FAINT, 0.8);
-        sheet.text((x, BAR_TOP_PX - 4.0), words, font);
+        sheet.text((x, BAR_TOP_PX - 4.0), label, font);
     }
     let middle = f64::midpoint(LEFT_PX, RIGHT_PX);
     sheet.text((middle, BAR_TOP_PX - 19.0), &axis.title, font);
@@ -67,7 +67,7 @@ fn bar(sheet: &mut Sheet, report: &RunReport) {
         let from = time_px(report, span.from_s);
         let to = time_px(report, span.to_s).max(from + 1.0);
         sheet.rectangle((from, top), (to, bottom), ink(span.phase));
-        let name = words(span.phase);
+        let name = phase_name(span.phase);
         if text_width_px(name, LABEL_PX) + 6.0 < to - from {
             let middle = (f64::midpoint(from, to), f64::midpoint(top, bottom));
             let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Middle);
@@ -94,13 +94,13 @@ fn ink(phase: Phase) -> Colour {
     }
 }
 
-/// An event in words, in its place.
+/// Text of an event, placed.
 struct Note {
     at_px: f64,
     left_px: f64,
     right_px: f64,
     row: usize,
-    words: String,
+    label: String,
 }
 
 impl Note {
@@ -115,14 +115,15 @@ impl Note {
             (self.left_px, Anchor::Start)
         };
         let font = Font(SMALL_PX, TEXT, side, Height::Middle);
-        sheet.text((at, middle), &self.words, font);
+        sheet.text((at, middle), &self.label, font);
     }
 
-    /// Whether neither the words nor the lead of one lie on those of the other.
+    /// Whether neither the text nor the lead of one overlaps those of the
+    /// other.
     fn is_clear_of(&self, other: &Self) -> bool {
-        let crosses = |lead: &Self, words: &Self| {
-            lead.row > words.row
-                && (words.left_px - 2.0..=words.right_px + 2.0).contains(&lead.at_px)
+        let crosses = |lead: &Self, label: &Self| {
+            lead.row > label.row
+                && (label.left_px - 2.0..=label.right_px + 2.0).contains(&lead.at_px)
         };
         let overlap = self.row == other.row
             && self.left_px < other.right_px + 8.0
@@ -131,22 +132,22 @@ impl Note {
     }
 }
 
-/// Finds room for as many events as there is, the weightiest first and of
-/// equals the latest: words stand to the right of their lead, and so the leads
-/// of earlier ones pass them by.
+/// Places as many events as there is room for, the most important first, of
+/// equals the latest: text is to the right of its lead, so the leads of earlier
+/// events do not cross it.
 fn place_notes(report: &RunReport) -> Vec<Note> {
     let mut events: Vec<&EventLine> = report.events.iter().collect();
     events.sort_by(|a, b| b.weight.cmp(&a.weight).then(b.time_s.total_cmp(&a.time_s)));
     let mut placed: Vec<Note> = Vec::new();
     for event in events.into_iter().take(MOST_TRIED) {
-        let mut words = format!("{} {}", event.number, event.text);
-        if words.chars().count() > MOST_LETTERS {
-            words = words.chars().take(MOST_LETTERS - 1).collect();
-            words.push('…');
+        let mut label = format!("{} {}", event.number, event.text);
+        if label.chars().count() > MOST_LETTERS {
+            label = label.chars().take(MOST_LETTERS - 1).collect();
+            label.push('…');
         }
         let at_px = time_px(report, event.time_s);
-        let width_px = text_width_px(&words, SMALL_PX);
-        // Near the right edge the words stand to the left.
+        let width_px = text_width_px(&label, SMALL_PX);
+        // Near the right edge the text is to the left.
         let left_px = if at_px + 4.0 + width_px > RIGHT_PX {
             at_px - 4.0 - width_px
         } else {
@@ -157,7 +158,7 @@ fn place_notes(report: &RunReport) -> Vec<Note> {
             left_px,
             right_px: left_px + width_px,
             row: 0,
-            words,
+            label,
         };
         let room = (0..MOST_ROWS).find(|row| {
             note.row = *row;

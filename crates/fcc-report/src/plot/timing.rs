@@ -1,5 +1,5 @@
-//! How the loop kept time: the thesis' figures 6.1 to 6.3, the lateness, the
-//! stages of a tick and the ages of measurements.
+//! Timing of the loop: the thesis' figures 6.1 to 6.3, the lateness, the stages
+//! of a tick and the ages of measurements.
 
 use super::super::box_plot::BoxPlot;
 use super::super::report::{RunReport, Timing};
@@ -17,9 +17,9 @@ use super::time_figure::{TimePanel, time_figure};
 
 const LEFT_PX: f64 = 90.0;
 const RIGHT_PX: f64 = WIDTH_PX - 22.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// The figures that there are data for.
+/// The figures that have data.
 pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
     let Some(timing) = &report.timing else {
         return Vec::new();
@@ -27,7 +27,7 @@ pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
     let mut figures = Vec::new();
     if !timing.is_lockstep() {
         if let Some(of) = &timing.period_box_ms {
-            figures.push(periods(timing, of, report.words.run));
+            figures.push(periods(timing, of, report.terms.run));
         }
         figures.push(lateness(timing));
         figures.push(lateness_over_time(report, detail));
@@ -73,13 +73,13 @@ fn lateness_axis((_, high): (f64, f64)) -> Axis {
     }
 }
 
-/// The periods beside the thesis', and below them by themselves.
+/// The periods next to the thesis', and below them alone.
 fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Figure {
     let nominal_ms = 1e3 / timing.table.rate_hz;
     let thesis = timing.thesis.map(|thesis| (thesis.box_plot(), thesis));
     let rows = 1 + usize::from(thesis.is_some());
     let upper_px = 34.0 * rows as f64;
-    let lower_top_px = 18.0 + upper_px + X_WORDS_PX + 10.0;
+    let lower_top_px = 18.0 + upper_px + X_LABELS_PX + 10.0;
     let frame = |top: f64, height: f64| Frame {
         left: LEFT_PX,
         top,
@@ -137,13 +137,13 @@ fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Figure {
     let mean_us = (mean_ms - nominal_ms) * 1e3;
     draw_box(&mut sheet, &panel, 0.5, &deviation, mean_us, ACTUAL);
     let beside = if timing.thesis.is_some() {
-        " Above on one scale with the thesis, whose box is as its text tells it and whose \
+        " Above on one scale with the thesis, whose box is from its text and whose \
          whiskers reach its extremes; below by itself, as far as its whiskers and half \
          as far again."
     } else {
         ""
     };
-    let height_px = lower_top_px + 40.0 + X_WORDS_PX;
+    let height_px = lower_top_px + 40.0 + X_LABELS_PX;
     Figure {
         title: "Period of the loop".to_owned(),
         caption: format!(
@@ -155,12 +155,12 @@ fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Figure {
     }
 }
 
-/// A box that lies around `y`, between 0.28 below and above.
+/// A box around `y`, from 0.28 below to 0.28 above.
 fn draw_box(sheet: &mut Sheet, panel: &Panel, y: f64, of: &BoxPlot, mean: f64, ink: Colour) {
     const HALF: f64 = 0.28;
     let mut last_px = f64::NEG_INFINITY;
     for outlier in &of.outliers {
-        // Circles on each other say no more than one.
+        // Equal values are drawn once.
         let (at_px, _) = panel.place((*outlier, y));
         if panel.shows(*outlier) && at_px - last_px >= 0.8 {
             last_px = at_px;
@@ -183,7 +183,7 @@ fn draw_box(sheet: &mut Sheet, panel: &Panel, y: f64, of: &BoxPlot, mean: f64, i
     }
 }
 
-/// Both axes logarithmic: one late tick in a million is seen.
+/// Both axes are logarithmic: one late tick in a million is visible.
 fn lateness(timing: &Timing) -> Figure {
     const ROWS: usize = 4;
     const ROW_PX: f64 = 12.0;
@@ -197,7 +197,7 @@ fn lateness(timing: &Timing) -> Figure {
     let mut y = Axis::decades((1.0, most as f64), "ticks", |decade| {
         format!("{}", 10_u64.saturating_pow(decade.unsigned_abs()))
     });
-    // A bin of one tick has a height too.
+    // A bin of one tick has a height, too.
     y.from = 0.5_f64.log10();
     y.to = y.to.min((most as f64).log10() + 0.25).max(0.5);
     y.ticks.retain(|(at, _)| *at <= y.to);
@@ -229,12 +229,12 @@ fn lateness(timing: &Timing) -> Figure {
         ("p99.9", of.p99_9),
         ("max", of.max),
     ] {
-        let words = format!("{name} {}", time(us));
+        let label = format!("{name} {}", time(us));
         let at = us.max(0.1).log10();
         let (x, bottom) = panel.place((at, floor));
         let (_, top) = panel.place((at, ceiling));
-        // Words end at their line: what comes later is right of both.
-        let left = x - 3.0 - text_width_px(&words, SMALL_PX);
+        // Text ends at its line: later lines are to the right of it.
+        let left = x - 3.0 - text_width_px(&label, SMALL_PX);
         let row = ends.iter().position(|end| left > end + 6.0);
         let row = row.unwrap_or(ROWS - 1);
         if let Some(end) = ends.get_mut(row) {
@@ -243,7 +243,7 @@ fn lateness(timing: &Timing) -> Figure {
         let y = top_px - 2.0 - (row + 1) as f64 * ROW_PX;
         sheet.line(&[(x, bottom), (x, top.min(y))], TEXT, 0.7);
         let font = Font(SMALL_PX, TEXT, Anchor::End, Height::Top);
-        sheet.text((x - 3.0, y), &words, font);
+        sheet.text((x - 3.0, y), &label, font);
     }
     Figure {
         title: "Lateness".to_owned(),
@@ -251,7 +251,7 @@ fn lateness(timing: &Timing) -> Figure {
                   decade; both scales are logarithmic."
             .to_owned(),
         svg: sheet.finish(
-            panel.frame.bottom + X_WORDS_PX,
+            panel.frame.bottom + X_LABELS_PX,
             "Histogram of the lateness",
             &[],
         ),
