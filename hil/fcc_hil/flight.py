@@ -150,7 +150,7 @@ class Flight:
         by = _seconds("by", by)
         since_s, words = self._since(after)
         found = self._await(FAILSAFE, since_s, since_s + by, self.rig.failsafe_shows_after_s)
-        required = f"the autopilot falls into failsafe by {by:g} s after {words}"
+        required = f"the autopilot enters failsafe by {by:g} s after {words}"
         self._hold(required, self._judge(found, since_s, by), events=True)
 
     def releases(self, *, by: float, after: SensorFault | float | None = None) -> None:

@@ -73,7 +73,7 @@ class DaemonUnderTest:
     ) -> None:
         self._out = scratch / "fccd.out"
         self._err = scratch / "fccd.err"
-        self._heard = 0
+        self._read_to = 0
         with self._out.open("wb") as out, self._err.open("wb") as err:
             self._process = subprocess.Popen(
                 [str(word) for word in words],
@@ -108,14 +108,14 @@ class DaemonUnderTest:
             # It may print its last messages between our reading and its end.
             running = self.is_running
             whole = self.log
-            for line in whole[self._heard :].splitlines(keepends=True):
+            for line in whole[self._read_to :].splitlines(keepends=True):
                 if not line.endswith("\n"):
                     break
-                self._heard += len(line)
+                self._read_to += len(line)
                 if text in line:
                     return line.rstrip()
-            assert running, f"it ended and never said '{text}', but:\n{whole}"
-            assert time.monotonic() < deadline_s, f"it has not said '{text}', but:\n{whole}"
+            assert running, f"it ended without '{text}':\n{whole}"
+            assert time.monotonic() < deadline_s, f"no '{text}' in:\n{whole}"
             time.sleep(_LOOK_S)
 
     def wait_until_ready(self) -> None:

@@ -142,7 +142,7 @@ def test_lockstep_prints_the_score_and_no_timing(fccd: Path) -> None:
     ended = run([fccd, "fly", "--seconds", "45", "--lockstep", "--quiet"])
     assert ended.returncode == 0, ended.stderr
     assert "Missed" not in ended.stdout, "no time passes that could be kept"
-    assert "scored by how the simulated aircraft truly flew" in ended.stdout
+    assert "scored by the true values of the simulated aircraft" in ended.stdout
     for column in ("≤2° s", "overshoot", "hdg RMS", "turn loss", "airspeed", "lateral"):
         assert ended.stdout.count(column) >= 2, "in the table, and below it what it means"
     in_real_time = run([fccd, "fly", "--seconds", "1", "--quiet", "--no-recording"])
@@ -178,7 +178,7 @@ def test_a_wrong_command_line_gives_a_message(fccd: Path, words: list[str], says
 def test_help_names_the_exit_codes(fccd: Path) -> None:
     ended = run([fccd, "--help"])
     assert ended.returncode == 0
-    assert "3  the flight fell into failsafe" in ended.stdout
+    assert "3  the flight entered failsafe" in ended.stdout
     assert "12  another program uses the simulator" in ended.stdout
     assert "14  the flight succeeded, but was not recorded" in ended.stdout
 

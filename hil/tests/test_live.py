@@ -54,6 +54,20 @@ def snapshot(fccd: Path, instance: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
 
 
+def test_removed_files_are_published_again(fccd: Path, tmp_path: Path, instance: str) -> None:
+    """As `rm -r /dev/shm/*` removes them; here of this flight alone, since others may fly."""
+    with fly(fccd, tmp_path, instance) as daemon:
+        watch(instance, daemon)
+        for file in Path(f"/dev/shm/fccd-{os.geteuid()}/services").iterdir():
+            if f"fcc/{instance}/".encode() in file.read_bytes():
+                file.unlink()
+        assert snapshot(fccd, instance).returncode == FAILURE
+        daemon.wait_for("were removed: it is published again")
+        assert json.loads(snapshot(fccd, instance).stdout)["process_id"] == daemon.pid
+        fcc.Commander(instance).disengage()
+        daemon.wait_for("engaged -> standby")
+
+
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may become another user")
 def test_users_have_separate_shared_memory(fccd: Path, tmp_path: Path, instance: str) -> None:
     """Two daemons of one name, of two users: each is watched by its own."""

@@ -181,7 +181,7 @@ def test_states_are_awaited_and_judged_by_their_time() -> None:
     with pytest.raises(RequirementError) as refused:
         flight.falls_into_failsafe(by=0.4, after=fault)
     assert str(refused.value).splitlines() == [
-        "required: the autopilot falls into failsafe by 0.4 s after loss of airspeed at 2.50 s",
+        "required: the autopilot enters failsafe by 0.4 s after loss of airspeed at 2.50 s",
         "flown:    engaged -> failsafe: airspeed is missing or too old, 0.50 s later",
         "events:   1.00 s standby -> engaged; 4.00 s engaged -> failsafe: airspeed is missing or "
         "too old; 6.00 s failsafe -> standby; 6.00 s actuators released",

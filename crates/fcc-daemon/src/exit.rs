@@ -22,9 +22,9 @@ pub enum Exit {
     NotReleased = 5,
     /// A part of the loop panicked; the controls were released.
     Panicked = 6,
-    /// A recording flown again gave other outputs.
+    /// A replay gave other outputs.
     Differs = 7,
-    /// A recording could not be flown again to its end; the rest does not
+    /// A recording could not be replayed to its end; the rest does not
     /// differ.
     NotReplayed = 8,
     /// The loop hung; its watchdog released the controls and ended the program.
@@ -47,12 +47,12 @@ Exit codes:
   0  success
   1  the operating system, the network or a part of the program failed
   2  the command line or the configuration is wrong
-  3  the flight fell into failsafe
+  3  the flight entered failsafe
   4  a real-time request was denied and realtime.strict is set
   5  the controls may not have been released
   6  a part of the loop panicked; the controls were released
-  7  a recording flown again gave other outputs
-  8  a recording could not be flown again to its end; the rest does not differ
+  7  a replay gave other outputs
+  8  a recording could not be replayed to its end; the rest does not differ
   9  the loop hung; the watchdog released the controls and ended the program
  10  the machine lacks something that a real-time loop needs (doctor)
  11  the daemon refused the command

@@ -33,7 +33,7 @@ pub enum EventCode {
     /// failsafe). Phases: 0 standby, 1 engaged, 2 failsafe, 3 stopped.
     StateChanged = 1,
     /// A command was read (0 engage, 1 disengage, 2 stop, 3 for the controller).
-    Ordered = 2,
+    CommandReceived = 2,
     /// Engaging was refused (the engage inhibits).
     EngageRefused = 3,
     /// A sensor failed.
@@ -118,7 +118,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
                 LoopCommand::Stop => 2,
                 LoopCommand::Controller(_) => 3,
             };
-            (EventCode::Ordered, 0, [which, 0, 0])
+            (EventCode::CommandReceived, 0, [which, 0, 0])
         }
         EventKind::EngageRefused { engage_inhibits } => (
             EventCode::EngageRefused,

@@ -1,22 +1,38 @@
-//! A sensor or a controller written in Python, as a guest in the loop: for
-//! experiments, never in real time.
+//! A sensor or a controller written in Python: for experiments, never in real
+//! time.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fcc_core::flight::navigation::Estimate;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
-use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick};
+use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::framework::{Controller as _, Sensor, SensorFault, Tick};
+use fcc_flight::flight::ControlOverride;
 use pyo3::prelude::*;
 
 use crate::values::{PyMeasurements, PySetpoints, PySurfaces, Values as _};
 
-/// The first exception that a guest raised.
+/// The first exception that a callback raised.
 #[derive(Clone, Default)]
 pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
 
 impl Raised {
     fn keep(&self, error: PyErr) {
         self.lock().get_or_insert(error);
+    }
+
+    /// Whether there is one.
+    pub(crate) fn is_some(&self) -> bool {
+        self.lock().is_some()
+    }
+
+    /// Keeps an interruption from the keyboard, if there was one.
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the method itself is for one lifetime, and not for any"
+    )]
+    pub(crate) fn keep_signals(&self) {
+        if let Err(error) = Python::attach(|py| py.check_signals()) {
+            self.keep(error);
+        }
     }
 
     /// The exception, if there was one.
@@ -30,28 +46,43 @@ impl Raised {
 }
 
 /// A sensor whose measurements go through Python: a callback is called with the
-/// plant's time and what was measured, and gives other measurements or None.
+/// plant's time and what was measured, and returns other measurements or None.
 pub(crate) struct CallbackSensor {
-    pub(crate) sensor: Box<dyn Sensor<Measurements>>,
-    pub(crate) call: Py<PyAny>,
-    pub(crate) raised: Raised,
+    sensor: Box<dyn Sensor<Measurements>>,
+    call: Py<PyAny>,
+    raised: Raised,
+}
+
+impl CallbackSensor {
+    pub(crate) fn boxed(
+        sensor: Box<dyn Sensor<Measurements>>,
+        call: Py<PyAny>,
+        raised: &Raised,
+    ) -> Box<dyn Sensor<Measurements>> {
+        let raised = raised.clone();
+        Box::new(Self {
+            sensor,
+            call,
+            raised,
+        })
+    }
 }
 
 impl Sensor<Measurements> for CallbackSensor {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         self.sensor.sample(tick, into)?;
         let measured = PyMeasurements::from_core(into);
-        let said = Python::attach(|py| -> PyResult<Option<PyMeasurements>> {
-            let said = self
+        let returned = Python::attach(|py| -> PyResult<Option<PyMeasurements>> {
+            let returned = self
                 .call
                 .bind(py)
                 .call1((into.plant.value.time_s, measured))?;
-            if said.is_none() {
+            if returned.is_none() {
                 return Ok(None);
             }
-            Ok(Some(*said.cast::<PyMeasurements>()?.borrow()))
+            Ok(Some(*returned.cast::<PyMeasurements>()?.borrow()))
         });
-        match said {
+        match returned {
             Ok(None) => Ok(()),
             Ok(Some(measured)) => {
                 measured.write_over(into);
@@ -69,102 +100,41 @@ impl Sensor<Measurements> for CallbackSensor {
     }
 }
 
-/// A controller in Python beside the autopilot: navigation, guidance, states
-/// and failsafe are the autopilot's, and its surfaces are a proposal.
+/// A controller in Python in place of the autopilot's: navigation, guidance,
+/// states and failsafe are the autopilot's, and its surfaces are a proposal.
 pub(crate) struct CallbackController {
-    pub(crate) autopilot: Autopilot,
     pub(crate) call: Py<PyAny>,
     pub(crate) raised: Raised,
 }
 
-/// What is no output: the loop never sends it.
-const NO_OUTPUT: Surfaces = Surfaces {
+/// An invalid output: the loop never sends it.
+const INVALID: Surfaces = Surfaces {
     throttle: f64::NAN,
     elevator: f64::NAN,
     aileron: f64::NAN,
     rudder: f64::NAN,
 };
 
-impl Controller for CallbackController {
-    type Measurements = Measurements;
-    type Estimate = Estimate;
-    type Setpoints = Setpoints;
-    type Outputs = Surfaces;
-    type Command = AutopilotCommand;
-
-    fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.estimate(tick, measurements);
-    }
-
-    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.engage_inhibits(tick, measurements)
-    }
-
-    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.faults(tick, measurements)
-    }
-
-    fn flag_name(bit: u32) -> &'static str {
-        Autopilot::flag_name(bit)
-    }
-
-    fn write_command(
-        command: &AutopilotCommand,
-        f: &mut std::fmt::Formatter<'_>,
-    ) -> std::fmt::Result {
-        Autopilot::write_command(command, f)
-    }
-
-    fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.engage(tick, measurements);
-    }
-
-    fn guide(&mut self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.guide(tick, measurements);
-    }
-
-    fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        let proposed = self.autopilot.control(tick, measurements);
-        let said = Python::attach(|py| -> PyResult<Surfaces> {
-            let said = self.call.bind(py).call1((
+impl ControlOverride for CallbackController {
+    fn control(
+        &mut self,
+        autopilot: &Autopilot,
+        _: &Tick,
+        measurements: &Measurements,
+        surfaces: Surfaces,
+    ) -> Surfaces {
+        let returned = Python::attach(|py| -> PyResult<Surfaces> {
+            let returned = self.call.bind(py).call1((
                 measurements.plant.value.time_s,
                 PyMeasurements::from_core(measurements),
-                PySetpoints::from(self.autopilot.setpoints()),
-                PySurfaces::from(proposed),
+                PySetpoints::from(autopilot.setpoints()),
+                PySurfaces::from(surfaces),
             ))?;
-            Ok((*said.cast::<PySurfaces>()?.get()).into())
+            Ok((*returned.cast::<PySurfaces>()?.get()).into())
         });
-        said.unwrap_or_else(|error| {
+        returned.unwrap_or_else(|error| {
             self.raised.keep(error);
-            NO_OUTPUT
+            INVALID
         })
-    }
-
-    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        self.autopilot.failsafe(tick, measurements)
-    }
-
-    fn disengage(&mut self) {
-        self.autopilot.disengage();
-    }
-
-    fn command(&mut self, command: &AutopilotCommand) {
-        self.autopilot.command(command);
-    }
-
-    fn estimated(&self) -> Estimate {
-        self.autopilot.estimated()
-    }
-
-    fn setpoints(&self) -> Setpoints {
-        self.autopilot.setpoints()
-    }
-
-    fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
-        outputs.is_valid()
-    }
-
-    fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
-        self.autopilot.switch(measurements)
     }
 }

@@ -38,12 +38,17 @@ impl PyEvent {
         sensors: &[String],
         actuators: &[String],
     ) -> Self {
+        Self::described::<C>(event, describe_event::<C>(event, sensors, actuators))
+    }
+
+    /// An event with its description.
+    pub(crate) fn described<C: Controller>(event: &EventOf<C>, text: String) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),
             time_ns: (!event.time.is_never()).then(|| event.time.as_nanos()),
             kind: kind_of(&event.kind),
-            text: describe_event::<C>(event, sensors, actuators),
+            text,
         }
     }
 }
@@ -56,8 +61,8 @@ pub fn seconds(time: Time) -> f64 {
 fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
     match kind {
         EventKind::StateChanged { .. } => "state-changed",
-        EventKind::CommandReceived(_) => "ordered",
-        EventKind::StopRequested => "told-to-stop",
+        EventKind::CommandReceived(_) => "command-received",
+        EventKind::StopRequested => "stop-requested",
         EventKind::EngageRefused { .. } => "engage-refused",
         EventKind::SensorFault { .. } => "sensor-fault",
         EventKind::SensorRecovered { .. } => "sensor-recovered",

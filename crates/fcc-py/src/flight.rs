@@ -1,19 +1,20 @@
 //! A whole flight of the built-in aircraft in one call.
 
 use std::ffi::CStr;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
+use fcc_core::flight::Autopilot;
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::navigation::Estimate;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
-use fcc_core::framework::{Controller, Message, Sensor, State};
+use fcc_core::framework::State;
 use fcc_flight::config::{Aircraft, Config};
-use fcc_flight::flight::true_sample;
-use fcc_runtime::{Link, LoopReport, Machine, Parts};
-use fcc_sim::{SimConfig, Simulation, Truth, TruthHandle};
-use fcc_telemetry::{FlightLog, FlightMessage, FlightRecord, FlightScore, Realtime, TimingReport};
-use fcc_timer::{ManualTimer, Timer, TimerError};
+use fcc_flight::flight::{
+    Access, Assembly, FlightTime, FlyError, Host, Length, Observer, Outcome, Pace, Plan, assemble,
+};
+use fcc_runtime::StopHandle;
+use fcc_sim::{Truth, TruthHandle};
+use fcc_telemetry::{FlightEvent, FlightRecord, FlightScore, TimingReport};
+use fcc_timer::RealtimeRequest;
 use pyo3::exceptions::{PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 
@@ -25,21 +26,21 @@ use crate::events::PyEvent;
 use crate::json;
 use crate::structured::Rows;
 
-/// The legs that a flight has if nobody says how long it is to be.
+/// The legs of a flight by default.
 const DEFAULT_LEGS: f64 = 8.0;
-/// How long a flight without a pattern is if nobody says, s.
+/// The duration of a flight without a pattern by default, s.
 const DEFAULT_HOLD_S: f64 = 60.0;
 /// The longest flight, s: a week.
 const LONGEST_S: f64 = 604_800.0;
 /// Ticks whose records and truths are kept at most: 3.5 GB of them.
 const MOST_KEPT: u64 = 5_000_000;
-/// How often an interruption from the keyboard is looked for.
+/// How often an interruption from the keyboard is checked for.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// Ticks between looks at the clock in lockstep.
-const TICKS_PER_LOOK: u64 = 256;
+/// Polls between looks at the clock: in lockstep one follows each tick.
+const POLLS_PER_LOOK: u64 = 256;
 
 const NOT_REAL_TIME: &CStr =
-    c"a sensor or controller in Python stands in the loop: it is not real time, and for experiments only";
+    c"a sensor or controller in Python is in the loop: it is not real time, and for experiments only";
 
 /// A flight that is over.
 ///
@@ -69,6 +70,30 @@ pub(crate) struct PyFlight {
     ending: String,
     score: Option<FlightScore>,
     timing: TimingReport,
+}
+
+impl PyFlight {
+    fn new(
+        py: Python<'_>,
+        outcome: Outcome,
+        log: Log,
+        took: Duration,
+        period_s: f64,
+    ) -> PyResult<Self> {
+        let last = log.last;
+        Ok(Self {
+            records: log.records.into_array(py)?.unbind(),
+            truth: log.truths.into_array(py)?.unbind(),
+            events: log.events,
+            seconds: last.tick.number as f64 * period_s,
+            took_s: took.as_secs_f64(),
+            state: State::from(last.state).to_string(),
+            ending: outcome.ending,
+            // A flight without a complete leg has no score.
+            score: outcome.flight.filter(|score| !score.legs.is_empty()),
+            timing: outcome.timing,
+        })
+    }
 }
 
 #[pymethods]
@@ -112,8 +137,8 @@ impl PyFlight {
 /// aircraft's sensors measured, and gives other `Measurements` or None.
 /// `controller(time_s, measurements, setpoints, surfaces)` is called while
 /// engaged with what the autopilot would do, and gives `Surfaces`. With one of
-/// them the loop is not real time, and a `RuntimeWarning` says so. What they
-/// raise ends the flight and is raised here.
+/// them the loop is not real time, which a `RuntimeWarning` reports. An exception
+/// of theirs ends the flight and is raised here.
 #[pyfunction]
 #[pyo3(signature = (config = None, *, seconds = None, sensor = None, controller = None,
                     real_time = false, keep = true))]
@@ -128,7 +153,7 @@ pub(crate) fn fly(
 ) -> PyResult<PyFlight> {
     let config = configuration(config)?;
     let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
-        return Err(errors::FLIGHT.say(
+        return Err(errors::FLIGHT.with(
             "the configuration has [x-plane]: fly() is for the built-in aircraft, and `fccd run` \
              for another",
         ));
@@ -137,59 +162,46 @@ pub(crate) fn fly(
         Some(seconds) => within("seconds", seconds, 0.1, LONGEST_S)?,
         None => default_seconds(&config),
     };
+    let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
+    if keep && ticks > MOST_KEPT {
+        return Err(PyValueError::new_err(format!(
+            "{ticks} ticks are too many to keep: fly at most {MOST_KEPT}, or give keep=False"
+        )));
+    }
     if sensor.is_some() || controller.is_some() {
         PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), NOT_REAL_TIME, 1)?;
     }
-    let simulation = Simulation::new(&SimConfig::from(section))
-        .map_err(|error| errors::FLIGHT.say(format_args!("the built-in aircraft: {error}")))?;
-    let refused = |error: TimerError| errors::TIMER.say(error);
-    let period = config.tick.period();
-    let timer: Box<dyn Timer> = if real_time {
-        config.tick.timer.build(period).map_err(refused)?
-    } else {
-        Box::new(ManualTimer::new(period).map_err(refused)?)
-    };
+    let period_s = config.tick.period().as_secs_f64();
     let raised = Raised::default();
-    let mut aircraft: Box<dyn Sensor<Measurements>> = Box::new(simulation.sensor);
+    let mut assembly = assemble(&config).map_err(|error| errors::FLIGHT.with(error))?;
+    // Python asks the kernel for nothing.
+    assembly.loop_config.realtime = RealtimeRequest::default();
     if let Some(call) = sensor {
-        let raised = raised.clone();
-        aircraft = Box::new(CallbackSensor {
-            sensor: aircraft,
-            call,
-            raised,
-        });
+        let with_callback = |sensor| CallbackSensor::boxed(sensor, call.clone_ref(py), &raised);
+        assembly.sensors = assembly.sensors.into_iter().map(with_callback).collect();
     }
-    let sensors = vec![aircraft];
-    let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
-    let log = Log::new(&config, &sensors, simulation.truth, ticks, keep)?;
-    let autopilot = Autopilot::new(config.autopilot_config());
-    let actuators: Vec<Box<dyn fcc_core::framework::Actuator<Surfaces>>> =
-        vec![Box::new(simulation.actuator)];
-    let flown = match controller {
-        None => {
-            let parts = Parts {
-                timer,
-                sensors,
-                controller: autopilot,
-                actuators,
-            };
-            conduct(py, parts, &config, &raised, log)
-        }
-        Some(call) => {
-            let parts = Parts {
-                timer,
-                sensors,
-                controller: CallbackController {
-                    autopilot,
-                    call,
-                    raised: raised.clone(),
-                },
-                actuators,
-            };
-            conduct(py, parts, &config, &raised, log)
-        }
-    }?;
-    flown.into_flight(py)
+    if let Some(call) = controller {
+        let raised = raised.clone();
+        assembly.control = Some(Box::new(CallbackController { call, raised }));
+    }
+    let plan = Plan {
+        pace: if real_time {
+            Pace::RealTime
+        } else {
+            Pace::Lockstep
+        },
+        length: Length::Ticks(ticks),
+    };
+    let room = if keep { ticks as usize } else { 0 };
+    let log = Log {
+        truth: assembly.true_now.clone().filter(|_| keep),
+        records: Rows::with_room(room),
+        truths: Rows::with_room(room),
+        events: Vec::new(),
+        last: FlightRecord::default(),
+    };
+    let (outcome, log, took) = py.detach(move || conduct(assembly, config, plan, log, &raised))?;
+    PyFlight::new(py, outcome, log, took, period_s)
 }
 
 fn default_seconds(config: &Config) -> f64 {
@@ -199,196 +211,100 @@ fn default_seconds(config: &Config) -> f64 {
     }
 }
 
-fn conduct<C>(
-    py: Python<'_>,
-    parts: Parts<C>,
-    config: &Config,
-    raised: &Raised,
+/// Flies to the end, without Python but for its callbacks.
+fn conduct(
+    mut assembly: Assembly,
+    mut config: Config,
+    plan: Plan,
     log: Log,
-) -> PyResult<Flown>
-where
-    C: Controller<
-            Measurements = Measurements,
-            Estimate = Estimate,
-            Setpoints = Setpoints,
-            Outputs = Surfaces,
-            Command = AutopilotCommand,
-        >,
-{
-    let refused = |error: TimerError| errors::TIMER.say(error);
-    let (machine, link) = Machine::new(parts, &config.loop_config()).map_err(refused)?;
-    // Rings and boxed parts are for one thread at a time, which a lock shows.
-    let flight = Mutex::new((machine, link, log));
-    py.detach(move || {
-        let (machine, link, log) = flight
-            .into_inner()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        run(machine, link, raised, log)
-    })
-}
-
-fn run<C>(
-    mut machine: Machine<C>,
-    mut link: Link<C>,
     raised: &Raised,
-    mut log: Log,
-) -> PyResult<Flown>
-where
-    C: Controller<
-            Measurements = Measurements,
-            Estimate = Estimate,
-            Setpoints = Setpoints,
-            Outputs = Surfaces,
-            Command = AutopilotCommand,
-        >,
-{
+) -> PyResult<(Outcome, Log, Duration)> {
+    // Only daemons are watched.
+    config.telemetry.enabled = false;
+    let log = Arc::new(Mutex::new(log));
+    let mut interrupt = Interrupt::default();
+    let mut observers = assembly.observers(&config, plan.pace, None);
+    observers.push(Box::new(PythonObserver {
+        log: Arc::clone(&log),
+        interrupt: interrupt.clone(),
+        raised: raised.clone(),
+        looked: Instant::now(),
+        polls: 0,
+    }));
     let began = Instant::now();
-    let mut looked = began;
-    machine.start().map_err(|error| errors::TIMER.say(error))?;
-    let mut left = log.ticks;
-    let mut state = machine.state();
-    while left > 0 && state != State::Stopped {
-        state = machine.step();
-        left = left.saturating_sub(1 + machine.record().tick.missed);
-        while let Some(message) = link.messages.receive() {
-            log.take(&message);
-        }
-        if let Some(error) = raised.take() {
-            return Err(error);
-        }
-        if left.is_multiple_of(TICKS_PER_LOOK) || looked.elapsed() > LOOK_EVERY {
-            looked = Instant::now();
-            listen()?;
-        }
-    }
+    let flown = fcc_flight::flight::fly(assembly, &config.tick, plan, observers, &mut interrupt);
     let took = began.elapsed();
-    let seconds = machine.record().tick.number as f64 * log.period_s;
-    let report = machine.finish();
-    while let Some(message) = link.messages.receive() {
-        log.take(&message);
+    if let Some(error) = raised.take() {
+        return Err(error);
     }
-    Ok(Flown {
-        log,
-        state,
-        seconds,
-        took,
-        report,
-    })
+    let outcome = flown.map_err(|error| match error {
+        FlyError::Timer(error) => errors::TIMER.with(error),
+        error => errors::FLIGHT.with(error),
+    })?;
+    let log = std::mem::take(&mut *lock(&log));
+    Ok((outcome, log, took))
 }
 
-#[expect(
-    clippy::redundant_closure_for_method_calls,
-    reason = "the method itself is for one lifetime, and not for any"
-)]
-fn listen() -> PyResult<()> {
-    Python::attach(|py| py.check_signals())
-}
+/// Stops the loop when Python raises: a callback, or an interruption from the
+/// keyboard.
+#[derive(Clone, Default)]
+struct Interrupt(Arc<OnceLock<StopHandle>>);
 
-/// What a flight leaves.
-struct Flown {
-    log: Log,
-    state: State,
-    seconds: f64,
-    took: Duration,
-    report: LoopReport,
-}
-
-impl Flown {
-    fn into_flight(self, py: Python<'_>) -> PyResult<PyFlight> {
-        let realtime = Realtime {
-            policy: "not asked for".to_owned(),
-            ..Realtime::default()
-        };
-        let log = self.log;
-        // A leg that was not flown to its end has no figures, and the flight
-        // no score.
-        let score = log.score.and_then(|score| score.score().ok());
-        Ok(PyFlight {
-            records: log.records.into_array(py)?.unbind(),
-            truth: log.truths.into_array(py)?.unbind(),
-            events: log.events,
-            seconds: self.seconds,
-            took_s: self.took.as_secs_f64(),
-            state: self.state.to_string(),
-            ending: self.report.ending.to_string(),
-            score: score.filter(|score| !score.legs.is_empty()),
-            timing: TimingReport::new(self.report.timer, &self.report.timing, realtime),
-        })
+impl Host for Interrupt {
+    fn attach(&mut self, stop: &StopHandle) -> std::io::Result<()> {
+        // There is one loop only.
+        let _ = self.0.set(stop.clone());
+        Ok(())
     }
 }
 
-/// Keeps what a flight tells.
+/// The records, truths and events of a flight.
+#[derive(Default)]
 struct Log {
-    sensors: Vec<String>,
-    truth: TruthHandle,
-    ticks: u64,
-    period_s: f64,
-    keep: bool,
+    /// None if nothing is kept.
+    truth: Option<TruthHandle>,
     records: Rows<FlightRecord>,
     truths: Rows<Truth>,
     events: Vec<PyEvent>,
-    score: Option<FlightLog>,
-    engaged: bool,
+    last: FlightRecord,
 }
 
-impl Log {
-    fn new(
-        config: &Config,
-        sensors: &[Box<dyn Sensor<Measurements>>],
-        truth: TruthHandle,
-        ticks: u64,
-        keep: bool,
-    ) -> PyResult<Self> {
-        if keep && ticks > MOST_KEPT {
-            return Err(PyValueError::new_err(format!(
-                "{ticks} ticks are too many to keep: fly at most {MOST_KEPT}, or give keep=False"
-            )));
+fn lock(log: &Mutex<Log>) -> MutexGuard<'_, Log> {
+    log.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Collects the log, and looks for exceptions of Python.
+struct PythonObserver {
+    log: Arc<Mutex<Log>>,
+    interrupt: Interrupt,
+    raised: Raised,
+    looked: Instant,
+    polls: u64,
+}
+
+impl Observer<Autopilot> for PythonObserver {
+    fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
+        let log = &mut *lock(&self.log);
+        log.last = *record;
+        if let Some(truth) = &log.truth {
+            log.records.push(record);
+            log.truths.push(&truth.get());
         }
-        let room = if keep { ticks as usize } else { 0 };
-        Ok(Self {
-            sensors: sensors.iter().map(|s| s.name().to_owned()).collect(),
-            truth,
-            ticks,
-            period_s: config.tick.period().as_secs_f64(),
-            keep,
-            records: Rows::with_room(room),
-            truths: Rows::with_room(room),
-            events: Vec::new(),
-            score: match config.autopilot_config().guidance {
-                GuidanceConfig::TimedPattern(pattern) => Some(FlightLog::new(pattern)),
-                GuidanceConfig::Hold => None,
-            },
-            engaged: false,
-        })
     }
 
-    fn take(&mut self, message: &FlightMessage) {
-        match message {
-            Message::Tick(record) => {
-                let truth = self.truth.get();
-                if self.keep {
-                    self.records.push(record);
-                    self.truths.push(&truth);
-                }
-                let engaged = record.state == State::Engaged;
-                if let Some(score) = &mut self.score {
-                    if engaged && !self.engaged {
-                        score.clear();
-                    }
-                    if engaged {
-                        let now_s = record.tick.number as f64 * self.period_s;
-                        score.push(true_sample(now_s, &truth));
-                    }
-                }
-                self.engaged = engaged;
-            }
-            Message::Event(event) => {
-                self.events.push(PyEvent::of::<Autopilot>(
-                    event,
-                    &self.sensors,
-                    &self.sensors,
-                ));
-            }
+    fn event(&mut self, event: &FlightEvent, description: &str, _: &FlightTime) {
+        let event = PyEvent::described::<Autopilot>(event, description.to_owned());
+        lock(&self.log).events.push(event);
+    }
+
+    fn poll(&mut self, _: &mut Access<'_, fcc_core::flight::AutopilotCommand>) {
+        self.polls += 1;
+        if self.polls.is_multiple_of(POLLS_PER_LOOK) || self.looked.elapsed() > LOOK_EVERY {
+            self.looked = Instant::now();
+            self.raised.keep_signals();
+        }
+        if let (true, Some(stop)) = (self.raised.is_some(), self.interrupt.0.get()) {
+            stop.stop();
         }
     }
 }

@@ -48,9 +48,15 @@ impl<T: Schema> Rows<T> {
     }
 }
 
+impl<T: Schema> Default for Rows<T> {
+    fn default() -> Self {
+        Self::with_room(0)
+    }
+}
+
 impl<'a, T: Schema> FromIterator<&'a T> for Rows<T> {
     fn from_iter<I: IntoIterator<Item = &'a T>>(rows: I) -> Self {
-        let mut all = Self::with_room(0);
+        let mut all = Self::default();
         rows.into_iter().for_each(|row| all.push(row));
         all
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use fcc_telemetry::{DeniedRequest, Realtime};
 use sha2::{Digest, Sha256};
 
 /// What is known of a flight before it begins. Every file of its recording
@@ -43,29 +44,6 @@ pub struct About {
     pub parameters: BTreeMap<String, String>,
     /// Which part of the recording this file is, from 1.
     pub part: u32,
-}
-
-/// What the kernel granted the loop's thread.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Realtime {
-    /// `SCHED_FIFO`, `SCHED_OTHER` or another of the kernel's policies.
-    pub policy: String,
-    /// Priority under `SCHED_FIFO`.
-    pub priority: i32,
-    /// The CPU that the thread was bound to, if it was.
-    pub cpu: Option<usize>,
-    /// Why this CPU was chosen, or why none, if one was requested.
-    pub cpu_because: String,
-    /// Whether the process' memory was locked.
-    pub memory_locked: bool,
-    /// Whether the stack was in memory before the first tick.
-    pub stack_prefaulted: bool,
-    /// The timer slack of the thread, if known, ns.
-    pub timer_slack_ns: Option<u64>,
-    /// The longest wake-up latency of the CPUs, if a limit was granted, µs.
-    pub cpu_dma_latency_us: Option<u32>,
-    /// The requests that were denied, as text.
-    pub refused: Vec<String>,
 }
 
 /// Names of the metadata records and of the attachments of a file.
@@ -116,6 +94,8 @@ impl About {
             ("config_sha256", self.config_sha256()),
             ("part", self.part.to_string()),
         ];
+        let denied = self.realtime.refused.iter();
+        let denied: Vec<_> = denied.map(ToString::to_string).collect();
         let realtime = [
             ("policy", self.realtime.policy.clone()),
             ("priority", self.realtime.priority.to_string()),
@@ -131,7 +111,7 @@ impl About {
                 "cpu_dma_latency_us",
                 known(self.realtime.cpu_dma_latency_us),
             ),
-            ("refused", self.realtime.refused.join(SEPARATOR)),
+            ("refused", denied.join(SEPARATOR)),
         ];
         [
             (RECORDING, fields(recording)),
@@ -172,7 +152,7 @@ impl About {
                     stack_prefaulted: text("stack_prefaulted") == "true",
                     timer_slack_ns: text("timer_slack_ns").parse().ok(),
                     cpu_dma_latency_us: text("cpu_dma_latency_us").parse().ok(),
-                    refused: list("refused"),
+                    refused: list("refused").into_iter().map(in_words).collect(),
                 }
             }
             PARAMETERS => self.parameters = fields,
@@ -189,6 +169,14 @@ impl About {
             CONFIG_AS_GIVEN => self.config_as_given = Some(text()),
             _ => {}
         }
+    }
+}
+
+/// A denied request, of which a file holds only the text.
+fn in_words(request: String) -> DeniedRequest {
+    DeniedRequest {
+        request,
+        ..DeniedRequest::default()
     }
 }
 

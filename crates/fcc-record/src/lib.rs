@@ -65,7 +65,7 @@ mod views;
 mod wire;
 mod writing;
 
-pub use about::{About, Realtime};
+pub use about::About;
 pub use crash::repair_last;
 pub use damage::Damage;
 pub use disk::{Disk, DiskFile, FileSystem, is_being_written};

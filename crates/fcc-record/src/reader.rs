@@ -22,7 +22,7 @@ use super::summary;
 /// use fcc_telemetry::FlightMessage;
 ///
 /// let recording = Recording::open("recordings/2026-11-20T04-21-33.512Z-built-in-01.mcap")?;
-/// println!("{} at {} Hz", recording.about().aircraft, recording.about().rate_hz);
+/// println!("{} at {} Hz", recording.about().plant, recording.about().rate_hz);
 /// let mut messages = recording.messages::<FlightMessage>()?;
 /// for message in &mut messages {
 ///     if let Message::Tick(record) = message {

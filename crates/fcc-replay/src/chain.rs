@@ -9,49 +9,48 @@ use serde::Serialize;
 
 use crate::run::{Replay, Run, run};
 
-/// The files of one recording, oldest first: one, or several where it was
-/// rotated.
+/// The files of one recording, oldest first: several if it is in parts.
 #[derive(Debug)]
 pub struct Chain {
     first: Recording,
     others: Vec<Recording>,
 }
 
-/// Why files cannot be replayed as one recording.
+/// Reason why files cannot be replayed as one recording.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
 pub enum ChainError {
     /// No file is given.
     #[error("no recording is given: name at least one file")]
     Empty,
-    /// One cannot be read or is something else.
+    /// One cannot be read or is not a recording.
     #[error(transparent)]
     Open(#[from] OpenError),
     /// Two are of different runs.
     #[error(
-        "{file}: is of another run than {first}: give the parts of one recording, or one \
+        "{file}: belongs to another run than {first}: give the parts of one recording, or one \
          recording at a time"
     )]
     AnotherRun {
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// The file it does not go with.
+        /// The first file.
         first: PathBuf,
     },
-    /// They are not given in their order.
+    /// They are not in order.
     #[error("{file}: is part {part}, and follows part {after}: give the parts oldest first")]
     OutOfOrder {
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// Which part of the recording it is.
+        /// Its part number.
         part: u32,
-        /// The part before it.
+        /// Number of the previous part.
         after: u32,
     },
-    /// The configuration that was run is not in the file.
-    #[error("{file}: holds no configuration, so it is not known what was run")]
+    /// The configuration is not in the file.
+    #[error("{file}: contains no configuration, so it is not known what was run")]
     NoConfig {
-        /// Which file.
+        /// The file.
         file: PathBuf,
     },
 }
@@ -78,17 +77,17 @@ impl Chain {
         Ok(Self { first, others })
     }
 
-    /// What is known of the run, from the first file.
+    /// Information on the run, from the first file.
     pub const fn about(&self) -> &About {
         self.first.about()
     }
 
-    /// The name of the configuration in the first file, for messages about it.
+    /// The name of the configuration in the first file, for messages.
     pub fn config_name(&self) -> String {
         format!("{}: config.toml", self.first.path().display())
     }
 
-    /// How long the files are together.
+    /// Total size of the files.
     pub fn bytes(&self) -> u64 {
         self.files().map(Recording::bytes).sum()
     }
@@ -97,9 +96,9 @@ impl Chain {
         std::iter::once(&self.first).chain(&self.others)
     }
 
-    /// Replays the recording as far as it goes: gives `compare` each tick as
-    /// recorded and as replayed, and `progress` from time to time how many
-    /// [`bytes`](Self::bytes) were read.
+    /// Replays the recording as far as possible: gives `compare` each tick as
+    /// recorded and as replayed, and `progress` from time to time the number of
+    /// [`bytes`](Self::bytes) read.
     pub fn replay<C: Controller>(
         &self,
         replay: Replay<C>,
@@ -124,15 +123,15 @@ impl Chain {
     }
 }
 
-/// What became of a replay.
+/// Result of a replay.
 #[derive(Clone, Debug, Serialize)]
 pub struct Replayed {
-    /// How far the recording was replayed.
+    /// The replayed part.
     #[serde(flatten)]
     pub run: Run,
     /// Where and why files ended before their recording did.
     pub cuts: Vec<String>,
-    /// What in the files is damaged.
+    /// Damages of the files.
     pub damages: Vec<String>,
 }
 
@@ -142,7 +141,7 @@ impl Replayed {
         self.run.unflown.is_none() && self.cuts.is_empty()
     }
 
-    /// What was not replayed, in words; empty where all was.
+    /// Text on the part that was not replayed; empty if there is none.
     pub fn missing(&self) -> String {
         let mut text = String::new();
         if let Some(unflown) = &self.run.unflown {
@@ -161,7 +160,7 @@ impl Replayed {
             );
         }
         for damage in self.cuts.iter().chain(&self.damages) {
-            let _ = write!(text, "\n\nthe recording is not whole: {damage}");
+            let _ = write!(text, "\n\nthe recording is incomplete: {damage}");
         }
         text
     }
@@ -231,8 +230,7 @@ impl<'a, C: Controller, W: Iterator<Item = &'a Recording>, P: FnMut(u64)> Iterat
                     Item::Remark(_) => {}
                     Item::Damage(damage) => {
                         self.damages.push(format!("{}: {damage}", path.display()));
-                        // What was lost there is lost as if it had never been
-                        // recorded.
+                        // A loss there counts as a loss in the recording.
                         if let Some(gap) = damage.event() {
                             return Some(Message::Event(gap));
                         }

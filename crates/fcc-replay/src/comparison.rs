@@ -1,4 +1,4 @@
-//! What a replay is compared for.
+//! The two ways to compare a replay with its recording.
 
 use fcc_core::framework::Record;
 use fcc_core::framework::schema::Schema;
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::deviation::Deviation;
 use crate::identity::Identity;
 
-/// What a replay is compared for.
+/// The two ways to compare a replay with its recording.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Comparison {
@@ -30,7 +30,7 @@ impl Comparison {
         }
     }
 
-    /// For people.
+    /// The comparison as text.
     pub fn to_text(&self) -> String {
         match self {
             Self::Identity(identity) => identity.to_text(),

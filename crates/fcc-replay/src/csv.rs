@@ -1,4 +1,4 @@
-//! Both runs, tick by tick, for other tools.
+//! Both runs, tick by tick, as a table.
 
 use std::io::{self, Write};
 
@@ -9,9 +9,8 @@ use fcc_telemetry::Telemetry;
 use crate::outputs::RecordValues;
 use crate::quantity::Quantity;
 
-/// Writes a line a tick: time, tick, both states, and every quantity as
-/// recorded and as the other configuration has it; empty where nothing was
-/// commanded.
+/// Writes a line per tick: time, tick, both states, and every quantity as
+/// recorded and with the other configuration; empty if nothing was commanded.
 pub struct Csv<W: Write> {
     out: W,
     quantities: Vec<Quantity>,

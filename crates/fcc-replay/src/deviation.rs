@@ -1,4 +1,4 @@
-//! Where another configuration would have commanded otherwise.
+//! The deviation of another configuration from the recorded one.
 
 use std::fmt::Write as _;
 
@@ -11,14 +11,14 @@ use crate::outputs::RecordValues;
 use crate::profile::Profile;
 use crate::quantity::Quantity;
 
-/// Where another configuration would have commanded otherwise, had it seen
-/// these measurements.
+/// The deviation of another configuration, with the same measurements, from the
+/// recorded one.
 ///
-/// The plant did not react to it: small differences that it would have evened
-/// out add up in the integrators.
+/// The plant did not react to it: small differences accumulate in the
+/// integrators, without feedback.
 #[derive(Clone, Debug, Serialize)]
 pub struct Deviation {
-    /// Ticks in which both commanded something: what is compared.
+    /// Compared ticks: both commanded something.
     pub compared: u64,
     /// Ticks in which only the recorded loop commanded something.
     pub only_recorded: u64,
@@ -36,20 +36,21 @@ pub struct Deviation {
     other: RecordValues,
 }
 
-/// How far one quantity is from the recorded one.
+/// The deviation of one quantity.
 #[derive(Clone, Debug, Serialize)]
 pub struct QuantityDeviation {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The unit of what follows.
+    /// Unit of the values below.
     pub unit: &'static str,
-    /// Ticks in which it differs at all.
+    /// Number of ticks in which it differs.
     pub differing: u64,
     /// The largest difference, other less recorded; 0 if there is none.
     pub largest: f64,
-    /// When that was, s after the first tick; none if there is none.
+    /// Time of the largest difference, s after the first tick; `None` if there
+    /// is none.
     pub largest_at_s: Option<f64>,
-    /// Root of the mean square of the difference over all ticks compared.
+    /// Root of the mean square of the difference over all compared ticks.
     pub rms: f64,
     #[serde(skip)]
     sum_of_squares: f64,
@@ -58,7 +59,7 @@ pub struct QuantityDeviation {
 }
 
 impl Deviation {
-    /// Nothing compared yet, of this controller's records.
+    /// No comparison yet, of this controller's records.
     pub fn of<C: Telemetry>() -> Self {
         let compares = Quantity::all::<C>();
         let quantities = compares.iter().map(|quantity| QuantityDeviation {
@@ -83,7 +84,7 @@ impl Deviation {
         }
     }
 
-    /// Compares one tick as recorded and as the other configuration has it.
+    /// Compares one tick as recorded and with the other configuration.
     pub fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
         &mut self,
         recorded: &Record<M, E, S, O>,
@@ -108,7 +109,7 @@ impl Deviation {
         }
     }
 
-    /// For people.
+    /// The deviation as text.
     pub fn to_text(&self) -> String {
         let names = self.quantities.iter().map(|quantity| quantity.name.len());
         let width = names.max().unwrap_or(0).max(19);
@@ -143,7 +144,7 @@ impl Deviation {
             "\n\n{} ticks compared, in which both command the plant; only the recorded loop did in \
              {}, only the other configuration would have in {}.\n\
              The measurements are as recorded: the plant did not react to the other \
-             configuration, so differences may add up that it would have evened out.",
+             configuration, so differences may accumulate.",
             self.compared, self.only_recorded, self.only_other
         );
         text

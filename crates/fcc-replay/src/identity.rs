@@ -7,18 +7,18 @@ use fcc_core::framework::{Controller, Record};
 use fcc_telemetry::schema::Column;
 use serde::Serialize;
 
-use crate::outputs::{RecordValues, distance, outputs, words};
+use crate::outputs::{RecordValues, distance, outputs, text_of};
 
 /// Whether a replay gives the same outputs, bit for bit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Identity {
-    /// Outputs compared, of all ticks.
+    /// Number of outputs compared, over all ticks.
     pub outputs: u64,
-    /// How many of them differ.
+    /// Number of outputs that differ.
     pub differing: u64,
-    /// The first that differs.
+    /// The first difference.
     pub first: Option<Difference>,
-    /// The outputs that differ anywhere, each once.
+    /// The outputs that differ, each once.
     pub fields: Vec<FieldDifference>,
     #[serde(skip)]
     began_ns: Option<i64>,
@@ -39,34 +39,34 @@ pub struct Difference {
     pub tick: u64,
     /// Milliseconds since the first tick.
     pub time_ms: i64,
-    /// The output, as the record calls it.
+    /// The output, as named in the record.
     pub field: String,
-    /// What was recorded, in words for people.
+    /// The recorded value, as text.
     pub recorded: String,
-    /// What it is in the replay.
+    /// The replayed value, as text.
     pub again: String,
     /// The recorded bits, hexadecimal.
     pub recorded_bits: String,
-    /// The bits in the replay.
+    /// The replayed bits, hexadecimal.
     pub again_bits: String,
 }
 
-/// How one output differs over a recording.
+/// The differences of one output over a recording.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct FieldDifference {
-    /// The output, as the record calls it.
+    /// The output, as named in the record.
     pub field: String,
-    /// In how many ticks it differs.
+    /// Number of ticks in which it differs.
     pub differing: u64,
-    /// The first of them.
+    /// The first of these ticks.
     pub first_tick: u64,
-    /// The largest difference, in the unit of the record; none for what is no
+    /// The largest difference, in the unit of the record; `None` if it is not a
     /// number.
     pub largest: Option<f64>,
 }
 
 impl Identity {
-    /// Nothing compared yet, of this controller's records.
+    /// No comparison yet, of this controller's records.
     pub fn of<C: Controller>() -> Self {
         Self {
             outputs: 0,
@@ -104,8 +104,8 @@ impl Identity {
                     tick: recorded.tick.number,
                     time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
                     field: output.path.clone(),
-                    recorded: words(output.kind, was, self.flag_name),
-                    again: words(output.kind, is, self.flag_name),
+                    recorded: text_of(output.kind, was, self.flag_name),
+                    again: text_of(output.kind, is, self.flag_name),
                     recorded_bits: format!("{:#018x}", was.bits()),
                     again_bits: format!("{:#018x}", is.bits()),
                 });
@@ -132,7 +132,7 @@ impl Identity {
         self.differing == 0
     }
 
-    /// For people.
+    /// The comparison as text.
     pub fn to_text(&self) -> String {
         let mut text = format!(
             "{} outputs compared bit for bit: {} differ",
@@ -142,7 +142,7 @@ impl Identity {
             let _ = write!(
                 text,
                 "\n\nfirst in tick {}, {:.3} s after the first tick: {}\n  \
-                 recorded     {}  {}\n  flown again  {}  {}\n",
+                 recorded  {}  {}\n  replayed  {}  {}\n",
                 first.tick,
                 first.time_ms as f64 * 1e-3,
                 first.field,
@@ -166,7 +166,7 @@ impl Identity {
     }
 }
 
-/// The larger of two that may not be there.
+/// The larger of two optional values.
 trait MaxOf {
     fn max_of(self, other: Self) -> Self;
 }

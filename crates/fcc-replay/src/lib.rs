@@ -1,11 +1,10 @@
-//! Runs a recording again, through the very code that ran it.
+//! Replays a recording with the code that ran it.
 //!
-//! A tick of the loop is a pure function of the loop's state, the tick's
-//! times, the measurements and what came from outside (commands, the stop flag);
-//! a recording holds all of these. So the same [`Machine`](fcc_runtime::Machine)
-//! with the same controller, given what was recorded, must produce what was
-//! recorded, to the last bit. This holds for every controller: nothing here
-//! knows what it controls.
+//! A tick of the loop is a pure function of the loop's state, the tick's times,
+//! the measurements and the inputs from outside (commands, the stop flag); a
+//! recording holds all of these. The same [`Machine`](fcc_runtime::Machine)
+//! with the same controller and the recorded inputs must therefore produce the
+//! recorded outputs, to the last bit. This holds for every controller.
 //!
 //! ```text
 //! messages ─► Sequence ─► Machine (recorded times, a sensor that returns the
@@ -14,9 +13,9 @@
 //!                 └── recorded ───► Identity, or Deviation of another configuration
 //! ```
 //!
-//! State that is not in a recording is what the loop had gathered before its
-//! first record. Hence a replay begins where the loop began, and ends where
-//! records are missing: what comes after depends on what is lost.
+//! The state of the loop is not in a recording. A replay therefore starts with
+//! the loop's first tick, and ends where records are missing: later ticks
+//! depend on them.
 
 mod chain;
 mod comparison;
@@ -36,5 +35,5 @@ pub use csv::Csv;
 pub use deviation::{Deviation, QuantityDeviation};
 pub use identity::{Difference, FieldDifference, Identity};
 pub use quantity::Quantity;
-pub use run::{Replay, Run, Unflown, run};
+pub use run::{NotReplayed, Replay, Run, run};
 pub use sequence::Cut;

@@ -6,9 +6,9 @@ use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Value};
 use fcc_core::framework::{Controller, Flags, RecordOf};
 use fcc_telemetry::schema::{Column, columns};
 
-/// What of a record the loop works out, causes before what they lead to, so
-/// that the first that differs is the most telling. The rest is what came into
-/// the loop, or how long things took.
+/// The values of a record that the loop computes, causes before effects, so
+/// that the first difference is the closest to the cause. The other values are
+/// inputs or durations.
 const OUTPUTS: [&str; 8] = [
     "tick.dt_s",
     "estimate",
@@ -26,7 +26,7 @@ pub(super) fn outputs<C: Controller>() -> Vec<(usize, Column)> {
     found.collect()
 }
 
-/// The values of one part of a record, each with its place among all of them.
+/// The values of one part of a record, each with its place among all values.
 pub(super) fn columns_of<C: Controller>(part: &str) -> Vec<(usize, Column)> {
     let is_in = |path: &str| {
         path.strip_prefix(part)
@@ -36,8 +36,7 @@ pub(super) fn columns_of<C: Controller>(part: &str) -> Vec<(usize, Column)> {
     all.filter(|(_, column)| is_in(&column.path)).collect()
 }
 
-/// The values of a record, one after another; it keeps its memory from record
-/// to record.
+/// The values of a record, in order; its memory is used again.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RecordValues(Vec<Value>);
 
@@ -59,7 +58,7 @@ impl Sink for RecordValues {
     }
 }
 
-/// How far two numbers are apart; none for what is no number.
+/// The distance of two numbers; `None` if one is not a number.
 pub(super) fn distance(one: Value, other: Value) -> Option<f64> {
     match (one, other) {
         (Value::Number(one), Value::Number(two)) => {
@@ -69,10 +68,10 @@ pub(super) fn distance(one: Value, other: Value) -> Option<f64> {
     }
 }
 
-/// A value for people.
-pub(super) fn words(kind: Kind, value: Value, flag_name: fn(u32) -> &'static str) -> String {
+/// A value as text.
+pub(super) fn text_of(kind: Kind, value: Value, flag_name: fn(u32) -> &'static str) -> String {
     match (kind, value) {
-        // As many digits as tell it from every other number.
+        // Enough digits to distinguish it from every other number.
         (_, Value::Number(number)) => format!("{number:?}"),
         (_, Value::Bool(truth)) => if truth { "yes" } else { "no" }.to_owned(),
         (_, Value::Flags(0)) => "none".to_owned(),

@@ -1,4 +1,4 @@
-//! What replaces the clock and the plant in a replay.
+//! Replacements for the clock and the plant in a replay.
 
 use std::time::Duration;
 
@@ -6,8 +6,8 @@ use fcc_core::framework::{Actuator, ActuatorFault, Sensor, SensorFault, Tick};
 use fcc_timer::{Expiry, Timer, TimerError};
 use rtrb::{Consumer, Producer, RingBuffer};
 
-/// A timer of which only the period is used: the recorded times are given to the
-/// machine tick by tick.
+/// A timer with only a period: the machine receives the recorded times tick by
+/// tick.
 pub(super) struct RecordedTimes {
     pub(super) period: Duration,
 }
@@ -25,7 +25,7 @@ impl Timer for RecordedTimes {
         self.period
     }
 
-    /// Only stages are timed with it, and those are taken from the record.
+    /// It only times stages, and their times come from the record.
     fn now_ns(&self) -> i64 {
         0
     }
@@ -37,14 +37,14 @@ impl Timer for RecordedTimes {
 
 /// Returns recorded measurements.
 ///
-/// They are what all sensors of the loop had measured by then, with the times
-/// they were taken: a sensor that was silent or failed left them as they were.
+/// They are the newest measurements of all sensors at that time, with their
+/// times: a silent or failed sensor does not change them.
 pub(super) struct RecordedSensor<M> {
     measured: Consumer<M>,
 }
 
 impl<M> RecordedSensor<M> {
-    /// A sensor, and where to put what it is to return next.
+    /// A sensor, and where to put the measurements that it returns next.
     pub(super) fn new() -> (Producer<M>, Self) {
         let (measured_in, measured) = RingBuffer::new(1);
         (measured_in, Self { measured })
@@ -62,7 +62,7 @@ impl<M: Send> Sensor<M> for RecordedSensor<M> {
     }
 }
 
-/// No plant: what would be sent is taken from the machine's record.
+/// No plant: the outputs are taken from the machine's record.
 pub(super) struct NoPlant;
 
 impl<O> Actuator<O> for NoPlant {

@@ -1,17 +1,17 @@
-//! A value over a recording of unknown length, small enough for a
-//! line of a terminal.
+//! The profile of a value over a recording of unknown length, as one line of
+//! text.
 
-/// Columns of a line at most.
+/// Most columns of a line.
 const COLUMNS: usize = 48;
 
 /// Eighths of a cell, none to full.
 const BARS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// The largest of a value in each of up to 48 equal spans of ticks. When the
-/// recording outgrows them, each two become one.
+/// The largest value in each of up to 48 equal spans of ticks. When the
+/// recording exceeds them, pairs of spans are merged.
 #[derive(Clone, Debug)]
 pub(super) struct Profile {
-    /// Ticks that one span holds.
+    /// Ticks in one span.
     span: u64,
     ticks: u64,
     largest: Vec<f64>,
@@ -55,12 +55,12 @@ impl Profile {
         self.span *= 2;
     }
 
-    /// One character a span, the highest for the largest of all.
+    /// One character per span, the tallest for the largest value.
     pub(super) fn line(&self) -> String {
         let most = self.largest.iter().copied().fold(0.0, f64::max);
         let full = (BARS.len() - 1) as f64;
         let bar = |value: &f64| {
-            // What is there at all shows.
+            // A value above 0 is always visible.
             let eighths = if most > 0.0 {
                 (value / most * full).ceil() as usize
             } else {
@@ -87,7 +87,8 @@ mod tests {
             assert!((24..=48).contains(&line.len()), "{ticks}: {}", line.len());
             let peaks: Vec<_> = (0..line.len()).filter(|n| line[*n] == '█').collect();
             assert_eq!(peaks.len(), 1);
-            // 0.5 of the ticks, to a span; the spans may reach past the end.
+            // At half of the ticks, within a span; the spans may extend beyond
+            // the end.
             let place = (peaks[0] as f64 + 0.5) * profile.span as f64 / ticks as f64;
             assert!((place - 0.5).abs() <= 0.5 / 24.0 + 0.01, "{ticks}: {place}");
             assert!(line.iter().all(|c| *c == '█' || *c == '▁'));

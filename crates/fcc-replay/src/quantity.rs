@@ -1,4 +1,4 @@
-//! The outputs and set points that two configurations are compared in.
+//! The outputs and set points in which two configurations are compared.
 
 use std::f64::consts::TAU;
 
@@ -10,24 +10,25 @@ use fcc_telemetry::units::Shown;
 
 use crate::outputs::{RecordValues, columns_of};
 
-/// A number that a controller outputs or aims for.
+/// An output or a set point of a controller.
 #[derive(Clone, Debug)]
 pub struct Quantity {
-    /// The name of its column in tables without the unit: `desired heading`.
+    /// Its name in tables, without the unit: `desired heading`.
     pub name: String,
-    /// Its unit, for people.
+    /// Its display unit.
     pub unit: &'static str,
-    /// That many of the unit in one of the record's.
+    /// Display units per unit of the record.
     scale: f64,
-    /// Whether it is an angle that starts again after a full turn: 359° and 1°
-    /// are 2° apart.
+    /// Whether it is an angle that wraps after a full turn: 359° and 1° are 2°
+    /// apart.
     wraps: bool,
     /// Its place among the values of a record.
     index: usize,
 }
 
 impl Quantity {
-    /// All of a controller, outputs first, by the schema of its record.
+    /// All quantities of a controller, outputs first, from the schema of its
+    /// record.
     pub(crate) fn all<C: Telemetry>() -> Vec<Self> {
         let parts = ["outputs", "setpoints"].into_iter();
         let columns = parts.flat_map(columns_of::<C>);

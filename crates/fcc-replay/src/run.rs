@@ -1,4 +1,4 @@
-//! Runs recorded inputs through the loop.
+//! Runs the loop with recorded inputs.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::parts::{NoPlant, RecordedSensor, RecordedTimes};
 use super::sequence::{Cut, Sequence};
 
-/// A loop whose inputs are what was recorded.
+/// A loop with recorded inputs.
 pub struct Replay<C: Controller> {
     machine: Machine<C>,
     link: Link<C>,
@@ -23,7 +23,7 @@ impl<C: Controller> Replay<C> {
     /// A loop of this controller, before its first tick.
     ///
     /// # Errors
-    /// When the period cannot be kept statistics of.
+    /// When the period is out of range for the statistics.
     pub fn new(controller: C, period: Duration, config: &LoopConfig) -> Result<Self, TimerError> {
         let (measured, sensor) = RecordedSensor::new();
         let parts = Parts {
@@ -42,11 +42,11 @@ impl<C: Controller> Replay<C> {
         })
     }
 
-    /// Takes the next message of a recording. A record's tick is performed
-    /// again, and its present record is returned.
+    /// Takes the next message of a recording. For a record, performs its tick
+    /// again and returns the new record.
     ///
     /// # Errors
-    /// When it cannot be replayed from here on.
+    /// When the rest cannot be replayed.
     pub fn take(&mut self, message: &MessageOf<C>) -> Result<Option<&RecordOf<C>>, Cut> {
         let (Some(inputs), Message::Tick(recorded)) = (self.sequence.take(message)?, message)
         else {
@@ -57,14 +57,14 @@ impl<C: Controller> Replay<C> {
             return Err(Cut::StoppedEarly { tick: tick.number });
         }
         for command in inputs.commands {
-            // A tick reads 16 at most, and the ring holds more.
+            // A tick reads at most 16, and the ring holds more.
             let sent = self.link.commands.send(command);
             sent.map_err(|_| Cut::CommandOutOfPlace { tick: tick.number })?;
         }
         if inputs.stop_requested {
             self.link.stop.stop();
         }
-        // The ring is empty: the sensor takes what is in it in every tick.
+        // The ring is empty: the sensor reads it in every tick.
         let _ = self.measured.push(recorded.measurements);
         let expiry = Expiry {
             number: tick.number,
@@ -80,34 +80,34 @@ impl<C: Controller> Replay<C> {
     }
 }
 
-/// How far a recording was replayed.
+/// The replayed part of a recording.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Run {
     /// Ticks replayed.
     pub ticks: u64,
-    /// The last of them; none if there is none.
+    /// The last of them; `None` if there is none.
     pub last_tick: Option<u64>,
     /// From the first of them to the last, s.
     pub span_s: f64,
-    /// What was not replayed; none if all was.
-    pub unflown: Option<Unflown>,
+    /// The part that was not replayed; `None` if all was.
+    pub unflown: Option<NotReplayed>,
 }
 
 /// The part of a recording that was not replayed.
 #[derive(Clone, PartialEq, Eq, Debug, Serialize)]
-pub struct Unflown {
-    /// How many recorded ticks.
+pub struct NotReplayed {
+    /// Number of recorded ticks.
     pub ticks: u64,
     /// The first of them, if there is one.
     pub first: Option<u64>,
     /// The last of them.
     pub last: Option<u64>,
-    /// Why, in words for people.
+    /// The reason, as text.
     pub why: String,
 }
 
-/// Replays a recording, as far as it goes, and gives `compare` each tick
-/// as recorded and as replayed.
+/// Replays a recording as far as possible, and gives `compare` each tick as
+/// recorded and as replayed.
 pub fn run<C: Controller>(
     mut replay: Replay<C>,
     messages: impl IntoIterator<Item = MessageOf<C>>,
@@ -130,7 +130,7 @@ pub fn run<C: Controller>(
             }
             (Ok(_), _) => {}
             (Err(cut), message) => {
-                let unflown = run.unflown.insert(Unflown {
+                let unflown = run.unflown.insert(NotReplayed {
                     ticks: 0,
                     first: None,
                     last: None,
@@ -143,7 +143,7 @@ pub fn run<C: Controller>(
     run
 }
 
-impl Unflown {
+impl NotReplayed {
     fn count(&mut self, tick: Option<&Tick>) {
         if let Some(tick) = tick {
             self.ticks += 1;

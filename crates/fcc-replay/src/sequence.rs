@@ -1,30 +1,29 @@
-//! Puts together, tick by tick, what came into the loop, and notices what is
-//! missing.
+//! Assembles the inputs of the loop tick by tick, and detects missing ones.
 
 use fcc_core::framework::{Event, EventKind, LoopCommand, Message, Tick};
 
-/// Why a recording cannot be flown again from some tick on.
+/// Reason why a recording cannot be replayed from some tick on.
 #[derive(thiserror::Error, Clone, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum Cut {
-    /// It begins after the loop did.
+    /// The recording begins after the loop did.
     #[error(
-        "the recording begins in tick {tick}, with the loop already running, and what the \
-         loop knew by then is not in it: give the recordings before it too, oldest first"
+        "the recording begins in tick {tick}, after the start of the loop, and the state of the \
+         loop at that time is not in it: give the recordings before it too, oldest first"
     )]
     BeginsLate {
         /// Its first tick.
         tick: u64,
     },
-    /// Something is missing in the middle.
+    /// Records or events are missing.
     #[error(
-        "what was recorded of ticks {first} to {last} is not whole, and every later tick \
+        "the recording of ticks {first} to {last} is incomplete, and every later tick \
          depends on it"
     )]
     Gap {
-        /// The first tick of which something is missing.
+        /// The first incomplete tick.
         first: u64,
-        /// The last tick of which something is missing.
+        /// The last incomplete tick.
         last: u64,
     },
     /// Time went back.
@@ -35,7 +34,7 @@ pub enum Cut {
     AnotherRun {
         /// The tick that does not follow.
         tick: u64,
-        /// The tick before it.
+        /// The previous tick.
         after: u64,
     },
     /// Events are missing, and they may have been commands.
@@ -47,47 +46,48 @@ pub enum Cut {
         last: u64,
     },
     /// A command is not with the record of its tick.
-    #[error("a command of tick {tick} is not recorded beside the record of its tick")]
+    #[error("a command of tick {tick} is not recorded directly before the record of its tick")]
     CommandOutOfPlace {
         /// The command's tick.
         tick: u64,
     },
-    /// A part of the loop panicked; how far that tick got is not
-    /// known.
-    #[error("a part of the loop panicked in tick {tick}: how far that tick got is not recorded")]
+    /// A part of the loop panicked; the progress of that tick is not known.
+    #[error(
+        "a part of the loop panicked in tick {tick}: the progress of that tick is not recorded"
+    )]
     Panicked {
         /// The tick.
         tick: u64,
     },
-    /// The replay's own loop stopped, and the recorded one did not.
-    #[error("the loop stopped before tick {tick} in the replay, and went on in the recording")]
+    /// The loop stopped in the replay, but not in the recording.
+    #[error("the loop stopped before tick {tick} in the replay, but continued in the recording")]
     StoppedEarly {
-        /// The first tick it did not perform.
+        /// The first tick that was not performed.
         tick: u64,
     },
 }
 
-/// Far more commands than a loop reads in a tick: only a file that no loop
-/// recorded has as many before a record, and the memory for them is limited.
+/// More commands than a loop reads in a tick: only an invalid file has as many
+/// before a record. It limits the memory.
 const MOST_COMMANDS: usize = 1_024;
 
-/// Puts together what came into the loop from outside in each tick.
+/// Assembles the inputs from outside for each tick.
 #[derive(Debug)]
 pub(super) struct Sequence<R> {
     last: Option<Tick>,
-    /// The tick of what waits for its record.
+    /// The tick of the inputs that wait for its record.
     awaited: Option<u64>,
     commands: Vec<LoopCommand<R>>,
     stop_requested: bool,
     panicked: bool,
 }
 
-/// What came into the loop in one tick, beside measurements.
+/// The inputs of one tick, other than measurements.
 #[derive(Debug, PartialEq)]
 pub(super) struct Inputs<R> {
-    /// In the sequence they were read.
+    /// In the order in which they were read.
     pub(super) commands: Vec<LoopCommand<R>>,
-    /// Whether the stop flag was seen.
+    /// Whether the stop flag was set.
     pub(super) stop_requested: bool,
 }
 
@@ -104,10 +104,10 @@ impl<R> Default for Sequence<R> {
 }
 
 impl<R: Copy> Sequence<R> {
-    /// Takes the next message; a record comes back as the inputs of its tick.
+    /// Takes the next message; for a record, returns the inputs of its tick.
     ///
     /// # Errors
-    /// When from here on it is not known what came into the loop.
+    /// When the inputs from here on are not known.
     pub(super) fn take<M, E, S, O>(
         &mut self,
         message: &Message<M, E, S, O, R>,
@@ -128,14 +128,14 @@ impl<R: Copy> Sequence<R> {
                 self.await_record(event.tick)?;
                 self.stop_requested = true;
             }
-            // One without a record after it happened between ticks.
+            // An event without a record after it occurred between ticks.
             EventKind::Panicked => {
                 self.panicked = self.last.is_none_or(|last| event.tick > last.number);
             }
             EventKind::EventsDropped { first, last, .. } => {
                 return Err(Cut::EventsMissing { first, last });
             }
-            // Said even where every record is there: events may not be.
+            // Even if every record is present, events may be missing.
             EventKind::NotRecorded { first, last, .. } => {
                 return Err(Cut::Gap { first, last });
             }
@@ -172,11 +172,11 @@ impl<R: Copy> Sequence<R> {
         })
     }
 
-    /// Whether a tick comes right after the one before, or is the loop's
-    /// first: deadlines count from 1, and those missed are said.
+    /// Whether a tick directly follows the previous one, or is the loop's
+    /// first: deadlines count from 1, and missed ones are recorded.
     fn follows(&self, tick: &Tick) -> Result<(), Cut> {
         let number = tick.number;
-        // The first tick since the one served before, missed or not.
+        // The first deadline after the previous tick, missed or not.
         let due = number.saturating_sub(tick.missed);
         let Some(last) = self.last else {
             return match due {
@@ -207,11 +207,11 @@ mod tests {
 
     use super::*;
 
-    type Told = Message<(), (), (), (), f64>;
+    type TestMessage = Message<(), (), (), (), f64>;
 
     const MS: i64 = 1_000_000;
 
-    fn record(number: u64, missed: u64) -> Told {
+    fn record(number: u64, missed: u64) -> TestMessage {
         let scheduled = Time::from_nanos(number as i64 * 25 * MS);
         let tick = Tick {
             number,
@@ -223,7 +223,7 @@ mod tests {
         Message::Tick(Record::new(tick, State::Standby))
     }
 
-    fn event(tick: u64, kind: EventKind<f64>) -> Told {
+    fn event(tick: u64, kind: EventKind<f64>) -> TestMessage {
         Message::Event(Event {
             tick,
             time: Time::NEVER,
@@ -233,8 +233,8 @@ mod tests {
 
     const WANTED: LoopCommand<f64> = LoopCommand::Controller(1.0);
 
-    /// The cut that ends a sequence of messages, if one does.
-    fn cut(messages: &[Told]) -> Option<Cut> {
+    /// The cut that ends a sequence of messages, if any.
+    fn cut(messages: &[TestMessage]) -> Option<Cut> {
         let mut sequence = Sequence::default();
         messages
             .iter()
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn commands_without_a_record_are_not_gathered_without_end() {
+    fn commands_without_a_record_are_limited() {
         let mut commands = vec![event(1, EventKind::CommandReceived(WANTED)); MOST_COMMANDS];
         assert_eq!(cut(&commands), None);
         commands.push(event(1, EventKind::CommandReceived(WANTED)));

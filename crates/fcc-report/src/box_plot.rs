@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-/// A box plot after J. Tukey, "Exploratory Data Analysis" (1977): the box holds
+/// A box plot after J. Tukey, "Exploratory Data Analysis" (1977): the box is
 /// the middle half, the whiskers end at the last value within 1.5 box lengths
-/// of it, and what is farther out is shown point by point.
+/// of the box, and each value beyond them is a point.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct BoxPlot {
     /// Smallest value.
@@ -23,17 +23,17 @@ pub struct BoxPlot {
     pub max: f64,
     /// How many values lie beyond the whiskers.
     pub outlier_count: u64,
-    /// The different values among them.
+    /// The different values beyond the whiskers.
     #[serde(skip)]
     pub(crate) outliers: Vec<f64>,
 }
 
-/// How far a whisker reaches, in box lengths.
+/// Longest whisker, in box lengths.
 const REACH: f64 = 1.5;
 
 impl BoxPlot {
-    /// Of values in ascending order, each with how often it was counted; none
-    /// if there are none.
+    /// `counts` holds values in ascending order and the count of each; `None`
+    /// if it is empty.
     pub fn of(counts: &[(f64, u64)]) -> Option<Self> {
         let (min, max) = (counts.first()?.0, counts.last()?.0);
         let quartile = |share: f64| quantile(counts, share);
@@ -43,7 +43,7 @@ impl BoxPlot {
         let outside = || counts.iter().filter(|(value, _)| !fences.contains(value));
         Some(Self {
             min,
-            // A box between two values may have none of its own in reach.
+            // An interpolated quartile may have no value within reach.
             whisker_low: within().next().map_or(q1, |(value, _)| value.min(q1)),
             q1,
             median: quartile(0.5)?,
@@ -55,7 +55,7 @@ impl BoxPlot {
         })
     }
 
-    /// The same, less `nominal`, times `scale`.
+    /// The same box, less `nominal`, times `scale`.
     pub(crate) fn deviation_from(&self, nominal: f64, scale: f64) -> Self {
         let deviation = |value: f64| (value - nominal) * scale;
         Self {
@@ -72,8 +72,7 @@ impl BoxPlot {
     }
 }
 
-/// Between two values it is worked out in proportion (Hyndman and Fan, 1996,
-/// type 7).
+/// Interpolates linearly between two values (Hyndman and Fan, 1996, type 7).
 fn quantile(counts: &[(f64, u64)], share: f64) -> Option<f64> {
     let total: u64 = counts.iter().map(|(_, count)| count).sum();
     let place = share * total.checked_sub(1)? as f64;

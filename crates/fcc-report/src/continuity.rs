@@ -1,9 +1,9 @@
-//! Whether every tick is there.
+//! Which ticks are missing.
 
 use fcc_core::framework::Tick;
 use serde::Serialize;
 
-/// As many gaps are kept one by one; the rest are counted.
+/// At most this many gaps are listed; the rest are counted.
 const MOST_GAPS: usize = 1_000;
 
 /// Ticks that the loop served and the recording lacks.
@@ -17,10 +17,10 @@ pub struct Gap {
     pub ticks: u64,
 }
 
-/// Whether every tick is there, from the first in the file to the last.
+/// Which ticks are missing between the first in the file and the last.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Continuity {
-    /// Number of the first tick; the loop's own first is 1.
+    /// Number of the first tick; the loop counts from 1.
     pub first_tick: u64,
     /// Number of the last tick.
     pub last_tick: u64,
@@ -28,24 +28,24 @@ pub struct Continuity {
     pub ticks: u64,
     /// Ticks that are missing between the first and the last.
     pub lost: u64,
-    /// How many gaps they make.
+    /// Number of gaps.
     pub gap_count: u64,
-    /// The first thousand of the gaps.
+    /// The first thousand gaps.
     pub gaps: Vec<Gap>,
-    /// Ticks that came out of order, and were left out.
+    /// Ticks out of order, which were left out.
     pub out_of_order: u64,
     #[serde(skip)]
     last_s: f64,
 }
 
-/// How a tick follows the one before.
+/// How a tick follows the previous one.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Follows {
     /// Nothing is missing between them.
     Directly,
     /// Ticks are missing between them.
     AfterGap,
-    /// It is not later than the one before.
+    /// It is not later than the previous one.
     Not,
 }
 

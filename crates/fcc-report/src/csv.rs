@@ -1,7 +1,7 @@
 //! A recording as two tables for spreadsheets: `records.csv`, `events.csv`.
 //!
-//! Numbers are as recorded, in SI, with the unit in the column's name, and
-//! read back to the very same bits. What was never measured is empty.
+//! Numbers are as recorded, in SI, with the unit in the column's name; they
+//! parse back to the same bits. A field without a measurement is empty.
 
 use std::fs::{self, File};
 use std::io;
@@ -24,12 +24,12 @@ pub struct CsvFolder<C> {
     row: Row,
 }
 
-/// Bytes that are gathered before they are written.
+/// Bytes in the buffer before they are written.
 const BUFFER_BYTES: usize = 1 << 18;
 
 impl<C: Controller> CsvFolder<C> {
-    /// Makes the folder if need be, and in it `records.csv` and `events.csv`,
-    /// in the place of those that may be there.
+    /// Creates the folder if it is missing, and in it `records.csv` and
+    /// `events.csv`. Existing files of these names are replaced.
     ///
     /// # Errors
     /// When the folder or a file cannot be made or written.
@@ -64,7 +64,7 @@ impl<C: Controller> CsvFolder<C> {
         }
     }
 
-    /// Writes words that are no event of the loop, as an event of no tick.
+    /// Writes a remark as an event without a tick.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -102,7 +102,7 @@ impl<C: Controller> CsvFolder<C> {
     }
 }
 
-/// An instant; empty if it never was.
+/// An instant; empty if there is none.
 fn instant(time: Time) -> String {
     if time.is_never() {
         String::new()

@@ -1,4 +1,4 @@
-//! What takes time in a tick, and how old the measurements are.
+//! How long the stages of a tick take, and how old the measurements are.
 
 use fcc_core::framework::{Readings, Record, Stage};
 use serde::Serialize;
@@ -51,7 +51,7 @@ impl Durations {
         });
     }
 
-    /// Of the stages that were timed, in the order of a tick.
+    /// The stages that were measured, in the order of a tick.
     pub(super) fn stages(&self) -> Vec<NamedPercentiles> {
         named(&self.stages, |place| match STAGES.get(place) {
             Some(Stage::Tick) | None => "whole tick".to_owned(),
@@ -59,7 +59,8 @@ impl Durations {
         })
     }
 
-    /// Of what was ever measured: how old it was when the loop woke.
+    /// Ages of the measurements when the loop woke; readings that were never
+    /// measured are left out.
     pub(super) fn ages(&self, names: &[&str]) -> Vec<NamedPercentiles> {
         named(&self.ages, |place| {
             names.get(place).copied().unwrap_or_default().to_owned()

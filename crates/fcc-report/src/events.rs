@@ -1,4 +1,4 @@
-//! What happened, numbered to be found in the plots.
+//! The events, numbered as in the plots.
 
 use fcc_core::framework::{Controller, EventKind, EventOf};
 use serde::Serialize;
@@ -6,34 +6,34 @@ use serde::Serialize;
 use super::origin::Origin;
 use fcc_telemetry::describe_event;
 
-/// As many events are kept; the rest are counted.
+/// At most this many events are kept; the rest are counted.
 const MOST_EVENTS: usize = 2_000;
 
-/// Something that happened once.
+/// An event.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct EventLine {
-    /// As in the plots, from 1.
+    /// Number in the plots, from 1.
     pub number: usize,
     /// Since the first tick, s.
     pub time_s: f64,
-    /// In which tick.
+    /// Number of the tick.
     pub tick: u64,
-    /// What it was, in words.
+    /// Description.
     pub text: String,
     #[serde(skip)]
     pub(super) weight: Weight,
 }
 
-/// How much an event matters where there is no room for all.
+/// Importance of an event, for plots without room for all.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub(super) enum Weight {
-    /// For the table.
+    /// In the table only.
     Minor,
-    /// What somebody asked for.
-    Asked,
-    /// What went wrong.
-    Wrong,
-    /// What the loop did.
+    /// A command.
+    Command,
+    /// A fault.
+    Fault,
+    /// A change of state.
     State,
 }
 
@@ -51,14 +51,14 @@ impl Events {
         });
     }
 
-    /// Takes words that are no event of the loop, said after a tick.
+    /// Takes a remark, which follows a tick.
     pub(super) fn remark(&mut self, time_s: f64, tick: u64, text: &str) {
         self.push(time_s, tick, Weight::Minor, || text.to_owned());
     }
 
-    /// Takes what is damaged in the recording, behind a tick.
+    /// Takes a damage of the recording, which follows a tick.
     pub(super) fn damage(&mut self, time_s: f64, tick: u64, text: &str) {
-        self.push(time_s, tick, Weight::Wrong, || text.to_owned());
+        self.push(time_s, tick, Weight::Fault, || text.to_owned());
     }
 
     fn push(&mut self, time_s: f64, tick: u64, weight: Weight, text: impl FnOnce() -> String) {
@@ -74,7 +74,7 @@ impl Events {
         }
     }
 
-    /// The events kept, and how many there were.
+    /// The events kept, and the count of all.
     pub(super) fn into_lines(self) -> (Vec<EventLine>, usize) {
         (self.lines, self.count)
     }
@@ -92,8 +92,8 @@ fn weight<T>(kind: &EventKind<T>) -> Weight {
         | EventKind::EventsDropped { .. }
         | EventKind::NotRecorded { .. }
         | EventKind::Overrun { .. }
-        | EventKind::Released { ok: false } => Weight::Wrong,
-        EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Asked,
+        | EventKind::Released { ok: false } => Weight::Fault,
+        EventKind::CommandReceived(_) | EventKind::EngageRefused { .. } => Weight::Command,
         _ => Weight::Minor,
     }
 }

@@ -1,76 +1,76 @@
-//! What is worth saying of a recording in words, before any table.
+//! The summary of a recording: sentences above the tables.
 
-use super::RunReport;
 use super::origin::FileEnd;
+use super::report::RunReport;
 use super::states::{Phase, time_in};
 
-/// The sentences, the gravest first.
+/// The sentences, the most important first.
 pub(super) fn findings(report: &RunReport) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     if report.continuity.ticks == 0 {
-        let run = report.words.run;
-        said.push(format!(
-            "There is no tick in this recording: nothing can be said of the {run}."
+        let run = report.terms.run;
+        sentences.push(format!(
+            "There is no tick in this recording: nothing is known about the {run}."
         ));
-        said.extend(end(report));
-        said.extend(damages(report));
-        return said;
+        sentences.extend(end(report));
+        sentences.extend(damages(report));
+        return sentences;
     }
-    said.extend(end(report));
-    said.extend(damages(report));
-    said.extend(gaps(report));
-    said.extend(timing(report));
-    said.extend(states(report));
-    said.extend(missing(report));
-    said
+    sentences.extend(end(report));
+    sentences.extend(damages(report));
+    sentences.extend(gaps(report));
+    sentences.extend(timing(report));
+    sentences.extend(states(report));
+    sentences.extend(missing(report));
+    sentences
 }
 
 fn end(report: &RunReport) -> Option<String> {
     match &report.end {
-        FileEnd::Cut(words) => Some(format!(
-            "The recording was not finished: {words}. What is shown is what came before."
+        FileEnd::Cut(reason) => Some(format!(
+            "The recording was not finished: {reason}. The report covers the part before that."
         )),
         FileEnd::Finished(_) | FileEnd::Unknown => None,
     }
 }
 
-/// As many damages are named one by one.
+/// At most this many damages are listed.
 const MOST_DAMAGES: usize = 5;
 
 fn damages(report: &RunReport) -> Vec<String> {
-    let mut said: Vec<String> = report
+    let mut sentences: Vec<String> = report
         .damages
         .iter()
         .take(MOST_DAMAGES)
         .map(|damage| format!("The recording is {damage}."))
         .collect();
     if report.damages.len() > MOST_DAMAGES {
-        said.push(format!(
+        sentences.push(format!(
             "It is damaged in {} places in all.",
             report.damages.len()
         ));
     }
-    said
+    sentences
 }
 
 fn gaps(report: &RunReport) -> Vec<String> {
     let continuity = &report.continuity;
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     let missing_before = continuity.first_tick.saturating_sub(1);
     if report.origin.part > 1 {
-        said.push(format!(
+        sentences.push(format!(
             "This is part {} of a recording: it begins at tick {}.",
             report.origin.part, continuity.first_tick
         ));
     } else if missing_before > 0 {
-        said.push(format!(
-            "The recording begins late, at tick {}: {} before it are not there.",
+        sentences.push(format!(
+            "The recording begins late, at tick {}: {} before it are missing.",
             continuity.first_tick,
             ticks(missing_before)
         ));
     }
     if continuity.lost == 0 {
-        said.push(format!(
+        sentences.push(format!(
             "Every tick that was served from {} to {} is in the file.",
             continuity.first_tick, continuity.last_tick
         ));
@@ -86,27 +86,27 @@ fn gaps(report: &RunReport) -> Vec<String> {
                 gap.from_s
             )
         });
-        said.push(format!(
-            "{} missing from the file, in {}{where_longest}; the plots leave them open.",
+        sentences.push(format!(
+            "{} missing from the file, in {}{where_longest}; the plots show gaps there.",
             are(continuity.lost, "tick"),
             plural(continuity.gap_count, "gap"),
         ));
     }
     if continuity.out_of_order > 0 {
-        said.push(format!(
+        sentences.push(format!(
             "{} out of order and left out.",
             are(continuity.out_of_order, "tick")
         ));
     }
-    said
+    sentences
 }
 
 fn timing(report: &RunReport) -> Option<String> {
     let timing = report.timing.as_ref()?;
     if timing.is_lockstep() {
         return Some(
-            "Every wake-up was exactly at its deadline: the loop ran in lockstep, and its \
-             timing tells nothing of a machine."
+            "Every wake-up was exactly at its deadline: the loop ran in lockstep; its timing \
+             does not describe a machine."
                 .to_owned(),
         );
     }
@@ -130,8 +130,8 @@ fn timing(report: &RunReport) -> Option<String> {
 }
 
 fn states(report: &RunReport) -> Vec<String> {
-    let mut said = Vec::new();
-    let controller = report.words.controller;
+    let mut sentences = Vec::new();
+    let controller = report.terms.controller;
     let engaged_s = time_in(&report.states, Phase::Engaged);
     let engagements = report
         .states
@@ -139,7 +139,7 @@ fn states(report: &RunReport) -> Vec<String> {
         .filter(|span| span.phase == Phase::Engaged)
         .count();
     if engagements == 0 {
-        said.push(format!(
+        sentences.push(format!(
             "The {controller} was never engaged: there are no set points to compare with."
         ));
     } else {
@@ -148,14 +148,14 @@ fn states(report: &RunReport) -> Vec<String> {
         } else {
             String::new()
         };
-        said.push(format!(
+        sentences.push(format!(
             "The {controller} was engaged for {engaged_s:.1} s of {:.1} s{times}.",
             report.duration_s
         ));
     }
     if report.failsafes > 0 {
-        said.push(format!(
-            "It fell into failsafe {}, {:.1} s in all.",
+        sentences.push(format!(
+            "It entered failsafe {}, {:.1} s in all.",
             if report.failsafes == 1 {
                 "once".to_owned()
             } else {
@@ -164,22 +164,22 @@ fn states(report: &RunReport) -> Vec<String> {
             time_in(&report.states, Phase::Failsafe)
         ));
     }
-    said
+    sentences
 }
 
 fn missing(report: &RunReport) -> Vec<String> {
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     if report.event_count > report.events.len() {
-        said.push(format!(
+        sentences.push(format!(
             "Only the first {} of {} events are shown.",
             report.events.len(),
             report.event_count
         ));
     }
     if !report.sensor_ages.is_empty() && !report.has_ages() {
-        said.push("Every measurement was taken at the very tick that used it.".to_owned());
+        sentences.push("Every measurement was taken in the tick that used it.".to_owned());
     }
-    said
+    sentences
 }
 
 fn ticks(count: u64) -> String {

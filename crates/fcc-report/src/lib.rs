@@ -1,4 +1,4 @@
-//! After a run: what a recording says, for people, for tools and for paper.
+//! Reports on recordings: as text, JSON, an HTML page, SVG and CSV.
 //!
 //! ```text
 //! messages ─► Survey ─► Report ─► tables, JSON, one HTML page
@@ -6,13 +6,13 @@
 //! ```
 //!
 //! A [`Survey`] reads the messages once, in memory that does not grow with the
-//! recording: lines are thinned to what a plot can show, and durations are
+//! recording: lines are thinned to the resolution of a plot, and durations are
 //! counted in histograms. It works for every controller whose values are
-//! declared; what only one plant has, as the score of a flight, is its
-//! [`Addition`].
+//! declared; results of one kind of plant, such as the score of a flight, are
+//! an [`Addition`].
 //!
-//! Inside is SI; a report has the units that people read, with the unit in
-//! every name.
+//! Values inside are in SI; a report has display units, with the unit in every
+//! name.
 
 mod box_plot;
 mod continuity;
@@ -27,19 +27,17 @@ mod origin;
 mod page;
 mod plot;
 mod plots;
+mod report;
 mod reported;
 mod spread;
 mod states;
 mod survey;
 mod table;
+mod terms;
 mod text;
 mod thesis;
 mod trace;
 mod turns;
-
-use std::ops::Deref;
-
-use serde::Serialize;
 
 pub use box_plot::BoxPlot;
 pub use continuity::{Continuity, Gap};
@@ -50,110 +48,13 @@ pub use events::EventLine;
 pub use flight::{FlightAddition, FlightReport, FlightSurvey, flight_table};
 pub use log_histogram::LogBin;
 pub use origin::{FileEnd, Origin};
-pub use plot::{Figure, PlotError};
-pub use plots::{Panel, Plot, Quantities, ValueRange};
-pub use reported::{Addition, Reported, Words};
+pub use plot::Figure;
+pub use plots::{Panel, Plot, Quantities, Scale, ValueRange};
+pub use report::{Report, RunReport, Timing};
+pub use reported::{Addition, Reported};
 pub use spread::Percentiles;
 pub use states::StateSpan;
 pub use survey::Survey;
 pub use table::{recordings_table, timing_table};
+pub use terms::Terms;
 pub use thesis::ThesisFigures;
-
-use fcc_record::Damage;
-use fcc_telemetry::TimingReport;
-use plots::Curve;
-
-/// All that is said of a recorded run. Serialized, it is every statistic in it;
-/// the plots are in the page.
-#[derive(Clone, Debug, Serialize)]
-pub struct Report<A> {
-    /// What every loop's recording says.
-    #[serde(flatten)]
-    pub run: RunReport,
-    /// What only this plant's recording says.
-    #[serde(flatten)]
-    pub addition: A,
-}
-
-impl<A> Deref for Report<A> {
-    type Target = RunReport;
-
-    fn deref(&self) -> &RunReport {
-        &self.run
-    }
-}
-
-/// What is said of a recorded run, whatever the plant.
-#[derive(Clone, Debug, Serialize)]
-pub struct RunReport {
-    /// Where the recording comes from.
-    pub origin: Origin,
-    /// How the file ends.
-    pub end: FileEnd,
-    /// What in it is damaged.
-    pub damages: Vec<Damage>,
-    /// First tick to last, s.
-    pub duration_s: f64,
-    /// What is worth saying first, in words.
-    pub findings: Vec<String>,
-    /// Whether every tick is there.
-    pub continuity: Continuity,
-    /// How well the loop kept time; none without a tick.
-    pub timing: Option<Timing>,
-    /// How long the stages of a tick took.
-    pub stages: Vec<NamedPercentiles>,
-    /// How old the measurements were when the loop woke.
-    pub sensor_ages: Vec<NamedPercentiles>,
-    /// Which state the loop was in, and when.
-    pub states: Vec<StateSpan>,
-    /// How often the loop fell into failsafe.
-    pub failsafes: u64,
-    /// What happened; the first two thousand.
-    pub events: Vec<EventLine>,
-    /// How many events there were.
-    pub event_count: usize,
-    /// What measurements, set points and outputs ranged over; empty for a
-    /// plant whose results say it better.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub values: Vec<ValueRange>,
-    #[serde(skip)]
-    words: Words,
-    #[serde(skip)]
-    plots: Vec<Plot>,
-    #[serde(skip)]
-    lateness: Curve,
-}
-
-impl RunReport {
-    /// Whether all that was recorded could be read.
-    pub fn is_complete(&self) -> bool {
-        self.damages.is_empty() && !matches!(self.end, FileEnd::Cut(_))
-    }
-
-    /// Whether any measurement was older than its tick.
-    fn has_ages(&self) -> bool {
-        self.sensor_ages.iter().any(|row| row.of.max_us > 0.0)
-    }
-}
-
-impl Timing {
-    /// Whether the loop never waited for a clock: its timing is none.
-    fn is_lockstep(&self) -> bool {
-        self.table.lateness_us.max == 0.0 && self.table.period_ms.range == 0.0
-    }
-}
-
-/// How well the loop kept time.
-#[derive(Clone, Debug, Serialize)]
-pub struct Timing {
-    /// The thesis' table and the lateness.
-    #[serde(flatten)]
-    pub table: TimingReport,
-    /// Box plot of the period, ms (thesis, figures 6.1 to 6.3); none before
-    /// the second tick.
-    pub period_box_ms: Option<BoxPlot>,
-    /// Lateness of the wake-ups.
-    pub lateness_histogram: Vec<LogBin>,
-    /// What the thesis measured at this rate.
-    pub thesis: Option<ThesisFigures>,
-}

@@ -1,10 +1,10 @@
-//! A histogram whose bins are equally wide on a logarithmic scale.
+//! A histogram with bins of equal width on a logarithmic scale.
 
 use serde::Serialize;
 
-/// Bins in a decade.
+/// Bins per decade.
 const PER_DECADE: i32 = 10;
-/// What is below counts as this: no clock tells less, µs.
+/// Smaller values count as this: the resolution of a clock, µs.
 const LEAST_US: f64 = 0.1;
 
 /// One bin: `from_us <= value < to_us`.
@@ -14,12 +14,12 @@ pub struct LogBin {
     pub from_us: f64,
     /// Upper edge, µs.
     pub to_us: f64,
-    /// How many values.
+    /// Number of values.
     pub count: u64,
 }
 
-/// Counts values, each with how often it came, in ten bins a decade, from the
-/// first bin that has one to the last. What is below 0.1 µs counts as 0.1 µs.
+/// Counts values, each with its count, in ten bins a decade, from the first
+/// occupied bin to the last. A value below 0.1 µs counts as 0.1 µs.
 pub(super) fn log_histogram(counts: impl IntoIterator<Item = (f64, u64)>) -> Vec<LogBin> {
     let mut bins: Vec<LogBin> = Vec::new();
     let mut first = 0;
@@ -47,7 +47,7 @@ pub(super) fn log_histogram(counts: impl IntoIterator<Item = (f64, u64)>) -> Vec
 
 fn bin_of(value_us: f64) -> i32 {
     let number = (value_us.max(LEAST_US).log10() * f64::from(PER_DECADE)).floor() as i32;
-    // The logarithm of an edge may be a hair off.
+    // Rounding may move the logarithm of an edge across it.
     if value_us >= edge_us(number + 1) {
         number + 1
     } else if value_us < edge_us(number) && value_us >= LEAST_US {
@@ -65,7 +65,8 @@ fn edge_us(number: i32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Edges by hand: 10^0.0, 10^0.1, ... = 1, 1.2589, 1.5849, 1.9953, 2.5119.
+    /// Edges, calculated: 10^0.0, 10^0.1, ... = 1, 1.2589, 1.5849, 1.9953,
+    /// 2.5119.
     #[test]
     fn values_are_counted_in_the_bins_they_lie_in() {
         let bins = log_histogram([(1.0, 2), (1.2, 1), (1.26, 1), (2.0, 5), (2.5, 1)]);

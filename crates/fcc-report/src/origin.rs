@@ -1,21 +1,20 @@
-//! What a report says of where its flight comes from.
+//! The origin of a recording.
 
 use serde::Serialize;
 
 use fcc_record::{About, Recording};
-use fcc_telemetry::{DeniedRequest, Realtime};
+use fcc_telemetry::Realtime;
 
-/// Where a flight comes from: what its recording says of it beside the ticks.
-/// A text that is empty is not known.
+/// The origin of a recording. Unknown texts are empty.
 #[derive(Clone, PartialEq, Debug, Default, Serialize)]
 pub struct Origin {
-    /// The recording.
+    /// File of the recording.
     pub file: String,
-    /// When it began, in UTC.
+    /// Start, in UTC.
     pub started: String,
-    /// What flew.
+    /// The aircraft.
     pub plant: String,
-    /// Which program recorded.
+    /// The program that recorded.
     pub software: String,
     /// The commit it was built from.
     pub git_hash: String,
@@ -25,23 +24,22 @@ pub struct Origin {
     pub host: String,
     /// Its kernel.
     pub kernel: String,
-    /// Which timer woke the loop.
+    /// The timer of the loop.
     pub timer: String,
-    /// What the kernel granted the loop's thread.
+    /// Scheduling of the loop's thread.
     pub realtime: Realtime,
-    /// Names of the sensors, by their place in the loop.
+    /// Names of the sensors, in the order of the loop.
     pub sensors: Vec<String>,
-    /// Names of the actuators, by their place in the loop.
+    /// Names of the actuators, in the order of the loop.
     pub actuators: Vec<String>,
-    /// Which part of the recording the file is, from 1; 0 if not known.
+    /// Number of this part of the recording, from 1; 0 if unknown.
     pub part: u32,
 }
 
 impl Origin {
-    /// What a recording says before its first message.
+    /// Reads the header of a recording.
     pub fn of(recording: &Recording) -> Self {
         let about: &About = recording.about();
-        let realtime = &about.realtime;
         let of_file = recording.path().file_name();
         Self {
             file: of_file.map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
@@ -53,21 +51,7 @@ impl Origin {
             host: about.host.clone(),
             kernel: about.kernel.clone(),
             timer: about.timer.clone(),
-            realtime: Realtime {
-                policy: realtime.policy.clone(),
-                priority: realtime.priority,
-                cpu: realtime.cpu,
-                cpu_because: realtime.cpu_because.clone(),
-                memory_locked: realtime.memory_locked,
-                stack_prefaulted: realtime.stack_prefaulted,
-                timer_slack_ns: realtime.timer_slack_ns,
-                cpu_dma_latency_us: realtime.cpu_dma_latency_us,
-                refused: realtime
-                    .refused
-                    .iter()
-                    .map(|words| in_words(words))
-                    .collect(),
-            },
+            realtime: about.realtime.clone(),
             sensors: about.sensors.clone(),
             actuators: about.actuators.clone(),
             part: about.part,
@@ -75,35 +59,27 @@ impl Origin {
     }
 }
 
-/// A recording keeps no more than the words.
-fn in_words(refused: &str) -> DeniedRequest {
-    DeniedRequest {
-        request: refused.to_owned(),
-        ..DeniedRequest::default()
-    }
-}
-
 /// How a file ends.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
 #[serde(tag = "kind", content = "words", rename_all = "snake_case")]
 pub enum FileEnd {
-    /// As the recorder ended it, and why it did.
+    /// Ended by the recorder, with the reason.
     Finished(String),
-    /// It breaks off, and where.
+    /// Incomplete, with the reason.
     Cut(String),
-    /// Nobody knows.
+    /// Unknown.
     #[default]
     Unknown,
 }
 
 impl FileEnd {
-    /// The end of a recording whose messages were read until they were over,
-    /// or until the `cut` that they tell of.
+    /// The end of a recording after all its messages, or after the `cut` where
+    /// reading stopped.
     pub fn of(recording: &Recording, cut: Option<&str>) -> Self {
         match (cut, recording.end()) {
             (Some(cut), _) => Self::Cut(cut.to_owned()),
             (None, Some(end)) if recording.is_whole() => Self::Finished(end.ending.clone()),
-            // The index that leads there is damaged.
+            // The index that leads to the end is damaged.
             (None, None) if recording.is_whole() => Self::Unknown,
             (None, _) => Self::Cut("its end is missing".to_owned()),
         }

@@ -58,6 +58,7 @@ const showTime = (newFrom, newShown) => {
       return shownWord;
     }));
     for (const mark of svg.querySelectorAll(".mark")) {
+      mark.dataset.at ??= mark.getAttribute("x");
       const at = x((mark.dataset.at - left) / span);
       mark.setAttribute("x", at);
       mark.style.display = at < left - 1 || at > left + span + 1 ? "none" : "";

@@ -1,4 +1,4 @@
-//! A report as one page that needs nothing but itself.
+//! A report as one HTML page without other files.
 
 use std::path::Path;
 use std::{fs, io};
@@ -6,24 +6,21 @@ use std::{fs, io};
 use comfy_table::Table;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::plot::{Detail, Figure, Figures, PlotError, figures};
+use super::plot::{Detail, Figure, Figures, figures};
+use super::report::{Report, RunReport};
 use super::reported::Addition;
 use super::table::{markup, table, timing_columns};
+use super::terms::capitalized;
 use super::text::percentiles_table;
-use super::{Report, RunReport};
 
 const STYLE: &str = include_str!("page.css");
-/// Lets plots be zoomed; without it, the page is the same, and still.
+/// Zooms the plots; without it the page is the same, but static.
 const SCRIPT: &str = include_str!("page.js");
 
 impl<A: Addition> Report<A> {
-    /// The page: HTML with everything in it, plots as SVG; nothing is fetched
-    /// when it is opened.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_html(&self) -> Result<String, PlotError> {
-        let figures = self.figures(Detail::WhenZoomed)?;
+    /// The page: HTML with all plots as SVG; a browser loads nothing else.
+    pub fn to_html(&self) -> String {
+        let figures = self.figures(Detail::WhenZoomed);
         let title = self.title();
         let page = html! {
             (DOCTYPE)
@@ -44,7 +41,7 @@ impl<A: Addition> Report<A> {
                     }
                     @for figure in &figures.timeline { (figure_markup(figure)) }
                     @if !figures.values.is_empty() {
-                        h2 { (capitalized(self.words.run)) }
+                        h2 { (capitalized(self.terms.run)) }
                         @for figure in &figures.values { (figure_markup(figure)) }
                         @if !self.values.is_empty() { (markup(&self.values_table(), &[0])) }
                         @for (title, caption, table) in self.addition.tables() {
@@ -75,63 +72,59 @@ impl<A: Addition> Report<A> {
                 }
             }
         };
-        Ok(page.into_string())
+        page.into_string()
     }
 
-    /// Each plot as a file of its own, for papers: its name, which ends in
-    /// `.svg`, and what is in it.
-    ///
-    /// # Errors
-    /// When a plot cannot be drawn.
-    pub fn to_svgs(&self) -> Result<Vec<(String, String)>, PlotError> {
+    /// Each plot as an SVG file: its name, which ends in `.svg`, and its
+    /// content.
+    pub fn to_svgs(&self) -> Vec<(String, String)> {
         let Figures {
             timeline,
             values,
             timing,
-        } = self.figures(Detail::None)?;
+        } = self.figures(Detail::None);
         let named = |figure: Figure| {
             let name = figure.title.to_lowercase().replace([' ', '\''], "-");
             (format!("{name}.svg"), figure.svg)
         };
         let figures = timeline.into_iter().chain(values).chain(timing);
-        Ok(figures.map(named).collect())
+        figures.map(named).collect()
     }
 
-    fn figures(&self, detail: Detail) -> Result<Figures, PlotError> {
-        let mut figures = figures(&self.run, detail)?;
+    fn figures(&self, detail: Detail) -> Figures {
+        let mut figures = figures(&self.run, detail);
         if !figures.values.is_empty() {
-            figures.values.extend(self.addition.figures(&self.run)?);
+            figures.values.extend(self.addition.figures(&self.run));
         }
-        Ok(figures)
+        figures
     }
 
-    /// Writes the page into a file, which must not be the recording itself.
+    /// Writes the page into a file, which must not be the recording.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
         let refused = |why: String| format!("{}: {why}", path.display());
         if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
             && page == recording
         {
-            let why = "is the recording itself: give the page another name";
+            let why = "is the recording: give the page another name";
             return Err(refused(why.to_owned()));
         }
-        let page = self.to_html().map_err(|error| error.to_string())?;
-        fs::write(path, page).map_err(|error| refused(format!("cannot be written: {error}")))
+        fs::write(path, self.to_html())
+            .map_err(|error| refused(format!("cannot be written: {error}")))
     }
 
-    /// Writes each plot into a file of its own, in a folder that is made if it
-    /// is missing.
+    /// Writes each plot into a file in a folder, which is created if it is
+    /// missing.
     ///
     /// # Errors
-    /// What could not be drawn or written.
+    /// What could not be written.
     pub fn write_svgs(&self, folder: &Path) -> Result<(), String> {
         let refused =
             |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
-        let svgs = self.to_svgs().map_err(|error| error.to_string())?;
         fs::create_dir_all(folder).map_err(refused)?;
-        for (name, svg) in svgs {
+        for (name, svg) in self.to_svgs() {
             fs::write(folder.join(name), svg).map_err(refused)?;
         }
         Ok(())
@@ -141,7 +134,7 @@ impl<A: Addition> Report<A> {
 impl RunReport {
     fn title(&self) -> String {
         let origin = &self.origin;
-        let mut title = capitalized(self.words.run);
+        let mut title = capitalized(self.terms.run);
         if !origin.plant.is_empty() {
             title = format!("{title} of {}", origin.plant);
         }
@@ -172,17 +165,6 @@ impl RunReport {
     }
 }
 
-/// With a capital first letter.
-pub(crate) fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
-    let first: String = letters
-        .next()
-        .into_iter()
-        .flat_map(char::to_uppercase)
-        .collect();
-    first + letters.as_str()
-}
-
 fn figure_markup(figure: &Figure) -> Markup {
     html! {
         figure {
@@ -193,11 +175,11 @@ fn figure_markup(figure: &Figure) -> Markup {
     }
 }
 
-fn table_figure(title: &str, caption: &str, table: &Table, words: &[usize]) -> Markup {
+fn table_figure(title: &str, caption: &str, table: &Table, text_columns: &[usize]) -> Markup {
     html! {
         figure {
             h3 { (title) }
-            (markup(table, words))
+            (markup(table, text_columns))
             figcaption { (caption) }
         }
     }

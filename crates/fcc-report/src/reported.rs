@@ -1,4 +1,4 @@
-//! What a controller's reports have beside what every loop's report has.
+//! The parts of a report that a controller can choose.
 
 use std::fmt::Debug;
 
@@ -7,65 +7,51 @@ use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use super::RunReport;
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Plot, Quantities, declared};
+use super::report::RunReport;
+use super::terms::Terms;
 
-/// A controller whose recordings can be reported on. What is declared of its
-/// values is enough; an implementation may choose other plots and words, and add
-/// results of its own.
+/// A controller whose recordings can be reported on. Its declared values are
+/// enough; an implementation may choose other plots and terms, and add results.
 pub trait Reported: Telemetry + Sized {
-    /// Results of its own; `()` for none.
+    /// Additional results; `()` for none.
     type Addition: Addition;
 
-    /// The words for what was recorded.
-    const WORDS: Words = Words {
+    /// Terms for the recorded loop.
+    const TERMS: Terms = Terms {
         run: "run",
         plant: "Plant",
         controller: "controller",
     };
 
-    /// Whether the report has a table of what its values ranged over.
+    /// Whether the report has a table of the values' ranges.
     const TABLE_OF_VALUES: bool = true;
 
-    /// Takes a record for the results of its own; times ascend.
+    /// Takes a record for the additional results; times ascend.
     fn take(_addition: &mut Self::Addition, _record: &RecordOf<Self>, _time_s: f64) {}
 
-    /// The plots of its values over time: by default one for each reading, with
-    /// the estimates and set points of the same name, and one for the outputs.
+    /// The plots of values over time: by default one per reading, with the
+    /// estimates and set points of the same name, and one for the outputs.
     fn plots(of: &Quantities) -> Vec<Plot> {
         declared::<Self>(of)
     }
 }
 
-/// What a recorded loop, its plant and its controller are called.
-#[derive(Clone, Copy, Debug)]
-pub struct Words {
-    /// What was recorded: a flight.
-    pub run: &'static str,
-    /// What was controlled: the aircraft.
-    pub plant: &'static str,
-    /// What controlled it: the autopilot.
-    pub controller: &'static str,
-}
-
-/// Results that only one kind of plant has. Serialized, they are keys of the
+/// Additional results for one kind of plant. Serialized, they are keys of the
 /// report.
 pub trait Addition: Clone + Debug + Serialize {
-    /// There are no more records.
+    /// The last record was taken.
     fn finish(&mut self) {}
 
-    /// What is worth saying in words.
+    /// Sentences for the summary.
     fn findings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Its figures, below those over time.
-    ///
-    /// # Errors
-    /// When one cannot be drawn.
-    fn figures(&self, _run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        Ok(Vec::new())
+    /// Figures, below those over time.
+    fn figures(&self, _run: &RunReport) -> Vec<Figure> {
+        Vec::new()
     }
 
     /// Its tables as text.
@@ -73,11 +59,11 @@ pub trait Addition: Clone + Debug + Serialize {
         String::new()
     }
 
-    /// Its tables on a page, each with a title and how to read it.
+    /// Its tables for the page, each with a title and a caption.
     fn tables(&self) -> Vec<(&'static str, &'static str, Table)> {
         Vec::new()
     }
 }
 
-/// No results but those of every loop.
+/// No additional results.
 impl Addition for () {}

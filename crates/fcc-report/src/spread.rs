@@ -1,9 +1,9 @@
-//! How long something takes, or how old it is: percentiles in fixed memory.
+//! Percentiles of durations, in fixed memory.
 
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// Longer counts as this long in the percentiles, ns: ten minutes.
+/// Longer durations count as this in the percentiles, ns: ten minutes.
 const LONGEST_NS: u64 = 600_000_000_000;
 const NS_PER_US: f64 = 1e3;
 /// A value of 100 µs is kept to 0.1 µs.
@@ -16,10 +16,10 @@ pub(super) struct Spread {
     longest_ns: u64,
 }
 
-/// Percentiles of durations, each to 0.1 % of itself.
+/// Percentiles of durations, each within 0.1 %.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Percentiles {
-    /// How many there were.
+    /// Number of durations.
     pub count: u64,
     /// Median, µs.
     pub p50_us: f64,
@@ -53,7 +53,7 @@ impl Spread {
         self.histogram.saturating_record(duration_ns);
     }
 
-    /// None if nothing was recorded.
+    /// `None` if nothing was recorded.
     pub(super) fn percentiles(&self) -> Option<Percentiles> {
         let histogram = &self.histogram;
         let us = |quantile: f64| {
@@ -75,7 +75,7 @@ impl Spread {
 mod tests {
     use super::*;
 
-    /// Of 1 to 1000 µs, by hand: the smallest value that such a share of them
+    /// Of 1 to 1000 µs, calculated: the smallest value that this share of them
     /// does not exceed.
     #[test]
     fn percentiles_of_a_thousand_durations() {

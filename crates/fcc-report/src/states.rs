@@ -1,17 +1,17 @@
-//! Which state the loop was in, and when.
+//! The states of the loop over time.
 
 use fcc_core::framework::State;
 use serde::Serialize;
 
-/// As many changes are kept; a loop that flutters beyond says nothing more.
+/// At most this many changes are kept.
 const MOST_SPANS: usize = 4_096;
 
-/// A stretch of time in one state.
+/// A period in one state.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct StateSpan {
     /// Its first tick, s since the recording's first.
     pub from_s: f64,
-    /// The first tick of the next, or the last of all.
+    /// First tick of the next state, or the last tick.
     pub to_s: f64,
     /// `standby`, `engaged`, `failsafe` or `stopped`.
     pub state: String,

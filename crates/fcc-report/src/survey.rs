@@ -17,20 +17,20 @@ use super::findings::findings;
 use super::log_histogram::log_histogram;
 use super::origin::{FileEnd, Origin};
 use super::plots::{Curve, Moment, Panel, Plot, Quantities};
+use super::report::{Report, RunReport, Timing};
 use super::reported::{Addition, Reported};
 use super::states::States;
 use super::thesis::ThesisFigures;
-use super::{Report, RunReport, Timing};
 use fcc_record::{Damage, Item, Recording, Remark};
 use fcc_telemetry::TimingReport;
 use fcc_telemetry::schema::Leaves;
 
-/// Takes the messages of a recording in their order, and keeps what a report
-/// shows.
+/// Takes the messages of a recording in their order, and keeps the data of a
+/// report.
 pub struct Survey<C: Reported> {
     origin: Origin,
     addition: C::Addition,
-    /// When the first tick was due: the report counts from there.
+    /// Deadline of the first tick: the zero of all times in the report.
     began_ns: Option<i64>,
     timing: Option<TimingStats>,
     page_faults: u64,
@@ -71,9 +71,9 @@ impl<C: Reported> Survey<C> {
         }
     }
 
-    /// Reads a recording, once, and reports on it. With a folder `csv`, each
-    /// tick and event is written into tables there. `progress` receives how
-    /// many bytes were read.
+    /// Reads a recording once, and reports on it. With a folder `csv`, writes
+    /// each tick and event into tables there. `progress` receives the number of
+    /// bytes read.
     ///
     /// # Errors
     /// When the file cannot be read or a table cannot be written.
@@ -120,8 +120,8 @@ impl<C: Reported> Survey<C> {
     /// Takes a message.
     ///
     /// # Errors
-    /// When the rate is beyond what a loop can have: the file is no recording
-    /// of one.
+    /// When the rate is beyond the range of a loop: the file is not a
+    /// recording.
     pub fn take(&mut self, message: &MessageOf<C>) -> Result<(), TimerError> {
         match message {
             Message::Tick(record) => self.take_record(record),
@@ -188,7 +188,7 @@ impl<C: Reported> Survey<C> {
             Item::Remark(Remark { time, text }) => {
                 self.events.remark(self.seconds(*time), tick, text);
             }
-            // No line leads across it: the ticks in it are missing.
+            // The lines are interrupted: ticks are missing.
             Item::Damage(damage) => {
                 let remark = damage.remark();
                 let time_s = self.seconds(remark.time);
@@ -199,7 +199,7 @@ impl<C: Reported> Survey<C> {
         Ok(())
     }
 
-    /// When something happened; before the first tick, or in it, is at 0.
+    /// Time of an event; 0 for an event before or in the first tick.
     fn seconds(&self, time: Time) -> f64 {
         match self.began_ns {
             Some(began_ns) if !time.is_never() => since(began_ns, time.as_nanos()).max(0.0),
@@ -245,7 +245,7 @@ impl<C: Reported> Survey<C> {
             events,
             event_count,
             values: values.collect(),
-            words: C::WORDS,
+            terms: C::TERMS,
             plots: self.plots,
             lateness: self.lateness,
         };
@@ -265,7 +265,7 @@ fn since(began_ns: i64, nanos: i64) -> f64 {
     nanos.saturating_sub(began_ns) as f64 / 1e9
 }
 
-/// The loop's period, from what one tick says of it.
+/// The loop's period, from one tick.
 fn period(tick: &Tick) -> Duration {
     let period_s = tick.dt_s / (tick.missed.saturating_add(1)) as f64;
     Duration::try_from_secs_f64(period_s).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Tables as text and HTML.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use maud::{Markup, html};
 use fcc_record::{Entry, Wholeness};
 use fcc_telemetry::TimingReport;
 
-/// One line under the header, and no other.
+/// One line under the header only.
 const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 
@@ -22,25 +22,25 @@ pub(crate) fn table(header: &[&str]) -> Table {
     table
 }
 
-/// The same for a page, with words in these columns and numbers in the others.
-pub(crate) fn markup(table: &Table, words: &[usize]) -> Markup {
+/// The same for a page, with text in these columns and numbers in the others.
+pub(crate) fn markup(table: &Table, text_columns: &[usize]) -> Markup {
     let cells = |row: &Row| -> Vec<(bool, String)> {
         let cells = row.cell_iter().enumerate();
         cells
-            .map(|(n, cell)| (words.contains(&n), cell.content()))
+            .map(|(n, cell)| (text_columns.contains(&n), cell.content()))
             .collect()
     };
     html! {
         div.wide { table {
             thead { tr {
-                @for (is_word, cell) in table.header().map(cells).unwrap_or_default() {
-                    th.words[is_word] { (cell) }
+                @for (is_text, cell) in table.header().map(cells).unwrap_or_default() {
+                    th.text[is_text] { (cell) }
                 }
             } }
             tbody {
                 @for row in table.row_iter().map(cells) {
                     tr.worst[row.first().is_some_and(|(_, name)| name == "worst")] {
-                        @for (is_word, cell) in row { td.words[is_word] { (cell) } }
+                        @for (is_text, cell) in row { td.text[is_text] { (cell) } }
                     }
                 }
             }
@@ -49,7 +49,7 @@ pub(crate) fn markup(table: &Table, words: &[usize]) -> Markup {
 }
 
 /// The table of the thesis (tables 6.1 to 6.3), a column per report, and below
-/// it what the thesis did not measure.
+/// it values that the thesis does not have.
 pub fn timing_table(reports: &[TimingReport]) -> String {
     let mut text = timing_columns(reports).to_string();
     if let Some(realtime) = reports.first().map(|r| &r.realtime)
@@ -66,7 +66,7 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
     text
 }
 
-/// The same without the words below it.
+/// The same without the text below it.
 pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
     let name = |report: &TimingReport| format!("{} Hz {}", report.rate_hz, report.timer);
     let header: Vec<String> = reports.iter().map(name).collect();
@@ -136,7 +136,7 @@ pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
     table
 }
 
-/// What a table says where nobody measured.
+/// Shown in a table for a value that was not measured.
 const UNKNOWN: &str = "–";
 
 /// A number with its unit.
@@ -148,7 +148,7 @@ pub(crate) fn figure(value: f64, decimals: usize, unit: &str) -> String {
     }
 }
 
-/// A lateness: a spinning loop's is some nanoseconds.
+/// A lateness: in a spinning loop it is some nanoseconds.
 fn micros(us: f64) -> String {
     figure(us, if us < 10.0 { 3 } else { 1 }, "µs")
 }
@@ -218,18 +218,18 @@ mod tests {
             damages: Vec::new(),
         };
         let text = recordings_table(&[entry(59.97), entry(600.0), entry(5.25), entry(3_725.04)]);
-        for words in [
+        for cell in [
             " 1:00.0 ",
             " 10:00.0 ",
             " 0:05.3 ",
             " 62:05.0 ",
             " 12.3 µs ",
         ] {
-            assert!(text.contains(words), "{words} is not in\n{text}");
+            assert!(text.contains(cell), "{cell} is not in\n{text}");
         }
     }
 
-    /// The thesis' table 6.1, its own figures through our table.
+    /// The thesis' table 6.1, from its own figures.
     #[test]
     fn prints_the_thesis_table_as_the_thesis_does() {
         let report = TimingReport {

@@ -1,4 +1,4 @@
-//! A report on the terminal.
+//! A report as text for a terminal.
 
 use std::fmt::Write as _;
 
@@ -7,16 +7,15 @@ use fcc_telemetry::TimingReport;
 
 use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
-use super::{Report, RunReport, Timing};
+use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
-use crate::table::{figure, table};
-use crate::timing_table;
+use crate::table::{figure, table, timing_table};
 
-/// More events than these do not fit on a screen.
+/// At most this many events are shown.
 const MOST_EVENTS: usize = 20;
 
 impl<A: Addition> Report<A> {
-    /// Tables for people.
+    /// The report as text.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         for (name, value) in self.header() {
@@ -66,12 +65,12 @@ impl RunReport {
         }
     }
 
-    /// When the run began, for people: `2026-11-20 04:21:33 UTC`.
+    /// The start of the run: `2026-11-20 04:21:33 UTC`.
     pub(super) fn started(&self) -> String {
         self.origin.started.replace('T', " ").replace('Z', " UTC")
     }
 
-    /// What is known of where the recording comes from, name by name.
+    /// The known properties of the recording, with their names.
     pub(super) fn header(&self) -> Vec<(&'static str, String)> {
         let origin = &self.origin;
         let realtime = &origin.realtime;
@@ -89,15 +88,15 @@ impl RunReport {
             format!("{} Hz {}", timing.table.rate_hz, origin.timer)
         });
         let end = match &self.end {
-            FileEnd::Finished(words) => words.clone(),
-            FileEnd::Cut(words) => format!("cut: {words}"),
+            FileEnd::Finished(reason) => reason.clone(),
+            FileEnd::Cut(reason) => format!("cut: {reason}"),
             FileEnd::Unknown => String::new(),
         };
         let last_state = self.states.last().map(|span| span.state.clone());
         let mut rows = vec![
             ("Recording", origin.file.clone()),
             ("Started", self.started()),
-            (self.words.plant, origin.plant.clone()),
+            (self.terms.plant, origin.plant.clone()),
             ("Duration", duration(self.duration_s)),
             ("Ended", end),
             ("Last state", last_state.unwrap_or_default()),
@@ -157,7 +156,7 @@ pub(super) fn percentiles_table(title: &str, rows: &[NamedPercentiles]) -> Table
     table
 }
 
-/// A time in the unit that suits it, in three figures or a little more.
+/// A time in a suitable unit, with three to four figures.
 pub(super) fn time(us: f64) -> String {
     match us {
         0.0 => "0 µs".to_owned(),
@@ -185,11 +184,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn durations_and_times_are_said_as_people_do() {
+    fn durations_and_times_have_suitable_units() {
         assert_eq!(duration(42.04), "42.0 s");
         assert_eq!(duration(182.0), "3 min 2.0 s");
         assert_eq!(duration(3_599.99), "1 h 0 min 0 s");
-        for (us, said) in [
+        for (us, expected) in [
             (0.0, "0 µs"),
             (2.345, "2.35 µs"),
             (54.321, "54.3 µs"),
@@ -197,7 +196,7 @@ mod tests {
             (250_000.0, "250 ms"),
             (12_000_000.0, "12.0 s"),
         ] {
-            assert_eq!(time(us), said);
+            assert_eq!(time(us), expected);
         }
     }
 }

@@ -1,6 +1,6 @@
-//! What the thesis measured, to stand beside a flight.
+//! The thesis' measurements, to compare a flight with.
 //!
-//! Tables 6.1 to 6.3 and what section 6.1 says of figures 6.1 to 6.3: a POSIX
+//! Tables 6.1 to 6.3 and the text of section 6.1 on figures 6.1 to 6.3: a POSIX
 //! timer on a Samsung Galaxy Nexus of 2012.
 
 use serde::Serialize;
@@ -11,9 +11,9 @@ use fcc_telemetry::{Lateness, Period, Realtime, TimingReport};
 /// The thesis' figures at one rate.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct ThesisFigures {
-    /// Nominal.
+    /// Nominal rate.
     pub rate_hz: f64,
-    /// How long it was measured, s.
+    /// Duration of the measurement, s.
     pub runtime_s: f64,
     /// Mean period, ms.
     pub mean_ms: f64,
@@ -23,9 +23,9 @@ pub struct ThesisFigures {
     pub min_ms: f64,
     /// Longest period, ms.
     pub max_ms: f64,
-    /// Half of the periods lie between these, ms, by the text.
+    /// Half of the periods lie between these, ms, from the text.
     pub half_between_ms: (f64, f64),
-    /// Periods that passed unserved.
+    /// Missed periods.
     pub missed: u64,
 }
 
@@ -99,8 +99,8 @@ impl ThesisFigures {
         }
     }
 
-    /// As a box whose whiskers reach the extremes: where the thesis' own end
-    /// is not in its text.
+    /// As a box plot; the whiskers reach the extremes where the text does not
+    /// give their ends.
     pub(super) fn box_plot(&self) -> BoxPlot {
         let (q1, q3) = self.half_between_ms;
         BoxPlot {

@@ -1,14 +1,14 @@
 //! One line of a plot in bounded memory.
 //!
-//! How long a recording is shows only at its end. So a trace counts time in
-//! bins whose width doubles whenever there are too many, and keeps of each bin
-//! the first, lowest, highest and last point (U. Jugel et al., "M4: a
-//! visualization-oriented time series data aggregation", 2014): drawn no wider
-//! than there are bins, the line looks like one through every point.
+//! The length of a recording is known only at its end. A trace therefore counts
+//! time in bins, doubles their width whenever there are too many, and keeps the
+//! first, lowest, highest and last point of each bin (U. Jugel et al., "M4: a
+//! visualization-oriented time series data aggregation", 2014). Drawn no wider
+//! than its number of bins, the line looks like one through every point.
 
-/// When there are as many bins, pairs become one.
+/// At this many bins, pairs are merged.
 const MOST_BINS: u64 = 16_384;
-/// As many bins are more than a plot is wide in pixels.
+/// This many bins are more than the width of a plot in pixels.
 pub(super) const OVERVIEW_BINS: u64 = 2_048;
 /// The width of the first bins, s: less than the period of a fast loop.
 const FINEST_S: f64 = 1.0 / 1_024.0;
@@ -22,7 +22,7 @@ pub(super) struct Point {
     pub(super) value: f64,
 }
 
-/// A line in the making.
+/// A line that is being recorded.
 #[derive(Clone, Debug)]
 pub(super) struct Trace {
     width_s: f64,
@@ -33,7 +33,7 @@ pub(super) struct Trace {
 #[derive(Clone, Copy, Debug)]
 struct Bin {
     index: u64,
-    /// Whether the line comes here from the bin before.
+    /// Whether the line continues from the previous bin.
     joined: bool,
     first: Point,
     lowest: Point,
@@ -52,8 +52,8 @@ impl Default for Trace {
 }
 
 impl Trace {
-    /// Takes the value at a time; times ascend from 0. Where there is no
-    /// value the line is broken.
+    /// Takes the value at a time; times ascend from 0. `None` interrupts the
+    /// line.
     pub(super) fn push(&mut self, time_s: f64, value: Option<f64>) {
         let Some(value) = value.filter(|value| value.is_finite() && time_s >= 0.0) else {
             self.broken = true;
@@ -80,7 +80,7 @@ impl Trace {
         }
     }
 
-    /// Breaks the line: records are missing here.
+    /// Interrupts the line: records are missing here.
     pub(super) fn cut(&mut self) {
         self.broken = true;
     }
@@ -94,12 +94,12 @@ impl Trace {
         thinned
     }
 
-    /// How many values it has; of a long line, about as many as are kept.
+    /// Number of values; for a long line, approximate.
     pub(super) const fn len(&self) -> usize {
         self.bins.len()
     }
 
-    /// The unbroken lines, each of points in ascending time.
+    /// The uninterrupted lines, each in ascending time.
     pub(super) fn lines(&self) -> Vec<Vec<Point>> {
         let mut lines: Vec<Vec<Point>> = Vec::new();
         for bin in &self.bins {
@@ -117,12 +117,12 @@ impl Trace {
         lines
     }
 
-    /// The last value; none if there is none.
+    /// The last value; `None` if there is no value.
     pub(super) fn last(&self) -> Option<f64> {
         self.bins.last().map(|bin| bin.last.value)
     }
 
-    /// The lowest and the highest value; none if there is none.
+    /// The lowest and the highest value; `None` if there is no value.
     pub(super) fn extent(&self) -> Option<(f64, f64)> {
         self.bins
             .iter()
@@ -189,7 +189,7 @@ mod tests {
         assert_eq!(lines[0][9].value, 2.0);
     }
 
-    /// An hour at 100 Hz with one spike: it is still there, and where it was.
+    /// An hour at 100 Hz with one spike: the spike is kept, at its time.
     #[test]
     fn an_hour_takes_no_more_room_than_its_bins_and_keeps_its_spikes() {
         let mut trace = Trace::default();

@@ -1,17 +1,17 @@
-//! Headings as lines: counted on through north.
+//! Headings as continuous lines, without a jump at north.
 
 const FULL_TURN_DEG: f64 = 360.0;
 
-/// Counts a heading on through full turns, so that a line through it does not
-/// jump at north.
+/// Counts a heading beyond full turns, so that a line through it does not jump
+/// at north.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Turns {
     last_deg: Option<f64>,
 }
 
 impl Turns {
-    /// The heading next to the one before, whichever way is shorter; next to
-    /// `from_deg` if there is none before.
+    /// The heading closest to the previous one; closest to `from_deg` if there
+    /// is no previous one.
     pub(super) fn count(&mut self, heading_deg: f64, from_deg: f64) -> f64 {
         let from_deg = self.last_deg.unwrap_or(from_deg);
         let counted = from_deg + shorter_way(heading_deg - from_deg);
@@ -19,7 +19,7 @@ impl Turns {
         counted
     }
 
-    /// Forgets the heading before.
+    /// Forgets the previous heading.
     pub(super) fn forget(&mut self) {
         self.last_deg = None;
     }

@@ -100,7 +100,7 @@ fn orders_take_effect_in_their_sequence() {
     assert_eq!(bench.tick(|_| {}), Stopped);
 }
 
-/// With these and its measurements a recording is flown again: each command once,
+/// With these and its measurements a recording is replayed: each command once,
 /// in the tick that read it, before what it led to.
 #[test]
 fn every_order_is_told_in_the_tick_that_read_it() {

@@ -9,7 +9,7 @@ use super::units::M_FT;
 /// samples of one leg and the scores of the legs before: its size does not grow
 /// with the flight.
 #[derive(Clone, Debug)]
-pub struct FlightLog {
+pub(crate) struct FlightLog {
     pattern: TimedPatternConfig,
     captured: Option<Sample>,
     /// The interval between samples, from the first two.
@@ -22,7 +22,7 @@ pub struct FlightLog {
 
 impl FlightLog {
     /// An empty log of a flight through `pattern`.
-    pub const fn new(pattern: TimedPatternConfig) -> Self {
+    pub(crate) const fn new(pattern: TimedPatternConfig) -> Self {
         Self {
             pattern,
             captured: None,
@@ -33,7 +33,7 @@ impl FlightLog {
     }
 
     /// Takes a sample while engaged; the first gives the captured set points.
-    pub fn push(&mut self, sample: Sample) {
+    pub(crate) fn push(&mut self, sample: Sample) {
         let captured = *self.captured.get_or_insert(sample);
         if self.step_s == 0.0 {
             self.step_s = sample.time_s - captured.time_s;
@@ -55,7 +55,7 @@ impl FlightLog {
     }
 
     /// Resets: the next sample begins another flight.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         *self = Self::new(self.pattern);
     }
 
@@ -63,7 +63,7 @@ impl FlightLog {
     ///
     /// # Errors
     /// When samples are missing from a leg.
-    pub fn score(&self) -> Result<FlightScore, ScoreError> {
+    pub(crate) fn score(&self) -> Result<FlightScore, ScoreError> {
         let mut legs = self.flown.clone()?;
         if let (Some(captured), Some(last)) = (self.captured, self.leg.last()) {
             let leg = leg(&self.pattern, &captured, legs.len());

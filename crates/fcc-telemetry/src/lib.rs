@@ -20,8 +20,6 @@ mod telemetry;
 mod timing;
 pub mod units;
 
-#[cfg(feature = "flight")]
-pub use flight::FlightLog;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]

@@ -69,6 +69,12 @@ impl PatternScorer {
         }
     }
 
+    /// The score of all patterns; none if a leg of one could not be scored.
+    pub fn score(&self) -> Option<FlightScore> {
+        let (score, failed) = self.result();
+        failed.is_none().then_some(score)
+    }
+
     /// The complete legs of all patterns, and why one could not be scored.
     pub fn result(&self) -> (FlightScore, Option<ScoreError>) {
         let mut all = self.clone();

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use fcc_timer::TimingSummary;
+use fcc_timer::realtime::LatencyLimit;
+use fcc_timer::{RealtimeGranted, TimingSummary};
 use serde::Serialize;
 
 /// Timing of the loop.
@@ -155,6 +156,27 @@ pub struct Realtime {
     pub cpu_dma_latency_us: Option<u32>,
     /// Requests that were denied.
     pub refused: Vec<DeniedRequest>,
+}
+
+impl From<&RealtimeGranted> for Realtime {
+    fn from(granted: &RealtimeGranted) -> Self {
+        let denied = granted.denied.iter().map(|denied| DeniedRequest {
+            request: denied.request.clone(),
+            reason: denied.reason.clone(),
+            remedy: denied.remedy.clone(),
+        });
+        Self {
+            policy: granted.policy.to_owned(),
+            priority: granted.priority,
+            cpu: granted.cpu,
+            cpu_because: granted.cpu_reason.clone(),
+            memory_locked: granted.memory_locked,
+            stack_prefaulted: granted.stack_prefaulted,
+            timer_slack_ns: granted.timer_slack_ns,
+            cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
+            refused: denied.collect(),
+        }
+    }
 }
 
 /// A request that was denied.

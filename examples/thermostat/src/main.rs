@@ -9,6 +9,8 @@
 
 #[cfg(test)]
 mod conformance;
+#[cfg(test)]
+mod one_more_reading;
 mod recording;
 mod replay;
 mod room;
@@ -198,6 +200,9 @@ fn receive(
         }
     }
     if let Some(publisher) = publisher {
+        if let Some(recorder) = recorder {
+            publisher.recorder(show::recorder(&recorder.status()));
+        }
         publisher.flush();
     }
     last

@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use fcc_live::{Info, PublisherOf, Text};
+use fcc_live::{Info, PublisherOf, RecorderState, RecorderStatus, Text};
 use fcc_record::Recording;
-use fcc_report::{Report, Reported, Survey, Words};
+use fcc_report::{Report, Reported, Survey, Terms};
 use fcc_runtime::{Message, MessageOf, Parts};
 use fcc_telemetry::{Instance, describe_event};
 use fcc_top::Watched;
@@ -15,7 +15,7 @@ use crate::thermostat::Thermostat;
 impl Reported for Thermostat {
     type Addition = ();
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "run",
         plant: "Plant",
         controller: "thermostat",
@@ -72,6 +72,22 @@ pub(crate) fn publish_message(
             let words = describe_event::<Thermostat>(event, &[], &[]);
             publisher.event(fcc_live::Event::new(event, &words));
         }
+    }
+}
+
+/// The recorder's status, for whoever watches.
+pub(crate) fn recorder(now: &fcc_record::RecorderStatus) -> RecorderStatus {
+    let file = now.file.as_ref().and_then(|file| file.file_name());
+    let name = file.unwrap_or_default().to_string_lossy();
+    RecorderStatus {
+        state: match now.stopped {
+            None => RecorderState::Recording,
+            Some(_) => RecorderState::Stopped,
+        },
+        recorded: now.ticks,
+        not_recorded: now.not_recorded,
+        bytes: now.bytes,
+        name: Text::new(now.stopped.as_ref().unwrap_or(&name.into_owned())),
     }
 }
 

@@ -8,7 +8,8 @@ use crate::cli::ListArgs;
 use crate::exit::Exit;
 use crate::output;
 
-/// Lists the recordings in a folder. What is no recording is said and left.
+/// Lists the recordings in a folder. Prints an error for each file that is not
+/// a recording.
 pub(super) fn list(args: &ListArgs) -> Exit {
     let files = match fcc_record::files(&args.folder) {
         Ok(files) => files,

@@ -1,4 +1,4 @@
-//! `fccd replay`: a recording replayed.
+//! `fccd replay`: replays a recording.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -16,20 +16,20 @@ use crate::cli::ReplayArgs;
 use crate::exit::Exit;
 use crate::output;
 
-/// What came of it.
+/// Result of a replay.
 #[derive(Serialize)]
 struct Outcome {
-    /// Which program recorded.
+    /// The program that recorded.
     recorded_by: String,
     #[serde(flatten)]
     replayed: Replayed,
-    /// How long it took, s.
+    /// Duration of the replay, s.
     took_s: f64,
-    /// The recorded time over that.
+    /// Recorded time over replay time.
     times_real_time: f64,
     #[serde(flatten)]
     comparison: Comparison,
-    /// What else there is to know.
+    /// Other remarks.
     remarks: Vec<String>,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn replay(args: &ReplayArgs) -> Exit {
     }
 }
 
-/// Replays by the recorded configuration or another, and compares.
+/// Replays with the recorded configuration or another, and compares.
 fn run(
     chain: &Chain,
     recorded: &Config,

@@ -1,4 +1,4 @@
-//! `fccd report FILE`: what a recording says.
+//! `fccd report FILE`: a report on a recording.
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
@@ -46,9 +46,8 @@ fn make(args: &ReportArgs) -> Result<FlightReport, String> {
     Ok(report)
 }
 
-/// The pattern that was to be flown, by the configuration in the recording; a
-/// configuration of another version may not be understood, and then nothing
-/// is scored.
+/// The pattern in the recorded configuration; a configuration of another
+/// version may be invalid, and then nothing is scored.
 fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
     let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
     match config.guidance {

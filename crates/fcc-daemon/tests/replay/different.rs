@@ -1,5 +1,5 @@
-//! What is not the same is found, to the last bit; and what another
-//! configuration would have done is measured.
+//! Differences are found to the last bit, and the deviation of another
+//! configuration is measured.
 
 use fcc_core::framework::Message;
 use fcc_core::framework::State::Engaged;
@@ -44,7 +44,8 @@ fn one_flipped_bit_in_a_gain_is_found() {
         assert_eq!(run.unflown, None);
         let first = identity.first.clone().unwrap();
         assert_eq!(first.field, output);
-        // Nothing is commanded before; and a last bit shows within a second.
+        // Nothing is commanded before; and a difference in the last bit shows
+        // within a second.
         assert!(
             (engaged..engaged + 40).contains(&first.tick),
             "{output}: {} after {engaged}",
@@ -53,8 +54,8 @@ fn one_flipped_bit_in_a_gain_is_found() {
         assert_ne!(first.recorded_bits, first.again_bits);
         let field = identity.fields.iter().find(|f| f.field == output).unwrap();
         assert_eq!(field.first_tick, first.tick);
-        // The first difference is a last bit's worth. Where a limiter is met
-        // it may grow from there: the integral stands still on one side of it.
+        // The first difference is in the last bit. It may grow at a limiter:
+        // the integral stops on one side of it.
         let number = |bits: &str| {
             let bits = bits.trim_start_matches("0x");
             f64::from_bits(u64::from_str_radix(bits, 16).unwrap())

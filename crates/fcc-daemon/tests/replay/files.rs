@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use super::flights::{Happenings, fly, rough};
 use super::flipped;
 
-/// Records a flight as flown by `config`, in parts of 10 s.
+/// Records a flight with `config`, in parts of 10 s.
 fn record(folder: &TempDir, config: &Config, messages: &[FlightMessage]) -> Vec<PathBuf> {
     let about = About {
         software: format!("fccd {}", env!("CARGO_PKG_VERSION")),
@@ -73,7 +73,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn said(output: &Output) -> String {
+fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
@@ -82,25 +82,25 @@ fn code(output: &Output) -> Option<i32> {
 }
 
 #[test]
-fn all_parts_of_a_recording_are_the_same_when_flown_again() {
+fn all_parts_of_a_recording_replay_identically() {
     let folder = TempDir::new().unwrap();
     let parts = record(&folder, &rough(), &flight());
     assert_eq!(parts.len(), 3);
 
     let output = fccd_replay(&parts, &["--json"]);
-    assert_eq!(code(&output), Some(0), "{}", said(&output));
-    let told = json(&output);
-    assert_eq!(told["ticks"], 1_000);
-    assert_eq!(told["identity"]["outputs"], 34_000);
-    assert_eq!(told["identity"]["differing"], 0);
-    assert_eq!(told["unflown"], Value::Null);
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let result = json(&output);
+    assert_eq!(result["ticks"], 1_000);
+    assert_eq!(result["identity"]["outputs"], 34_000);
+    assert_eq!(result["identity"]["differing"], 0);
+    assert_eq!(result["unflown"], Value::Null);
 
     let output = fccd_replay(&parts, &[]);
-    assert!(said(&output).contains("34000 outputs compared bit for bit: 0 differ"));
+    assert!(stderr(&output).contains("34000 outputs compared bit for bit: 0 differ"));
 }
 
 #[test]
-fn parts_that_do_not_begin_or_go_on_with_the_loop_are_not_replayed() {
+fn parts_without_their_predecessors_are_not_replayed() {
     let folder = TempDir::new().unwrap();
     let parts = record(&folder, &rough(), &flight());
 
@@ -119,19 +119,23 @@ fn parts_that_do_not_begin_or_go_on_with_the_loop_are_not_replayed() {
     let reversed: Vec<_> = parts.iter().rev().cloned().collect();
     let output = fccd_replay(&reversed, &[]);
     assert_eq!(code(&output), Some(8));
-    assert!(said(&output).contains("oldest first"), "{}", said(&output));
+    assert!(
+        stderr(&output).contains("oldest first"),
+        "{}",
+        stderr(&output)
+    );
 
     let output = fccd_replay(&[PathBuf::from("Cargo.toml")], &[]);
     assert_eq!(code(&output), Some(8));
     assert!(
-        said(&output).contains("not a recording"),
+        stderr(&output).contains("not a recording"),
         "{}",
-        said(&output)
+        stderr(&output)
     );
 }
 
 #[test]
-fn a_recording_with_one_flipped_bit_in_a_gain_says_where_it_first_differs() {
+fn the_first_difference_from_one_flipped_bit_in_a_gain_is_reported() {
     let folder = TempDir::new().unwrap();
     let mut config = rough();
     let gain = &mut config.autopilot.altitude.pitch_rate_gain;
@@ -139,13 +143,13 @@ fn a_recording_with_one_flipped_bit_in_a_gain_says_where_it_first_differs() {
     let parts = record(&folder, &config, &flight());
     let output = fccd_replay(&parts, &["--json"]);
     assert_eq!(code(&output), Some(7));
-    let told = json(&output);
-    assert_eq!(told["ticks"], 1_000);
-    let first = &told["identity"]["first"];
+    let result = json(&output);
+    assert_eq!(result["ticks"], 1_000);
+    let first = &result["identity"]["first"];
     assert_eq!(first["field"], "outputs.elevator");
     let tick = first["tick"].as_u64().unwrap();
     assert!((80..120).contains(&tick), "{tick}");
-    let text = said(&fccd_replay(&parts, &[]));
+    let text = stderr(&fccd_replay(&parts, &[]));
     assert!(text.contains(&format!("first in tick {tick}")), "{text}");
     assert!(text.contains(first["recorded_bits"].as_str().unwrap()));
     assert!(text.contains(first["again_bits"].as_str().unwrap()));
@@ -165,10 +169,10 @@ fn a_recording_that_was_cut_is_replayed_up_to_its_cut() {
         .unwrap();
     let output = fccd_replay(&parts, &["--json"]);
     assert_eq!(code(&output), Some(8));
-    let told = json(&output);
-    assert_eq!(told["identity"]["differing"], 0);
-    assert!(told["ticks"].as_u64().unwrap() >= 795);
-    assert!(told["cuts"][0].as_str().unwrap().contains("cut off"));
+    let result = json(&output);
+    assert_eq!(result["identity"]["differing"], 0);
+    assert!(result["ticks"].as_u64().unwrap() >= 795);
+    assert!(result["cuts"][0].as_str().unwrap().contains("cut off"));
 }
 
 #[test]
@@ -188,16 +192,16 @@ fn another_configuration_is_compared_and_written_out() {
     };
 
     let output = fccd_replay(&parts, &more(true));
-    assert_eq!(code(&output), Some(0), "{}", said(&output));
-    let told = json(&output);
-    let quantities = told["deviation"]["quantities"].as_array().unwrap();
+    assert_eq!(code(&output), Some(0), "{}", stderr(&output));
+    let result = json(&output);
+    let quantities = result["deviation"]["quantities"].as_array().unwrap();
     let of = |name: &str| quantities.iter().find(|q| q["name"] == name).unwrap();
     assert!(of("commanded aileron")["rms"].as_f64().unwrap() > 0.1);
-    // The gain of the roll rate is none of the elevator's business.
+    // The gain of the roll rate does not affect the elevator.
     assert_eq!(of("commanded elevator")["differing"], 0);
-    assert!(told["remarks"][0].as_str().unwrap().contains("40 Hz"));
+    assert!(result["remarks"][0].as_str().unwrap().contains("40 Hz"));
 
-    // The same figure from the table that was written.
+    // The same value from the table.
     let rows = fs::read_to_string(&csv).unwrap();
     let mut lines = rows.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap();
@@ -218,7 +222,11 @@ fn another_configuration_is_compared_and_written_out() {
     assert_eq!(rows.lines().count(), 1_001);
 
     let output = fccd_replay(&parts, &more(false));
-    assert!(said(&output).contains("did not react"), "{}", said(&output));
+    assert!(
+        stderr(&output).contains("did not react"),
+        "{}",
+        stderr(&output)
+    );
 }
 
 fn text(path: &Path) -> &str {

@@ -1,4 +1,4 @@
-//! Flights in lockstep, and all that the loop told of them.
+//! Flights in lockstep, with all messages of the loop.
 
 use std::ops::RangeInclusive;
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use fcc_runtime::{Machine, Parts};
 use fcc_telemetry::FlightMessage;
 use fcc_timer::ManualTimer;
 
-/// What happens in a flight, beside gusts.
+/// Events in a flight, other than gusts.
 #[derive(Default)]
 pub(crate) struct Happenings {
     /// Commands given before a step.
@@ -25,13 +25,13 @@ pub(crate) struct Happenings {
     pub(crate) late: Vec<(u64, Duration)>,
     /// Set the stop flag before this step.
     pub(crate) stop_before: Option<u64>,
-    /// One sensor more, which measures what the last does and is never silent.
+    /// Adds a second sensor with the same measurements, which is never silent.
     pub(crate) seconded: bool,
-    /// How long to fly, steps.
+    /// Length of the flight, steps.
     pub(crate) steps: u64,
 }
 
-/// Gusts, noise and delay: all that the built-in aircraft has.
+/// Gusts, noise and delay: all disturbances of the built-in aircraft.
 pub(crate) fn rough() -> Config {
     Config {
         built_in: Some(BuiltInSection {
@@ -46,7 +46,7 @@ pub(crate) fn rough() -> Config {
     }
 }
 
-/// Flies, and gives all that was told.
+/// Flies, and returns all messages.
 pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage> {
     let assembly = assemble(config).unwrap();
     let mut timer = ManualTimer::new(config.tick.period()).unwrap();
@@ -91,11 +91,11 @@ pub(crate) fn fly(config: &Config, happenings: &Happenings) -> Vec<FlightMessage
     messages
 }
 
-/// A sensor that says nothing for a while.
+/// A sensor that is silent for a while.
 struct Silenced {
     inner: Box<dyn Sensor<Measurements>>,
     silent: Vec<RangeInclusive<u64>>,
-    /// What it would say.
+    /// What it measures.
     measured: Arc<Mutex<Measurements>>,
 }
 
@@ -104,7 +104,7 @@ impl Sensor<Measurements> for Silenced {
         let mut measured = self.measured.lock().unwrap();
         let sampled = self.inner.sample(tick, &mut measured);
         if self.silent.iter().any(|span| span.contains(&tick.number)) {
-            // The aircraft flies on unseen.
+            // The aircraft flies on without measurements.
             return Err(SensorFault::Silent);
         }
         *into = *measured;
@@ -116,7 +116,7 @@ impl Sensor<Measurements> for Silenced {
     }
 }
 
-/// Says what the first sensor would say.
+/// Measures the same as the first sensor.
 struct Second(Arc<Mutex<Measurements>>);
 
 impl Sensor<Measurements> for Second {

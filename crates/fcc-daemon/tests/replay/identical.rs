@@ -1,4 +1,4 @@
-//! What was flown is the same in every bit when it is replayed.
+//! A replay reproduces every bit.
 
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
@@ -26,7 +26,7 @@ fn ten_minutes_in_gusts_noise_and_delay() {
 }
 
 #[test]
-fn every_way_of_being_ordered_about() {
+fn every_kind_of_command() {
     let targets = [
         AutopilotCommand::Heading(FRAC_PI_2),
         AutopilotCommand::Altitude(1_000.0),
@@ -42,7 +42,7 @@ fn every_way_of_being_ordered_about() {
         (900, LoopCommand::Engage),
         (900, LoopCommand::Controller(targets[0])),
         (1_000, LoopCommand::Controller(targets[3])),
-        // Refused: control is let go in the same tick.
+        // Refused: control is released in the same tick.
         (1_100, LoopCommand::Disengage),
         (1_100, LoopCommand::Engage),
         (1_600, LoopCommand::Stop),
@@ -73,7 +73,8 @@ fn failsafe_and_back() {
     let messages = fly(
         &config,
         &Happenings {
-            // One too short to matter, one that ends in time, one that does not.
+            // One too short to matter, one that ends in time, one that does
+            // not.
             silent: vec![300..=305, 400..=440, 600..=800],
             commands: vec![(450, LoopCommand::Engage), (900, LoopCommand::Engage)],
             steps: 1_200,
@@ -104,7 +105,7 @@ fn failsafe_that_ends_the_loop() {
     let states = assert_identical(&config, &messages);
     assert_eq!(states.last(), Some(&Stopped));
 
-    // The stop came from the configuration and not from the recording.
+    // The stop came from the configuration, not from the recording.
     config.failsafe.hold_s = 2.0;
     let (run, identity) = again(&config, &messages);
     assert_eq!(run.unflown, None);
@@ -174,7 +175,7 @@ fn the_stop_flag_in_flight() {
 fn late_and_missed_ticks() {
     let ms = Duration::from_millis;
     let happenings = Happenings {
-        // The very first among them.
+        // The first tick among them.
         late: vec![
             (1, ms(60)),
             (200, ms(10)),

@@ -1,4 +1,4 @@
-//! What is missing or makes no sense ends a replay, and is said.
+//! Missing or invalid messages end a replay with a reason.
 
 use fcc_core::flight::AutopilotCommand;
 use fcc_core::framework::{EventKind, LoopCommand, Message, Reading, Time};
@@ -9,7 +9,7 @@ use super::flights::{Happenings, again, fly, records, rough};
 use super::{OUTPUTS, assert_identical, deviation};
 
 #[test]
-fn a_gap_ends_what_can_be_flown_again() {
+fn a_gap_ends_the_replay() {
     let happenings = Happenings {
         steps: 1_000,
         ..Happenings::default()
@@ -73,14 +73,14 @@ fn a_recording_that_begins_in_flight_is_refused_and_chained_ones_are_not() {
 
     assert_identical(&rough(), &[one, two].concat());
 
-    // The same twice, or in the wrong sequence.
+    // The same twice, or in the wrong order.
     let (run, _) = again(&rough(), &[one, one].concat());
     assert_eq!(run.ticks, records(one).len() as u64);
     assert!(run.unflown.unwrap().why.contains("another run"));
 }
 
 #[test]
-fn a_loop_that_stops_before_the_recorded_one_says_so() {
+fn a_loop_that_stops_before_the_recorded_one_is_reported() {
     let happenings = Happenings {
         silent: vec![400..=500],
         steps: 800,
@@ -100,9 +100,9 @@ fn a_loop_that_stops_before_the_recorded_one_says_so() {
     assert_eq!(first.again, "stopped");
 }
 
-/// What is in a file may be anything.
+/// A file may contain anything.
 #[test]
-fn nonsense_is_flown_without_a_panic() {
+fn invalid_messages_are_replayed_without_a_panic() {
     let happenings = Happenings {
         steps: 200,
         ..Happenings::default()
@@ -130,7 +130,7 @@ fn nonsense_is_flown_without_a_panic() {
             }
         }
         let (run, identity) = again(&rough(), &messages);
-        // The first whose time goes back is not flown.
+        // The first whose time goes back is not replayed.
         assert_eq!(run.ticks, 150);
         assert!(identity.outputs == 150 * OUTPUTS && !identity.to_text().is_empty());
         deviation(&rough(), &messages).to_text();

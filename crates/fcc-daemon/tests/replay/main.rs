@@ -1,5 +1,4 @@
-//! A replay of a recording gives the same outputs to the last bit, and what
-//! is not the same is found.
+//! A replay reproduces the outputs to the last bit, and finds differences.
 #![cfg(test)]
 
 mod different;
@@ -23,8 +22,8 @@ use flights::{again, records};
 /// engage inhibits, faults, and whether they were sent.
 const OUTPUTS: u64 = 34;
 
-/// Asserts that a replay is the same in every bit, and gives
-/// the states it went through.
+/// Asserts that a replay is the same in every bit, and returns the states of
+/// the flight.
 fn assert_identical(config: &Config, messages: &[FlightMessage]) -> Vec<State> {
     let (run, identity) = again(config, messages);
     let records = records(messages);

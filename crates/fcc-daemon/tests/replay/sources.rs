@@ -1,5 +1,6 @@
-//! Flights with several sensors: what a second one costs, what it saves, and
-//! that a replay reproduces which was used.
+//! Flights with several sensors: a second one changes nothing while the first
+//! is valid, replaces it when it is silent, and a replay reproduces which was
+//! used.
 
 use fcc_core::framework::{EventKind, Flags, Message, SourceChange, State};
 use fcc_flight::config::Config;
@@ -83,8 +84,8 @@ fn a_replay_reproduces_which_sensor_was_used() {
     assert_eq!(used, 76);
 }
 
-/// By configuration: an X-Plane that never answers is preferred, and all comes
-/// from the built-in aircraft.
+/// Configured: an X-Plane that never answers is preferred, and all measurements
+/// come from the built-in aircraft.
 #[test]
 fn the_simulator_stands_in_for_a_sensor_that_never_answers() {
     let text = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\nsimulator = \"127.0.0.1:9\"\n";

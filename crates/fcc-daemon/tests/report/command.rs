@@ -1,4 +1,4 @@
-//! `fccd report` itself, on files.
+//! `fccd report` on files.
 
 use std::fs;
 use std::path::Path;
@@ -34,7 +34,7 @@ fn a_file_becomes_tables_a_page_and_json() {
     let file = Plan::seconds(45).record(folder.path());
     let (file, page) = (file.to_str().unwrap(), folder.path().join("flight.html"));
     let text = printed(&fccd(&[file, "--html", page.to_str().unwrap()]));
-    for words in [
+    for part in [
         "2026-11-20 04:21:33 UTC",
         "SCHED_FIFO 80 was refused",
         "0123456789ab",
@@ -44,7 +44,7 @@ fn a_file_becomes_tables_a_page_and_json() {
         "Every tick that was served from 1 to 1800 is in the file.",
         REMARK,
     ] {
-        assert!(text.contains(words), "{words} is not in\n{text}");
+        assert!(text.contains(part), "{part} is not in\n{text}");
     }
     let page = fs::read_to_string(page).unwrap();
     sound(&page);
@@ -74,7 +74,7 @@ fn a_cut_file_is_reported_up_to_its_cut() {
 }
 
 #[test]
-fn what_is_no_recording_or_would_be_lost_is_refused() {
+fn a_file_that_is_not_a_recording_or_would_be_lost_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let other = folder.path().join("other.mcap");
     fs::write(&other, "not a recording").unwrap();
@@ -82,13 +82,13 @@ fn what_is_no_recording_or_would_be_lost_is_refused() {
     for arguments in [vec![other], vec![other, "--html", other]] {
         let output = fccd(&arguments);
         assert_eq!(output.status.code(), Some(1));
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(said.contains("other.mcap"), "{said}");
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.contains("other.mcap"), "{stderr}");
     }
     assert_eq!(fs::read_to_string(other).unwrap(), "not a recording");
 }
 
-/// Every number in the table reads back to the bits in the recording.
+/// Every number in the table parses to the bits in the recording.
 #[test]
 fn the_csv_is_the_recording() {
     let folder = tempfile::tempdir().unwrap();
@@ -147,13 +147,13 @@ fn the_csv_is_the_recording() {
     }
 
     let mut events = csv::Reader::from_path(Path::new(tables).join("events.csv")).unwrap();
-    let words: Vec<String> = events
+    let texts: Vec<String> = events
         .records()
         .map(|row| row.unwrap().get(2).unwrap().to_owned())
         .collect();
     assert!(
-        words.contains(&"standby -> engaged".to_owned()),
-        "{words:?}"
+        texts.contains(&"standby -> engaged".to_owned()),
+        "{texts:?}"
     );
-    assert_eq!(words.last().unwrap(), REMARK);
+    assert_eq!(texts.last().unwrap(), REMARK);
 }

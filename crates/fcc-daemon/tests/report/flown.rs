@@ -1,4 +1,4 @@
-//! Flights of the built-in aircraft, flown in lockstep for the tests.
+//! Flights of the built-in aircraft in lockstep.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -7,15 +7,15 @@ use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::assemble;
-use fcc_record::{About, Realtime, Recorder, RecorderSettings, RecordingPace};
+use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_runtime::{Machine, Parts};
-use fcc_telemetry::FlightMessage;
+use fcc_telemetry::{DeniedRequest, FlightMessage, Realtime};
 use fcc_timer::ManualTimer;
 
-/// What is said at the end of a recorded flight.
+/// A remark at the end of a recorded flight.
 pub(super) const REMARK: &str = "the wind is <light>";
 
-/// How a flight is to go.
+/// Plan of a flight.
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     pub(super) rate_hz: u32,
@@ -25,7 +25,7 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// So many seconds at 40 Hz: 2 s of standby, then the timed pattern.
+    /// This many seconds at 40 Hz: 2 s of standby, then the timed pattern.
     pub(super) fn seconds(seconds: u32) -> Self {
         Self {
             rate_hz: 40,
@@ -34,7 +34,7 @@ impl Plan {
         }
     }
 
-    /// Flies, and hands on what the loop tells.
+    /// Flies, and passes on the messages of the loop.
     pub(super) fn fly(self, mut take: impl FnMut(&FlightMessage)) {
         let assembly = assemble(&config(self.rate_hz)).unwrap();
         let silent_from = self.silent_from.unwrap_or(u64::MAX);
@@ -105,7 +105,11 @@ fn about(rate_hz: u32) -> About {
         actuators: vec!["built-in aircraft".to_owned()],
         realtime: Realtime {
             policy: "SCHED_OTHER".to_owned(),
-            refused: vec!["SCHED_FIFO 80 was refused: give CAP_SYS_NICE".to_owned()],
+            refused: vec![DeniedRequest {
+                request: "SCHED_FIFO 80 was refused".to_owned(),
+                remedy: "give CAP_SYS_NICE".to_owned(),
+                ..DeniedRequest::default()
+            }],
             ..Realtime::default()
         },
         started_unix_ns: 1_795_148_493_000_000_000,
@@ -115,7 +119,7 @@ fn about(rate_hz: u32) -> About {
     }
 }
 
-/// A sensor that falls silent.
+/// A sensor that becomes silent.
 struct Falling {
     sensor: Box<dyn Sensor<Measurements>>,
     silent_from: u64,

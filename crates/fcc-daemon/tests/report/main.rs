@@ -1,5 +1,5 @@
-//! Reports on flights of the built-in aircraft: what they say, that their page
-//! is sound and needs nothing else, and that their CSV is what was recorded.
+//! Reports on flights of the built-in aircraft: their content, that their page
+//! is valid and needs no other files, and that their CSV equals the recording.
 #![cfg(test)]
 
 mod command;
@@ -14,7 +14,7 @@ use flown::Plan;
 use html5ever::tendril::TendrilSink as _;
 use markup5ever_rcdom::{Handle, NodeData, RcDom};
 
-/// The report on a flight of which only some messages were kept.
+/// The report on a flight from the messages that `keep` selects.
 fn report(plan: Plan, keep: impl Fn(&FlightMessage) -> bool) -> FlightReport {
     let addition = FlightAddition::new(Some(TimedPatternConfig::default()));
     let mut survey = FlightSurvey::new(Origin::default(), addition);
@@ -30,11 +30,11 @@ fn all(_: &FlightMessage) -> bool {
     true
 }
 
-fn says(report: &FlightReport, words: &str) -> bool {
-    report.findings.iter().any(|said| said.contains(words))
+fn contains(report: &FlightReport, text: &str) -> bool {
+    report.findings.iter().any(|finding| finding.contains(text))
 }
 
-/// Parses a page; it must be well formed and hold all that it needs.
+/// Parses a page; it must be valid and need no other files.
 #[track_caller]
 fn sound(page: &str) -> RcDom {
     let dom =
@@ -58,7 +58,8 @@ fn sound(page: &str) -> RcDom {
     dom
 }
 
-/// The texts of all elements of a name that lie right in one of another name.
+/// The texts of all elements of a name directly inside elements of another
+/// name.
 fn texts(dom: &RcDom, parent: &str, name: &str) -> Vec<String> {
     let mut found = Vec::new();
     gather(&dom.document, parent, name, &mut found);
@@ -87,7 +88,7 @@ fn text(node: &Handle) -> String {
 
 /// 65 s: 2 s of standby, 20 s of holding, two whole legs and a part.
 #[test]
-fn a_flight_is_told_as_it_was_flown() {
+fn a_flight_is_reported_as_it_was_flown() {
     let report = report(Plan::seconds(65), all);
     assert_eq!(report.continuity.ticks, 2_600);
     assert_eq!(report.continuity.lost, 0);
@@ -105,16 +106,16 @@ fn a_flight_is_told_as_it_was_flown() {
     assert!((timing.table.period_ms.mean - 25.0).abs() < 1e-9);
     // Table 6.1 of the thesis.
     assert_eq!(timing.thesis.unwrap().max_ms, 32.593);
-    assert!(says(&report, "ran in lockstep"));
+    assert!(contains(&report, "ran in lockstep"));
 
     let flight = report.addition.flight.as_ref().unwrap();
     assert_eq!(flight.legs.len(), 2, "the third leg is not whole");
     let worst = flight.worst.unwrap();
-    // The design's bounds, widened by the sensors' noise.
+    // The design's limits, widened by the sensors' noise.
     assert!(worst.heading_settle_s.unwrap() < 17.5, "{worst:?}");
     assert!(worst.altitude_settle_s.unwrap() < 14.0, "{worst:?}");
 
-    let html = sound(&report.to_html().unwrap());
+    let html = sound(&report.to_html());
     assert_eq!(
         texts(&html, "figure", "h3"),
         [
@@ -136,7 +137,7 @@ fn a_flight_is_told_as_it_was_flown() {
 }
 
 #[test]
-fn a_gap_is_said_and_left_open() {
+fn a_gap_is_reported_and_visible() {
     let report = report(Plan::seconds(30), |message| match message {
         FlightMessage::Tick(record) => !(401..=439).contains(&record.tick.number),
         FlightMessage::Event(_) => true,
@@ -152,11 +153,11 @@ fn a_gap_is_said_and_left_open() {
     };
     // Tick 1 is at 0 s: 400 is at 9.975 s, 440 at 10.975 s.
     assert!((gap.from_s - 9.975).abs() < 1e-9 && (gap.to_s - 10.975).abs() < 1e-9);
-    assert!(says(
+    assert!(contains(
         &report,
         "39 ticks are missing from the file, in 1 gap, the longest of 1.00 s"
     ));
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(page.contains("records missing"));
 }
@@ -171,15 +172,15 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
         all,
     );
     assert_eq!(report.failsafes, 1);
-    assert!(says(&report, "It fell into failsafe once"));
-    let words: Vec<_> = report.events.iter().map(|event| &event.text).collect();
+    assert!(contains(&report, "It entered failsafe once"));
+    let text: Vec<_> = report.events.iter().map(|event| &event.text).collect();
     assert!(
-        words.iter().any(|text| text.contains("failsafe")),
-        "{words:?}"
+        text.iter().any(|text| text.contains("failsafe")),
+        "{text:?}"
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
-    // No line goes on where nothing is measured: ages do.
+    // No line continues without measurements: ages do.
     assert!(page.contains("Ages of measurements"));
     assert!(report.to_text().contains("Age of"));
 }
@@ -187,19 +188,19 @@ fn a_silent_sensor_is_an_event_and_a_failsafe() {
 #[test]
 fn standby_alone_has_nothing_desired() {
     let report = report(Plan::seconds(1), all);
-    assert!(says(&report, "never engaged"));
+    assert!(contains(&report, "never engaged"));
     assert!(report.addition.flight.is_none());
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     assert!(!page.contains(">\ndesired\n<"), "a legend for no line");
 }
 
 #[test]
-fn a_recording_without_ticks_says_so() {
+fn a_recording_without_ticks_is_reported() {
     let report =
         FlightSurvey::new(Origin::default(), FlightAddition::default()).finish(FileEnd::Unknown);
-    assert!(says(&report, "no tick"));
-    let html = sound(&report.to_html().unwrap());
+    assert!(contains(&report, "no tick"));
+    let html = sound(&report.to_html());
     assert!(texts(&html, "body", "figure").is_empty());
     assert!(report.to_text().contains("no tick"));
 }
@@ -211,11 +212,11 @@ fn one_tick_is_a_report_too() {
         FlightMessage::Event(_) => false,
     });
     assert_eq!(report.continuity.ticks, 1);
-    assert!(says(&report, "begins late, at tick 7: 6 ticks"));
-    sound(&report.to_html().unwrap());
+    assert!(contains(&report, "begins late, at tick 7: 6 ticks"));
+    sound(&report.to_html());
 }
 
-/// Each colour of a plot has one for a dark screen.
+/// Each colour of a plot has another for a dark screen.
 #[test]
 fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
     let report = report(
@@ -228,7 +229,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
             FlightMessage::Event(_) => true,
         },
     );
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     let (style, plots) = page.split_once("</style>").unwrap();
     let (_, dark) = style.split_once("prefers-color-scheme: dark").unwrap();
     let mut colours = 0;
@@ -248,7 +249,7 @@ fn a_dark_screen_has_a_colour_for_each_of_the_plots() {
 #[test]
 fn plots_are_svg_files() {
     let report = report(Plan::seconds(30), all);
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let names: Vec<&str> = svgs.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(
         names,
@@ -270,9 +271,9 @@ fn plots_are_svg_files() {
     }
 }
 
-/// A spike of one tick in an hour, of which the overview's bins are 1.8 s long:
-/// the lines for a zoomed plot have more points around it, in a page that is
-/// still small.
+/// A spike of one tick in an hour, with 1.8 s per bin of the overview: the
+/// lines of a zoomed plot have more points around it, in a page that is still
+/// small.
 #[test]
 fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
     let mut record = RecordOf::<Autopilot>::default();
@@ -281,7 +282,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
         let at = Time::from_nanos(number as i64 * 25_000_000);
         (record.tick.number, record.tick.dt_s) = (number, 0.025);
         (record.tick.scheduled, record.tick.woke) = (at, at);
-        // Noise of a generator by Lehmer (1951).
+        // Noise from a generator by Lehmer (1951).
         let noise = |of: u64| (number * of * 48_271 % 2_147_483_647) as f64 / 2_147_483_647.0;
         let measured = &mut record.measurements;
         measured.altitude_m = Reading::new(1_000.0 + noise(1), at);
@@ -293,7 +294,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
         survey.take(&FlightMessage::Tick(record)).unwrap();
     }
     let report = survey.finish(FileEnd::Unknown);
-    let page = report.to_html().unwrap();
+    let page = report.to_html();
     sound(&page);
     let paths = |class: &str| -> Vec<usize> {
         let begin = format!("<path class=\"{class}\"");
@@ -312,7 +313,7 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
     let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
     assert!(finer.count() >= 6, "{overview:?} {detail:?}");
     assert!(page.len() < 4_500_000, "{}", page.len());
-    let svgs = report.to_svgs().unwrap();
+    let svgs = report.to_svgs();
     let mut files = svgs.iter();
     assert!(
         files.all(|(_, svg)| !svg.contains("detail")),

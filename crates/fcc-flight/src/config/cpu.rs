@@ -1,10 +1,9 @@
 //! `realtime.cpu`: `"auto"`, or the number of a CPU.
 
-use std::fmt;
 use std::str::FromStr;
 
 use fcc_timer::CpuRequest;
-use serde::de::{Error, Unexpected, Visitor};
+use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The number of CPUs in the kernel's CPU sets as used here.
@@ -53,32 +52,19 @@ impl Serialize for CpuChoice {
 
 impl<'de> Deserialize<'de> for CpuChoice {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_any(Choice)
+        let value = toml::Value::deserialize(from)?;
+        let number = value.as_integer().map(usize::try_from);
+        match (value.as_str(), number) {
+            (Some(AUTO), _) => Ok(Self::Auto),
+            (_, Some(Ok(cpu))) if cpu <= LAST_CPU => Ok(Self::Number(cpu)),
+            _ => Err(invalid(&value, EXPECTED)),
+        }
     }
 }
 
-struct Choice;
-
-impl Visitor<'_> for Choice {
-    type Value = CpuChoice;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(EXPECTED)
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<CpuChoice, E> {
-        match usize::try_from(number) {
-            Ok(cpu) if cpu <= LAST_CPU => Ok(CpuChoice::Number(cpu)),
-            _ => Err(E::invalid_value(Unexpected::Signed(number), &self)),
-        }
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<CpuChoice, E> {
-        match text {
-            AUTO => Ok(CpuChoice::Auto),
-            other => Err(E::invalid_value(Unexpected::Str(other), &self)),
-        }
-    }
+/// An error in the words of the reader's own.
+pub(super) fn invalid<E: Error>(value: &toml::Value, expected: &str) -> E {
+    E::custom(format_args!("invalid value: {value}, expected {expected}"))
 }
 
 #[cfg(test)]

@@ -5,12 +5,8 @@ use serde::{Deserialize, Serialize};
 use toml::Spanned;
 use toml::de::DeTable;
 
-use super::read::Reader;
+use super::read::{Entry, Reader};
 use super::{Config, XPlaneSection};
-
-/// The maximum number of entries of a list. A reading stores its sensor's
-/// number in a byte, and each entry costs time in every tick.
-pub(super) const MOST_ENTRIES: usize = 16;
 
 /// One entry of `[[sensor]]`: a kind, and that kind's keys.
 #[derive(Clone, Debug, Serialize)]
@@ -82,15 +78,6 @@ impl SensorEntry {
     pub fn is_simulator(&self) -> bool {
         matches!(self, Self::Simulator(_))
     }
-}
-
-/// An entry of a list: a kind, and that kind's keys.
-pub(super) trait Entry: Sized {
-    /// The kinds as a configuration names them.
-    const KINDS: &'static [&'static str];
-
-    /// Reads the keys of one of the kinds; none if that is impossible.
-    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self>;
 }
 
 impl Entry for SensorEntry {

@@ -1,9 +1,8 @@
 //! `loop.early_wake.enabled`: `"auto"`, true or false.
 
-use std::fmt;
-
-use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::cpu::invalid;
 
 const AUTO: &str = "auto";
 const EXPECTED: &str = "\"auto\", true or false";
@@ -32,31 +31,12 @@ impl Serialize for EarlyWakeChoice {
 
 impl<'de> Deserialize<'de> for EarlyWakeChoice {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_any(Choice)
-    }
-}
-
-struct Choice;
-
-impl Visitor<'_> for Choice {
-    type Value = EarlyWakeChoice;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(EXPECTED)
-    }
-
-    fn visit_bool<E: Error>(self, on: bool) -> Result<EarlyWakeChoice, E> {
-        Ok(if on {
-            EarlyWakeChoice::On
-        } else {
-            EarlyWakeChoice::Off
-        })
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<EarlyWakeChoice, E> {
-        match text {
-            AUTO => Ok(EarlyWakeChoice::Auto),
-            other => Err(E::invalid_value(Unexpected::Str(other), &self)),
+        let value = toml::Value::deserialize(from)?;
+        match (value.as_str(), value.as_bool()) {
+            (Some(AUTO), _) => Ok(Self::Auto),
+            (_, Some(true)) => Ok(Self::On),
+            (_, Some(false)) => Ok(Self::Off),
+            _ => Err(invalid(&value, EXPECTED)),
         }
     }
 }

@@ -8,7 +8,6 @@ use serde::de::{DeserializeOwned, Error as _};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer, Error};
 
-use super::devices::Entry;
 use super::places::{Places, line_of};
 use super::wording::reword;
 use super::{Config, Problem};
@@ -57,6 +56,15 @@ fn syntax(text: &str, error: &Error) -> Problem {
         message: reword(error.message(), key.as_deref()),
         key,
     }
+}
+
+/// An entry of a list: a kind, and that kind's keys.
+pub(super) trait Entry: Sized {
+    /// The kinds as a configuration names them.
+    const KINDS: &'static [&'static str];
+
+    /// Reads the keys of one of the kinds; none if that is impossible.
+    fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self>;
 }
 
 /// A table of a configuration, which one type is read from.

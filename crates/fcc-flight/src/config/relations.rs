@@ -1,10 +1,13 @@
 //! Constraints between the values of a configuration, and on its lists.
 
-use super::devices::MOST_ENTRIES;
 use super::{Config, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
+
+/// The maximum number of entries of a list. A reading stores its sensor's
+/// number in a byte, and each entry costs time in every tick.
+const MOST_ENTRIES: usize = 16;
 
 /// Reports the key and the message of each violated constraint.
 pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {

@@ -8,7 +8,7 @@ use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
 use fcc_live::FlightCommand;
 use fcc_runtime::LoopConfig;
-use fcc_sim::{SimConfig, SimError, Simulation};
+use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
 #[cfg(feature = "live")]
@@ -17,6 +17,7 @@ use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
+use super::pilot::ControlOverride;
 use super::plan::Pace;
 use super::recording::{Recording, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
@@ -32,6 +33,8 @@ pub struct Assembly {
     pub sensors: Vec<Box<dyn Sensor<Measurements>>>,
     /// Navigation, guidance and control.
     pub autopilot: Autopilot,
+    /// Replaces the autopilot's outputs; none in flight.
+    pub control: Option<Box<dyn ControlOverride>>,
     /// Driven in this order.
     pub actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     /// The loop's configuration.
@@ -44,6 +47,8 @@ pub struct Assembly {
     /// The truth of a simulated aircraft, tick by tick; none if there is only
     /// sensor data.
     pub(super) truth: Option<TruthReceiver>,
+    /// The present truth of a simulated aircraft.
+    pub true_now: Option<TruthHandle>,
     /// Who has control of it; none for an aircraft that ends with the program.
     pub(super) authority: Option<Arc<dyn ControlAuthority>>,
 }
@@ -61,9 +66,13 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// Whether another program has the local port.
+    /// Whether another program has the local port, or that of the beacons.
     pub fn is_taken(&self) -> bool {
-        matches!(self, Self::XPlane(OpenError::Bind { source, .. }) if source.kind() == ErrorKind::AddrInUse)
+        matches!(
+            self,
+            Self::XPlane(OpenError::Bind { source, .. } | OpenError::Beacon { source, .. })
+                if source.kind() == ErrorKind::AddrInUse
+        )
     }
 }
 
@@ -73,6 +82,7 @@ struct Plant {
     sensors: Vec<Box<dyn Sensor<Measurements>>>,
     actuators: Vec<Box<dyn Actuator<Surfaces>>>,
     truth: Option<TruthReceiver>,
+    true_now: Option<TruthHandle>,
     authority: Option<Arc<dyn ControlAuthority>>,
 }
 
@@ -106,6 +116,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
     Ok(Assembly {
         sensors,
         autopilot: Autopilot::new(config.autopilot_config()),
+        control: None,
         actuators,
         loop_config,
         watchdog: config.watchdog.clone(),
@@ -114,6 +125,7 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             .is_some()
             .then(|| RestartRequest::of(config)),
         truth: plant.truth,
+        true_now: plant.true_now,
         authority: plant.authority,
     })
 }
@@ -125,6 +137,7 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
         sensors: vec![Box::new(sensor)],
         actuators: vec![Box::new(simulation.actuator)],
         truth: Some(truth),
+        true_now: Some(simulation.truth),
         authority: None,
     })
 }
@@ -137,6 +150,7 @@ fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
         sensors: vec![Box::new(sensor)],
         actuators: vec![Box::new(actuator)],
         truth: None,
+        true_now: None,
         authority: Some(Arc::new(authority)),
     })
 }
@@ -185,5 +199,24 @@ impl Assembly {
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+
+    use super::*;
+
+    #[test]
+    fn a_port_that_another_program_has_is_taken() {
+        let beacon = |kind: ErrorKind| {
+            AssemblyError::XPlane(OpenError::Beacon {
+                group: XPlaneConfig::default().beacon,
+                source: io::Error::from(kind),
+            })
+        };
+        assert!(beacon(ErrorKind::AddrInUse).is_taken());
+        assert!(!beacon(ErrorKind::PermissionDenied).is_taken());
     }
 }

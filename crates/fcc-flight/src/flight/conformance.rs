@@ -20,7 +20,7 @@ use fcc_timer::{ManualTimer, RealtimeGranted};
 
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Conclusion, Outcome};
-use super::pilot::{Pilot, pilot};
+use super::pilot::Pilot;
 use super::plan::Pace;
 
 /// Takes an observer through every flight that the trait allows; `new` makes
@@ -71,7 +71,7 @@ impl Flight {
         let parts = Parts {
             timer: Box::new(timer),
             sensors: Vec::new(),
-            controller: pilot(Autopilot::new(AutopilotConfig::default())),
+            controller: Pilot::new(Autopilot::new(AutopilotConfig::default()), None),
             actuators: Vec::new(),
         };
         let (machine, link) = Machine::new(parts, &LoopConfig::default()).expect("a loop");
@@ -202,7 +202,7 @@ impl Flight {
     }
 
     fn end(mut self) {
-        let mut outcome = Outcome::new("manual", Pace::Lockstep, self.machine.finish());
+        let mut outcome = Outcome::new("manual", Pace::Lockstep, &self.machine.finish());
         let before = outcome.conclusion;
         let own = |outcome: &Outcome| (outcome.ending.clone(), outcome.released, outcome.overruns);
         let of_the_loop = own(&outcome);

@@ -16,7 +16,7 @@ use super::host::Host;
 use super::observer::{Facts, Observer};
 use super::observers::{Names, Observers};
 use super::outcome::Outcome;
-use super::pilot::{self, Pilot};
+use super::pilot::Pilot;
 use super::plan::{Length, Pace, Plan};
 use super::run_statistics::RunStatistics;
 use crate::config::{LoopSection, WatchdogSection};
@@ -84,10 +84,17 @@ pub fn fly(
         pace: plan.pace,
         granted: None,
     };
+    #[cfg_attr(
+        not(feature = "fault-injection"),
+        expect(unused_mut, reason = "a fault is a further sensor")
+    )]
+    let mut sensors = assembly.sensors;
+    #[cfg(feature = "fault-injection")]
+    sensors.push(Box::new(super::injection::Blocking::default()));
     let parts = Parts {
         timer,
-        sensors: pilot::sensors(assembly.sensors),
-        controller: pilot::pilot(assembly.autopilot),
+        sensors,
+        controller: Pilot::new(assembly.autopilot, assembly.control),
         actuators: assembly.actuators,
     };
     let report = match plan.pace {
@@ -114,9 +121,10 @@ pub fn fly(
         }
     };
     let report = await_release(report, authority.as_ref(), &mut observers, host);
-    let refused = observers.monitor.was_refused() && !matches!(plan.length, Length::Open);
+    let refused =
+        observers.monitor.was_refused() && !matches!(plan.length, Length::Open | Length::Ticks(_));
     let released = report.released;
-    let mut outcome = Outcome::new(timer_name, plan.pace, report);
+    let mut outcome = Outcome::new(timer_name, plan.pace, &report);
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);
@@ -218,6 +226,10 @@ fn run_in_lockstep(
     length: Length,
 ) -> Result<LoopReport, FlyError> {
     machine.start()?;
+    let (ticks, length) = match length {
+        Length::Ticks(ticks) => (ticks, Length::Open),
+        other => (u64::MAX, other),
+    };
     let mut follower = Follower {
         link,
         observers,
@@ -227,6 +239,9 @@ fn run_in_lockstep(
     };
     while machine.step() != State::Stopped {
         follower.drain();
+        if machine.record().tick.number >= ticks {
+            break;
+        }
     }
     let report = machine.finish();
     follower.drain();

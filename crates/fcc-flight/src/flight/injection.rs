@@ -12,18 +12,17 @@
 //! - `FCCD_PAUSE_AT_S`: this many seconds after the loop's start, its messages
 //!   are not read, for `FCCD_PAUSE_S` (for ever, if not given).
 
-use std::fmt;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use fcc_core::flight::navigation::Estimate;
-use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
-use fcc_core::framework::{Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick, Time};
+use fcc_core::flight::{Autopilot, Measurements, Surfaces};
+use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
-/// An autopilot with injected faults.
+use super::pilot::ControlOverride;
+
+/// Injected faults of control.
 #[derive(Debug)]
-pub struct Faulty {
-    autopilot: Autopilot,
+pub(super) struct Faulty {
     panic_at_s: Option<f64>,
     nan_at_s: Option<f64>,
     hang_at_s: Option<f64>,
@@ -125,9 +124,8 @@ fn number(name: &str) -> Option<f64> {
 
 impl Faulty {
     /// Reads the faults from the environment.
-    pub fn new(autopilot: Autopilot) -> Self {
+    pub(super) fn from_environment() -> Self {
         Self {
-            autopilot,
             panic_at_s: number("FCCD_PANIC_AT_S"),
             nan_at_s: number("FCCD_NAN_AT_S"),
             hang_at_s: number("FCCD_HANG_AT_S"),
@@ -141,55 +139,18 @@ impl Faulty {
     }
 }
 
-impl Controller for Faulty {
-    type Measurements = Measurements;
-    type Estimate = Estimate;
-    type Setpoints = Setpoints;
-    type Outputs = Surfaces;
-    type Command = AutopilotCommand;
-
-    fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        Controller::estimate(&mut self.autopilot, tick, measurements);
-    }
-
-    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.engage_inhibits(tick, measurements)
-    }
-
-    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.autopilot.faults(tick, measurements)
-    }
-
-    fn flag_name(bit: u32) -> &'static str {
-        Autopilot::flag_name(bit)
-    }
-
-    fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Autopilot::write_command(command, f)
-    }
-
-    fn mode(&self) -> u8 {
-        self.autopilot.mode()
-    }
-
-    fn mode_name(mode: u8) -> &'static str {
-        Autopilot::mode_name(mode)
-    }
-
-    fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
+impl ControlOverride for Faulty {
+    fn engage(&mut self, tick: &Tick) {
         self.engaged_at = tick.woke;
-        self.autopilot.engage(tick, measurements);
     }
 
-    fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.warm_up(tick, measurements);
-    }
-
-    fn guide(&mut self, tick: &Tick, measurements: &Measurements) {
-        self.autopilot.guide(tick, measurements);
-    }
-
-    fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+    fn control(
+        &mut self,
+        _: &Autopilot,
+        tick: &Tick,
+        _: &Measurements,
+        mut surfaces: Surfaces,
+    ) -> Surfaces {
         assert!(!self.is_due(self.panic_at_s, tick), "injected panic");
         while self.is_due(self.hang_at_s, tick) {
             std::hint::spin_loop();
@@ -197,38 +158,9 @@ impl Controller for Faulty {
         if self.is_due(self.slow.at_s, tick) {
             self.slow.take_longer();
         }
-        let mut surfaces = self.autopilot.control(tick, measurements);
         if self.is_due(self.nan_at_s, tick) {
             surfaces.elevator = f64::NAN;
         }
         surfaces
-    }
-
-    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        self.autopilot.failsafe(tick, measurements)
-    }
-
-    fn disengage(&mut self) {
-        self.autopilot.disengage();
-    }
-
-    fn command(&mut self, command: &AutopilotCommand) {
-        self.autopilot.command(command);
-    }
-
-    fn estimated(&self) -> Estimate {
-        self.autopilot.estimated()
-    }
-
-    fn setpoints(&self) -> Setpoints {
-        self.autopilot.setpoints()
-    }
-
-    fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
-        self.autopilot.outputs_are_valid(outputs)
-    }
-
-    fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
-        self.autopilot.switch(measurements)
     }
 }

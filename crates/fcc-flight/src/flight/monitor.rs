@@ -62,6 +62,7 @@ impl Monitor {
         let time_s = self.at.time_s;
         let time_is_up = match length {
             Length::Open => return false,
+            Length::Ticks(ticks) => return self.at.tick >= ticks,
             Length::Engaged(seconds) => self
                 .at
                 .engaged_at_s

@@ -1,9 +1,8 @@
 //! The outcome of a flight, for users and tools.
 
 use fcc_runtime::{Ending, LoopReport};
-use fcc_telemetry::{DeniedRequest, FlightScore, Realtime, ScoredBy, TimingReport};
+use fcc_telemetry::{FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;
-use fcc_timer::realtime::LatencyLimit;
 use serde::Serialize;
 
 use super::plan::Pace;
@@ -92,7 +91,7 @@ pub struct RecordingOutcome {
 }
 
 impl Outcome {
-    pub(super) fn new(timer: &'static str, pace: Pace, report: LoopReport) -> Self {
+    pub(super) fn new(timer: &'static str, pace: Pace, report: &LoopReport) -> Self {
         let conclusion = match report.ending {
             _ if !report.released => Conclusion::NotReleased,
             Ending::Panicked(_) => Conclusion::Panicked,
@@ -104,11 +103,7 @@ impl Outcome {
         Self {
             timing: TimingReport {
                 page_faults: report.page_faults,
-                ..TimingReport::new(
-                    timer,
-                    &report.timing,
-                    realtime(&report.granted.unwrap_or_default()),
-                )
+                ..TimingReport::new(timer, &report.timing, realtime(report.granted.as_ref()))
             }
             .with_cpu_time(report.cpu_time.as_secs_f64())
             .with_spin_time(report.timing.spun_s),
@@ -152,30 +147,14 @@ impl Outcome {
     }
 }
 
-/// What the kernel granted, in the form for other tools.
-fn realtime(granted: &RealtimeGranted) -> Realtime {
-    Realtime {
-        policy: if granted.policy.is_empty() {
-            NOT_ASKED
-        } else {
-            granted.policy
-        }
-        .to_owned(),
-        priority: granted.priority,
-        cpu: granted.cpu,
-        cpu_because: granted.cpu_reason.clone(),
-        memory_locked: granted.memory_locked,
-        stack_prefaulted: granted.stack_prefaulted,
-        timer_slack_ns: granted.timer_slack_ns,
-        cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
-        refused: granted
-            .denied
-            .iter()
-            .map(|denied| DeniedRequest {
-                request: denied.request.clone(),
-                reason: denied.reason.clone(),
-                remedy: denied.remedy.clone(),
-            })
-            .collect(),
-    }
+/// What the kernel granted; nothing was requested for a loop without a thread of
+/// its own.
+fn realtime(granted: Option<&RealtimeGranted>) -> Realtime {
+    granted.map_or_else(
+        || Realtime {
+            policy: NOT_ASKED.to_owned(),
+            ..Realtime::default()
+        },
+        Realtime::from,
+    )
 }

@@ -1,32 +1,123 @@
-//! The controller and sensors of the loop, with injected faults if the program
-//! is built with that feature.
+//! The controller of the loop: the autopilot, whose outputs an experiment or a
+//! test may replace.
 
-type Sensors = Vec<Box<dyn fcc_core::framework::Sensor<fcc_core::flight::Measurements>>>;
+use std::fmt;
 
-/// The loop's controller.
-#[cfg(not(feature = "fault-injection"))]
-pub type Pilot = fcc_core::flight::Autopilot;
-/// The loop's controller: an autopilot with injected faults.
-#[cfg(feature = "fault-injection")]
-pub type Pilot = super::injection::Faulty;
+use fcc_core::flight::navigation::Estimate;
+use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
+use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick};
 
-#[cfg(not(feature = "fault-injection"))]
-pub(super) fn sensors(sensors: Sensors) -> Sensors {
-    sensors
+/// Replaces the outputs of the autopilot while it is engaged. Navigation,
+/// guidance, states and failsafe remain the autopilot's.
+pub trait ControlOverride: Send {
+    /// The autopilot engages.
+    fn engage(&mut self, _tick: &Tick) {}
+
+    /// The outputs to send in place of the autopilot's.
+    fn control(
+        &mut self,
+        autopilot: &Autopilot,
+        tick: &Tick,
+        measurements: &Measurements,
+        surfaces: Surfaces,
+    ) -> Surfaces;
 }
 
-#[cfg(feature = "fault-injection")]
-pub(super) fn sensors(mut sensors: Sensors) -> Sensors {
-    sensors.push(Box::new(super::injection::Blocking::default()));
-    sensors
+/// The controller of a flight's loop.
+pub struct Pilot {
+    autopilot: Autopilot,
+    control: Option<Box<dyn ControlOverride>>,
 }
 
-#[cfg(not(feature = "fault-injection"))]
-pub(super) fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
-    autopilot
+impl Pilot {
+    /// An autopilot, and what replaces its outputs, if anything does.
+    pub(super) fn new(autopilot: Autopilot, control: Option<Box<dyn ControlOverride>>) -> Self {
+        #[cfg(feature = "fault-injection")]
+        let control =
+            control.or_else(|| Some(Box::new(super::injection::Faulty::from_environment())));
+        Self { autopilot, control }
+    }
 }
 
-#[cfg(feature = "fault-injection")]
-pub(super) fn pilot(autopilot: fcc_core::flight::Autopilot) -> Pilot {
-    super::injection::Faulty::new(autopilot)
+impl Controller for Pilot {
+    type Measurements = Measurements;
+    type Estimate = Estimate;
+    type Setpoints = Setpoints;
+    type Outputs = Surfaces;
+    type Command = AutopilotCommand;
+
+    fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
+        Controller::estimate(&mut self.autopilot, tick, measurements);
+    }
+
+    fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.engage_inhibits(tick, measurements)
+    }
+
+    fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.faults(tick, measurements)
+    }
+
+    fn flag_name(bit: u32) -> &'static str {
+        Autopilot::flag_name(bit)
+    }
+
+    fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Autopilot::write_command(command, f)
+    }
+
+    fn engage(&mut self, tick: &Tick, measurements: &Measurements) {
+        if let Some(control) = &mut self.control {
+            control.engage(tick);
+        }
+        self.autopilot.engage(tick, measurements);
+    }
+
+    fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.warm_up(tick, measurements);
+    }
+
+    fn guide(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.guide(tick, measurements);
+    }
+
+    fn control(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        let surfaces = self.autopilot.control(tick, measurements);
+        match &mut self.control {
+            None => surfaces,
+            Some(control) => control.control(&self.autopilot, tick, measurements, surfaces),
+        }
+    }
+
+    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        self.autopilot.failsafe(tick, measurements)
+    }
+
+    fn disengage(&mut self) {
+        self.autopilot.disengage();
+    }
+
+    fn command(&mut self, command: &AutopilotCommand) {
+        self.autopilot.command(command);
+    }
+
+    fn estimated(&self) -> Estimate {
+        self.autopilot.estimated()
+    }
+
+    fn setpoints(&self) -> Setpoints {
+        self.autopilot.setpoints()
+    }
+
+    fn outputs_are_valid(&self, outputs: &Surfaces) -> bool {
+        self.autopilot.outputs_are_valid(outputs)
+    }
+
+    fn plausible(&self, measurements: &Measurements) -> Flags {
+        self.autopilot.plausible(measurements)
+    }
+
+    fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
+        self.autopilot.switch(measurements)
+    }
 }

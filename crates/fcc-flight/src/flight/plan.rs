@@ -19,6 +19,9 @@ pub enum Length {
     Engaged(f64),
     /// This many seconds after the first tick.
     Whole(f64),
+    /// After this many ticks, missed ones included, whatever happens. In lockstep
+    /// the last of them is an ordinary one: the loop is not stopped by a command.
+    Ticks(u64),
 }
 
 /// The plan of a flight.

@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 use fcc_record::{
-    About, Notice, Realtime, Recorded, RecorderOf, RecorderSettings, RecordingPace, repair_last,
+    About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace, repair_last,
 };
-use fcc_timer::RealtimeGranted;
-use fcc_timer::realtime::LatencyLimit;
+use fcc_telemetry::Realtime;
 use nix::sys::utsname::{UtsName, uname};
 
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
@@ -146,7 +145,7 @@ impl<C: Recorded> Observer<C> for Recording<C> {
             actuators: facts.actuators.to_vec(),
             started_unix_ns: facts.started_unix_ns,
             clock_offset_ns: facts.clock_offset_ns,
-            realtime: facts.granted.map(realtime).unwrap_or_default(),
+            realtime: facts.granted.map(Realtime::from).unwrap_or_default(),
             ..self.about.clone()
         };
         let settings = RecorderSettings {
@@ -225,19 +224,5 @@ fn pass_on(notice: Notice, reports: &mut Reports) {
         reports.remark(notice.text);
     } else {
         reports.mention(notice.text);
-    }
-}
-
-fn realtime(granted: &RealtimeGranted) -> Realtime {
-    Realtime {
-        policy: granted.policy.to_owned(),
-        priority: granted.priority,
-        cpu: granted.cpu,
-        cpu_because: granted.cpu_reason.clone(),
-        memory_locked: granted.memory_locked,
-        stack_prefaulted: granted.stack_prefaulted,
-        timer_slack_ns: granted.timer_slack_ns,
-        cpu_dma_latency_us: granted.cpu_latency.as_ref().map(LatencyLimit::us),
-        refused: granted.denied.iter().map(ToString::to_string).collect(),
     }
 }

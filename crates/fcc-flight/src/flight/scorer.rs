@@ -49,10 +49,7 @@ impl Observer<Autopilot> for Scorer {
             None => ScoredBy::Measurement,
         };
         // A flight with an incomplete leg has no score.
-        outcome.flight = self.pattern.take().and_then(|pattern| {
-            let (score, failed) = pattern.result();
-            failed.is_none().then_some(score)
-        });
+        outcome.flight = self.pattern.as_ref().and_then(PatternScorer::score);
     }
 }
 

@@ -10,7 +10,7 @@ use iceoryx2::service::service_name::ServiceName;
 
 use super::super::PublishError;
 use super::super::services::{Access, Ipc, explained};
-use super::wire::{Answer, Request};
+use super::wire::{Answer, CommandRequest};
 use super::{COMMANDS_VERSION, PendingCommand, Verdict};
 use fcc_telemetry::Instance;
 
@@ -32,11 +32,11 @@ pub(in super::super) struct Ends {
 /// The server's ends of the same rings, and the next command's identifier.
 pub(in super::super) type Rings = (SyncSender<PendingCommand>, Receiver<(u64, Verdict)>, u64);
 
-type Waiting = ActiveRequest<Ipc, Request, (), Answer, ()>;
+type Waiting = ActiveRequest<Ipc, CommandRequest, (), Answer, ()>;
 
 /// Receives commands from other programs.
 pub(in super::super) struct CommandServer {
-    server: Server<Ipc, Request, (), Answer, ()>,
+    server: Server<Ipc, CommandRequest, (), Answer, ()>,
     waiting: Vec<(u64, Waiting)>,
     commands: SyncSender<PendingCommand>,
     verdicts: Receiver<(u64, Verdict)>,
@@ -74,7 +74,7 @@ impl CommandServer {
             .ok_or_else(|| unavailable(format!("'{instance}' is not a valid service name")))?;
         let service = access
             .service_builder(&name)
-            .request_response::<Request, Answer>()
+            .request_response::<CommandRequest, Answer>()
             .max_servers(1)
             .max_clients(MAX_COMMANDERS)
             .max_nodes(MAX_NODES)

@@ -9,7 +9,7 @@ use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 use super::super::services::{self, Access, Ipc};
 use super::super::watcher::{check_layout, read_info};
 use super::super::{Info, WatchError};
-use super::wire::{Answer, Request};
+use super::wire::{Answer, CommandRequest};
 use super::{
     COMMANDS_VERSION, CommandError, FlightCommand, InvalidCommand, Verdict, command_server,
 };
@@ -37,7 +37,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(2);
 pub struct Commander {
     instance: Instance,
     info: Info,
-    client: Client<Ipc, Request, (), Answer, ()>,
+    client: Client<Ipc, CommandRequest, (), Answer, ()>,
     // Dropped last: it cleans up after the others.
     _access: Access,
 }
@@ -61,7 +61,7 @@ impl Commander {
         };
         let service = access
             .service_builder(&name)
-            .request_response::<Request, Answer>()
+            .request_response::<CommandRequest, Answer>()
             .open()
             .map_err(|error| refused(error, instance, not_accepted))?;
         let client = service
@@ -93,7 +93,7 @@ impl Commander {
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self
             .client
-            .send_copy(Request::from(command))
+            .send_copy(CommandRequest::from(command))
             .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
         let deadline = Instant::now() + PATIENCE;
         loop {

@@ -10,7 +10,7 @@ use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, OutsideLimits, Quanti
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct Request {
+pub(super) struct CommandRequest {
     /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
     /// 0 engage, 1 disengage, 2 stop, 3 set.
@@ -42,7 +42,7 @@ pub(super) struct Answer {
 }
 
 // SAFETY: repr(C), numbers only.
-unsafe impl ZeroCopySend for Request {
+unsafe impl ZeroCopySend for CommandRequest {
     unsafe fn type_name() -> &'static str {
         "fcc.v2.Command"
     }
@@ -64,7 +64,7 @@ const CARRIED_OUT: u32 = 0;
 const REFUSED: u32 = 1;
 const OUTSIDE: u32 = 2;
 
-impl From<FlightCommand> for Request {
+impl From<FlightCommand> for CommandRequest {
     fn from(command: FlightCommand) -> Self {
         let (code, set) = match command {
             FlightCommand::Engage => (ENGAGE, NewSetpoints::default()),
@@ -83,7 +83,7 @@ impl From<FlightCommand> for Request {
     }
 }
 
-impl Request {
+impl CommandRequest {
     /// Another program may have written anything.
     ///
     /// # Errors
@@ -178,14 +178,17 @@ mod tests {
 
     #[test]
     fn the_layouts_are_as_documented() {
-        assert_eq!((size_of::<Request>(), size_of::<Answer>()), (32, 256));
+        assert_eq!(
+            (size_of::<CommandRequest>(), size_of::<Answer>()),
+            (32, 256)
+        );
         assert_eq!(
             [
-                offset_of!(Request, version),
-                offset_of!(Request, code),
-                offset_of!(Request, airspeed_mps),
-                offset_of!(Request, heading_rad),
-                offset_of!(Request, altitude_m),
+                offset_of!(CommandRequest, version),
+                offset_of!(CommandRequest, code),
+                offset_of!(CommandRequest, airspeed_mps),
+                offset_of!(CommandRequest, heading_rad),
+                offset_of!(CommandRequest, altitude_m),
             ],
             [0, 4, 8, 16, 24]
         );
@@ -213,7 +216,7 @@ mod tests {
                 ..NewSetpoints::default()
             }),
         ] {
-            assert_eq!(Request::from(command).command(), Ok(command));
+            assert_eq!(CommandRequest::from(command).command(), Ok(command));
         }
         for verdict in [
             Verdict::CarriedOut { tick: 9 },
@@ -235,7 +238,7 @@ mod tests {
 
     #[test]
     fn another_version_is_refused() {
-        let mut request = Request::from(FlightCommand::Engage);
+        let mut request = CommandRequest::from(FlightCommand::Engage);
         request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
@@ -249,7 +252,7 @@ mod tests {
         #[test]
         fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
             let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
-            let request = Request { version, code, airspeed_mps, heading_rad, altitude_m };
+            let request = CommandRequest { version, code, airspeed_mps, heading_rad, altitude_m };
             if let Ok(command) = request.command() {
                 prop_assert!(command.check().is_ok());
             }

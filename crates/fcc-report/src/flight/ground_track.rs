@@ -1,49 +1,40 @@
-//! The ground track, where there is position.
-
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+//! The ground track, from measured positions.
 
 use super::track::TrackPoint;
-use crate::RunReport;
 use crate::events::Weight;
+use crate::plot::Figure;
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{
-    ACTUAL, Area, Drawn, FAINT, OTHER, SMALL_PX, Sample, WIDTH_PX, draw, legend, pen, px, text,
-};
 use crate::plot::panel::{Frame, Panel};
-use crate::plot::{Figure, PlotError};
+use crate::plot::sheet::{
+    ACTUAL, Anchor, Dot, FAINT, Font, Height, OTHER, SMALL_PX, Sample, Sheet, WIDTH_PX,
+};
+use crate::report::RunReport;
 use crate::states::Phase;
 
 const LEFT_PX: f64 = 60.0;
 const TOP_PX: f64 = 24.0;
-const X_WORDS_PX: f64 = 36.0;
-/// The taller side at most, px.
+const X_LABELS_PX: f64 = 36.0;
+/// Largest height, px.
 const MOST_HEIGHT_PX: f64 = 460.0;
 const LEAST_HEIGHT_PX: f64 = 160.0;
-/// A track shorter than this is drawn on a map of this size, m.
+/// A shorter track is drawn on a map of this size, m.
 const LEAST_SPAN_M: f64 = 100.0;
 
-/// The ground track; none where there is no position.
-pub(super) fn figure(
-    report: &RunReport,
-    track: &[TrackPoint],
-) -> Result<Option<Figure>, PlotError> {
+/// The ground track; `None` without positions.
+pub(super) fn figure(report: &RunReport, track: &[TrackPoint]) -> Option<Figure> {
     if track.is_empty() {
-        return Ok(None);
+        return None;
     }
     let map = Map::of(track);
-    let svg = draw(
-        TOP_PX + map.height_px + X_WORDS_PX,
-        "Ground track",
-        |area| map.paint(area, report, track),
-    )?;
-    Ok(Some(Figure {
+    let mut sheet = Sheet::default();
+    map.paint(&mut sheet, report, track);
+    Some(Figure {
         title: "Ground track".to_owned(),
         caption: "Over the ground, north up, from the first measured position; numbers are \
                   the changes of state in the table of events."
             .to_owned(),
-        svg,
-    }))
+        svg: sheet.finish(TOP_PX + map.height_px + X_LABELS_PX, "Ground track", &[]),
+    })
 }
 
 /// The same scale in both directions.
@@ -73,7 +64,7 @@ impl Map {
             let middle = f64::midpoint(low, high);
             (middle - reach, middle + reach)
         };
-        // A narrow track has room beside it rather than a narrow map.
+        // A narrow track gets margins, not a narrow map.
         let width_px = most_width_px;
         Self {
             east_m: widen(east_m, width_px),
@@ -83,7 +74,7 @@ impl Map {
         }
     }
 
-    fn paint(&self, area: &Area<'_>, report: &RunReport, track: &[TrackPoint]) -> Drawn {
+    fn paint(&self, sheet: &mut Sheet, report: &RunReport, track: &[TrackPoint]) {
         let span_m = self.east_m.1 - self.east_m.0;
         let (unit_m, unit) = if span_m > 3_000.0 {
             (1_000.0, "km")
@@ -103,47 +94,46 @@ impl Map {
         };
         let x = axis(self.east_m, self.width_px, "east");
         let y = axis(self.north_m, self.height_px, "north");
-        let mut panel = Panel::new(area, frame, x, y)?;
-        panel.axes(true)?;
+        let panel = Panel { frame, x, y };
+        panel.axes(sheet, true);
         let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
         for (phase, places) in stretches(report, track) {
-            let style = if phase == Phase::Engaged {
-                pen(ACTUAL, 1.4)
-            } else {
-                pen(OTHER, 1.0)
+            let (ink, width_px) = match phase {
+                Phase::Engaged => (ACTUAL, 1.4),
+                _ => (OTHER, 1.0),
             };
-            panel.polyline(smooth(&panel, places.iter().map(at)), style)?;
+            let points = smooth(&panel, places.iter().map(at));
+            panel.line(sheet, &points, ink, width_px);
         }
-        let ends = [track.first(), track.last()];
-        for (place, filled) in ends.into_iter().flatten().zip([false, true]) {
-            let style = if filled {
-                ACTUAL.filled()
-            } else {
-                pen(ACTUAL, 1.2)
-            };
-            panel.dot(at(place), 3.5, style)?;
+        let dots = [Dot::Open(ACTUAL, 1.2), Dot::Filled(ACTUAL)];
+        for (place, dot) in [track.first(), track.last()]
+            .into_iter()
+            .flatten()
+            .zip(dots)
+        {
+            panel.dot(sheet, at(place), 3.5, dot);
         }
         let entries = [
-            (Sample::Line(pen(ACTUAL, 1.4)), "engaged"),
-            (Sample::Line(pen(OTHER, 1.0)), "not engaged"),
-            (Sample::Dot(pen(ACTUAL, 1.2)), "begin"),
-            (Sample::Dot(ACTUAL.filled()), "end"),
+            (Sample::Line(ACTUAL, 1.4), "engaged"),
+            (Sample::Line(OTHER, 1.0), "not engaged"),
+            (Sample::Dot(Dot::Open(ACTUAL, 1.2)), "begin"),
+            (Sample::Dot(Dot::Filled(ACTUAL)), "end"),
         ];
-        legend(area, LEFT_PX, 10.0, entries)?;
-        number_states(area, report, track, &panel, at)
+        sheet.legend((LEFT_PX, 10.0), entries);
+        number_states(sheet, report, track, &panel, at);
     }
 }
 
-/// The points that are told apart on the sheet, and the last: closer ones show
-/// the noise of a receiver and no turn.
-fn smooth(panel: &Panel<'_>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+/// Keeps the points that can be distinguished in the plot, and the last: closer
+/// points show only the receiver's noise.
+fn smooth(panel: &Panel, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const APART_PX: f64 = 3.0;
     let mut kept: Vec<(f64, f64)> = Vec::new();
     let mut last = None;
     for point in points {
-        let (x, y) = panel.on_sheet(point);
+        let (x, y) = panel.place(point);
         let is_far = kept.last().is_none_or(|kept| {
-            let (u, v) = panel.on_sheet(*kept);
+            let (u, v) = panel.place(*kept);
             (u - x).hypot(v - y) >= APART_PX
         });
         last = (!is_far).then_some(point);
@@ -167,7 +157,7 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
         match pieces.last_mut() {
             Some((last, places)) if *last == phase => places.push(*place),
             Some((_, places)) => {
-                // The piece before leads up to where this one begins.
+                // The previous piece ends where this one begins.
                 places.push(*place);
                 pieces.push((phase, vec![*place]));
             }
@@ -177,28 +167,27 @@ fn stretches(report: &RunReport, track: &[TrackPoint]) -> Vec<(Phase, Vec<TrackP
     pieces
 }
 
-/// Numbers of the events that changed the state, where they happened.
+/// Numbers the events that changed the state, at their positions.
 fn number_states(
-    area: &Area<'_>,
+    sheet: &mut Sheet,
     report: &RunReport,
     track: &[TrackPoint],
-    panel: &Panel<'_>,
+    panel: &Panel,
     at: impl Fn(&TrackPoint) -> (f64, f64),
-) -> Drawn {
-    let style = text(SMALL_PX, FAINT, HPos::Left, VPos::Bottom);
+) {
+    let font = Font(SMALL_PX, FAINT, Anchor::Start, Height::Bottom);
     let mut taken: Vec<(f64, f64)> = Vec::new();
     for event in report.events.iter().filter(|e| e.weight == Weight::State) {
         let after = track.partition_point(|p| p.time_s < event.time_s);
         let Some(place) = track.get(after).or(track.last()) else {
             continue;
         };
-        let (x, y) = panel.on_sheet(at(place));
-        // One number is enough where several would lie on each other.
+        let (x, y) = panel.place(at(place));
+        // One number where several would overlap.
         if taken.iter().all(|(u, v)| (u - x).hypot(v - y) > 14.0) {
             taken.push((x, y));
-            let words = event.number.to_string();
-            area.draw_text(&words, &style, (px(x + 5.0), px(y - 4.0)))?;
+            let number = event.number.to_string();
+            sheet.text((x + 5.0, y - 4.0), &number, font);
         }
     }
-    Ok(())
 }

@@ -19,7 +19,7 @@ const LEG_COLUMNS: [&str; 10] = [
     "lateral g",
 ];
 
-/// What the columns of a leg mean.
+/// Meanings of the columns.
 const LEG_LEGEND: &str = "\
 ≤2° s, ≤10 ft s  seconds into the leg after which heading and altitude stay that near
 overshoot        how far past the set point, in the direction of the turn or climb
@@ -28,12 +28,12 @@ turn loss        how far below the lower of the two altitudes that the leg joins
 airspeed         largest error either way
 lateral          largest sideways acceleration";
 
-/// What it is scored by, a row per leg and the worst of each column, and what
-/// the columns mean.
+/// Source of the score, a row per leg and the worst of each column, and the
+/// meanings of the columns.
 pub fn flight_table(score: &FlightScore, by: ScoredBy) -> String {
     let by = match by {
-        ScoredBy::Truth => "how the simulated aircraft truly flew",
-        ScoredBy::Measurement => "what the sensors measured",
+        ScoredBy::Truth => "the true values of the simulated aircraft",
+        ScoredBy::Measurement => "the measurements of the sensors",
     };
     let table = legs(score);
     format!("Legs, scored by {by}:\n{table}\n\n{LEG_LEGEND}")

@@ -1,5 +1,5 @@
-//! What a flight's report has beside that of any loop: the plots that pilots
-//! and the thesis have, the score along a timed pattern, and the ground track.
+//! Additions to a flight's report: the plots of pilots and of the thesis, the
+//! score along a timed pattern, and the ground track.
 
 mod ground_track;
 mod legs;
@@ -13,10 +13,12 @@ use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT};
 use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
 
-use super::plot::{Figure, PlotError};
+use super::plot::Figure;
 use super::plots::{Panel, Plot, Quantities, Scale};
-use super::reported::{Addition, Reported, Words};
-use super::{Report, RunReport, Survey};
+use super::report::{Report, RunReport};
+use super::reported::{Addition, Reported};
+use super::survey::Survey;
+use super::terms::Terms;
 pub use legs::flight_table;
 use track::Track;
 
@@ -26,14 +28,13 @@ pub type FlightReport = Report<FlightAddition>;
 /// Takes the messages of a flight's recording.
 pub type FlightSurvey = Survey<Autopilot>;
 
-/// More legs than these do not fit on a screen.
+/// At most this many legs are shown.
 const MOST_LEGS: usize = 16;
 
-/// What only a flight's report has.
+/// Additions to a flight's report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct FlightAddition {
-    /// How well the timed pattern was flown, by what was measured; none
-    /// without a whole leg.
+    /// Score of the timed pattern, by measurements; `None` without a whole leg.
     pub flight: Option<FlightScore>,
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
@@ -44,7 +45,7 @@ pub struct FlightAddition {
 }
 
 impl FlightAddition {
-    /// Scores the flight if it is to be along a timed pattern.
+    /// Scores the flight if `pattern` is given.
     pub fn new(pattern: Option<TimedPatternConfig>) -> Self {
         Self {
             scorer: pattern.map(PatternScorer::new),
@@ -72,8 +73,9 @@ impl Addition for FlightAddition {
         unscored.into_iter().chain(nowhere).collect()
     }
 
-    fn figures(&self, run: &RunReport) -> Result<Vec<Figure>, PlotError> {
-        ground_track::figure(run, self.track.places()).map(|figure| figure.into_iter().collect())
+    fn figures(&self, run: &RunReport) -> Vec<Figure> {
+        let figure = ground_track::figure(run, self.track.places());
+        figure.into_iter().collect()
     }
 
     fn text(&self) -> String {
@@ -106,7 +108,7 @@ impl Addition for FlightAddition {
 impl Reported for Autopilot {
     type Addition = FlightAddition;
 
-    const WORDS: Words = Words {
+    const TERMS: Terms = Terms {
         run: "flight",
         plant: "Aircraft",
         controller: "autopilot",
@@ -148,13 +150,13 @@ impl Reported for Autopilot {
         vec![
             plot(
                 "Heading",
-                "Magnetic heading, desired and actual, which is what the navigation made of what \
-                 was measured (thesis, figure 6.4).",
+                "Magnetic heading, desired and actual, as the navigation estimated it from the \
+                 measurements (thesis, figure 6.4).",
                 vec![panel("heading_rad", "heading").sized(200.0, Scale::Compass)],
             ),
             plot(
                 "Altitude and pitch",
-                "Barometric altitude, desired and actual, and below it the pitch that makes it \
+                "Barometric altitude, desired and actual, and below it the pitch \
                  (thesis, figure 6.5).",
                 vec![
                     panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
@@ -196,7 +198,7 @@ mod tests {
     use super::*;
     use crate::{FileEnd, Origin};
 
-    /// A record of anything at all: a damaged file can hold it.
+    /// A record of any values: a damaged file can hold it.
     fn record() -> impl Strategy<Value = RecordOf<Autopilot>> {
         let numbers = || prop::array::uniform8(any::<f64>());
         let times = (any::<i64>(), any::<i64>(), any::<i64>());
@@ -270,7 +272,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// Nothing that a file can hold makes a report panic or grow.
+        /// No content of a file makes a report panic or grow.
         #[test]
         fn anything_can_be_reported_on(
             records in prop::collection::vec(record(), 0..40),
@@ -283,7 +285,8 @@ mod tests {
             let mut due_ns = 0_i64;
             for (n, mut record) in records.into_iter().enumerate() {
                 if n == 0 {
-                    // The first says how long a period is; a loop cannot have any.
+                    // The first record determines the period; it may be
+                    // invalid.
                     record.tick.missed %= 5;
                 }
                 if in_order {
@@ -295,7 +298,7 @@ mod tests {
                 survey.take(&Message::Tick(record)).unwrap();
             }
             let report = survey.finish(FileEnd::Unknown);
-            let page = report.to_html().unwrap();
+            let page = report.to_html();
             prop_assert!(page.len() < 5_000_000);
             prop_assert!(!report.to_text().is_empty());
             prop_assert!(serde_json::to_string(&report).is_ok());

@@ -2,9 +2,9 @@
 
 use fcc_core::flight::Position;
 
-/// When there are as many points, only those twice as far apart are kept.
+/// At this many points, the smallest distance between points is doubled.
 const MOST_POINTS: usize = 4_000;
-/// Points are at first at least as far apart, m.
+/// Smallest distance between points at first, m.
 const FINEST_M: f64 = 0.5;
 
 /// A point of the track.
@@ -12,13 +12,13 @@ const FINEST_M: f64 = 0.5;
 pub(super) struct TrackPoint {
     /// Since the first tick.
     pub(super) time_s: f64,
-    /// Of the first position.
+    /// From the first position.
     pub(super) north_m: f64,
-    /// Of the first position.
+    /// From the first position.
     pub(super) east_m: f64,
 }
 
-/// The ground track in the making.
+/// A ground track that is being recorded.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
     frame: Option<Frame>,

@@ -1,28 +1,24 @@
-//! Axes: what they span, where their ticks are and what those say.
-
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+//! Axes: their ranges, ticks and labels.
 
 use super::super::trace::Trace;
 
-/// An axis: a range, ticks within it with their words, and what it measures.
+/// An axis: a range, ticks with their labels, and a title.
 #[derive(Clone, Debug)]
 pub(crate) struct Axis {
     pub(crate) from: f64,
     pub(crate) to: f64,
     pub(crate) ticks: Vec<(f64, String)>,
-    /// Lines of the grid without words.
+    /// Grid lines without labels.
     pub(crate) light: Vec<f64>,
     pub(crate) title: String,
 }
 
-/// Room beyond the data at either end, in parts of the span.
+/// Margin at either end, as a fraction of the span.
 const MARGIN: f64 = 0.06;
 
 impl Axis {
-    /// Around values from `low` to `high`, at least `least_span` long, with
-    /// about `count` ticks.
+    /// From `low` to `high`, at least `least_span` long, with about `count`
+    /// ticks.
     pub(crate) fn around(
         (low, high): (f64, f64),
         least_span: f64,
@@ -35,10 +31,21 @@ impl Axis {
         Self::exactly((middle - reach, middle + reach), count, title)
     }
 
+    /// So many rows, without ticks.
+    pub(crate) fn rows(count: usize) -> Self {
+        Self {
+            from: 0.0,
+            to: count as f64,
+            ticks: Vec::new(),
+            light: Vec::new(),
+            title: String::new(),
+        }
+    }
+
     /// From one value to another, with about `count` ticks.
     pub(crate) fn exactly((from, to): (f64, f64), count: usize, title: &str) -> Self {
         let step = nice_step((to - from) / count.max(1) as f64);
-        // Two ticks are the least to read a scale from.
+        // A scale needs at least two ticks.
         let finer = |step: &f64| Some(nice_step(0.4 * step));
         let step = std::iter::successors(Some(step), finer)
             .take(3)
@@ -53,15 +60,17 @@ impl Axis {
         }
     }
 
-    /// With a tick at every multiple of `step`, in the words of `say`.
+    /// With a tick at every multiple of `step`, labelled by `label`.
     pub(crate) fn stepped(
         (from, to): (f64, f64),
         step: f64,
         title: &str,
-        say: impl Fn(f64) -> String,
+        label: impl Fn(f64) -> String,
     ) -> Self {
         Self {
-            ticks: multiples(from, to, step).map(|at| (at, say(at))).collect(),
+            ticks: multiples(from, to, step)
+                .map(|at| (at, label(at)))
+                .collect(),
             light: Vec::new(),
             from,
             to,
@@ -71,50 +80,18 @@ impl Axis {
 
     /// A logarithmic axis over whole decades around positive values: its
     /// coordinate is the decimal logarithm.
-    pub(crate) fn decades((low, high): (f64, f64), title: &str, say: fn(i32) -> String) -> Self {
+    pub(crate) fn decades((low, high): (f64, f64), title: &str, label: fn(i32) -> String) -> Self {
         let from = low.max(f64::MIN_POSITIVE).log10().floor() as i32;
         let to = (high.max(f64::MIN_POSITIVE).log10().ceil() as i32).max(from + 1);
         Self {
             from: f64::from(from),
             to: f64::from(to),
-            ticks: (from..=to).map(|d| (f64::from(d), say(d))).collect(),
+            ticks: (from..=to).map(|d| (f64::from(d), label(d))).collect(),
             light: (from..to)
                 .flat_map(|d| (2..10).map(move |n| f64::from(d) + f64::from(n).log10()))
                 .collect(),
             title: title.to_owned(),
         }
-    }
-}
-
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        let share = (value - self.from) / (self.to - self.from);
-        from.saturating_add((share * f64::from(to - from)).round() as i32)
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() {
-            self.light.clone()
-        } else {
-            self.ticks.iter().map(|(at, _)| *at).collect()
-        }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.from..self.to
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, at: &f64) -> String {
-        self.ticks
-            .iter()
-            .find(|(tick, _)| tick == at)
-            .map(|(_, words)| words.clone())
-            .unwrap_or_default()
     }
 }
 
@@ -147,16 +124,16 @@ fn ticks(from: f64, to: f64, step: f64) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// At most a hundred: a range that is no range makes no page full of ticks.
+/// At most a hundred: an invalid range does not fill the page with ticks.
 fn multiples(from: f64, to: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (from / step - 1e-9).ceil();
-    // An hour less one tick is an hour to its axis.
+    // An hour less one tick counts as an hour.
     let last = (to / step + 2e-3).floor();
     let count = (last - first + 1.0).clamp(0.0, 100.0) as usize;
     (0..count).map(move |n| (first + n as f64) * step)
 }
 
-/// A number with a real minus.
+/// A number with a typographic minus.
 pub(crate) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -170,18 +147,21 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
 mod tests {
     use super::*;
 
-    fn words(axis: &Axis) -> Vec<&str> {
-        axis.ticks.iter().map(|(_, words)| words.as_str()).collect()
+    fn labels(axis: &Axis) -> Vec<&str> {
+        axis.ticks
+            .iter()
+            .map(|(_, labels)| labels.as_str())
+            .collect()
     }
 
     #[test]
     fn ticks_are_round_numbers() {
         let axis = Axis::exactly((-0.3, 1.1), 6, "");
-        assert_eq!(words(&axis), ["0.0", "0.5", "1.0"]);
+        assert_eq!(labels(&axis), ["0.0", "0.5", "1.0"]);
         let axis = Axis::exactly((-0.27, 0.36), 3, "");
-        assert_eq!(words(&axis), ["\u{2212}0.2", "0.0", "0.2"]);
+        assert_eq!(labels(&axis), ["\u{2212}0.2", "0.0", "0.2"]);
         let axis = Axis::exactly((2_987.0, 3_162.0), 5, "");
-        assert_eq!(words(&axis), ["3000", "3050", "3100", "3150"]);
+        assert_eq!(labels(&axis), ["3000", "3050", "3100", "3150"]);
         assert_eq!(number(-0.001, 1), "0.0");
         assert_eq!(number(-12.34, 1), "\u{2212}12.3");
     }
@@ -196,7 +176,7 @@ mod tests {
     #[test]
     fn decades_cover_their_values() {
         let axis = Axis::decades((3.0, 450.0), "", |d| d.to_string());
-        assert_eq!(words(&axis), ["0", "1", "2", "3"]);
+        assert_eq!(labels(&axis), ["0", "1", "2", "3"]);
         assert_eq!(axis.light.len(), 24);
     }
 }

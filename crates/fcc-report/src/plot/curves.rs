@@ -1,33 +1,19 @@
-//! Lines over time as SVG paths, which take a fraction of the room that the
-//! library's polylines do: thinned to what a plot can show, and on a page also
+//! Lines over time as SVG paths by relative moves, which take little room: thinned to what a plot can show, and on a page also
 //! in detail, for when it is zoomed.
 
 use std::fmt::Write as _;
 
-use plotters::style::RGBColor;
-
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::trace::{OVERVIEW_BINS, Point, Trace};
-use super::canvas::{ACTUAL, DESIRED, MEASURED, hex, px};
+use super::sheet::{ACTUAL, Colour, DESIRED, MEASURED, Sheet, px};
 
-/// How a line is drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Ink {
-    /// Thin and pale, behind the others.
-    Measured,
-    /// Solid.
-    Actual,
-    /// Thin and dashed.
-    Desired,
-}
-
-/// Of a recording longer than this, a fine line shows more.
+/// Of a recording longer than this, a thin line shows more.
 const DENSE_S: f64 = 600.0;
 
 impl Ink {
-    /// Colour, and width in px on a plot that is dense or not.
-    pub(super) const fn pen(self, is_dense: bool) -> (RGBColor, f64) {
+    /// Colour, and width in px, by whether the plot is dense.
+    pub(super) const fn pen(self, is_dense: bool) -> (Colour, f64) {
         match (self, is_dense) {
             (Self::Measured, _) => (MEASURED, 0.6),
             (Self::Actual, false) => (ACTUAL, 1.3),
@@ -38,24 +24,24 @@ impl Ink {
     }
 }
 
-/// What a plot has beyond the lines that are drawn on paper.
+/// The detail of a plot beyond its printed lines.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Detail {
     /// Nothing.
     None,
-    /// Finer lines, which are shown when it is zoomed.
+    /// Finer lines, shown when zoomed.
     WhenZoomed,
-    /// The same, in so many bins for each line.
+    /// The same, with this many bins per line.
     Bins(u64),
 }
 
-/// Bytes that all finer lines of a page take together, about.
+/// Approximate size of all finer lines of a page.
 const DETAIL_BYTES: u64 = 3_000_000;
-/// Bytes that a bin of a noisy line takes, about.
+/// Approximate size of a bin of a noisy line.
 const BIN_BYTES: u64 = 14;
 
 impl Detail {
-    /// The lines of a report share the room.
+    /// Divides the size among the lines of a report.
     pub(super) fn shared_by(self, report: &RunReport) -> Self {
         if self != Self::WhenZoomed {
             return self;
@@ -74,42 +60,62 @@ fn is_thinned(trace: &Trace) -> bool {
     trace.len() as u64 > OVERVIEW_BINS
 }
 
-/// Whether its lines are drawn fine.
+/// Whether its lines are drawn thin.
 pub(super) fn is_dense(report: &RunReport) -> bool {
     report.duration_s > DENSE_S
 }
 
-/// Units of a sheet in which the finer lines are placed: at the largest zoom,
-/// half a pixel.
+/// Units per pixel of the finer lines: at the largest zoom, half a pixel.
 const DETAIL_PER_UNIT: i32 = 10;
 
-/// A curve as SVG; `on_panel` says where a point is, px.
+/// Directions of many turns within one, and the lines broken at north.
+fn folded(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
+    let mut folded: Vec<Vec<Point>> = Vec::new();
+    for line in lines {
+        let mut last: Option<f64> = None;
+        for Point { time_s, value } in line {
+            let value = value.rem_euclid(360.0);
+            let point = Point { time_s, value };
+            let continues = last.is_some_and(|last| (value - last).abs() < 180.0);
+            last = Some(value);
+            match folded.last_mut().filter(|_| continues) {
+                Some(line) => line.push(point),
+                None => folded.push(vec![point]),
+            }
+        }
+    }
+    folded
+}
+
+/// Draws a curve, of directions within one turn if they `fold`; `on_panel`
+/// converts a point to px.
 pub(super) fn markup(
+    sheet: &mut Sheet,
     curve: &Curve,
     is_dense: bool,
+    fold: bool,
     detail: Detail,
     on_panel: impl Fn(Point) -> (f64, f64),
-) -> String {
+) {
     let (colour, width_px) = curve.ink.pen(is_dense);
     let dashes = match curve.ink {
         Ink::Desired => format!(" stroke-dasharray=\"{} {}\"", px(5.0), px(3.0)),
         Ink::Measured | Ink::Actual => String::new(),
     };
-    let line = |class: &str, scale: i32, trace: &Trace| {
+    let mut line = |class: &str, scale: i32, trace: &Trace| {
         let grid = |point| {
             let (x, y) = on_panel(point);
             (px(x * f64::from(scale)), px(y * f64::from(scale)))
         };
-        let path = path(&trace.lines(), grid);
-        if path.is_empty() {
-            return String::new();
+        let lines = trace.lines();
+        let lines = if fold { folded(lines) } else { lines };
+        let (path, width) = (path(&lines, grid), px(width_px));
+        if !path.is_empty() {
+            sheet.raw(format_args!(
+                "<path{class} fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                 stroke-linecap=\"round\"{dashes} d=\"{path}\"/>"
+            ));
         }
-        format!(
-            "<path{class} fill=\"none\" stroke=\"{}\" \
-             stroke-width=\"{}\" stroke-linecap=\"round\"{dashes} d=\"{path}\"/>\n",
-            hex(colour),
-            px(width_px),
-        )
     };
     let overview = curve.trace.thinned(OVERVIEW_BINS);
     match detail {
@@ -118,8 +124,8 @@ pub(super) fn markup(
                 " class=\"detail\" display=\"none\" transform=\"scale({})\"",
                 1.0 / f64::from(DETAIL_PER_UNIT)
             );
-            line(" class=\"overview\"", 1, &overview)
-                + &line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins))
+            line(" class=\"overview\"", 1, &overview);
+            line(&scaled, DETAIL_PER_UNIT, &curve.trace.thinned(bins));
         }
         _ => line("", 1, &overview),
     }
@@ -138,7 +144,7 @@ fn path(lines: &[Vec<Point>], grid: impl Fn(Point) -> (i32, i32)) -> String {
         let mut level = 0;
         let mut open = false;
         for (x, y) in points {
-            // What is no range has places beyond any sheet.
+            // A value without a range can lie far outside.
             let (across, down) = (x.saturating_sub(at.0), y.saturating_sub(at.1));
             at = (x, y);
             if down == 0 {
@@ -165,7 +171,7 @@ fn level_move(path: &mut String, level: &mut i32, open: &mut bool) {
     }
 }
 
-/// A number of a list: its sign separates it, too.
+/// A number in a list: its sign separates it, too.
 fn number(path: &mut String, number: i32) {
     let is_first = path.ends_with('l');
     if number >= 0 && !is_first {
@@ -177,6 +183,16 @@ fn number(path: &mut String, number: i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_direction_past_north_begins_a_line_in_the_next_turn() {
+        let line = [350.0, 355.0, 370.0, 380.0].map(|value| Point { time_s: 0.0, value });
+        let values: Vec<Vec<f64>> = folded(vec![line.to_vec()])
+            .iter()
+            .map(|line| line.iter().map(|point| point.value).collect())
+            .collect();
+        assert_eq!(values, [[350.0, 355.0], [10.0, 20.0]]);
+    }
 
     /// By the path grammar of SVG 1.1, section 8.3.
     #[test]

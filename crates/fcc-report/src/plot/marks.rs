@@ -1,23 +1,22 @@
-//! Events as numbered marks, as many as there is room for.
+//! Events as numbered marks, as far as there is room.
 
 use super::super::events::{EventLine, Weight};
-use super::canvas::{SMALL_PX, text_width_px};
+use super::sheet::{SMALL_PX, text_width_px};
 
-/// Events that are too close to be told apart, under one mark.
+/// One mark for events that are too close to be distinguished.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Mark {
-    /// Of the weightiest of them, px on the sheet.
+    /// Of the most important event, px on the sheet.
     pub(crate) at_px: f64,
     /// Number of the first.
     first: usize,
     /// Number of the last.
     last: usize,
-    /// Of the weightiest.
+    /// Of the most important event.
     weight: Weight,
 }
 
-/// Marks for all events, none on top of another; `x_px` says where on the
-/// sheet a time is.
+/// Marks for all events, without overlap; `x_px` converts a time to px.
 pub(crate) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for event in events {
@@ -27,7 +26,7 @@ pub(crate) fn marks(events: &[EventLine], x_px: impl Fn(f64) -> f64) -> Vec<Mark
             last: event.number,
             weight: event.weight,
         };
-        // A joint mark is wider, and may reach the one before it.
+        // A joint mark is wider, and may touch the previous one.
         while let Some(before) = marks.pop_if(|before| before.touches(&mark)) {
             mark = before.join(mark);
         }
@@ -84,13 +83,13 @@ mod tests {
     }
 
     #[test]
-    fn close_events_share_a_mark_at_the_weightiest() {
+    fn close_events_share_a_mark_at_the_most_important() {
         let events = [
             event(1, 0.0, Weight::Minor),
-            event(2, 100.0, Weight::Asked),
+            event(2, 100.0, Weight::Command),
             event(3, 101.0, Weight::State),
             event(4, 102.0, Weight::Minor),
-            event(5, 300.0, Weight::Wrong),
+            event(5, 300.0, Weight::Fault),
         ];
         let marks = marks(&events, |time_s| time_s);
         let seen: Vec<_> = marks.iter().map(|m| (m.label(), m.at_px)).collect();

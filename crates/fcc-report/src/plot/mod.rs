@@ -1,57 +1,48 @@
-//! The plots of a report: SVG that stands inside a page, prints in black and
-//! white as well as in colour, and needs nothing from elsewhere.
+//! The plots of a report: SVG inside a page, without other files, legible in
+//! black and white as well as in colour.
 //!
-//! One style for all: what is actual is a dark solid line, what is desired a
-//! thin dashed one; legends stand above the data and never on it; axes carry
-//! their unit; every plot over time has the same time axis, tinted where the
-//! loop was not engaged, with the events numbered as in the table.
+//! One style for all: actual values are a dark solid line, desired ones a thin
+//! dashed line; legends are above the data; axes have units; every plot over
+//! time has the same time axis, tinted while the loop was not engaged, with the
+//! events numbered as in the table.
 
 pub(crate) mod axis;
-pub(crate) mod canvas;
 mod curves;
+mod figure;
 mod marks;
 pub(crate) mod panel;
 mod percentile_ranges;
+pub(crate) mod sheet;
 mod time_figure;
 mod time_plots;
 mod timeline;
 mod timing;
 
-pub use canvas::PlotError;
-pub(crate) use curves::{Detail, Ink};
+pub(crate) use curves::Detail;
+pub use figure::Figure;
 
-use super::RunReport;
+use super::report::RunReport;
 
-/// A plot with its words.
-pub struct Figure {
-    /// What it shows.
-    pub title: String,
-    /// How to read it.
-    pub caption: String,
-    /// The picture.
-    pub svg: String,
-}
-
-/// The figures of a page, by its sections.
+/// The figures of a page, by section.
 #[derive(Default)]
 pub(super) struct Figures {
     /// States and events.
     pub(super) timeline: Vec<Figure>,
     /// Measurements, set points and outputs.
     pub(super) values: Vec<Figure>,
-    /// How the loop kept time.
+    /// Timing of the loop.
     pub(super) timing: Vec<Figure>,
 }
 
-/// Draws all that there is to draw.
-pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Figures, PlotError> {
+/// Draws all figures that have data.
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Figures {
     if report.continuity.ticks == 0 {
-        return Ok(Figures::default());
+        return Figures::default();
     }
     let detail = detail.shared_by(report);
-    Ok(Figures {
-        timeline: vec![timeline::timeline(report)?],
-        values: time_plots::figures(report, detail)?,
-        timing: timing::figures(report, detail)?,
-    })
+    Figures {
+        timeline: vec![timeline::timeline(report)],
+        values: time_plots::figures(report, detail),
+        timing: timing::figures(report, detail),
+    }
 }

@@ -1,16 +1,12 @@
-//! One pair of axes, and what is drawn between them.
-
-use plotters::chart::ChartContext;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, VPos};
+//! One pair of axes, and where its values are on a sheet.
 
 use super::axis::Axis;
-use super::canvas::{Area, Drawn, FAINT, GRID, LABEL_PX, PlotError, TEXT, pen, px, text};
+use super::sheet::{
+    Anchor, Colour, Dot, FAINT, FINE_GRID, Font, GRID, Height, LABEL_PX, Place, Sheet, TEXT, px,
+};
 
-type Chart<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
-
-/// Where a panel lies on its sheet, px from the sheet's upper left, axes and
-/// their words not included.
+/// Position of a panel on its sheet, px from the upper left, without its axis
+/// labels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) left: f64,
@@ -19,139 +15,109 @@ pub(crate) struct Frame {
     pub(crate) bottom: f64,
 }
 
-/// Room for the words of an axis, px.
-const X_WORDS_PX: f64 = 34.0;
-const Y_WORDS_PX: f64 = 54.0;
+/// Room for the labels of an axis, px.
+const X_LABELS_PX: f64 = 34.0;
+const Y_LABELS_PX: f64 = 54.0;
+/// Length of a tick, px.
+const TICK_PX: f64 = 3.0;
 
-/// One pair of axes, and what is drawn between them.
-pub(crate) struct Panel<'a> {
-    area: Area<'a>,
-    chart: Chart<'a>,
-    x: Axis,
-    y: Axis,
-    frame: Frame,
+/// One pair of axes.
+pub(crate) struct Panel {
+    pub(crate) frame: Frame,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
 }
 
-impl<'a> Panel<'a> {
-    /// A panel in its frame; nothing is drawn yet.
-    pub(crate) fn new(area: &Area<'a>, frame: Frame, x: Axis, y: Axis) -> Result<Self, PlotError> {
-        let left = frame.left - Y_WORDS_PX;
-        let cell = area.clone().shrink(
-            (px(left), px(frame.top)),
-            (
-                px(frame.right - left),
-                px(frame.bottom - frame.top + X_WORDS_PX),
-            ),
-        );
-        let chart = ChartBuilder::on(&cell)
-            .x_label_area_size(px(X_WORDS_PX))
-            .y_label_area_size(px(Y_WORDS_PX))
-            .build_cartesian_2d(x.clone(), y.clone())?;
-        Ok(Self {
-            area: area.clone(),
-            chart,
-            x,
-            y,
-            frame,
-        })
-    }
-
-    /// Tints the whole height from one x to another.
-    pub(crate) fn tint(&mut self, from: f64, to: f64, ink: RGBColor) -> Drawn {
-        let (from, to) = (from.max(self.x.from), to.min(self.x.to));
-        if from < to {
-            let corners = [(from, self.y.from), (to, self.y.to)];
-            self.chart
-                .draw_series([Rectangle::new(corners, ink.filled())])?;
-        }
-        Ok(())
-    }
-
-    /// Draws grid and axes; the words of the x axis if they are wanted.
-    pub(crate) fn axes(&mut self, with_x_words: bool) -> Drawn {
-        let label = text(LABEL_PX, TEXT, HPos::Center, VPos::Center);
-        let (log, silent) = (
-            !self.x.light.is_empty() || !self.y.light.is_empty(),
-            |_: &f64| String::new(),
-        );
-        let mut mesh = self.chart.configure_mesh();
-        mesh.bold_line_style(pen(GRID, 0.6))
-            .light_line_style(pen(RGBColor(240, 240, 240), 0.5))
-            .axis_style(pen(FAINT, 0.8))
-            .label_style(label.clone())
-            .axis_desc_style(label)
-            .set_all_tick_mark_size(px(3.0));
-        if !log {
-            mesh.light_line_style(TRANSPARENT);
-        }
-        if !with_x_words {
-            mesh.x_label_formatter(&silent);
-        }
-        mesh.draw()?;
-        self.titles(with_x_words)
-    }
-
-    fn titles(&self, with_x_title: bool) -> Drawn {
+impl Panel {
+    /// Where a point of the axes is on the sheet.
+    pub(crate) fn place(&self, (x, y): (f64, f64)) -> Place {
         let frame = self.frame;
-        if with_x_title && !self.x.title.is_empty() {
-            let at = (
-                px(f64::midpoint(frame.left, frame.right)),
-                px(frame.bottom + X_WORDS_PX - 4.0),
-            );
-            let style = text(LABEL_PX, TEXT, HPos::Center, VPos::Bottom);
-            self.area.draw_text(&self.x.title, &style, at)?;
-        }
-        if !self.y.title.is_empty() {
-            let at = (
-                px(frame.left - Y_WORDS_PX + 4.0),
-                px(f64::midpoint(frame.top, frame.bottom)),
-            );
-            let style =
-                text(LABEL_PX, TEXT, HPos::Center, VPos::Top).transform(FontTransform::Rotate270);
-            self.area.draw_text(&self.y.title, &style, at)?;
-        }
-        Ok(())
+        let share = |value: f64, axis: &Axis| (value - axis.from) / (axis.to - axis.from);
+        (
+            frame.left + share(x, &self.x) * (frame.right - frame.left),
+            frame.bottom - share(y, &self.y) * (frame.bottom - frame.top),
+        )
     }
 
-    /// Draws a line through points of the axes.
-    pub(crate) fn polyline(&mut self, points: Vec<(f64, f64)>, style: ShapeStyle) -> Drawn {
-        // A line of one point would be nothing at all.
-        if let [(x, y)] = points.as_slice() {
-            let (at, radius) = ((*x, *y), px(0.8));
-            self.chart
-                .draw_series([Circle::new(at, radius, style.color.filled())])?;
-        } else {
-            self.chart.draw_series([PathElement::new(points, style)])?;
-        }
-        Ok(())
-    }
-
-    /// Draws a filled rectangle between points of the axes.
-    pub(crate) fn bar(&mut self, from: (f64, f64), to: (f64, f64), style: ShapeStyle) -> Drawn {
-        self.chart
-            .draw_series([Rectangle::new([from, to], style)])?;
-        Ok(())
-    }
-
-    /// Draws a dot, filled or not.
-    pub(crate) fn dot(&mut self, at: (f64, f64), radius_px: f64, style: ShapeStyle) -> Drawn {
-        self.chart
-            .draw_series([Circle::new(at, px(radius_px), style)])?;
-        Ok(())
-    }
-
-    /// Whether the x axis reaches a value.
+    /// Whether the x axis contains a value.
     pub(crate) fn shows(&self, x: f64) -> bool {
         (self.x.from..=self.x.to).contains(&x)
     }
 
-    /// Where a point of the axes lies on the sheet, px.
-    pub(crate) fn on_sheet(&self, at: (f64, f64)) -> (f64, f64) {
-        let frame = self.frame;
-        let share = |value: f64, axis: &Axis| (value - axis.from) / (axis.to - axis.from);
-        (
-            frame.left + share(at.0, &self.x) * (frame.right - frame.left),
-            frame.bottom - share(at.1, &self.y) * (frame.bottom - frame.top),
-        )
+    /// Fills the rectangle between two points of the axes.
+    pub(crate) fn fill(&self, sheet: &mut Sheet, from: Place, to: Place, fill: Colour) {
+        sheet.rectangle(self.place(from), self.place(to), fill);
+    }
+
+    /// Draws a line through points of the axes.
+    pub(crate) fn line(&self, sheet: &mut Sheet, points: &[Place], ink: Colour, width_px: f64) {
+        let places: Vec<Place> = points.iter().map(|point| self.place(*point)).collect();
+        sheet.line(&places, ink, width_px);
+    }
+
+    /// Draws a dot at a point of the axes.
+    pub(crate) fn dot(&self, sheet: &mut Sheet, at: Place, radius_px: f64, dot: Dot) {
+        sheet.dot(self.place(at), radius_px, dot);
+    }
+
+    /// Draws both axes with their grids; the label of the x axis if they are
+    /// wanted.
+    pub(crate) fn axes(&self, sheet: &mut Sheet, with_x_labels: bool) {
+        let (x, y) = (&self.x, &self.y);
+        let grid = |sheet: &mut Sheet, xs: &[f64], ys: &[f64], ink| {
+            for at in xs {
+                self.line(sheet, &[(*at, y.from), (*at, y.to)], ink, 0.6);
+            }
+            for at in ys {
+                self.line(sheet, &[(x.from, *at), (x.to, *at)], ink, 0.6);
+            }
+        };
+        let ticks = |axis: &Axis| axis.ticks.iter().map(|(at, _)| *at).collect::<Vec<_>>();
+        grid(sheet, &x.light, &y.light, FINE_GRID);
+        grid(sheet, &ticks(x), &ticks(y), GRID);
+        self.y_axis(sheet);
+        self.x_axis(sheet, with_x_labels);
+    }
+
+    fn y_axis(&self, sheet: &mut Sheet) {
+        let Frame {
+            left, top, bottom, ..
+        } = self.frame;
+        sheet.line(&[(left, top), (left, bottom)], FAINT, 0.8);
+        for (at, label) in &self.y.ticks {
+            let (_, y) = self.place((self.x.from, *at));
+            sheet.line(&[(left - TICK_PX, y), (left, y)], FAINT, 0.8);
+            let font = Font(LABEL_PX, TEXT, Anchor::End, Height::Middle);
+            sheet.text((left - 6.0, y), label, font);
+        }
+        if !self.y.title.is_empty() {
+            let (x, y) = (left - Y_LABELS_PX + 4.0, f64::midpoint(top, bottom));
+            let turned = format!("rotate(270, {}, {})", px(x), px(y));
+            let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
+            sheet.transformed_text((x, y), &self.y.title, font, "", &turned);
+        }
+    }
+
+    fn x_axis(&self, sheet: &mut Sheet, with_labels: bool) {
+        let Frame {
+            left,
+            right,
+            bottom,
+            ..
+        } = self.frame;
+        sheet.line(&[(left, bottom), (right, bottom)], FAINT, 0.8);
+        for (at, label) in &self.x.ticks {
+            let (x, _) = self.place((*at, self.y.from));
+            sheet.line(&[(x, bottom), (x, bottom + TICK_PX)], FAINT, 0.8);
+            if with_labels {
+                let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
+                sheet.text((x, bottom + 6.0), label, font);
+            }
+        }
+        if with_labels {
+            let at = (f64::midpoint(left, right), bottom + X_LABELS_PX - 4.0);
+            let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Bottom);
+            sheet.text(at, &self.x.title, font);
+        }
     }
 }

@@ -1,39 +1,38 @@
 //! Plots over time, one panel above another.
 
-use std::fmt::Write as _;
-
-use plotters::prelude::*;
-
-use super::super::RunReport;
-use super::super::plots::Curve;
+use super::super::plots::{Curve, Ink};
+use super::super::report::RunReport;
 use super::super::states::Phase;
 use super::super::trace::Point;
 use super::axis::Axis;
-use super::canvas::{
-    Area, Drawn, FAINT, GRID, LABEL_PX, PlotError, SMALL_PX, Sample, TEXT, WIDTH_PX, draw, hex,
-    legend, pen, px,
-};
-use super::curves::{Detail, Ink, is_dense, markup};
+
+use super::curves::{Detail, is_dense, markup};
 use super::marks::{Mark, marks};
 use super::panel::{Frame, Panel};
+use super::sheet::{
+    Anchor, Colour, FAINT, Font, GRID, Height, LABEL_PX, MARK, SMALL_PX, Sample, Sheet, TEXT,
+    WIDTH_PX, px,
+};
 
-/// Edges of all panels over time, px: the same in every figure, so that one
-/// can be laid upon another.
+/// Left and right edge of all panels over time, px: the same in every figure,
+/// so that figures can be compared.
 pub(super) const LEFT_PX: f64 = 60.0;
 pub(super) const RIGHT_PX: f64 = WIDTH_PX - 12.0;
 
 const LEGEND_PX: f64 = 20.0;
 const MARKS_PX: f64 = 14.0;
 const BETWEEN_PX: f64 = 12.0;
-const X_WORDS_PX: f64 = 36.0;
+const X_LABELS_PX: f64 = 36.0;
 
-/// Where records are missing.
-const GAP: RGBColor = RGBColor(255, 238, 170);
+/// Missing records.
+const GAP: Colour = "#FFEEAA";
 
 /// A panel of a figure over time.
 pub(super) struct TimePanel<'a> {
     pub(super) height_px: f64,
     pub(super) y: Axis,
+    /// Whether they are directions, drawn within one turn.
+    pub(super) fold: bool,
     /// Drawn in this order.
     pub(super) curves: &'a [Curve],
 }
@@ -44,143 +43,109 @@ pub(super) fn time_figure(
     label: &str,
     detail: Detail,
     panels: &[TimePanel<'_>],
-) -> Result<String, PlotError> {
+) -> String {
     let top = LEGEND_PX + MARKS_PX;
     let mut bottom = top - BETWEEN_PX;
-    let mut frames = Vec::new();
-    for panel in panels {
+    let axis = time_axis(report);
+    let marks = marks(&report.events, |time_s| time_px(report, time_s));
+    let mut sheet = Sheet::default();
+    sheet.legend((LEFT_PX, LEGEND_PX / 2.0 - 1.0), legend(report, panels));
+    for (number, panel) in panels.iter().enumerate() {
         let top = bottom + BETWEEN_PX;
         bottom = top + panel.height_px;
-        frames.push(Frame {
+        let frame = Frame {
             left: LEFT_PX,
             top,
             right: RIGHT_PX,
             bottom,
-        });
-    }
-    let axis = time_axis(report);
-    let mut svg = draw(bottom + X_WORDS_PX, label, |area| {
-        legend_of(area, report, panels)?;
-        for (panel, frame) in panels.iter().zip(&frames) {
-            // What moves when the plot is zoomed in time is not the library's.
-            let bare = Axis {
+        };
+        ground(&mut sheet, report, frame, &axis, &marks);
+        // The ticks of the time are drawn apart: they move when it is zoomed.
+        let axes = Panel {
+            frame,
+            x: Axis {
                 ticks: Vec::new(),
                 ..axis.clone()
-            };
-            let mut drawn = Panel::new(area, *frame, bare, panel.y.clone())?;
-            drawn.axes(frame.bottom == bottom)?;
-        }
-        Ok(())
-    })?;
-    let marks = marks(&report.events, |time_s| time_px(report, time_s));
-    let mut words = String::new();
+            },
+            y: panel.y.clone(),
+        };
+        axes.axes(&mut sheet, number + 1 == panels.len());
+        zoomable(&mut sheet, frame, |sheet| {
+            for curve in panel.curves {
+                let on_panel = |point: Point| {
+                    let (x, y) = axes.place((point.time_s, point.value));
+                    (x - LEFT_PX, y - top)
+                };
+                markup(sheet, curve, is_dense(report), panel.fold, detail, on_panel);
+            }
+        });
+    }
+    sheet.raw(format_args!("<g class=\"times\">"));
     for (at_s, label) in &axis.ticks {
-        let (x, y) = (px(time_px(report, *at_s)), px(bottom + 6.0));
-        let _ = write!(
-            words,
-            "<text x=\"{x}\" y=\"{y}\" dy=\"0.76em\">{label}</text>"
-        );
+        let font = Font(LABEL_PX, TEXT, Anchor::Middle, Height::Top);
+        sheet.text((time_px(report, *at_s), bottom + 6.0), label, font);
     }
-    let size = px(LABEL_PX);
-    words = format!(
-        "<g class=\"times\" text-anchor=\"middle\" font-size=\"{size}\" fill=\"{}\">{words}</g>\n",
-        hex(TEXT)
-    );
+    sheet.raw(format_args!("</g>"));
     for mark in &marks {
-        let (x, y, size) = (px(mark.at_px), px(top - 1.0), px(SMALL_PX));
-        let _ = writeln!(
-            words,
-            "<text class=\"mark\" x=\"{x}\" y=\"{y}\" dy=\"-0.5ex\" text-anchor=\"middle\" \
-             font-size=\"{size}\" fill=\"{}\" data-at=\"{x}\">{}</text>",
-            hex(FAINT),
-            mark.label()
-        );
+        let font = Font(SMALL_PX, FAINT, Anchor::Middle, Height::Bottom);
+        sheet.transformed_text((mark.at_px, top - 1.0), &mark.label(), font, "mark", "");
     }
-    let panels = panels.iter().zip(&frames);
-    let lines = panels.map(|(panel, frame)| lines(report, panel, *frame, detail));
-    let lines: String = lines.collect();
-    let end = svg.rfind("</svg>").unwrap_or(svg.len());
-    svg.insert_str(end, &(lines + &words));
-    let grounds: String = frames
-        .iter()
-        .map(|frame| ground(report, *frame, &axis, &marks))
-        .collect();
-    let begin = svg.find('>').map_or(0, |at| at + 1);
-    svg.insert_str(begin, &grounds);
-    // For the page's script: where the axis of time is.
-    let (left, right) = (px(LEFT_PX), px(RIGHT_PX));
-    let (end_s, unit_s) = (end_s(report), unit(report).0);
-    let axis = format!(
-        " data-left=\"{left}\" data-right=\"{right}\" data-end=\"{end_s}\" data-unit=\"{unit_s}\""
-    );
-    svg.insert_str("<svg".len(), &axis);
-    Ok(svg)
+    // For the page's script: the position of the time axis.
+    let data = [
+        ("left", f64::from(px(LEFT_PX))),
+        ("right", f64::from(px(RIGHT_PX))),
+        ("end", end_s(report)),
+        ("unit", unit(report).0),
+    ];
+    sheet.finish(bottom + X_LABELS_PX, label, &data)
 }
 
-/// What is drawn over time in a panel, from its upper left corner: a part of the
-/// sheet that can be zoomed by itself.
-fn zoomable(frame: Frame, content: &str) -> String {
+/// The content of a panel, from its upper left corner: a part of the sheet that
+/// can be zoomed by itself.
+fn zoomable(sheet: &mut Sheet, frame: Frame, draw: impl FnOnce(&mut Sheet)) {
     let (x, y) = (px(frame.left), px(frame.top));
     let (width, height) = (px(frame.right - frame.left), px(frame.bottom - frame.top));
-    format!(
+    sheet.raw(format_args!(
         "<svg class=\"time\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" preserveAspectRatio=\"none\">\n{content}</svg>\n"
-    )
-}
-
-fn lines(report: &RunReport, panel: &TimePanel<'_>, frame: Frame, detail: Detail) -> String {
-    let (y, height_px) = (&panel.y, frame.bottom - frame.top);
-    let on_panel = |point: Point| {
-        let share = (y.to - point.value) / (y.to - y.from);
-        (time_px(report, point.time_s) - LEFT_PX, share * height_px)
-    };
-    let curves = panel.curves.iter();
-    let curves: String = curves
-        .map(|curve| markup(curve, is_dense(report), detail, on_panel))
-        .collect();
-    zoomable(frame, &curves)
+         viewBox=\"0 0 {width} {height}\" preserveAspectRatio=\"none\">"
+    ));
+    draw(sheet);
+    sheet.raw(format_args!("</svg>"));
 }
 
 /// Tints, the grid of the time and the marks of events.
-fn ground(report: &RunReport, frame: Frame, axis: &Axis, marks: &[Mark]) -> String {
-    let height = px(frame.bottom - frame.top);
-    let at = |time_s: f64| px(time_px(report, time_s) - LEFT_PX);
-    let mut content = String::new();
+fn ground(sheet: &mut Sheet, report: &RunReport, frame: Frame, axis: &Axis, marks: &[Mark]) {
+    let height = frame.bottom - frame.top;
+    let at = |time_s: f64| time_px(report, time_s) - LEFT_PX;
     let states = report.states.iter();
     let tints = states.filter_map(|span| Some((span.from_s, span.to_s, tint(span.phase)?)));
     let gaps = report.continuity.gaps.iter();
     let gaps = gaps.map(|gap| (gap.from_s, gap.to_s, GAP));
-    for (from_s, to_s, colour) in tints.chain(gaps) {
-        // One too short to be seen is seen all the same.
-        let (x, width) = (at(from_s), (at(to_s) - at(from_s)).max(px(1.0)));
-        let _ = writeln!(
-            content,
-            "<rect x=\"{x}\" y=\"0\" width=\"{width}\" height=\"{height}\" fill=\"{}\"/>",
-            hex(colour)
-        );
-    }
-    let mut upright = |class: &str, colour: RGBColor, places: &mut dyn Iterator<Item = i32>| {
-        let places: Vec<String> = places.map(|x| format!("M{x} 0v{height}")).collect();
-        let path = places.concat();
-        let _ = writeln!(
-            content,
-            "<path class=\"{class}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" d=\"{path}\"/>",
-            hex(colour),
-            px(0.6)
-        );
+    let upright = |sheet: &mut Sheet, class: &str, colour: Colour, places: Vec<f64>| {
+        let moves = places
+            .iter()
+            .map(|x| format!("M{} 0v{}", px(*x), px(height)));
+        let path = moves.collect::<Vec<_>>().concat();
+        sheet.raw(format_args!(
+            "<path class=\"{class}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"6\" \
+             d=\"{path}\"/>"
+        ));
     };
-    upright(
-        "grid",
-        GRID,
-        &mut axis.ticks.iter().map(|(time_s, _)| at(*time_s)),
-    );
-    let marked = marks.iter().map(|mark| px(mark.at_px - LEFT_PX));
-    upright("marks", RGBColor(190, 190, 190), &mut marked.into_iter());
-    zoomable(frame, &content)
+    zoomable(sheet, frame, |sheet| {
+        for (from_s, to_s, colour) in tints.chain(gaps) {
+            // Short gaps are widened so that they are visible.
+            let right = at(to_s).max(at(from_s) + 1.0);
+            sheet.rectangle((at(from_s), 0.0), (right, height), colour);
+        }
+        let ticks = axis.ticks.iter().map(|(time_s, _)| at(*time_s));
+        upright(sheet, "grid", GRID, ticks.collect());
+        let marks = marks.iter().map(|mark| mark.at_px - LEFT_PX);
+        upright(sheet, "marks", MARK, marks.collect());
+    });
 }
 
-/// What lines and tints mean, in a row above the panels.
-fn legend_of(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> Drawn {
+/// A legend of lines and tints, above the panels.
+fn legend(report: &RunReport, panels: &[TimePanel<'_>]) -> Vec<(Sample, &'static str)> {
     let curves = panels.iter().flat_map(|panel| panel.curves);
     let drawn: Vec<&Curve> = curves.filter(|curve| curve.trace.len() > 0).collect();
     let of = |ink: Ink| drawn.iter().find(|curve| curve.ink == ink);
@@ -189,7 +154,7 @@ fn legend_of(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> D
         .filter_map(of)
         .map(|curve| {
             let (colour, width_px) = curve.ink.pen(false);
-            (Sample::Line(pen(colour, width_px)), curve.name)
+            (Sample::Line(colour, width_px), curve.name)
         })
         .collect();
     // One line needs no name.
@@ -200,23 +165,23 @@ fn legend_of(area: &Area<'_>, report: &RunReport, panels: &[TimePanel<'_>]) -> D
     let phases = [Phase::Standby, Phase::Failsafe, Phase::Stopped].into_iter();
     let tints = phases
         .filter(|phase| in_phase(*phase))
-        .filter_map(|phase| Some((tint(phase)?, words(phase))))
+        .filter_map(|phase| Some((tint(phase)?, phase_name(phase))))
         .chain((report.continuity.lost > 0).then_some((GAP, "records missing")));
-    entries.extend(tints.map(|(tint, words)| (Sample::Block(tint), words)));
-    legend(area, LEFT_PX, LEGEND_PX / 2.0 - 1.0, entries)
+    entries.extend(tints.map(|(tint, name)| (Sample::Block(tint), name)));
+    entries
 }
 
-/// The ground of a panel where the loop was not engaged.
-pub(super) fn tint(phase: Phase) -> Option<RGBColor> {
+/// The background of a panel while the loop was not engaged.
+pub(super) fn tint(phase: Phase) -> Option<Colour> {
     match phase {
         Phase::Engaged => None,
-        Phase::Standby => Some(RGBColor(240, 240, 238)),
-        Phase::Failsafe => Some(RGBColor(251, 222, 214)),
-        Phase::Stopped => Some(RGBColor(216, 216, 214)),
+        Phase::Standby => Some("#F0F0EE"),
+        Phase::Failsafe => Some("#FBDED6"),
+        Phase::Stopped => Some("#D8D8D6"),
     }
 }
 
-pub(super) fn words(phase: Phase) -> &'static str {
+pub(super) fn phase_name(phase: Phase) -> &'static str {
     match phase {
         Phase::Standby => "standby",
         Phase::Engaged => "engaged",
@@ -225,18 +190,19 @@ pub(super) fn words(phase: Phase) -> &'static str {
     }
 }
 
-/// Where on the sheet a time is, px.
+/// Position of a time on the sheet, px.
 pub(super) fn time_px(report: &RunReport, time_s: f64) -> f64 {
     let share = (time_s / end_s(report)).clamp(0.0, 1.0);
     LEFT_PX + share * (RIGHT_PX - LEFT_PX)
 }
 
 fn end_s(report: &RunReport) -> f64 {
-    // One tick has no duration, and its axis must have one.
+    // One tick has no duration, but the axis needs one.
     report.duration_s.max(0.1)
 }
 
-/// The axis of time: its coordinate is in seconds, its words in what suits.
+/// The axis of time: its coordinate is in seconds, its labels in a suitable
+/// unit.
 pub(super) fn time_axis(report: &RunReport) -> Axis {
     let (end_s, (unit_s, unit)) = (end_s(report), unit(report));
     let mut axis = Axis::exactly(

@@ -1,36 +1,44 @@
 //! Measurements, set points and outputs over time.
 
-use super::super::RunReport;
 use super::super::plots::{Panel, Plot, Scale};
-use super::Figure;
-use super::axis::{Axis, extent, number};
-use super::canvas::PlotError;
+use super::super::report::RunReport;
+use super::axis::{Axis, extent};
 use super::curves::Detail;
+use super::figure::Figure;
 use super::time_figure::{TimePanel, time_figure};
 
 /// The figures of all plots of a report.
-pub(super) fn figures(report: &RunReport, detail: Detail) -> Result<Vec<Figure>, PlotError> {
+pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
     let plots = report.plots.iter();
     plots.map(|plot| figure(report, plot, detail)).collect()
 }
 
-fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Result<Figure, PlotError> {
+fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
     let panels = plot.panels.iter().map(|panel| TimePanel {
         height_px: panel.height_px,
         y: axis(panel, plot),
+        fold: panel.scale == Scale::Compass && turns_often(extent_of(panel)),
         curves: &panel.curves,
     });
     let panels: Vec<_> = panels.collect();
     let label = format!("{} over time", plot.title);
-    Ok(Figure {
+    Figure {
         title: plot.title.clone(),
         caption: plot.caption.clone(),
-        svg: time_figure(report, &label, detail, &panels)?,
-    })
+        svg: time_figure(report, &label, detail, &panels),
+    }
+}
+
+fn extent_of(panel: &Panel) -> (f64, f64) {
+    extent(panel.curves.iter().map(|curve| &curve.trace))
+}
+
+/// Whether directions are of so many turns that each would be too small.
+fn turns_often((low, high): (f64, f64)) -> bool {
+    high - low > 1_080.0
 }
 
 fn axis(panel: &Panel, plot: &Plot) -> Axis {
-    let extent_of = |panel: &Panel| extent(panel.curves.iter().map(|curve| &curve.trace));
     let title = &panel.title();
     match panel.scale {
         Scale::Around(least) => {
@@ -50,15 +58,16 @@ fn axis(panel: &Panel, plot: &Plot) -> Axis {
     }
 }
 
-/// Directions are counted on through full turns, so that no line jumps at
-/// north; the words of the axis are those of the compass.
+/// Directions are counted beyond full turns, so that no line jumps at north,
+/// unless there are many turns; the labels are 0 to 360.
 fn compass(extent: (f64, f64), title: &str) -> Axis {
-    let words = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
+    let label = |at: f64| format!("{:03.0}", at.rem_euclid(360.0).round() % 360.0);
+    if turns_often(extent) {
+        return Axis::stepped((0.0, 360.0), 90.0, title, label);
+    }
     let axis = Axis::around(extent, 20.0, 5, title);
     let range = (axis.from, axis.to);
     let step = match range.1 - range.0 {
-        span if span > 3_600.0 => 360.0 * (span / 3_600.0).ceil(),
-        span if span > 2_160.0 => 360.0,
         span if span > 1_080.0 => 180.0,
         span if span > 360.0 => 90.0,
         span if span > 200.0 => 45.0,
@@ -66,11 +75,5 @@ fn compass(extent: (f64, f64), title: &str) -> Axis {
         span if span > 40.0 => 10.0,
         _ => 5.0,
     };
-    // Where every tick is at north, its words count the turns.
-    if step < 360.0 {
-        Axis::stepped(range, step, title, words)
-    } else {
-        let title = title.replace('°', "turns");
-        Axis::stepped(range, step, &title, |at| number(at / 360.0, 0))
-    }
+    Axis::stepped(range, step, title, label)
 }

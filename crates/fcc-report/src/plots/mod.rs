@@ -1,4 +1,4 @@
-//! The values over time that a report shows, in the units that people read.
+//! The plots of values over time.
 
 mod panel;
 
@@ -8,18 +8,20 @@ use fcc_telemetry::Telemetry;
 use fcc_telemetry::schema::{Column, columns};
 use fcc_telemetry::units::{SI, Shown};
 
-use super::page::capitalized;
-use super::plot::Ink;
+use super::terms::capitalized;
 use panel::Role;
-pub(crate) use panel::{Curve, Moment, Scale};
-pub use panel::{Panel, ValueRange};
+pub(crate) use panel::{Curve, Ink, Moment};
+pub use panel::{Panel, Scale, ValueRange};
 
 /// Values over time in panels, one above another.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    pub(crate) title: String,
-    pub(crate) caption: String,
-    pub(crate) panels: Vec<Panel>,
+    /// What it shows.
+    pub title: String,
+    /// How to read it.
+    pub caption: String,
+    /// From the top.
+    pub panels: Vec<Panel>,
 }
 
 /// The values of a record, by name.
@@ -35,7 +37,7 @@ impl Quantities {
         }
     }
 
-    /// The first number of that name in a part of the record.
+    /// The first number of this name in a part of the record.
     fn find<'a>(&'a self, part: &'a str, name: &str) -> Option<(usize, &'a Column)> {
         let mut numbers = self.numbers(part);
         numbers.find(|(_, column)| column.field == name)
@@ -53,8 +55,8 @@ impl Quantities {
         self.columns.iter().position(|column| column.path == path)
     }
 
-    /// Measurement, estimate and set point of a name.
-    pub(crate) fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
+    /// Measurement, estimate and set point of this name.
+    pub fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
         let measured = self.find("measurements", name);
         let estimated = self.find("estimate", name);
         let desired = self.find("setpoints", name);
@@ -77,8 +79,8 @@ impl Quantities {
         Panel::of(name, column.map(|(_, column)| column), units, curves)
     }
 
-    /// An output.
-    pub(crate) fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
+    /// An output, as `units` have it.
+    pub fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
         let output = self.find("outputs", name);
         let curve = |(value, _)| Curve::new(Ink::Actual, "commanded", Role::Output, value);
         let curves = output.map(curve).into_iter().collect();
@@ -86,7 +88,7 @@ impl Quantities {
     }
 }
 
-/// The plots that follow from what is declared.
+/// The plots that follow from the schema.
 pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
     let mut plots: Vec<Plot> = Vec::new();
     let mut shown: Vec<&'static str> = Vec::new();
@@ -120,12 +122,12 @@ pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
     plots.extend([
         Plot {
             title: "Other estimates and set points".to_owned(),
-            caption: "What is not measured.".to_owned(),
+            caption: "Values that are not measured.".to_owned(),
             panels: more.into_iter().map(|name| of.panel(name, SI)).collect(),
         },
         Plot {
             title: "Outputs".to_owned(),
-            caption: "What was commanded while the loop was in control.".to_owned(),
+            caption: "Commanded values while the loop had control.".to_owned(),
             panels: outputs.map(|name| of.output(name, SI)).collect(),
         },
     ]);
@@ -133,7 +135,7 @@ pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
     plots
 }
 
-/// The name for people of a reading at a path.
+/// The display name of a reading at a path.
 fn title_of<C: Telemetry>(path: &str) -> String {
     let mut readings: Vec<String> = Vec::new();
     for column in columns::<RecordOf<C>>() {

@@ -1,4 +1,4 @@
-//! One quantity over time.
+//! A panel: one quantity over time.
 
 use std::time::Duration;
 
@@ -8,35 +8,34 @@ use fcc_telemetry::schema::Column;
 use fcc_telemetry::units::Shown;
 use serde::Serialize;
 
-use crate::plot::Ink;
 use crate::trace::Trace;
 use crate::turns::Turns;
 
-/// A reading older than this is not drawn: the line ends where the sensor fell
-/// silent.
+/// A reading older than this is not drawn: the line ends where the sensor
+/// stopped.
 const OLDEST: Duration = Duration::from_secs(1);
 
 /// One quantity over time: as measured, as estimated, as desired.
 #[derive(Clone, Debug)]
 pub struct Panel {
     quantity: String,
-    /// For people.
+    /// The unit in the plots.
     shown_in: &'static str,
     pub(crate) height_px: f64,
     pub(crate) scale: Scale,
     pub(crate) curves: Vec<Curve>,
-    /// Display units in one of the record's.
+    /// Display units per unit of the record.
     factor: f64,
-    /// Whether it is an angle that begins again after a full turn.
+    /// Whether it is an angle that wraps after a full turn.
     wraps: bool,
-    /// Whether failsafe follows its set point, too.
+    /// Whether the set point is followed in failsafe, too.
     in_failsafe: bool,
 }
 
-/// What a value ranged over.
+/// Range of a value.
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct ValueRange {
-    /// What it is.
+    /// Name.
     pub quantity: String,
     /// `measured`, `actual` (estimated), `desired` or `commanded`.
     pub role: &'static str,
@@ -52,15 +51,26 @@ pub struct ValueRange {
 
 /// The vertical axis of a panel.
 #[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Scale {
-    /// Around the values, at least so long.
+pub enum Scale {
+    /// Around the values, at least this long.
     Around(f64),
-    /// The same for all such panels of a plot.
+    /// Around the values, the same for all such panels of a plot.
     Together(f64),
     /// From 0 to 100.
     Percent,
-    /// Around directions, in the words of a compass.
+    /// Around directions, with the labels of a compass.
     Compass,
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Ink {
+    /// Thin and pale, behind the others.
+    Measured,
+    /// Solid.
+    Actual,
+    /// Thin and dashed.
+    Desired,
 }
 
 /// One line of a panel.
@@ -70,7 +80,7 @@ pub(crate) struct Curve {
     pub(crate) name: &'static str,
     pub(crate) trace: Trace,
     role: Role,
-    /// Which value of the record it is.
+    /// Place of the value in the record.
     value: usize,
     turns: Turns,
 }
@@ -78,14 +88,14 @@ pub(crate) struct Curve {
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Role {
     Estimated,
-    /// With the place of the time it was taken, if it has one.
+    /// With the place of its time, if it has one.
     Measured(Option<usize>),
     Desired,
     Output,
 }
 
 impl Role {
-    /// Whether others are drawn in the turn that this one is in.
+    /// Whether the other curves are drawn in the turn of this one.
     const fn leads(self) -> bool {
         matches!(self, Self::Estimated | Self::Measured(_))
     }
@@ -106,10 +116,10 @@ impl Panel {
             quantity: unit::of(name).quantity.replace('_', " "),
             shown_in,
             height_px: 120.0,
-            scale: Scale::Around(
-                span.filter(|span| span.is_finite())
-                    .map_or(1e-3, |s| s / 10.0),
-            ),
+            scale: match (shown_in, range) {
+                ("%", Some((0.0, _))) => Scale::Percent,
+                _ => Scale::Around(span.filter(|s| s.is_finite()).map_or(1e-3, |s| s / 10.0)),
+            },
             curves,
             factor,
             wraps: shown_in == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
@@ -125,7 +135,7 @@ impl Panel {
         }
     }
 
-    /// What its lines range over.
+    /// The ranges of its lines.
     pub(crate) fn ranges(&self) -> impl Iterator<Item = ValueRange> {
         self.curves.iter().filter_map(|curve| {
             let (lowest, highest) = curve.trace.extent()?;
@@ -140,25 +150,30 @@ impl Panel {
         })
     }
 
-    /// The same under another name.
-    pub(crate) fn called(mut self, quantity: &str) -> Self {
+    /// The same with another name.
+    #[must_use]
+    pub fn called(mut self, quantity: &str) -> Self {
         quantity.clone_into(&mut self.quantity);
         self
     }
 
     /// The same in the record's own unit, a fraction of 1.
-    pub(crate) fn unscaled(mut self) -> Self {
+    #[must_use]
+    pub fn unscaled(mut self) -> Self {
         (self.shown_in, self.factor) = ("", 1.0);
         self
     }
 
-    pub(crate) fn sized(mut self, height_px: f64, scale: Scale) -> Self {
+    /// The same with a height, px, and a vertical axis.
+    #[must_use]
+    pub fn sized(mut self, height_px: f64, scale: Scale) -> Self {
         (self.height_px, self.scale) = (height_px, scale);
         self
     }
 
-    /// Failsafe follows its set point, too.
-    pub(crate) fn followed_in_failsafe(mut self) -> Self {
+    /// Draws the set point in failsafe, too.
+    #[must_use]
+    pub fn followed_in_failsafe(mut self) -> Self {
         self.in_failsafe = true;
         self
     }
@@ -175,11 +190,11 @@ impl Panel {
             Role::Measured(Some(taken)) => at.is_fresh(values.get(taken)),
             _ => true,
         };
-        // What is estimated is drawn as long as something is measured.
+        // An estimate is drawn while all measurements are fresh.
         let mut measured = self.curves.iter().filter(|curve| measures(curve));
         let known = measured.all(|curve| is_measured(curve) && number(curve).is_some());
         let mut lead = None;
-        // What leads the others comes last among its kind.
+        // The leader is the last of its kind.
         let leader = self.curves.iter().rposition(|curve| curve.role.leads());
         let mut order: Vec<usize> = leader.into_iter().collect();
         order.extend((0..self.curves.len()).filter(|place| Some(*place) != leader));
@@ -199,7 +214,7 @@ impl Panel {
                 let near = lead.or(value).unwrap_or_default();
                 match (value, curve.role) {
                     (None, Role::Desired) => curve.turns.forget(),
-                    // In the same turn as what is estimated from it.
+                    // In the same turn as the estimate.
                     (Some(angle), Role::Measured(_)) if lead.is_some() => {
                         value = Some(Turns::default().count(angle, near));
                     }
@@ -214,7 +229,7 @@ impl Panel {
         }
     }
 
-    /// Records are missing here: no line leads across.
+    /// Interrupts all lines: records are missing.
     pub(crate) fn cut(&mut self) {
         for curve in &mut self.curves {
             curve.trace.cut();
@@ -225,7 +240,7 @@ impl Panel {
     }
 }
 
-/// What a loop was doing at a record.
+/// State of the loop at a record.
 pub(crate) struct Moment {
     time_s: f64,
     woke: Time,
@@ -252,7 +267,7 @@ impl Moment {
 }
 
 impl Default for Curve {
-    /// A line that follows from none of the values.
+    /// A line without a value.
     fn default() -> Self {
         Self::new(Ink::Actual, "", Role::Output, usize::MAX)
     }

@@ -1,14 +1,14 @@
-//! What only an aircraft's screen has: the horizon, and a table in feet, knots
-//! and degrees.
+//! The parts of the screen for an aircraft: the horizon, and a table in feet,
+//! knots and degrees.
 
 mod horizon;
 mod table;
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{Reading, RecordOf, State};
-use fcc_telemetry::units::{M_FT, MPS_KT};
+use fcc_core::framework::{RecordOf, State};
 use serde_json::{Map, Value, json};
 
+use self::table::Quantity;
 use super::watched::{Part, Watched};
 
 impl Watched for Autopilot {
@@ -20,7 +20,7 @@ impl Watched for Autopilot {
     ];
 
     fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
-        // Engaged, the mode of guidance and where it is.
+        // When engaged, the mode of guidance and its progress.
         let flown = match record {
             Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
             _ => "Flight".to_owned(),
@@ -32,30 +32,20 @@ impl Watched for Autopilot {
     }
 
     fn values(record: &RecordOf<Self>) -> Map<String, Value> {
-        let (measured, wanted) = (&record.measurements, &record.setpoints);
-        let number = |of: &Reading<f64>, factor: f64| known(of).map(|value| value * factor);
-        let compass_deg = |rad: f64| rad.to_degrees().rem_euclid(360.0);
-        let attitude = known(&measured.attitude);
+        let progress = record.setpoints.guidance;
         let engaged = record.state == State::Engaged;
+        let all = |of: fn(&Quantity) -> Option<f64>| -> Map<String, Value> {
+            let quantities = table::quantities(record);
+            let pair = |quantity: Quantity| (quantity.key.to_owned(), of(&quantity).into());
+            quantities.map(pair).into_iter().collect()
+        };
         let values = json!({
-            "actual": {
-                "heading_deg": known(&measured.heading_rad).map(compass_deg),
-                "altitude_ft": number(&measured.altitude_m, M_FT),
-                "airspeed_kt": number(&measured.airspeed_mps, MPS_KT),
-                "bank_deg": attitude.map(|attitude| attitude.roll_rad.to_degrees()),
-                "pitch_deg": attitude.map(|attitude| attitude.pitch_rad.to_degrees()),
-            },
-            "setpoints": engaged.then(|| json!({
-                "heading_deg": compass_deg(wanted.heading_rad),
-                "altitude_ft": wanted.altitude_m * M_FT,
-                "airspeed_kt": wanted.airspeed_mps * MPS_KT,
-                "bank_deg": wanted.roll_rad.to_degrees(),
-                "pitch_deg": wanted.pitch_rad.to_degrees(),
-            })),
+            "actual": all(|quantity| quantity.actual),
+            "setpoints": engaged.then(|| all(|quantity| Some(quantity.desired))),
             "guidance": engaged.then(|| json!({
-                "mode": wanted.guidance.mode.name(),
-                "item": wanted.guidance.item,
-                "elapsed_s": wanted.guidance.elapsed_s,
+                "mode": progress.mode.name(),
+                "item": progress.item,
+                "elapsed_s": progress.elapsed_s,
             })),
             "outputs": record.sent.then(|| json!({
                 "throttle": record.outputs.throttle,
@@ -69,9 +59,4 @@ impl Watched for Autopilot {
             _ => Map::new(),
         }
     }
-}
-
-/// What was ever measured.
-fn known<T: Copy>(reading: &Reading<T>) -> Option<T> {
-    (!reading.is_never()).then_some(reading.value)
 }

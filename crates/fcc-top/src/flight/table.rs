@@ -1,7 +1,7 @@
-//! What is flown: actual values, set points, and where the controls stand.
+//! Actual values, set points, and the positions of the controls.
 
 use fcc_core::flight::Autopilot;
-use fcc_core::framework::{RecordOf, State};
+use fcc_core::framework::{Reading, RecordOf, State};
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -13,8 +13,8 @@ use crate::picture::Picture;
 
 const MPS_FPM: f64 = 60.0 * M_FT;
 
-/// Characters of a control's name and of its number.
-const WORDS: usize = 15;
+/// Width of a control's name and value.
+const LABEL_WIDTH: usize = 15;
 
 /// Draws the table and, below it, the controls.
 pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilot>) {
@@ -26,79 +26,102 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilo
     frame.render_widget(Paragraph::new(lines), area);
 }
 
-fn table(record: &RecordOf<Autopilot>) -> Vec<Line<'static>> {
-    let measured = &record.measurements;
-    let aims = &record.setpoints;
-    let engaged = record.state == State::Engaged;
-    let row = |name: &'static str, unit: &'static str, digits: usize, now: Option<f64>, aim| {
-        let now = now.map_or_else(|| "–".to_owned(), |now| format!("{now:.digits$}"));
-        let aim = if engaged {
-            format!("{aim:.digits$}")
-        } else {
-            "–".to_owned()
-        };
-        Line::from(vec![
-            format!("{name:<8}").dim(),
-            format!("{now:>6}").bold(),
-            " → ".dim(),
-            format!("{aim:>6}").into(),
-            format!(" {unit}").dim(),
-        ])
+/// A quantity as it is and as it should be, in the units of aviation.
+pub(super) struct Quantity {
+    name: &'static str,
+    unit: &'static str,
+    /// Its name for other tools.
+    pub(super) key: &'static str,
+    digits: usize,
+    pub(super) actual: Option<f64>,
+    pub(super) desired: f64,
+}
+
+/// What is flown by.
+pub(super) fn quantities(record: &RecordOf<Autopilot>) -> [Quantity; 6] {
+    let (measured, wanted) = (&record.measurements, &record.setpoints);
+    let compass = |rad: f64| rad.to_degrees().rem_euclid(360.0);
+    let of = |(name, unit, key), digits, actual, desired| Quantity {
+        name,
+        unit,
+        key,
+        digits,
+        actual,
+        desired,
     };
-    let attitude = (!measured.attitude.is_never()).then_some(measured.attitude.value);
-    let velocity = (!measured.velocity.is_never()).then_some(measured.velocity.value);
-    let some = |reading: &fcc_core::framework::Reading<f64>| {
-        (!reading.is_never()).then_some(reading.value)
-    };
-    vec![
-        row(
-            "heading",
-            "°",
+    let (heading, altitude) = (known(&measured.heading_rad), known(&measured.altitude_m));
+    let airspeed = known(&measured.airspeed_mps).map(|mps| mps * MPS_KT);
+    let climb = known(&measured.velocity).map(|velocity| -velocity.down_mps * MPS_FPM);
+    let attitude = known(&measured.attitude);
+    let bank = attitude.map(|attitude| attitude.roll_rad.to_degrees());
+    let pitch = attitude.map(|attitude| attitude.pitch_rad.to_degrees());
+    [
+        of(
+            ("heading", "°", "heading_deg"),
             1,
-            some(&measured.heading_rad).map(|rad| rad.to_degrees().rem_euclid(360.0)),
-            aims.heading_rad.to_degrees().rem_euclid(360.0),
+            heading.map(compass),
+            compass(wanted.heading_rad),
         ),
-        row(
-            "altitude",
-            "ft",
+        of(
+            ("altitude", "ft", "altitude_ft"),
             0,
-            some(&measured.altitude_m).map(|m| m * M_FT),
-            aims.altitude_m * M_FT,
+            altitude.map(|m| m * M_FT),
+            wanted.altitude_m * M_FT,
         ),
-        row(
-            "airspeed",
-            "kt",
+        of(
+            ("airspeed", "kt", "airspeed_kt"),
             1,
-            some(&measured.airspeed_mps).map(|mps| mps * MPS_KT),
-            aims.airspeed_mps * MPS_KT,
+            airspeed,
+            wanted.airspeed_mps * MPS_KT,
         ),
-        row(
-            "climb",
-            "fpm",
+        of(
+            ("climb", "fpm", "climb_fpm"),
             0,
-            velocity.map(|velocity| -velocity.down_mps * MPS_FPM),
-            aims.climb_rate_mps * MPS_FPM,
+            climb,
+            wanted.climb_rate_mps * MPS_FPM,
         ),
-        row(
-            "bank",
-            "°",
+        of(
+            ("bank", "°", "bank_deg"),
             1,
-            attitude.map(|attitude| attitude.roll_rad.to_degrees()),
-            aims.roll_rad.to_degrees(),
+            bank,
+            wanted.roll_rad.to_degrees(),
         ),
-        row(
-            "pitch",
-            "°",
+        of(
+            ("pitch", "°", "pitch_deg"),
             1,
-            attitude.map(|attitude| attitude.pitch_rad.to_degrees()),
-            aims.pitch_rad.to_degrees(),
+            pitch,
+            wanted.pitch_rad.to_degrees(),
         ),
     ]
 }
 
+/// What was ever measured.
+fn known<T: Copy>(reading: &Reading<T>) -> Option<T> {
+    (!reading.is_never()).then_some(reading.value)
+}
+
+fn table(record: &RecordOf<Autopilot>) -> Vec<Line<'static>> {
+    let engaged = record.state == State::Engaged;
+    let row = |quantity: Quantity| {
+        let digits = quantity.digits;
+        let number = |value: Option<f64>| {
+            value.map_or_else(|| "–".to_owned(), |value| format!("{value:.digits$}"))
+        };
+        let desired = Some(quantity.desired).filter(|_| engaged);
+        Line::from(vec![
+            format!("{:<8}", quantity.name).dim(),
+            format!("{:>6}", number(quantity.actual)).bold(),
+            " → ".dim(),
+            format!("{:>6}", number(desired)).into(),
+            format!(" {}", quantity.unit).dim(),
+        ])
+    };
+    quantities(record).map(row).into()
+}
+
 fn controls(record: &RecordOf<Autopilot>, width: usize) -> Vec<Line<'static>> {
     let outputs = &record.outputs;
-    let room = width.saturating_sub(WORDS).max(3);
+    let room = width.saturating_sub(LABEL_WIDTH).max(3);
     [
         ("throttle", outputs.throttle, bar(outputs.throttle, room)),
         (

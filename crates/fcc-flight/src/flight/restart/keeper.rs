@@ -26,11 +26,11 @@ struct Requests {
 
 #[derive(Default)]
 struct Slot {
-    requested: Option<Request>,
+    requested: Option<DiskRequest>,
     is_over: bool,
 }
 
-enum Request {
+enum DiskRequest {
     Keep(Saved),
     Clear,
 }
@@ -51,8 +51,8 @@ impl Keeper {
                 let mut failing = false;
                 while let Some(requested) = theirs.next() {
                     let done = match requested {
-                        Request::Keep(saved) => state_file::write(&path, &saved),
-                        Request::Clear => state_file::remove(&path),
+                        DiskRequest::Keep(saved) => state_file::write(&path, &saved),
+                        DiskRequest::Clear => state_file::remove(&path),
                     };
                     if let Err(error) = &done
                         && !failing
@@ -72,12 +72,12 @@ impl Keeper {
 
     /// Stores this state, replacing the previous one.
     pub(super) fn keep(&self, saved: Saved) {
-        self.desk.request(Request::Keep(saved));
+        self.desk.request(DiskRequest::Keep(saved));
     }
 
     /// Removes the stored state.
     pub(super) fn clear(&self) {
-        self.desk.request(Request::Clear);
+        self.desk.request(DiskRequest::Clear);
     }
 
     /// A description of a new problem; none if there is none.
@@ -102,13 +102,13 @@ impl Requests {
         self.slot.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn request(&self, requested: Request) {
+    fn request(&self, requested: DiskRequest) {
         self.slot().requested = Some(requested);
         self.filled.notify_one();
     }
 
     /// Waits for the next request; none at the end.
-    fn next(&self) -> Option<Request> {
+    fn next(&self) -> Option<DiskRequest> {
         let mut slot = self.slot();
         loop {
             if let Some(requested) = slot.requested.take() {

@@ -27,11 +27,11 @@ pub(super) struct Recovery {
     saved: Saved,
     commanded: Option<Resume>,
     /// The status in the latest tick.
-    status: Option<Status>,
+    status: Option<LoopStatus>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Status {
+struct LoopStatus {
     state: State,
     engage_inhibits: Flags,
     switched_off: bool,
@@ -69,7 +69,7 @@ impl Recovery {
         match message {
             Message::Tick(record) => {
                 let switch = record.measurements.engage_switch;
-                self.status = Some(Status {
+                self.status = Some(LoopStatus {
                     state: record.state.state(),
                     engage_inhibits: record.engage_inhibits,
                     switched_off: !switch.is_never() && switch.value == Switch::Off,

@@ -1,0 +1,29 @@
+"""How much memory a flight takes, with its recording and live telemetry."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from daemon_under_test import start
+
+MOST_RESIDENT_KB = 20 << 10
+"""What `docs/timing.md` adds up to, and a little more."""
+
+
+def test_a_flight_takes_less_than_20_mb_and_no_page_fault(fccd: Path, tmp_path: Path) -> None:
+    config = tmp_path / "fccd.toml"
+    config.write_text(f'[built-in]\n[recording]\nfolder = "{tmp_path}/recordings"\n')
+    with start(fccd, tmp_path, config) as daemon:
+        daemon.wait_for("standby -> engaged")
+        for _ in range(3):
+            daemon.wait_for("engaged")
+        lines = Path(f"/proc/{daemon.pid}/status").read_text().splitlines()
+        status = dict(line.split(":", 1) for line in lines)
+        resident_kb = int(status["VmRSS"].removesuffix("kB"))
+        ending = daemon.end(signal.SIGTERM)
+    assert resident_kb < MOST_RESIDENT_KB
+    timing = ending.report["timing"]
+    # Without locked memory a page is loaded when it is first needed.
+    if timing["realtime"]["memory_locked"]:
+        assert timing["page_faults"] == 0
