@@ -154,22 +154,19 @@ pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
             message,
         });
     };
-    match toml::Value::try_from(config) {
-        Ok(values) => {
-            for (key, least, most) in RANGES {
-                for (key, value) in numbers_at(&values, key) {
-                    if !(*least..=*most).contains(&value) {
-                        let (value, range) = (number(value), in_words((*least, *most)));
-                        report(&key, format!("is {value}: choose {range}"));
-                    }
+    if let Ok(values) = toml::Value::try_from(config) {
+        for (key, least, most) in RANGES {
+            for (key, value) in numbers_at(&values, key) {
+                if !(*least..=*most).contains(&value) {
+                    let (value, range) = (number(value), in_words((*least, *most)));
+                    report(&key, format!("is {value}: choose {range}"));
                 }
             }
         }
+    } else {
         // TOML has no integers above i64.
-        Err(_) => {
-            let range = range_of("built-in.seed").map_or_else(String::new, in_words);
-            report("built-in.seed", format!("is too large: choose {range}"));
-        }
+        let range = range_of("built-in.seed").map_or_else(String::new, in_words);
+        report("built-in.seed", format!("is too large: choose {range}"));
     }
     relations::check(config, &mut report);
     for (at, section) in config.x_planes() {

@@ -75,8 +75,8 @@ impl<C: Recorded> Writing<C> {
             Err((path, error)) => {
                 self.about.part -= 1;
                 self.stop(format!(
-                    "{}: cannot be written: {error}. Choose a writable folder with --recordings \
-                     or recording.folder",
+                    "{}: cannot be written: {error}. Choose a writable folder: --recordings of \
+                     fccd, or recording.folder",
                     path.display()
                 ));
             }
