@@ -67,6 +67,7 @@ test-rust: $(STAMPS)/rust
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
+	cargo build --locked --release -p thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
 
 faulty: $(STAMPS)/rust
