@@ -20,12 +20,12 @@ TIMING   ?=
 # For soak, such as SOAK="--minutes 5 --rate 1000".
 SOAK     ?=
 
-# Where `cargo` puts what it builds.
+# The target folder of `cargo`.
 TARGET   := $(or $(CARGO_TARGET_DIR),target)
 FCCD     := $(TARGET)/release/fccd
-# The same with faults on purpose, for tests.
+# The same with fault injection, for tests.
 FAULTY   := $(TARGET)/release/fccd-faulty
-# Where the Python module's wheels go.
+# The folder of the Python module's wheels.
 WHEELS   := $(TARGET)/wheels
 # A workspace of its own, built with the same compiler.
 TIMING_TARGET := $(abspath $(TARGET))/bench-timing
@@ -67,6 +67,7 @@ test-rust: $(STAMPS)/rust
 	    { echo "$$crate is compiled with an aircraft: see above"; exit 1; }; done
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
+	cargo build --locked --release -p thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
 
 faulty: $(STAMPS)/rust
@@ -106,7 +107,7 @@ check-cross: $(STAMPS)/cross ## Check that the daemon builds for the boards
 	    ./scripts/cross $$board check --locked -p fcc-daemon || exit 1; \
 	done
 
-test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests as they would there
+test-cross: $(STAMPS)/cross $(STAMPS)/qemu build ## Build for the boards, and run the tests in emulation
 	for board in $(BOARDS); do ./scripts/test-cross $$board $(FCCD) || exit 1; done
 
 # Of this machine, or DEB_TARGET=aarch64-unknown-linux-gnu and the like.
@@ -123,11 +124,11 @@ deb: build $(if $(DEB_TARGET),$(STAMPS)/cross) ## Make a Debian package (DEB_TAR
 	$(if $(DEB_TARGET),./scripts/cross $(DEB_TARGET),cargo) deb --locked -p fcc-daemon \
 	    $(if $(DEB_TARGET),--target $(DEB_TARGET)) --output $(PACKAGE)/
 
-test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Look into the Debian package (DEB_TARGET=)
+test-deb: deb $(STAMPS)/python $(if $(DEB_TARGET),$(STAMPS)/qemu) ## Test the content of the Debian package (DEB_TARGET=)
 	DEB=$$(ls $(abspath $(PACKAGE))/*.deb) $(PYTHON) -m pytest deploy/tests
 
-# A small Debian that is made once. Its tests are in no other goal, for where the
-# processor does not run guests, they take minutes.
+# A small Debian, built once. Its tests are in no other goal: without
+# virtualization they take minutes.
 VM_IMAGE := target/vm
 
 test-vm: deb $(VM_IMAGE)/root.img $(STAMPS)/vm $(STAMPS)/python ## Boot a Debian in qemu, install the package there, and fly (8 minutes)
@@ -136,7 +137,7 @@ test-vm: deb $(VM_IMAGE)/root.img $(STAMPS)/vm $(STAMPS)/python ## Boot a Debian
 $(VM_IMAGE)/root.img: deploy/vm/build-image | $(STAMPS)/vm
 	./deploy/vm/build-image $(VM_IMAGE)
 
-bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what a tick costs: time, instructions, memory, system calls (4 minutes)
+bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure the cost of a tick: time, instructions, memory, system calls (4 minutes)
 	@test "$$(gungraun-runner --version 2>/dev/null)" = "gungraun-runner $(GUNGRAUN)" || \
 	    cargo install --locked --version $(GUNGRAUN) gungraun-runner
 	cargo bench --locked -p bench-tick --bench time
@@ -146,32 +147,32 @@ bench: $(STAMPS)/rust build $(STAMPS)/strace $(STAMPS)/valgrind ## Measure what 
 	$(TARGET)/release/latency --fccd $(FCCD)
 	$(TARGET)/release/latency --fccd $(FCCD) --with 'early_wake = { enabled = false }'
 
-bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare our clocks with their peers, idle and under stress (22 minutes; TIMING=)
+bench-timing: $(STAMPS)/rust $(STAMPS)/rt-tests ## Compare the clocks with other programs, idle and under stress (22 minutes; TIMING=)
 	$(BENCH_TIMING) -p copper --features copper/high-precision
 	cp $(TIMING_TARGET)/release/peer-copper $(TIMING_TARGET)/release/peer-copper-precise
 	$(BENCH_TIMING)
 	$(TIMING_TARGET)/release/bench-timing --json target/bench-timing.json \
 	    --markdown target/bench-timing.md --plot target/bench-timing.svg $(TIMING)
 
-soak: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/rt-tests ## Fly for half an hour at 100 Hz under stress, cyclictest beside (SOAK=)
+soak: $(STAMPS)/rust build $(STAMPS)/python $(STAMPS)/rt-tests ## Fly for half an hour at 100 Hz under stress, with cyclictest (SOAK=)
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil soak --fccd $(FCCD) --json target/soak.json $(SOAK)
 
-bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: our autopilot beside JSBSim's own
+bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: the autopilot and JSBSim's own
 	$(PYTHON) -m fcc_hil bench
 
 bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircraft, all weathers, against stated limits
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
 
-bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 programs that watch, in turn (50 minutes)
+bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)
 	cargo build --locked --release -p fcc-live --features flight --example watch
 	$(PYTHON) -m fcc_hil bench-live --fccd $(FCCD) --watcher $(TARGET)/release/examples/watch $(LIVE)
 
 doc: $(STAMPS)/rust ## Build the API documentation
 	cargo doc --locked --workspace --exclude fcc-py --exclude pendulum --no-deps --all-features
 
-# Those that no registry gets: the Python module is published as a wheel.
+# Crates that are not published: the Python module is published as a wheel.
 PRIVATE := fcc-py pendulum thermostat bench-tick
 # Where they are built from their packages. cargo takes a package of the same
 # version for the same, so what an earlier run unpacked and built is removed.
@@ -195,7 +196,7 @@ wheels: $(STAMPS)/rust $(STAMPS)/wheel-tools ## Build the Python module's wheels
 	./scripts/build-wheels $(abspath $(VENV))/bin $(WHEELS)
 	./scripts/try-wheel $(WHEELS)
 
-clean: ## Remove what was built
+clean: ## Remove built files
 	cargo clean
 	rm -rf $(VENV) $(STAMPS)
 

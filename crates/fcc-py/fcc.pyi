@@ -513,10 +513,10 @@ class Fleet:
 
 @final
 class Machine:
-    """The daemon's loop around a plant of your own: one call, one tick.
+    """The daemon's loop around a plant in Python: one call, one tick.
 
-    Its states, failsafe, commands and recording are those of `fccd`; its clock stands still
-    between calls.
+    Its states, failsafe, commands and recording are those of `fccd`; its clock does not
+    move between calls.
     """
 
     def __new__(cls, config: Config | str | None = None) -> Machine: ...
@@ -525,16 +525,16 @@ class Machine:
         measurements: Measurements | None = None,
         *,
         missing: Sequence[str] = ...,
-        standing: Surfaces | tuple[float, float, float, float] | None = None,
+        readback: Surfaces | tuple[float, float, float, float] | None = None,
         switch: bool | None = None,
     ) -> Surfaces | None:
-        """One tick: the surfaces to set, or None while the controls are somebody else's.
+        """One tick: the surfaces to set, or None while the loop does not hold the controls.
 
-        `measurements` is what the sensors say, None if nothing comes at all; `missing`
-        names those that say nothing in this tick: attitude, heading, body_rates,
-        specific_force, airspeed, altitude. `standing` is where throttle (0..1),
-        elevator, aileron and rudder (-1..1) stand, None if the aircraft does not tell;
-        `switch` the engage switch, None if there is none.
+        `measurements` are those of the sensors, None if nothing arrives; `missing` names the
+        readings that do not arrive in this tick: attitude, heading, body_rates,
+        specific_force, airspeed, altitude. `readback` is the position of throttle (0..1),
+        elevator, aileron and rudder (-1..1), None if the aircraft has none; `switch` the
+        engage switch, None if there is none.
         """
 
     def engage(self) -> None: ...
@@ -577,7 +577,7 @@ class Machine:
 
 @final
 class BuiltInAircraft:
-    """The built-in aircraft in lockstep: six degrees of freedom, as `[built-in]` says."""
+    """The built-in aircraft in lockstep: six degrees of freedom, by `[built-in]`."""
 
     def __new__(cls, config: Config | str | None = None) -> BuiltInAircraft: ...
     def step(self, surfaces: Surfaces | None, dt: float = 0.025) -> Measurements: ...
@@ -626,7 +626,7 @@ def fly(
 
 @final
 class Pid:
-    """PID controller with anti-windup, limits, feed-forward and take-over without a bump."""
+    """PID controller with anti-windup, limits, feed-forward and bumpless engagement."""
 
     def __new__(
         cls,
@@ -703,7 +703,7 @@ class Complementary:
 
 @final
 class SquareRootProfile:
-    """How fast to close an error so that a constant deceleration ends at nought."""
+    """How fast to close an error so that a constant deceleration ends at 0."""
 
     def __new__(cls, gain_per_s: float, deceleration: float) -> SquareRootProfile: ...
     def speed(self, error: float) -> float: ...

@@ -103,7 +103,7 @@ class LockstepRig:
             surfaces = self.machine.step(
                 measurements(measured),
                 missing=_sensors_of(channels) if channels else (),
-                standing=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
+                readback=(stand.throttle, stand.elevator, stand.aileron, stand.rudder),
                 switch=self._switch,
             )
         if surfaces is None:

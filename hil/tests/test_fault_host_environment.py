@@ -281,3 +281,28 @@ def test_a_local_port_in_use_has_its_own_exit_code(fccd: Path, tmp_path: Path) -
             refused = daemon.end()
     assert refused.exit_code == TAKEN
     assert f"cannot receive on UDP port {port}" in refused.log
+
+
+def test_ctrl_z_does_not_stop_a_flight(fccd: Path, tmp_path: Path) -> None:
+    with fly(fccd, tmp_path, "", "--recordings", tmp_path / "recordings") as daemon:
+        daemon.wait_for("standby -> engaged")
+        for stopping in (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU):
+            daemon.send(stopping)
+        daemon.wait_for("Ctrl-Z does not stop a flight; Ctrl-C ends it")
+        for _ in range(2):
+            assert "engaged" in daemon.wait_for("heading")
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    flown = Flown.of(ending, tmp_path / "recordings")
+    assert_regular(flown.records, 1_000_000_000 // NORMAL_HZ)
+
+
+def test_a_limit_on_file_sizes_prevents_telemetry_and_not_the_flight(
+    fccd: Path, tmp_path: Path
+) -> None:
+    limited = ("prlimit", "--fsize=100000", "--")
+    with fly(fccd, tmp_path, "", "--no-recording", before=limited) as daemon:
+        assert "LimitFSIZE" in daemon.wait_for("no live telemetry")
+        daemon.wait_for("standby -> engaged")
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS

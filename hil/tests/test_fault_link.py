@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import socket
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,7 +16,9 @@ from tampered_link import TamperedLink
 from fcc_hil.cockpit import OVERRIDE_JOYSTICK
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
-from fcc_hil.standin import Settings
+from fcc_hil.sensor_faults import Kind, SensorFault
+from fcc_hil.standin import Mode, Settings
+from fcc_hil.truth import COLUMNS
 
 SUCCESS = 0
 FAILSAFE = 3
@@ -88,7 +91,11 @@ def slow(fccd: Path, scratch: Path) -> Flown:
 
 
 def one_of_two(fccd: Path, scratch: Path) -> Flown:
-    """Measure by two simulators, and end the preferred one: the other is flown."""
+    """Measure by two simulators, and end the preferred one: the other is flown.
+
+    Before that the preferred one is silent for a moment, with its switch off and the other's on,
+    and its altitude jumps by 30 m.
+    """
     scratch.mkdir()
     with StandInProcess(Settings(port=0)) as flown, ExitStack() as preferred:
         other = preferred.enter_context(StandInProcess(Settings(port=0)))
@@ -96,9 +103,20 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
         config = write_config(scratch, flown.port, others=f"{PATIENT}{entry}")
         with start(fccd, scratch, config) as daemon:
             daemon.wait_until_ready()
-            for simulator in (flown, other):
-                simulator.write(ENGAGE_SWITCH, 1.0)
+            flown.write(ENGAGE_SWITCH, 1.0)
+            other.set_mode(Mode.FROZEN)
+            daemon.wait_for("from X-Plane 2 instead of X-Plane")
+            other.set_mode(Mode.RUNNING)
+            daemon.wait_for("from X-Plane instead of X-Plane 2")
+            for _ in range(2):
+                assert "standby" in daemon.wait_for("heading")
+            other.write(ENGAGE_SWITCH, 1.0)
             daemon.wait_for("standby -> engaged")
+            time_s = dict(zip(COLUMNS, other.progress().now, strict=True))["time_s"]
+            jump = SensorFault(Kind.BIAS, "altitude", ("altitude_m",), time_s, amount=30.0)
+            other.set_sensor_faults([jump])
+            daemon.wait_for("altitude: from X-Plane 2 instead of X-Plane")
+            assert "engaged" in daemon.wait_for("heading")
             preferred.close()
             while "airspeed" not in daemon.wait_for("from X-Plane 2 instead of X-Plane"):
                 pass
@@ -106,6 +124,29 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
                 assert "engaged" in daemon.wait_for("heading")
             ending = daemon.end(signal.SIGTERM)
             assert_released(flown)
+    return Flown.of(ending, scratch / "recordings")
+
+
+def a_bouncing_switch(fccd: Path, scratch: Path) -> Flown:
+    """Let the engage switch bounce, and then be noisy; with it, datagrams are invalid."""
+    scratch.mkdir()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", 0))
+        port = other.getsockname()[1]
+    with (
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other,
+        flight(fccd, scratch, x_plane=f"local_port = {port}") as (simulator, daemon),
+    ):
+        engage(simulator, daemon)
+        for n in range(40):
+            simulator.write(ENGAGE_SWITCH, n % 2)
+            time.sleep(0.03)
+        daemon.wait_for("standby -> engaged")
+        for n in range(40):
+            simulator.write(ENGAGE_SWITCH, 0.49 + n % 2 * 0.02)
+            other.sendto(b"RREF,cut", ("127.0.0.1", port))
+            time.sleep(0.1)
+        ending = daemon.end(signal.SIGTERM)
     return Flown.of(ending, scratch / "recordings")
 
 
@@ -119,6 +160,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
             "to": lambda: nothing_gets_there(fccd, scratch / "to"),
             "slow": lambda: slow(fccd, scratch / "slow"),
             "two": lambda: one_of_two(fccd, scratch / "two"),
+            "switch": lambda: a_bouncing_switch(fccd, scratch / "switch"),
         }
     )
 
@@ -168,7 +210,7 @@ def test_a_slow_simulator_is_flown_at_its_own_speed(flights: dict[str, Flown]) -
     assert plant_s < 0.9 * ours_s
 
 
-@pytest.mark.parametrize("name", ["from", "to", "slow", "two"])
+@pytest.mark.parametrize("name", ["from", "to", "slow", "two", "switch"])
 def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])
 
@@ -179,9 +221,37 @@ def test_one_of_two_simulators_is_lost_and_the_other_one_flown(flights: dict[str
     assert flown.ending.states == ["standby -> engaged", "engaged -> stopped"]
     readings = [record.measurements.airspeed_mps for record in flown.records]
     engaged = next(n for n, record in enumerate(flown.records) if record.state.phase == ENGAGED)
+    switches = [record.measurements.engage_switch for record in flown.records[:engaged]]
+    assert any(switch.source == 1 and switch.value == 1 for switch in switches)
     changed = engaged + [reading.source for reading in readings[engaged:]].index(1)
     assert changed > engaged
     assert {reading.source for reading in readings[changed:]} == {1}
     # `fallback_after_ms` is 100.
     age_s = (flown.records[changed].tick.woke_ns - readings[changed - 1].taken_ns) * NS
     assert 0.1 < age_s < MAX_AGE_S
+    # The altitude came from the other one before, in the tick of the jump.
+    altitudes = [record.measurements.altitude_m for record in flown.records[engaged:changed]]
+    jumped = [reading.source for reading in altitudes].index(1)
+    assert jumped < changed - engaged
+    before, after = altitudes[jumped - 1 : jumped + 1]
+    assert abs(after.value - before.value) < 15.0
+    assert {reading.source for reading in altitudes[jumped:]} == {1}
+
+
+def test_a_switch_that_bounces_disengages_once(flights: dict[str, Flown]) -> None:
+    flown = flights["switch"]
+    assert flown.ending.states == [
+        "standby -> engaged",
+        "engaged -> standby",
+        "standby -> engaged",
+        "engaged -> stopped",
+    ]
+
+
+def test_a_flapping_fault_is_summarised(flights: dict[str, Flown]) -> None:
+    flown = flights["switch"]
+    invalid = "the data that arrives is invalid"
+    assert sum(invalid in text for text in flown.texts()) > 10
+    lines = [line for line in flown.ending.log.splitlines() if invalid in line]
+    assert len(lines) <= 3
+    assert any("such events in" in event["text"] for event in flown.ending.report["events"])

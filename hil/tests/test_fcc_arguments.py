@@ -69,7 +69,7 @@ ONE: dict[str, Callable[..., Any]] = {
     "Machine": fcc.Machine,
     "Machine.step": lambda given: fcc.Machine().step(given),
     "Machine.step missing": lambda given: fcc.Machine().step(LEVEL, missing=given),
-    "Machine.step standing": lambda given: fcc.Machine().step(LEVEL, standing=given),
+    "Machine.step readback": lambda given: fcc.Machine().step(LEVEL, readback=given),
     "Machine.step switch": lambda given: fcc.Machine().step(LEVEL, switch=given),
     "BuiltInAircraft": fcc.BuiltInAircraft,
     "BuiltInAircraft.step dt": lambda dt: fcc.BuiltInAircraft().step(None, dt),

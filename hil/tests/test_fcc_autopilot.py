@@ -16,7 +16,7 @@ def flown(seconds: float, loop: fcc.Machine, aircraft: fcc.BuiltInAircraft) -> N
     surfaces = None
     for _ in range(round(seconds / loop.period_s)):
         measured = aircraft.step(surfaces, loop.period_s)
-        surfaces = loop.step(measured, switch=aircraft.switch, standing=aircraft.controls)
+        surfaces = loop.step(measured, switch=aircraft.switch, readback=aircraft.controls)
 
 
 def series(seconds: float = 10.0) -> np.ndarray:
@@ -60,7 +60,7 @@ def test_the_loop_engages_by_its_switch_and_holds_the_captured_state() -> None:
     loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
     flown(40.0, loop, aircraft)
     assert loop.state == "engaged"
-    assert [event.text for event in loop.events()] == ["standby -> engaged"]
+    assert [event.text for event in loop.events()] == ["standby -> engaged", "mode: hold, was none"]
     # What the built-in aircraft begins with.
     assert loop.setpoints.altitude_m == pytest.approx(3_000 * FOOT_M, abs=15.0)
     assert aircraft.truth.altitude_m == pytest.approx(3_000 * FOOT_M, abs=15.0)

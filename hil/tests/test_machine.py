@@ -15,7 +15,7 @@ from fcc_hil.lockstep import measurements
 from fcc_hil.plant import Plant
 
 HOLD = '[guidance]\nmode = "hold"\n'
-STANDING = (0.6, 0.0, 0.0, 0.0)
+READBACK = (0.6, 0.0, 0.0, 0.0)
 SENSORS = ("attitude", "heading", "body_rates", "specific_force", "airspeed", "altitude")
 
 bad_numbers = st.sampled_from([math.nan, math.inf, -math.inf])
@@ -29,11 +29,11 @@ def level() -> fcc.Measurements:
 
 def _watch(machine: fcc.Machine, level: fcc.Measurements, seconds: float) -> None:
     for _ in range(round(seconds / machine.period_s)):
-        machine.step(level, standing=STANDING, switch=False)
+        machine.step(level, readback=READBACK, switch=False)
 
 
 def _texts(machine: fcc.Machine) -> list[str]:
-    return [event.text for event in machine.events()]
+    return [event.text for event in machine.events() if not event.text.startswith("mode: ")]
 
 
 def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
@@ -42,11 +42,11 @@ def test_it_engages_and_releases_by_the_switch(level: fcc.Measurements) -> None:
     _watch(machine, level, 2.0)
     assert (machine.state, machine.tick, machine.engage_inhibits) == ("standby", 80, [])
     assert machine.time_s == pytest.approx(2.0)
-    surfaces = machine.step(level, standing=STANDING, switch=True)
+    surfaces = machine.step(level, readback=READBACK, switch=True)
     assert surfaces is not None
-    assert surfaces.throttle == pytest.approx(STANDING[0], abs=0.05), "no bump"
+    assert surfaces.throttle == pytest.approx(READBACK[0], abs=0.05), "no bump"
     assert (machine.state, machine.holds_control) == ("engaged", True)
-    assert machine.step(level, standing=STANDING, switch=False) is None
+    assert machine.step(level, readback=READBACK, switch=False) is None
     assert (machine.state, machine.holds_control) == ("standby", False)
     assert _texts(machine) == ["standby -> engaged", "engaged -> standby", "actuators released"]
     assert _texts(machine) == [], "each is told once"
@@ -67,11 +67,11 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
     """250 ms by default, and a second of failsafe by this configuration."""
     machine = fcc.Machine(HOLD + "[failsafe]\nhold_s = 1.0\n")
     _watch(machine, level, 2.0)
-    machine.step(level, standing=STANDING, switch=True)
+    machine.step(level, readback=READBACK, switch=True)
     for _ in range(10):
-        machine.step(level, missing=[sensor], standing=STANDING, switch=True)
+        machine.step(level, missing=[sensor], readback=READBACK, switch=True)
         assert machine.state == "engaged"
-    machine.step(level, missing=[sensor], standing=STANDING, switch=True)
+    machine.step(level, missing=[sensor], readback=READBACK, switch=True)
     assert machine.state == "failsafe"
     words = {"body_rates": "body rates are", "specific_force": "acceleration is"}
     assert machine.faults == [f"{words.get(sensor, sensor + ' is')} missing or too old"]
@@ -84,9 +84,9 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
 def test_no_measurements_are_a_silent_sensor(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
-    machine.step(level, standing=STANDING, switch=True)
+    machine.step(level, readback=READBACK, switch=True)
     machine.step()
-    machine.step(level, standing=STANDING, switch=True)
+    machine.step(level, readback=READBACK, switch=True)
     assert _texts(machine) == [
         "standby -> engaged",
         "sensor lockstep: nothing arrives",
@@ -98,7 +98,7 @@ def test_commands_set_the_set_points(level: fcc.Measurements) -> None:
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
     machine.engage()
-    machine.step(level, standing=STANDING)
+    machine.step(level, readback=READBACK)
     machine.command(heading_rad=1.0, altitude_m=1_000.0, airspeed_mps=50.0)
     machine.step(level)
     aims = machine.setpoints
@@ -117,7 +117,7 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     """Read back by PyPI's mcap, which knows nothing of us."""
     machine = fcc.Machine(HOLD)
     _watch(machine, level, 2.0)
-    machine.step(level, standing=STANDING, switch=True)
+    machine.step(level, readback=READBACK, switch=True)
     files = machine.record_to(tmp_path / "flights", aircraft="a Cessna", ending="enough")
     assert [path.parent for path in files] == [tmp_path / "flights"]
     messages = by_index(files[0])
@@ -142,16 +142,16 @@ def test_commands_that_are_not_finite_are_refused(value: float, name: str) -> No
 
 
 @given(
-    standing=st.tuples(*[st.floats(allow_nan=True)] * 4).filter(
+    readback=st.tuples(*[st.floats(allow_nan=True)] * 4).filter(
         lambda s: not (0.0 <= s[0] <= 1.0 and all(-1.0 <= value <= 1.0 for value in s[1:]))
     )
 )
 def test_impossible_controls_are_refused(
-    standing: tuple[float, float, float, float],
+    readback: tuple[float, float, float, float],
 ) -> None:
     machine = fcc.Machine(HOLD)
     with pytest.raises(ValueError, match=r"is .*: choose -?[01] to 1"):
-        machine.step(standing=standing)
+        machine.step(readback=readback)
     assert machine.tick == 0, "no half a tick"
 
 

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::{Flags, Preference, Reading, Readings, SourceChange, Sources, Time};
+use fcc_core::framework::{
+    Flags, Preference, Preferred, Reading, Readings, SourceChange, Sources, Time,
+};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Boat {
@@ -27,11 +29,22 @@ fn taken(millis: i64) -> Reading<f64> {
     Reading::new(millis as f64, at(millis))
 }
 
-const FRESH_FOR: [Duration; 3] = [
-    Duration::from_millis(100),
-    Duration::from_millis(100),
-    Duration::from_secs(2),
-];
+const fn fresh_for(millis: u64) -> Preferred {
+    Preferred {
+        fresh_for: Duration::from_millis(millis),
+        plausible: Flags::ALL,
+    }
+}
+
+const SENSORS: [Preferred; 3] = [fresh_for(100), fresh_for(100), fresh_for(2_000)];
+
+const fn at_ten_seconds(sensors: &[Preferred; 3]) -> Preference<'_> {
+    Preference {
+        now: at(10_000),
+        sensors,
+        reading: 0,
+    }
+}
 
 /// The sensor and the time that are chosen at 10 s, of readings that each of
 /// three sensors took this many milliseconds before; none if it never took any.
@@ -40,10 +53,7 @@ fn chosen(ages: [Option<i64>; 3]) -> (u8, Time) {
         depth_m: age.map_or_else(Reading::default, |age| taken(10_000 - age)),
         ..Boat::default()
     });
-    let by = Preference {
-        now: at(10_000),
-        fresh_for: &FRESH_FOR,
-    };
+    let by = at_ten_seconds(&SENSORS);
     let mut boat = own[0];
     boat.choose(&own[1], 1, &by);
     boat.choose(&own[2], 2, &by);
@@ -88,14 +98,33 @@ fn each_reading_is_chosen_separately() {
         speed_mps: taken(10_000),
         heading_rad: taken(10_000),
     };
-    let by = Preference {
-        now: at(10_000),
-        fresh_for: &FRESH_FOR,
-    };
+    let by = at_ten_seconds(&SENSORS);
     boat.choose(&other, 1, &by);
     let sources = [boat.depth_m, boat.speed_mps, boat.heading_rad].map(|reading| reading.source);
     assert_eq!(sources, [0, 1, 1]);
     assert_eq!(boat.depth_m.value, 9_990.0);
+}
+
+#[test]
+fn an_implausible_reading_is_taken_only_if_no_fresh_one_is_plausible() {
+    let chosen = |ages: [i64; 2], plausible: [u32; 2]| {
+        let mut sensors = SENSORS;
+        for (sensor, bits) in sensors.iter_mut().zip(plausible) {
+            sensor.plausible = Flags::from_bits(bits);
+        }
+        let [mut boat, other] = ages.map(|age| Boat {
+            depth_m: taken(10_000 - age),
+            speed_mps: taken(10_000 - age),
+            heading_rad: taken(10_000 - age),
+        });
+        boat.choose(&other, 1, &at_ten_seconds(&sensors));
+        [boat.depth_m, boat.speed_mps, boat.heading_rad].map(|reading| reading.source)
+    };
+    // The second reading of the first sensor is impossible.
+    assert_eq!(chosen([0, 0], [0b101, 0b111]), [0, 1, 0]);
+    assert_eq!(chosen([0, 0], [0b101, 0b101]), [0, 0, 0], "both");
+    assert_eq!(chosen([0, 101], [0b101, 0b111]), [0, 0, 0], "too old");
+    assert_eq!(chosen([0, 0], [0b111, 0b000]), [0, 0, 0]);
 }
 
 fn watched(sources: &mut Sources, from: [Option<u8>; 3]) -> Vec<(u32, u8, u8)> {

@@ -10,6 +10,7 @@ use iceoryx2::service::builder::publish_subscribe::{
 };
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use iceoryx2::service::service_name::ServiceName;
+use nix::sys::resource::{Resource, getrlimit};
 
 use super::place::Place;
 use super::{LAYOUT, PublishError, WatchError};
@@ -187,10 +188,33 @@ fn refused(error: PublishSubscribeOpenOrCreateError, instance: &Instance) -> Pub
 }
 
 /// A failure of iceoryx2 as text: either it is caused by another user's files,
-/// which iceoryx2 reports as an internal error, or iceoryx2's own error.
+/// which iceoryx2 reports as an internal error, or it is iceoryx2's own error,
+/// with the limits of this process that are so low that they explain it.
 pub(super) fn explained(error: &impl Debug) -> String {
     let foreign = Place::of_this_user().foreign_file();
-    foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}"))
+    foreign.unwrap_or_else(|| format!("iceoryx2: {error:?}{}", low_limits()))
+}
+
+/// iceoryx2 does not say which limit it met.
+fn low_limits() -> String {
+    let limits = [
+        (
+            Resource::RLIMIT_NOFILE,
+            64,
+            "files may be open: give the service LimitNOFILE=1024 (a shell: ulimit -n 1024)",
+        ),
+        (
+            Resource::RLIMIT_FSIZE,
+            1 << 24,
+            "bytes may be in a file: give the service LimitFSIZE=infinity (a shell: ulimit -f \
+             unlimited)",
+        ),
+    ];
+    let low = limits.into_iter().filter_map(|(limit, enough, what)| {
+        let (limit, _) = getrlimit(limit).ok()?;
+        (limit < enough).then(|| format!("; only {limit} {what}"))
+    });
+    low.collect::<Vec<_>>().concat()
 }
 
 /// This process' access to the services of all daemons of its user. Cleans up

@@ -44,11 +44,11 @@ impl PyAircraft {
         let config = configuration(config)?;
         let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
             return Err(
-                errors::FLIGHT.say("the configuration has [x-plane]: give one with [built-in]")
+                errors::FLIGHT.with("the configuration has [x-plane]: give one with [built-in]")
             );
         };
         let simulation = Simulation::new(&SimConfig::from(section))
-            .map_err(|error| errors::FLIGHT.say(format_args!("the built-in aircraft: {error}")))?;
+            .map_err(|error| errors::FLIGHT.with(format_args!("the built-in aircraft: {error}")))?;
         Ok(Self {
             inner: Mutex::new(Inner {
                 simulation,
@@ -78,7 +78,7 @@ impl PyAircraft {
             Some(commands) => simulation.actuator.apply(tick, &commands),
             None => simulation.actuator.release(),
         };
-        moved.map_err(|fault| errors::FLIGHT.say(fault))?;
+        moved.map_err(|fault| errors::FLIGHT.with(fault))?;
         *time_s += dt_s;
         let now = Time::from_nanos(Duration::from_secs_f64(*time_s).as_nanos() as i64);
         *tick = Tick {
@@ -89,7 +89,7 @@ impl PyAircraft {
             dt_s,
         };
         simulation.sensor.sample(tick, measured).map_err(|_| {
-            errors::FLIGHT.say("the aircraft is out of bounds: its state is not finite any more")
+            errors::FLIGHT.with("the aircraft is out of bounds: its state is not finite any more")
         })?;
         Ok(PyMeasurements::from_core(measured))
     }

@@ -87,7 +87,7 @@ impl PyAutopilot {
         })?;
         self.stepped
             .engage(measurements, step_s(dt)?, readback)
-            .map_err(|words| errors::ENGAGE.say(words))
+            .map_err(|words| errors::ENGAGE.with(words))
     }
 
     /// One tick, `dt` seconds after the last: the surfaces to set.

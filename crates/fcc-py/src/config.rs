@@ -1,4 +1,4 @@
-//! Configuration: files, texts, values by their keys, with the daemon's words.
+//! Configuration: files, texts, values by their keys, with the daemon's messages.
 
 use std::path::PathBuf;
 
@@ -14,10 +14,10 @@ use crate::errors;
 /// What a text is called in messages.
 const NAME: &str = "config";
 
-/// A configuration as `fccd` reads it; what it does not say is as by default.
+/// A configuration as `fccd` reads it, with the default of every key not given.
 /// It cannot be changed: `replace` gives another one.
 ///
-/// `Config()` is the default, `Config(text)` reads TOML; where a text says
+/// `Config()` is the default, `Config(text)` reads TOML; where a text has
 /// neither `[x-plane]` nor `[built-in]`, the aircraft is the built-in one.
 /// Raises `ConfigError` with every problem, its line and its key.
 #[pyclass(name = "Config", module = "fcc", frozen)]
@@ -27,7 +27,7 @@ pub(crate) struct PyConfig {
 }
 
 pub(crate) fn refused(error: &ConfigError) -> PyErr {
-    errors::CONFIG.say(error)
+    errors::CONFIG.with(error)
 }
 
 #[pymethods]
@@ -42,10 +42,7 @@ impl PyConfig {
 
     /// Reads and checks a file, as `fccd check` does.
     #[staticmethod]
-    #[expect(
-        clippy::needless_pass_by_value,
-        reason = "pyo3 hands paths over by value"
-    )]
+    #[expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
     fn load(path: PathBuf) -> PyResult<Self> {
         Config::load(&path)
             .map(|config| Self { config })

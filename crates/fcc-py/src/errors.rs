@@ -1,4 +1,4 @@
-//! Exceptions: one base, one subclass for each part, with the daemon's words.
+//! Exceptions: one base, one subclass for each part, with the daemon's messages.
 //!
 //! Those that a built-in exception names as well are of that kind too: a bad
 //! configuration is a `ValueError`, an autopilot that is not engaged a
@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// One exception of the module: made once, by `type(name, bases, ...)`, as a
-/// class with two bases is not to be had otherwise.
+/// One exception of the module: made once, by `type(name, bases, ...)`, because
+/// there is no other way to a class with two bases.
 pub(crate) struct Exception {
     name: &'static str,
     doc: &'static str,
@@ -67,21 +67,21 @@ impl Exception {
         Ok(class.cast_into::<PyType>()?.unbind())
     }
 
-    /// An exception with these words.
-    pub(crate) fn say(&self, words: impl Display) -> PyErr {
+    /// An exception with this message.
+    pub(crate) fn with(&self, message: impl Display) -> PyErr {
         Python::attach(|py| match self.class(py) {
-            Ok(class) => PyErr::from_type(class, words.to_string()),
+            Ok(class) => PyErr::from_type(class, message.to_string()),
             Err(error) => error,
         })
     }
 }
 
-/// Whatever goes wrong in this module and is not an argument.
+/// Any error that is not a wrong argument.
 static ERROR: Exception = Exception::new(
     "Error",
     None,
     Also::Exception,
-    "Whatever goes wrong in this module and is no wrong argument.",
+    "Any error that is not a wrong argument.",
 );
 
 /// A configuration that cannot be flown.
@@ -97,15 +97,15 @@ pub(crate) static ENGAGE: Exception = Exception::new(
     "EngageError",
     Some(&ERROR),
     Also::RuntimeError,
-    "The autopilot is not engaged, or may not engage: what blocks it.",
+    "The autopilot is not engaged, or may not engage: the engage inhibits.",
 );
 
-/// An aircraft or a flight that cannot be.
+/// An aircraft or a flight that is not possible.
 pub(crate) static FLIGHT: Exception = Exception::new(
     "FlightError",
     Some(&ERROR),
     Also::Exception,
-    "The aircraft cannot be had, or the flight did not begin.",
+    "There is no such aircraft, or the flight did not begin.",
 );
 
 /// A file that is no recording.
@@ -113,7 +113,7 @@ pub(crate) static RECORDING: Exception = Exception::new(
     "RecordingError",
     Some(&ERROR),
     Also::Exception,
-    "A recording that cannot be read, recovered, reported or flown again.",
+    "A recording that cannot be read, recovered, reported on or replayed.",
 );
 
 /// A daemon that cannot be watched.
@@ -125,7 +125,7 @@ pub(crate) static TELEMETRY: Exception = Exception::new(
 );
 
 /// A command that was not carried out.
-pub(crate) static ORDER: Exception = Exception::new(
+pub(crate) static COMMAND: Exception = Exception::new(
     "CommandError",
     Some(&ERROR),
     Also::Exception,
@@ -143,7 +143,7 @@ pub(crate) static TIMER: Exception = Exception::new(
 /// Adds the exceptions to the module.
 pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for exception in [
-        &ERROR, &CONFIG, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &ORDER, &TIMER,
+        &ERROR, &CONFIG, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &COMMAND, &TIMER,
     ] {
         module.add(exception.name, exception.class(module.py())?)?;
     }

@@ -61,8 +61,8 @@ pub fn seconds(time: Time) -> f64 {
 fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
     match kind {
         EventKind::StateChanged { .. } => "state-changed",
-        EventKind::CommandReceived(_) => "ordered",
-        EventKind::StopRequested => "told-to-stop",
+        EventKind::CommandReceived(_) => "command-received",
+        EventKind::StopRequested => "stop-requested",
         EventKind::EngageRefused { .. } => "engage-refused",
         EventKind::SensorFault { .. } => "sensor-fault",
         EventKind::SensorRecovered { .. } => "sensor-recovered",

@@ -79,7 +79,7 @@ impl PyFleet {
             let readback = checked(from_row::<PySurfaces>(readback).into())?;
             autopilot
                 .engage(&from_row(row), dt_s, readback)
-                .map_err(|words| errors::ENGAGE.say(format_args!("autopilot {n}: {words}")))?;
+                .map_err(|words| errors::ENGAGE.with(format_args!("autopilot {n}: {words}")))?;
         }
         self.autopilots = engaged;
         Ok(())

@@ -137,8 +137,8 @@ impl PyFlight {
 /// aircraft's sensors measured, and gives other `Measurements` or None.
 /// `controller(time_s, measurements, setpoints, surfaces)` is called while
 /// engaged with what the autopilot would do, and gives `Surfaces`. With one of
-/// them the loop is not real time, and a `RuntimeWarning` says so. What they
-/// raise ends the flight and is raised here.
+/// them the loop is not real time, which a `RuntimeWarning` reports. An exception
+/// of theirs ends the flight and is raised here.
 #[pyfunction]
 #[pyo3(signature = (config = None, *, seconds = None, sensor = None, controller = None,
                     real_time = false, keep = true))]
@@ -153,7 +153,7 @@ pub(crate) fn fly(
 ) -> PyResult<PyFlight> {
     let config = configuration(config)?;
     let Some(Aircraft::BuiltIn(section)) = config.aircraft() else {
-        return Err(errors::FLIGHT.say(
+        return Err(errors::FLIGHT.with(
             "the configuration has [x-plane]: fly() is for the built-in aircraft, and `fccd run` \
              for another",
         ));
@@ -173,7 +173,7 @@ pub(crate) fn fly(
     }
     let period_s = config.tick.period().as_secs_f64();
     let raised = Raised::default();
-    let mut assembly = assemble(&config).map_err(|error| errors::FLIGHT.say(error))?;
+    let mut assembly = assemble(&config).map_err(|error| errors::FLIGHT.with(error))?;
     // Python asks the kernel for nothing.
     assembly.loop_config.realtime = RealtimeRequest::default();
     if let Some(call) = sensor {
@@ -238,8 +238,8 @@ fn conduct(
         return Err(error);
     }
     let outcome = flown.map_err(|error| match error {
-        FlyError::Timer(error) => errors::TIMER.say(error),
-        error => errors::FLIGHT.say(error),
+        FlyError::Timer(error) => errors::TIMER.with(error),
+        error => errors::FLIGHT.with(error),
     })?;
     let log = std::mem::take(&mut *lock(&log));
     Ok((outcome, log, took))

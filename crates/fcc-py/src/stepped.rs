@@ -83,7 +83,7 @@ impl Stepped {
         if self.engaged {
             return Ok(());
         }
-        Err(errors::ENGAGE.say("the autopilot is not engaged: call engage() first"))
+        Err(errors::ENGAGE.with("the autopilot is not engaged: call engage() first"))
     }
 
     pub(crate) fn command(&mut self, commands: impl IntoIterator<Item = AutopilotCommand>) {

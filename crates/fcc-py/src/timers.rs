@@ -134,7 +134,7 @@ impl PyTimer {
             Ok(timer) => Ok(timer),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => {
-                Err(errors::TIMER.say("another thread waits for this timer: give each its own"))
+                Err(errors::TIMER.with("another thread waits for this timer: give each its own"))
             }
         }
     }
@@ -153,7 +153,7 @@ impl PyTimer {
         let kind: TimerKind = kind
             .parse()
             .map_err(|error: fcc_timer::UnknownTimer| PyValueError::new_err(error.to_string()))?;
-        let refused = |error| errors::TIMER.say(error);
+        let refused = |error| errors::TIMER.with(error);
         let timer = kind.build(period).map_err(refused)?;
         Ok(Self {
             timer: Mutex::new(Started {
@@ -173,7 +173,7 @@ impl PyTimer {
         timer
             .timer
             .start()
-            .map_err(|error| errors::TIMER.say(error))?;
+            .map_err(|error| errors::TIMER.with(error))?;
         timer.started = true;
         self.stats().reset();
         Ok(())
@@ -187,7 +187,7 @@ impl PyTimer {
             let expiry = timer
                 .timer
                 .wait()
-                .map_err(|error| errors::TIMER.say(error))?;
+                .map_err(|error| errors::TIMER.with(error))?;
             self.stats().record(&expiry);
             Ok(expiry)
         });

@@ -235,8 +235,12 @@ impl<C: Controller> Machine<C> {
         );
 
         let mut stopwatch = Stopwatch::start(&*self.timer);
-        self.sensors
-            .sample(tick, &mut self.measurements, &mut self.telemetry.events);
+        self.sensors.sample(
+            tick,
+            &mut self.measurements,
+            &self.controller,
+            &mut self.telemetry.events,
+        );
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);

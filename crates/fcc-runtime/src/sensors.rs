@@ -1,8 +1,9 @@
 //! The loop's sensors: sampled, watched, and of several the best chosen.
 
-use std::time::Duration;
-
-use fcc_core::framework::{EventKind, Preference, Readings, Sensor, SensorFault, Sources, Tick};
+use fcc_core::framework::{
+    Controller, EventKind, Flags, Preference, Preferred, Readings, Sensor, SensorFault, Sources,
+    Tick,
+};
 
 use crate::faults::{Change, Health};
 use crate::telemetry_producer::Events;
@@ -17,7 +18,7 @@ struct Watched<M> {
 /// The loop's sensors, the most preferred first.
 pub(crate) struct Sensors<M> {
     all: Vec<Watched<M>>,
-    fresh_for: Vec<Duration>,
+    preferred: Vec<Preferred>,
     sources: Sources,
     faults: u64,
 }
@@ -30,7 +31,13 @@ impl<M: Readings + Copy + Default> Sensors<M> {
             own: M::default(),
         };
         Self {
-            fresh_for: sensors.iter().map(|s| s.fallback_after()).collect(),
+            preferred: sensors
+                .iter()
+                .map(|sensor| Preferred {
+                    fresh_for: sensor.fallback_after(),
+                    plausible: Flags::ALL,
+                })
+                .collect(),
             all: sensors.into_iter().map(watched).collect(),
             sources: Sources::default(),
             faults: 0,
@@ -38,32 +45,48 @@ impl<M: Readings + Copy + Default> Sensors<M> {
     }
 
     /// Samples every sensor, one that fails included: the others go on. Then
-    /// takes each reading from the first sensor that has a fresh one.
-    pub(crate) fn sample<O>(&mut self, tick: &Tick, into: &mut M, events: &mut Events<O>) {
+    /// takes each reading from the first sensor that has a fresh one which the
+    /// controller calls plausible.
+    pub(crate) fn sample<C: Controller<Measurements = M>>(
+        &mut self,
+        tick: &Tick,
+        into: &mut M,
+        controller: &C,
+        events: &mut Events<C::Command>,
+    ) {
         if let [only] = &mut self.all[..] {
             // Nothing to choose: what it writes is what is measured.
             let result = only.sensor.sample(tick, into);
             self.faults += u64::from(result.is_err());
             only.note(0, result, tick, events);
         } else {
-            self.sample_several(tick, into, events);
+            self.sample_several(tick, into, controller, events);
         }
         self.sources.watch(into, |change| {
             events.push(tick, EventKind::SourceChanged(change));
         });
     }
 
-    fn sample_several<O>(&mut self, tick: &Tick, into: &mut M, events: &mut Events<O>) {
-        let by = Preference {
-            now: tick.woke,
-            fresh_for: &self.fresh_for,
-        };
-        for (index, watched) in (0..).zip(&mut self.all) {
+    fn sample_several<C: Controller<Measurements = M>>(
+        &mut self,
+        tick: &Tick,
+        into: &mut M,
+        controller: &C,
+        events: &mut Events<C::Command>,
+    ) {
+        for ((index, watched), by) in (0..).zip(&mut self.all).zip(&mut self.preferred) {
             let result = watched.sensor.sample(tick, &mut watched.own);
             self.faults += u64::from(result.is_err());
             watched.note(index, result, tick, events);
-            // There are no more than a reading's source can name.
-            let place = index as u8;
+            by.plausible = controller.plausible(&watched.own);
+        }
+        let by = Preference {
+            now: tick.woke,
+            sensors: &self.preferred,
+            reading: 0,
+        };
+        // There are no more than a reading's source can name.
+        for (place, watched) in (0_u8..).zip(&self.all) {
             if place == 0 {
                 *into = watched.own;
             } else {

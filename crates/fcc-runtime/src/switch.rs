@@ -11,7 +11,17 @@ pub(crate) enum SwitchEdge {
     Off,
 }
 
+/// After the switch went off, an on counts only once this time has passed and
+/// the switch is still on: a contact that bounces disengages once, and does not
+/// engage again before it is steady.
+const LOCK_OUT: Duration = Duration::from_millis(500);
+
 /// Detects the edges of the engage switch.
+///
+/// The switch belongs to one sensor: the most preferred one that has ever
+/// delivered a switch. What others deliver while that one is silent is no
+/// switch, since the difference between two sensors' switches is not a movement
+/// of either.
 ///
 /// If the switch is already on when the loop starts, or when its readings
 /// resume, the loop must not take control: an on edge counts only if an off
@@ -20,33 +30,57 @@ pub(crate) enum SwitchEdge {
 #[derive(Debug)]
 pub(crate) struct EngageSwitch {
     max_age: Duration,
+    /// The sensor to which the switch belongs.
+    owner: Option<u8>,
     last_position: Option<Switch>,
     off_since_gap: bool,
+    switched_off: Time,
+    /// Switched on, but not yet counted.
+    on_is_due: bool,
 }
 
 impl EngageSwitch {
     pub(crate) const fn new(max_age: Duration) -> Self {
         Self {
             max_age,
+            owner: None,
             last_position: None,
             off_since_gap: false,
+            switched_off: Time::NEVER,
+            on_is_due: false,
         }
     }
 
-    /// Processes this tick's reading; a stale one is ignored.
+    /// Processes this tick's reading; a stale one, or one of another sensor, is
+    /// ignored.
     pub(crate) fn watch(&mut self, reading: Reading<Switch>, now: Time) -> Option<SwitchEdge> {
-        let Some(position) = reading.fresh(now, self.max_age) else {
+        let position = reading.fresh(now, self.max_age);
+        if position.is_some() && self.owner.is_none_or(|owner| reading.source < owner) {
+            *self = Self {
+                owner: Some(reading.source),
+                ..Self::new(self.max_age)
+            };
+        }
+        let Some(position) = position.filter(|_| self.owner == Some(reading.source)) else {
             self.off_since_gap = false;
+            self.on_is_due = false;
             return None;
         };
         let before = self.last_position.replace(position);
         match position {
             Switch::Off => {
                 self.off_since_gap = true;
-                (before == Some(Switch::On)).then_some(SwitchEdge::Off)
+                self.on_is_due = false;
+                (before == Some(Switch::On)).then(|| {
+                    self.switched_off = now;
+                    SwitchEdge::Off
+                })
             }
             Switch::On => {
-                (before == Some(Switch::Off) && self.off_since_gap).then_some(SwitchEdge::On)
+                self.on_is_due |= before == Some(Switch::Off) && self.off_since_gap;
+                let counts = self.on_is_due && now.since(self.switched_off) >= LOCK_OUT;
+                self.on_is_due &= !counts;
+                counts.then_some(SwitchEdge::On)
             }
         }
     }
@@ -128,5 +162,52 @@ mod tests {
                 Some(SwitchEdge::Off)
             ]
         );
+    }
+
+    #[test]
+    fn another_sensors_switch_makes_no_edge() {
+        let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
+        let mut second = 0;
+        let mut watch = |source, position| {
+            second += 1;
+            let now = Time::from_nanos(second * 1_000_000_000);
+            let reading = Reading::new(position, now);
+            switch.watch(Reading { source, ..reading }, now)
+        };
+        use Switch::{Off, On};
+        // The first to deliver one has it, until a more preferred one does.
+        assert_eq!(watch(1, Off), None);
+        assert_eq!(watch(0, On), None);
+        assert_eq!(watch(0, Off), Some(SwitchEdge::Off));
+        // A hiccup of the owner: the other's on engages nothing.
+        assert_eq!(watch(1, On), None);
+        assert_eq!(watch(0, Off), None);
+        assert_eq!(watch(0, On), Some(SwitchEdge::On));
+        // The other's off disengages nothing, and the owner's on is no edge.
+        assert_eq!(watch(1, Off), None);
+        assert_eq!(watch(1, On), None);
+        assert_eq!(watch(0, On), None);
+        assert_eq!(watch(1, Off), None);
+        assert_eq!(watch(0, Off), Some(SwitchEdge::Off), "meanwhile");
+    }
+
+    #[test]
+    fn a_switch_that_bounces_counts_off_at_once_and_on_when_it_is_steady() {
+        let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
+        let mut edges = Vec::new();
+        for tick in 0..160_i64 {
+            let now = Time::from_nanos(tick * 25_000_000);
+            // On from tick 2, bouncing from tick 40 to 80, then on.
+            let is_on = tick >= 2 && (tick < 40 || tick > 80 || tick % 2 == 1);
+            let position = if is_on { Switch::On } else { Switch::Off };
+            if let Some(edge) = switch.watch(Reading::new(position, now), now)
+                && edges.last().is_none_or(|(_, last)| *last != edge)
+            {
+                edges.push((tick, edge));
+            }
+        }
+        use SwitchEdge::{Off, On};
+        // The last off is in tick 80; 0.5 s are 20 ticks.
+        assert_eq!(edges, [(2, On), (40, Off), (100, On)]);
     }
 }

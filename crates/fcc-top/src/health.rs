@@ -1,5 +1,5 @@
-//! What carries the loop: the stages of a tick, the sensors, the
-//! recorder and the live telemetry itself.
+//! Health of the loop: the stages of a tick, the sensors, the recorder and the
+//! live telemetry.
 
 use fcc_core::framework::{Readings as _, Stage, Time};
 use fcc_live::{RecorderState, Status};
@@ -13,11 +13,10 @@ use super::picture::Picture;
 use super::timing::duration;
 use super::watched::Watched;
 
-/// Older than this is worth a colour, ms: half of what the loop takes for a
-/// loss unless told otherwise.
+/// Older readings are coloured, ms: half of the default timeout of the loop.
 const OLD_MS: u128 = 125;
 
-/// How long each stage took, now and at most.
+/// Durations of the stages, newest and longest.
 pub(super) fn stages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
         return;
@@ -47,7 +46,7 @@ fn short(ns: u64) -> String {
     duration(ns).replace(' ', "")
 }
 
-/// How old each reading was at the tick: as many as there is room for, in two
+/// The age of each reading at the tick: as many as there is room for, in two
 /// columns.
 pub(super) fn ages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
@@ -60,7 +59,7 @@ pub(super) fn ages<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Pict
         .each_source(&mut |_, time| taken.push(time));
     let readings: Vec<_> = C::READINGS.iter().copied().zip(taken).collect();
     let (left, right) = readings.split_at(readings.len().min(area.height.into()));
-    // Where one column is enough, it has all the room.
+    // A single column has the whole width.
     let width = if right.is_empty() {
         usize::from(area.width).saturating_sub(5).max(9)
     } else {
@@ -88,23 +87,23 @@ fn age((name, taken): (&'static str, Time), width: usize, now: Time) -> [Span<'s
         return [name, "   –".dim()];
     }
     let age_ms = now.since(taken).as_millis();
-    let words = if age_ms < 1_000 {
+    let text = if age_ms < 1_000 {
         format!("{age_ms:>2}ms")
     } else {
         format!("{}s", age_ms / 1_000)
     };
-    let words = format!("{words:>4}");
+    let text = format!("{text:>4}");
     [
         name,
         if age_ms > OLD_MS {
-            words.red().bold()
+            text.red().bold()
         } else {
-            words.green()
+            text.green()
         },
     ]
 }
 
-/// How recording goes, and who watches.
+/// State of the recorder, and number of watchers.
 pub(super) fn recorder<C: Watched>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(status) = &picture.status else {
         return;
@@ -139,11 +138,11 @@ fn watched<C: Watched>(status: &Status, picture: &Picture<C>) -> Line<'static> {
 }
 
 fn lost(name: &'static str, number: u64) -> Line<'static> {
-    let words = format!("{number} {name}");
+    let text = format!("{number} {name}");
     if number == 0 {
-        Line::from(words.dim())
+        Line::from(text.dim())
     } else {
-        Line::from(words.red().bold())
+        Line::from(text.red().bold())
     }
 }
 

@@ -1,7 +1,6 @@
-//! A control loop on this machine, live in a terminal: its state and timing, the
-//! recorder, what happened, and its values, for every controller whose values
-//! are declared. What only an aircraft has, as a horizon, is the feature
-//! `flight`.
+//! Shows a control loop on this machine, live in a terminal: state, timing,
+//! recorder, events and values, for every controller whose values are declared.
+//! The feature `flight` adds the parts for an aircraft, such as a horizon.
 //!
 //! | module | what it does |
 //! |---|---|

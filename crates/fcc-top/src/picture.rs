@@ -1,4 +1,4 @@
-//! What is known of a loop.
+//! The state of a loop, as received.
 
 use std::collections::VecDeque;
 
@@ -7,7 +7,7 @@ use fcc_live::{EVENT_HISTORY, Event, EventCode, Info, Status, WatchError, Watche
 
 use fcc_telemetry::Telemetry;
 
-/// What is known of a loop, from its live telemetry.
+/// The state of a loop, from its live telemetry.
 pub struct Picture<C: Telemetry> {
     pub(super) info: Info,
     /// The newest.
@@ -15,12 +15,12 @@ pub struct Picture<C: Telemetry> {
     pub(super) status: Option<Status>,
     /// The oldest first.
     pub(super) events: VecDeque<Event>,
-    /// The longest of each stage among the records seen.
+    /// The longest duration of each stage among the received records.
     pub(super) longest: StageTimes,
-    /// When the present state began, on the loop's clock; none if that was
-    /// before anything seen here.
+    /// When the present state began, on the loop's clock; `None` if before the
+    /// first received record.
     pub(super) state_since_ns: Option<i64>,
-    /// Whether the loop's program is gone.
+    /// Whether the loop's program has ended.
     pub(super) ended: bool,
 }
 
@@ -29,7 +29,7 @@ impl<C: Telemetry> Picture<C> {
         Self::of(watcher.info())
     }
 
-    /// Nothing but who publishes.
+    /// Only the publisher's information.
     pub fn of(info: &Info) -> Self {
         Self {
             info: *info,
@@ -42,7 +42,7 @@ impl<C: Telemetry> Picture<C> {
         }
     }
 
-    /// Takes all that has come since; gives whether anything has.
+    /// Takes all new messages; returns whether there were any.
     pub(super) fn update(&mut self, watcher: &mut WatcherOf<C>) -> Result<bool, WatchError> {
         let mut new = false;
         while let Some(record) = watcher.next_record()? {
@@ -60,7 +60,7 @@ impl<C: Telemetry> Picture<C> {
         Ok(new)
     }
 
-    /// Whether there is at least one of everything that always comes.
+    /// Whether at least one of each regular message was received.
     pub(super) const fn is_whole(&self) -> bool {
         self.record.is_some() && self.status.is_some()
     }
@@ -86,7 +86,7 @@ impl<C: Telemetry> Picture<C> {
         self.record = Some(*record);
     }
 
-    /// Takes what happened.
+    /// Takes an event.
     pub fn event(&mut self, event: Event) {
         if event.code == EventCode::StateChanged as u32 {
             self.state_since_ns = Some(event.time_ns);

@@ -1,4 +1,5 @@
-//! The screen: where its parts are, its first and its last line, and the events.
+//! The screen: the layout of its parts, its first and its last line, and the
+//! events.
 
 use fcc_core::framework::State;
 use fcc_telemetry::Instance;
@@ -12,7 +13,7 @@ use super::picture::Picture;
 use super::watched::{Part, Watched};
 use super::{health, timing};
 
-/// Smallest screen on which everything has its place.
+/// Smallest screen with room for everything.
 const LEAST: (u16, u16) = (80, 24);
 
 /// Heights of the first row of parts, with its title, and of the second.
@@ -24,7 +25,7 @@ pub fn draw<C: Watched>(frame: &mut Frame<'_>, instance: &Instance, picture: &Pi
     let area = frame.area();
     if area.width < LEAST.0 || area.height < LEAST.1 {
         let words = format!(
-            "{} top needs {} x {} characters; here are {} x {}. q quits",
+            "{} top needs {} x {} characters; this one has {} x {}. q quits",
             C::PROGRAM,
             LEAST.0,
             LEAST.1,
@@ -37,7 +38,7 @@ pub fn draw<C: Watched>(frame: &mut Frame<'_>, instance: &Instance, picture: &Pi
         );
         return;
     }
-    // A high screen gives the first row more room, and the events what is left.
+    // A high screen gives the first row more room, and the events the rest.
     let upper_rows = UPPER_ROWS + (area.height - LEAST.1) / 3;
     let [head, upper, lower, events, foot] = Layout::vertical([
         Constraint::Length(1),
@@ -123,12 +124,12 @@ fn state<C: Watched>(picture: &Picture<C>) -> Span<'static> {
     }
 }
 
-/// What matters most now, and how to leave.
+/// The most important message, and how to quit.
 fn foot_line<'a, C: Watched>(instance: &Instance, picture: &Picture<C>) -> Line<'a> {
     let quits = " q quits ".reversed();
     let words: Span<'a> = if picture.ended {
         let program = C::PROGRAM;
-        format!(" {program} '{instance}' has ended. This shows it again when it is started again.")
+        format!(" {program} '{instance}' has ended. The screen continues when it is started again.")
             .red()
     } else if let Some(record) = &picture.record {
         let (title, flags, color) = if record.faults.is_empty() {

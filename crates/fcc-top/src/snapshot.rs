@@ -1,4 +1,4 @@
-//! One moment of a loop, for other tools to read.
+//! The state of a loop at one time, as JSON.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -10,10 +10,11 @@ use serde_json::{Value, json};
 use super::picture::Picture;
 use super::watched::Watched;
 
-/// A status comes each second.
+/// A status is published each second.
 const PATIENCE: Duration = Duration::from_millis(1_500);
 
-/// One moment of a loop, once there is a record and a status, or soon after.
+/// The state of a loop as soon as there is a record and a status, or after a
+/// short wait.
 ///
 /// # Errors
 /// When shared memory fails.

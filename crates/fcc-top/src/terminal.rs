@@ -1,4 +1,4 @@
-//! The terminal: keys, redrawing, and leaving it as it was.
+//! The terminal: keys, drawing, and restoring it.
 
 use std::fmt;
 use std::io::{self, IsTerminal as _};
@@ -23,20 +23,21 @@ use super::picture::Picture;
 use super::screen;
 use super::watched::Watched;
 
-/// Time between pictures: often enough for an attitude, seldom enough for a
-/// small board and a slow line.
+/// Time between drawings: short enough for an attitude, long enough for a small
+/// board and a slow line.
 const REDRAW_EVERY: Duration = Duration::from_millis(67);
-/// How long nothing may come before it is asked whether the daemon is gone.
+/// Time without messages before the daemon's process is checked.
 const SILENCE: Duration = Duration::from_secs(1);
-/// How long a signal waits for a picture that the terminal does not take.
-const HELD: Duration = Duration::from_secs(1);
+/// Time for which a signal waits for a drawing that the terminal does not
+/// accept.
+const STOPPED: Duration = Duration::from_secs(1);
 
-/// Why a loop cannot be shown.
+/// Reason why a loop cannot be shown.
 #[derive(Debug)]
 pub enum TopError {
-    /// There is none to watch.
+    /// There is no loop to watch.
     Watch(WatchError),
-    /// This is no terminal.
+    /// The output is not a terminal.
     NoTerminal,
     /// The terminal failed.
     Terminal(io::Error),
@@ -54,7 +55,7 @@ impl fmt::Display for TopError {
 
 impl std::error::Error for TopError {}
 
-/// Shows the loop of an instance until somebody presses `q`.
+/// Shows the loop of an instance until `q` is pressed.
 ///
 /// # Errors
 /// When there is no such loop or no terminal.
@@ -67,63 +68,63 @@ pub fn top<C: Watched>(instance: &Instance) -> Result<(), TopError> {
 }
 
 fn watch<C: Watched>(instance: &Instance, watcher: WatcherOf<C>) -> io::Result<()> {
-    let told_to_end = end_by_signals()?;
-    // From here on a panic restores the terminal before it is printed.
+    let end_requested = end_by_signals()?;
+    // From here on a panic restores the terminal before its message is printed.
     let terminal = ratatui::try_init().inspect_err(|_| {
         let _ = ratatui::try_restore();
     })?;
-    // Dropped, it would complain of a terminal that is gone by a macro that
+    // Dropping it prints a message about a closed terminal with a macro that
     // panics there.
     let mut terminal = ManuallyDrop::new(terminal);
-    show(&mut terminal, instance, watcher, &told_to_end)
+    show(&mut terminal, instance, watcher, &end_requested)
         .and(terminal.show_cursor())
         .and(ratatui::try_restore())
 }
 
-/// A flag that a signal sets. A terminal that is held makes the drawing wait
-/// for ever: then the signal ends the program without it.
+/// A flag that a signal sets. A stopped terminal blocks the drawing: then the
+/// signal ends the program without it.
 fn end_by_signals() -> io::Result<Arc<AtomicBool>> {
-    let told_to_end = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&told_to_end);
+    let end_requested = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&end_requested);
     let mut signals = Signals::new([SIGTERM, SIGINT, SIGHUP])?;
     thread::Builder::new()
         .name("top-signals".to_owned())
         .spawn(move || {
             if let Some(signal) = signals.forever().next() {
                 flag.store(true, Ordering::Relaxed);
-                thread::sleep(HELD);
+                thread::sleep(STOPPED);
                 let _ = disable_raw_mode();
                 low_level::exit(128 + signal);
             }
         })?;
-    Ok(told_to_end)
+    Ok(end_requested)
 }
 
 fn show<C: Watched>(
     terminal: &mut DefaultTerminal,
     instance: &Instance,
     watcher: WatcherOf<C>,
-    told_to_end: &AtomicBool,
+    end_requested: &AtomicBool,
 ) -> io::Result<()> {
     let mut picture = Picture::new(&watcher);
     let mut watcher = Some(watcher);
-    let mut heard = Instant::now();
-    while !told_to_end.load(Ordering::Relaxed) {
+    let mut received = Instant::now();
+    while !end_requested.load(Ordering::Relaxed) {
         let next = Instant::now() + REDRAW_EVERY;
         match watcher.as_mut().map(|watcher| picture.update(watcher)) {
-            Some(Ok(true)) => heard = Instant::now(),
-            Some(Ok(false)) if heard.elapsed() < SILENCE => {}
+            Some(Ok(true)) => received = Instant::now(),
+            Some(Ok(false)) if received.elapsed() < SILENCE => {}
             Some(Ok(false)) if watcher.as_ref().is_some_and(WatcherOf::is_alive) => {
-                heard = Instant::now();
+                received = Instant::now();
             }
             Some(Ok(false) | Err(_)) => {
                 picture.ended = true;
                 watcher = None;
-                heard = Instant::now();
+                received = Instant::now();
             }
-            // Perhaps it is started again.
-            None if heard.elapsed() >= SILENCE => {
-                heard = Instant::now();
+            // It may be started again.
+            None if received.elapsed() >= SILENCE => {
+                received = Instant::now();
                 if let Ok(found) = WatcherOf::open(instance) {
                     picture = Picture::new(&found);
                     watcher = Some(found);
@@ -144,7 +145,7 @@ fn show<C: Watched>(
     Ok(())
 }
 
-/// What was pressed.
+/// The key that was pressed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Key {
     Quit,
@@ -152,39 +153,38 @@ enum Key {
 }
 
 impl Key {
-    /// What a terminal in raw mode sends.
+    /// Decodes the bytes of a terminal in raw mode.
     fn of(bytes: &[u8]) -> Self {
         const CTRL_C: u8 = 3;
         const ESCAPE: u8 = 0x1b;
         match bytes {
-            // Alone; before others it begins the name of a key.
+            // Alone: followed by others, it begins the code of a key.
             [b'q' | CTRL_C, ..] | [ESCAPE] => Self::Quit,
             _ => Self::Other,
         }
     }
 }
 
-/// The next key, if one comes until then.
+/// The next key, if one is pressed until then.
 ///
 /// # Errors
-/// When the terminal is gone. (Crossterm's own reader would look for keys for
-/// ever there.)
+/// When the terminal is closed. (Crossterm's own reader would loop there.)
 fn key_before(then: Instant) -> io::Result<Option<Key>> {
     let input = io::stdin();
     let mut fds = [PollFd::new(input.as_fd(), PollFlags::POLLIN)];
     let left = then.saturating_duration_since(Instant::now());
-    // To the next millisecond: less would not wait at all.
+    // Rounded up to a millisecond: 0 would not wait.
     let timeout =
         PollTimeout::try_from(left + Duration::from_millis(1)).unwrap_or(PollTimeout::ZERO);
     match poll(&mut fds, timeout) {
-        // A signal, or nothing.
+        // A signal, or no input.
         Err(Errno::EINTR) | Ok(0) => return Ok(None),
         Err(error) => return Err(error.into()),
         Ok(_) => {}
     }
     let mut bytes = [0; 64];
     match nix::unistd::read(&input, &mut bytes) {
-        Ok(0) => Err(io::Error::other("it is gone")),
+        Ok(0) => Err(io::Error::other("closed")),
         Ok(length) => Ok(bytes.get(..length).map(Key::of)),
         Err(Errno::EINTR | Errno::EAGAIN) => Ok(None),
         Err(error) => Err(error.into()),
@@ -195,7 +195,7 @@ fn key_before(then: Instant) -> io::Result<Option<Key>> {
 mod tests {
     use super::*;
 
-    /// Bytes as xterm's manual on control sequences gives them.
+    /// The bytes from xterm's manual on control sequences.
     #[test]
     fn q_escape_and_control_c_quit_and_an_arrow_does_not() {
         for bytes in [&b"q"[..], b"\x1b", b"\x03"] {

@@ -118,7 +118,7 @@ fn any_size_is_drawn() {
         drawn(&picture(), width, height);
     }
     assert!(drawn(&picture(), 60, 20)[0].contains("needs 80 x 24"));
-    // What is new goes on a larger screen, too.
+    // New events are visible on a larger screen, too.
     assert!(
         drawn(&picture(), 132, 50)
             .concat()
@@ -133,7 +133,7 @@ fn nothing_known_yet_is_drawn() {
 }
 
 #[test]
-fn its_end_is_said_plainly() {
+fn its_end_is_shown() {
     let mut picture = picture();
     picture.ended = true;
     let rows = drawn(&picture, 80, 24);
@@ -142,7 +142,7 @@ fn its_end_is_said_plainly() {
 }
 
 #[test]
-fn what_keeps_it_from_engaging_is_named() {
+fn engage_inhibits_are_shown() {
     let mut picture = picture();
     let mut record = picture.record.unwrap();
     record.state = State::Standby.into();

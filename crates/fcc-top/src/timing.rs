@@ -1,4 +1,4 @@
-//! How late the loop wakes.
+//! The lateness of the loop.
 
 use std::fmt::Write as _;
 
@@ -12,8 +12,8 @@ use ratatui::widgets::Paragraph;
 use super::picture::Picture;
 use fcc_telemetry::Telemetry;
 
-/// Draws the figures of the whole run and, below them, how many ticks woke how
-/// late: both scales logarithmic, or the few late ones would not show.
+/// Draws the percentiles of the whole run and, below them, a histogram of the
+/// lateness: both scales are logarithmic, so that a few late ticks are visible.
 pub(super) fn draw<C: Telemetry>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(status) = &picture.status else {
         frame.render_widget(Paragraph::new("each second; not yet"), area);
@@ -61,15 +61,15 @@ fn lines<C: Telemetry>(status: &Status, picture: &Picture<C>) -> Vec<Line<'stati
     ]
 }
 
-/// Something that should be 0.
+/// A count that should be 0.
 fn count(name: &'static str, number: u64) -> [Span<'static>; 2] {
-    let words = format!("{number:<8}");
+    let text = format!("{number:<8}");
     [
         format!("{name:<6} ").dim(),
         if number == 0 {
-            words.green()
+            text.green()
         } else {
-            words.red().bold()
+            text.red().bold()
         },
     ]
 }
@@ -86,7 +86,7 @@ pub(super) fn duration(ns: u64) -> String {
     } else {
         (ns / 1e9, "s")
     };
-    // As three figures are rounded, not as they are cut.
+    // The bounds at which rounding gives a further digit.
     let digits = match number {
         ..9.995 => 2,
         9.995..99.95 => 1,
@@ -101,7 +101,7 @@ const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇'
 fn draw_histogram(frame: &mut Frame<'_>, area: Rect, counts: &LatenessCounts) {
     let rows = area.height.saturating_sub(1);
     let bin = (area.width / counts.len() as u16).max(1);
-    // Counts up to the next power of ten: the picture does not jump each second.
+    // The scale ends at a power of ten, so that it does not change each second.
     let decades = (counts.iter().max().copied().unwrap_or(0).max(9) as f64 + 1.0)
         .log10()
         .ceil();
@@ -113,7 +113,7 @@ fn draw_histogram(frame: &mut Frame<'_>, area: Rect, counts: &LatenessCounts) {
                 .enumerate()
                 .map(|(n, count)| {
                     let all = f64::from(rows) * 8.0;
-                    // One tick alone still shows.
+                    // A single tick is visible, too.
                     let height = if *count == 0 {
                         0.0
                     } else {
@@ -144,16 +144,16 @@ fn color(bin: usize) -> Color {
 
 /// Every second decade, under the edge between its bins.
 fn scale(bin: usize) -> Line<'static> {
-    let mut words = String::new();
+    let mut text = String::new();
     let mut column = 0;
     // Bin 0 ends at 100 ns, and each decade has two.
     for (decade, word) in [(1, "1µs┘"), (3, "100µs┘"), (5, "10ms┘")] {
         let end = bin * (1 + 2 * decade);
         let room = end - column;
-        let _ = write!(words, "{word:>room$}");
+        let _ = write!(text, "{word:>room$}");
         column = end;
     }
-    Line::from(words)
+    Line::from(text)
 }
 
 #[cfg(test)]
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn times_have_three_figures() {
-        for (ns, words) in [
+        for (ns, text) in [
             (0, "0 ns"),
             (999, "999 ns"),
             (1_000, "1.00 µs"),
@@ -171,7 +171,7 @@ mod tests {
             (12_345_678, "12.3 ms"),
             (2_500_000_000, "2.50 s"),
         ] {
-            assert_eq!(duration(ns), words);
+            assert_eq!(duration(ns), text);
         }
     }
 }

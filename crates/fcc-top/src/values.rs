@@ -1,4 +1,4 @@
-//! The values of a record, as they are declared: measured, desired, commanded.
+//! The values of a record: measured, desired, commanded.
 
 use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_core::framework::{RecordOf, State};
@@ -15,21 +15,20 @@ use serde_json::{Map, Value as Json};
 use super::picture::Picture;
 
 /// Characters of a quantity's name.
-const WORDS: usize = 16;
+const NAME_WIDTH: usize = 16;
 
-/// Draws a row for each number that is measured, estimated, desired or
-/// commanded.
+/// Draws a row for each measured, estimated, desired or commanded number.
 pub(super) fn draw<C: Telemetry>(frame: &mut Frame<'_>, area: Rect, picture: &Picture<C>) {
     let Some(record) = &picture.record else {
         return;
     };
-    let heading = format!("{:<WORDS$}{:>10}{:>12}", "", "actual", "desired");
+    let heading = format!("{:<NAME_WIDTH$}{:>10}{:>12}", "", "actual", "desired");
     let mut lines = vec![Line::from(heading.dim())];
     lines.extend(rows::<C>(record).iter().map(Row::line));
     frame.render_widget(Paragraph::new(lines), area);
 }
 
-/// The same for other tools, with the unit in each name.
+/// The same as JSON, with the unit in each name.
 pub(super) fn json<C: Telemetry>(record: &RecordOf<C>) -> Map<String, Json> {
     let rows = rows::<C>(record);
     let group = |of: fn(&Row) -> Option<f64>, is_output: bool| -> Json {
@@ -67,7 +66,7 @@ impl Row {
             format!(" → {:>9}", number(self.desired)).into()
         };
         Line::from(vec![
-            format!("{:<WORDS$}", self.quantity).dim(),
+            format!("{:<NAME_WIDTH$}", self.quantity).dim(),
             format!("{:>10}", number(self.actual)).bold(),
             desired,
             format!(" {unit}").dim(),
@@ -76,7 +75,7 @@ impl Row {
 }
 
 /// The measured values, each with the estimate and the set point of its name,
-/// and then what has no measurement, and the outputs.
+/// then values without a measurement, and the outputs.
 fn rows<C: Telemetry>(record: &RecordOf<C>) -> Vec<Row> {
     let mut leaves = Leaves::default();
     leaves.take(record);

@@ -1,4 +1,4 @@
-//! What a controller's screen has beside what every loop's screen has.
+//! The parts of the screen that a controller can choose.
 
 use fcc_core::framework::{Readings, RecordOf};
 use fcc_telemetry::Telemetry;
@@ -9,26 +9,26 @@ use serde_json::{Map, Value};
 use super::picture::Picture;
 use super::values;
 
-/// Draws a part of the screen into its place.
+/// Draws a part of the screen.
 pub type Part<C> = fn(&mut Frame<'_>, Rect, &Picture<C>);
 
-/// A controller whose loop can be watched in a terminal. What is declared of its
-/// values is enough; an implementation may show them otherwise.
+/// A controller whose loop can be watched in a terminal. Its declared values
+/// are enough; an implementation may show them differently.
 pub trait Watched: Telemetry + Sized {
     /// The program that runs the loop.
     const PROGRAM: &'static str;
 
-    /// The names of the readings, in their order; each at most 8 letters, or it
-    /// is cut off.
+    /// The names of the readings, in their order, of at most 8 letters; the
+    /// rest is cut off.
     const READINGS: &'static [&'static str] = <Self::Measurements as Readings>::NAMES;
 
-    /// The parts to the left of the lateness, each with its title and how wide
-    /// it is beside the others: by default a table of all values.
+    /// The parts to the left of the lateness, each with its title and relative
+    /// width: by default a table of all values.
     fn parts(_record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
         vec![("Values".to_owned(), 50, values::draw)]
     }
 
-    /// The values for other tools.
+    /// The values as JSON.
     fn values(record: &RecordOf<Self>) -> Map<String, Value> {
         values::json::<Self>(record)
     }

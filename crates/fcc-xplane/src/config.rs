@@ -36,7 +36,8 @@ pub struct XPlaneConfig {
     pub rate_hz: u16,
     /// The number of engines whose throttle is written, 1..=8. Default: 1.
     pub engines: u8,
-    /// The dataref of the engage switch: on from 0.5 upwards. Default:
+    /// The dataref of the engage switch: on from 0.75 upwards, off below 0.25,
+    /// unchanged in between. Default:
     /// `sim/cockpit2/switches/generic_lights_switch[0]`, which nothing else in
     /// X-Plane reads.
     pub engage_switch: String,

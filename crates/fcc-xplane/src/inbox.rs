@@ -28,6 +28,11 @@ use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
 use crate::specific_force::specific_force;
 use crate::values::{Group, Values};
 
+/// The engage switch is on from here upwards, and off below [`SWITCH_OFF`]; in
+/// between it stays as it was, at first off. So noise on it does not switch.
+const SWITCH_ON: f64 = 0.75;
+const SWITCH_OFF: f64 = 0.25;
+
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
 pub(crate) struct Inbox {
@@ -40,6 +45,7 @@ pub(crate) struct Inbox {
     /// from them.
     accelerations: [f64; 3],
     force: SpecificForce,
+    switch: Switch,
 }
 
 impl Inbox {
@@ -51,6 +57,7 @@ impl Inbox {
             position: Reading::default(),
             accelerations: [f64::NAN; 3],
             force: SpecificForce::default(),
+            switch: Switch::Off,
         }
     }
 
@@ -240,12 +247,12 @@ impl Inbox {
             into.surfaces = Reading::new(surfaces, taken);
         }
         if let Some(([switch], taken)) = values.whole(Group::Switch, [Quantity::EngageSwitch]) {
-            let switch = if switch >= 0.5 {
-                Switch::On
-            } else {
-                Switch::Off
+            self.switch = match switch {
+                on if on >= SWITCH_ON => Switch::On,
+                off if off < SWITCH_OFF => Switch::Off,
+                _ => self.switch,
             };
-            into.engage_switch = Reading::new(switch, taken);
+            into.engage_switch = Reading::new(self.switch, taken);
         }
         self.publish_plant(now, into, link)
     }

@@ -25,9 +25,6 @@ use crate::udp_port::UdpPort;
 const BUFFER_BYTES: usize = 8_192;
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
-/// Beacons of a silent simulator restart the subscriptions at most at this
-/// interval.
-const RESTART_AFTER: Duration = Duration::from_secs(1);
 
 /// X-Plane as a sensor: reads the values that arrived and requests those that
 /// did not.
@@ -53,7 +50,6 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     fallback_after: Duration,
     /// The first tick: until something arrives, silence is measured from here.
     began: Time,
-    restarted: Time,
     buffer: Box<[u8; BUFFER_BYTES]>,
     /// For the warm-up: the last datagram with values in it, whole or not.
     last_values: Box<[u8; BUFFER_BYTES]>,
@@ -84,7 +80,6 @@ impl<P: Port> XPlaneSensor<P> {
             silent_after: config.silent_after,
             fallback_after: config.fallback_after,
             began: Time::NEVER,
-            restarted: Time::NEVER,
             buffer: Box::new([0; BUFFER_BYTES]),
             last_values: Box::new([0; BUFFER_BYTES]),
             last_values_bytes: 0,
@@ -124,10 +119,6 @@ impl<P: Port> XPlaneSensor<P> {
                 continue;
             }
             self.link.set_simulator(address);
-            if silent && now.since(self.restarted) >= RESTART_AFTER {
-                self.restarted = now;
-                self.subscriptions.restart();
-            }
         }
     }
 

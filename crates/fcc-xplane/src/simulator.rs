@@ -174,7 +174,7 @@ impl SimulatorClock {
     }
 
     fn read_clock(&mut self, now: Time, time_s: f64, was_silent: bool) {
-        let before = self.latest;
+        let (before, had_stopped) = (self.latest, self.has_stopped());
         self.latest = ClockSample { time_s, seen: now };
         if before.seen.is_never() {
             self.begin_pace(now);
@@ -189,7 +189,8 @@ impl SimulatorClock {
         } else if was_silent {
             self.begin_pace(now);
         } else if gained_s > 0.0 {
-            if now.since(self.advanced) > STALLED_AFTER {
+            // Frames that are far apart are slow, and no stop.
+            if had_stopped {
                 self.begin_pace(now);
             }
             self.advanced = now;
@@ -240,9 +241,10 @@ impl SimulatorClock {
     }
 
     /// Whether it sends, but its time does not advance: measured up to the last
-    /// report, so that a gap between reports is not taken for a stopped clock.
+    /// report of its time, so that a gap between reports is not taken for a
+    /// stopped clock.
     fn has_stopped(&self) -> bool {
-        !self.latest.seen.is_never() && self.received.since(self.advanced) > STALLED_AFTER
+        !self.latest.seen.is_never() && self.latest.seen.since(self.advanced) > STALLED_AFTER
     }
 
     /// The simulator's state.

@@ -3,10 +3,10 @@
 //!
 //! Requests get lost, and a restarted X-Plane has lost its subscriptions, so
 //! each dataref that does not arrive is requested again. While the simulator is
-//! silent, or never answers for a dataref (it may not have it), that is every
-//! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe); while it
-//! answers others, the first few repetitions follow after one second, since
-//! then a single request was lost.
+//! silent, everything is requested each second. While it answers, a dataref that
+//! does not arrive is requested again after one second a few times, since a
+//! single request was lost, and then (it may not have it) every
+//! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe).
 //!
 //! X-Plane accepts about 100 requests and then needs a pause of 100 ms. There
 //! are fewer than that in total, and they are spread over several ticks.
@@ -30,7 +30,8 @@ pub(crate) const REQUESTS_PER_TICK: usize = 8;
 const REQUESTS_AT_ONCE: usize = 100;
 const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
 
-/// A lost request is repeated after this long, this many times.
+/// A lost request is repeated after this long, this many times; all of them
+/// when the simulator has been silent for this long.
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
 
@@ -82,6 +83,7 @@ struct Subscription {
 pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
+    restarted: Time,
     missing_values: MissingValues,
 }
 
@@ -113,6 +115,7 @@ impl Subscriptions {
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
+            restarted: Time::NEVER,
             missing_values: MissingValues::new(expected, config.resubscribe),
         })
     }
@@ -134,10 +137,14 @@ impl Subscriptions {
         );
     }
 
-    /// Requests everything again, from the next tick on.
-    pub(crate) fn restart(&mut self) {
-        for subscription in &mut self.list {
-            subscription.anew = true;
+    /// Requests everything again, at most once a second.
+    fn restart(&mut self, now: Time) {
+        if now.since(self.restarted) >= LOST_AFTER {
+            self.restarted = now;
+            for subscription in &mut self.list {
+                subscription.anew = true;
+                subscription.unanswered = 0;
+            }
         }
     }
 
@@ -150,7 +157,9 @@ impl Subscriptions {
         mut send: impl FnMut(&[u8]) -> Result<(), Errno>,
     ) -> Result<(), Errno> {
         let resubscribe = self.resubscribe;
-        let silent = now.since(inbox.last_received()) >= LOST_AFTER;
+        if now.since(inbox.last_received()) >= LOST_AFTER {
+            self.restart(now);
+        }
         let mut outcome = Ok(());
         let mut budget = REQUESTS_PER_TICK;
         for subscription in &mut self.list {
@@ -158,13 +167,12 @@ impl Subscriptions {
                 break;
             }
             let arrived_at = arrived(inbox, subscription.request.expected());
-            let answered = now.since(arrived_at) < resubscribe;
+            let answered = arrived_at > self.restarted && now.since(arrived_at) < resubscribe;
             if answered && !subscription.anew {
                 subscription.unanswered = 0;
                 continue;
             }
-            let lost = !silent && subscription.unanswered <= LOST_TIMES;
-            let wait = if lost {
+            let wait = if subscription.unanswered <= LOST_TIMES {
                 resubscribe.min(LOST_AFTER)
             } else {
                 resubscribe

@@ -9,6 +9,8 @@
 
 #[cfg(test)]
 mod conformance;
+#[cfg(test)]
+mod one_more_reading;
 mod recording;
 mod replay;
 mod room;

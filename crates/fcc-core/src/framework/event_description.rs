@@ -114,9 +114,9 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 }
                 Ok(())
             }
-            EventKind::OverrunsOver { count, first, last } => write!(
+            EventKind::OverrunsOver { count, last, .. } => write!(
                 f,
-                "{count} ticks overran or were missed, between {first} and {last}; none for a second"
+                "{count} ticks overran or were missed up to tick {last}; none for a second"
             ),
             EventKind::Hung { silent_ns } => write!(
                 f,

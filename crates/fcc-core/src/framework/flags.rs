@@ -21,6 +21,9 @@ impl Flags {
     /// No condition holds.
     pub const NONE: Self = Self(0);
 
+    /// Every condition holds.
+    pub const ALL: Self = Self(u32::MAX);
+
     /// The set of one condition, by its bit 0..=31; a higher bit wraps.
     pub const fn bit(bit: u32) -> Self {
         Self(1_u32.wrapping_shl(bit))

@@ -40,7 +40,7 @@ pub use plant_id::PlantId;
 pub use reading::Reading;
 pub use record::{Record, RecordOf, StageTimes};
 pub use sensor::{FALLBACK_AFTER, Sensor, SensorFault};
-pub use sources::{Preference, Readings, SourceChange, Sources};
+pub use sources::{Preference, Preferred, Readings, SourceChange, Sources};
 pub use stage::Stage;
 pub use state::{Cause, Input, State, SwitchOff};
 pub use state_code::StateCode;

@@ -1,10 +1,12 @@
 //! Selects the sensor from which each reading is taken.
 //!
 //! The sensors of a loop are in an order of preference, and each writes into
-//! its own measurements. For each quantity the first fresh reading is taken; if
+//! its own measurements. For each quantity the first fresh reading is taken that
+//! the controller calls plausible; if there is none, the first fresh one; if
 //! none is fresh, the youngest, and of equal ones the first. So a sensor that
-//! becomes silent is replaced before its readings count as lost, and is used
-//! again when it returns.
+//! becomes silent is replaced before its readings count as lost, one whose
+//! values are impossible is replaced at once, and each is used again when it
+//! returns.
 
 use core::time::Duration;
 
@@ -54,7 +56,9 @@ macro_rules! readings {
                 sensor: u8,
                 by: &$crate::framework::Preference<'_>,
             ) {
-                $(self.$field.choose(&other.$field, sensor, by);)*
+                let mut by = *by;
+                $(self.$field.choose(&other.$field, sensor, &by);
+                by.reading += 1;)*
             }
 
             fn each_source(&self, visit: &mut dyn FnMut(u8, $crate::framework::Time)) {
@@ -73,10 +77,7 @@ impl<T: Copy> Readings for Reading<T> {
     const NAMES: &'static [&'static str] = &["reading"];
 
     fn choose(&mut self, other: &Self, sensor: u8, by: &Preference<'_>) {
-        if by.is_fresh(self, self.source) {
-            return;
-        }
-        if by.is_fresh(other, sensor) || by.taken(other) > by.taken(self) {
+        if by.rank(other, sensor) > by.rank(self, self.source) {
             *self = Self {
                 source: sensor,
                 ..*other
@@ -95,23 +96,36 @@ pub struct Preference<'a> {
     /// The tick's time. A reading from the future is never fresh, and counts as
     /// older than any other.
     pub now: Time,
-    /// The age up to which a reading of each sensor is fresh, by the sensors'
-    /// index in the loop.
-    pub fresh_for: &'a [Duration],
+    /// The sensors, by their index in the loop.
+    pub sensors: &'a [Preferred],
+    /// The index of the first reading that is chosen, 0 for all measurements.
+    pub reading: u32,
+}
+
+/// The criteria that concern one sensor.
+#[derive(Clone, Copy, Debug)]
+pub struct Preferred {
+    /// The age up to which its readings are fresh.
+    pub fresh_for: Duration,
+    /// Its plausible readings: a bit for each, in the order of the
+    /// measurements.
+    pub plausible: Flags,
 }
 
 impl Preference<'_> {
-    fn is_fresh<T>(&self, reading: &Reading<T>, sensor: u8) -> bool {
-        let fresh_for = self.fresh_for.get(usize::from(sensor));
-        reading.taken <= self.now
-            && fresh_for.is_some_and(|fresh_for| reading.is_fresh(self.now, *fresh_for))
-    }
-
-    fn taken<T>(&self, reading: &Reading<T>) -> Time {
-        if reading.taken <= self.now {
-            reading.taken
-        } else {
-            Time::NEVER
+    /// Whether a reading is fresh and plausible, whether it is fresh, and, if
+    /// it is not, when it was taken: the greater is preferred.
+    fn rank<T>(&self, reading: &Reading<T>, sensor: u8) -> (bool, bool, Time) {
+        if reading.taken > self.now {
+            return (false, false, Time::NEVER);
+        }
+        let sensor = self.sensors.get(usize::from(sensor));
+        match sensor.filter(|sensor| reading.is_fresh(self.now, sensor.fresh_for)) {
+            None => (false, false, reading.taken),
+            Some(sensor) => {
+                let plausible = sensor.plausible.contains(Flags::bit(self.reading));
+                (plausible, true, Time::NEVER)
+            }
         }
     }
 }

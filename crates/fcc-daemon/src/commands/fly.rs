@@ -11,7 +11,7 @@ use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine, aircraft};
 use crate::output;
-use crate::process::Process;
+use crate::process::{Process, tolerate};
 use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
 use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
@@ -54,6 +54,10 @@ pub(super) fn conduct(
     quiet: bool,
     json: bool,
 ) -> Exit {
+    if let Err(error) = tolerate() {
+        fail(&format!("signals cannot be caught: {error}"));
+        return Exit::Failure;
+    }
     let mut assembly = match assemble(config) {
         Ok(assembly) => assembly,
         Err(error) => {
@@ -67,7 +71,7 @@ pub(super) fn conduct(
     };
     let recording = RecordingRequest::of(config, as_given);
     let mut observers = assembly.observers(config, plan.pace, recording);
-    observers.push(Box::new(Announcer));
+    observers.push(Box::new(Announcer::default()));
     if !quiet {
         observers.push(Box::new(StatusLine::new(aircraft::describe)));
     }

@@ -8,20 +8,22 @@ use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM};
 use super::fail;
 use crate::exit::Exit;
 use crate::output;
-use crate::process::run_release_helper;
+use crate::process::{run_release_helper, tolerate};
 
 /// Waits until the daemon that started this has ended.
 pub(super) fn release_helper() -> Exit {
     // A signal to all processes of the daemon must not end the helper before
     // the controls are released: it ends only after the daemon's end. ABRT is
     // sent by a service manager's watchdog.
-    for signal in [SIGTERM, SIGINT, SIGHUP, SIGABRT] {
-        let ignored = signal_hook::flag::register(signal, std::sync::Arc::default());
-        if let Err(error) = ignored {
-            return fail(&format!(
-                "release helper: signals cannot be caught: {error}"
-            ));
-        }
+    let caught = [SIGTERM, SIGINT, SIGHUP, SIGABRT]
+        .into_iter()
+        .try_for_each(|signal| {
+            signal_hook::flag::register(signal, std::sync::Arc::default()).map(drop)
+        });
+    if let Err(error) = caught.and_then(|()| tolerate()) {
+        return fail(&format!(
+            "release helper: signals cannot be caught: {error}"
+        ));
     }
     let result = match run_release_helper(io::stdin().lock()) {
         Ok(Some(result)) => result,

@@ -1,16 +1,26 @@
 //! Prints events as they happen.
 
-use fcc_core::framework::{Controller, EventOf};
-use fcc_flight::flight::{FlightTime, Observer, Report};
+use fcc_core::framework::{Controller, EventOf, RecordOf};
+use fcc_flight::flight::{Flapping, FlightTime, Observer, Report};
 
 use crate::output;
 
-/// Prints each event and report on standard error.
-pub(crate) struct Announcer;
+/// Prints events and reports on standard error; a fault that comes and goes is
+/// summarised.
+#[derive(Default)]
+pub(crate) struct Announcer(Flapping);
 
 impl<C: Controller> Observer<C> for Announcer {
-    fn event(&mut self, _: &EventOf<C>, text: &str, at: &FlightTime) {
-        announce(text, at);
+    fn record(&mut self, _: &RecordOf<C>, at: &FlightTime) {
+        for line in self.0.summaries(at.time_s, false) {
+            announce(&line, at);
+        }
+    }
+
+    fn event(&mut self, event: &EventOf<C>, text: &str, at: &FlightTime) {
+        if self.0.passes(&event.kind, text, at.time_s) {
+            announce(text, at);
+        }
     }
 
     fn report(&mut self, report: &Report, at: &FlightTime) {

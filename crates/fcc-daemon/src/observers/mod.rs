@@ -17,7 +17,7 @@ mod tests {
 
     #[test]
     fn every_observer_conforms_to_the_trait() {
-        observer_conforms(|| Box::new(Announcer));
+        observer_conforms(|| Box::new(Announcer::default()));
         observer_conforms(|| Box::new(StatusLine::new(aircraft::describe)));
         observer_conforms(|| Box::new(Service::from_environment()));
     }

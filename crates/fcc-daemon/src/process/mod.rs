@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `release_helper`, `release_handover` | a second process that releases the controls if this one is killed |
 //! | `instance_lock` | keeps two daemons from one plant |
-//! | `signals` | the signals that end a flight |
+//! | `signals` | the signals that end a flight, and those that must not |
 
 mod instance_lock;
 mod release_handover;
@@ -13,7 +13,7 @@ mod signals;
 
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::{ControlAuthority, PlantId};
@@ -26,7 +26,8 @@ use crate::output;
 use instance_lock::InstanceLock;
 use release_helper::ReleaseHelper;
 pub(crate) use release_helper::run_release_helper;
-use signals::BlockedSignals;
+pub(crate) use signals::tolerate;
+use signals::{BlockedSignals, Caught};
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it; a check is one refused
@@ -37,7 +38,7 @@ const CHECK_EVERY: Duration = Duration::from_secs(1);
 pub(crate) struct Process<'a> {
     config: &'a Config,
     blocked_signals: Option<BlockedSignals>,
-    interrupted: Arc<AtomicBool>,
+    caught: Caught,
     plant: Option<Plant>,
 }
 
@@ -56,7 +57,7 @@ impl<'a> Process<'a> {
         Self {
             config,
             blocked_signals: None,
-            interrupted: Arc::default(),
+            caught: Caught::default(),
             plant: None,
         }
     }
@@ -81,7 +82,7 @@ impl Host for Process<'_> {
     }
 
     fn attach(&mut self, stop: &StopHandle) -> io::Result<()> {
-        self.interrupted = signals::stop_by(stop).map_err(|error| uncaught(&error))?;
+        self.caught = signals::stop_by(stop).map_err(|error| uncaught(&error))?;
         Ok(())
     }
 
@@ -90,6 +91,9 @@ impl Host for Process<'_> {
     }
 
     fn poll(&mut self) {
+        if self.caught.suspended.swap(false, Ordering::Relaxed) {
+            output::message("Ctrl-Z does not stop a flight; Ctrl-C ends it");
+        }
         if let Some(plant) = &mut self.plant {
             plant.lock.follow();
             let held = plant.authority.held();
@@ -144,7 +148,7 @@ impl Host for Process<'_> {
     }
 
     fn was_interrupted(&self) -> bool {
-        self.interrupted.load(Ordering::Relaxed)
+        self.caught.interrupted.load(Ordering::Relaxed)
     }
 }
 

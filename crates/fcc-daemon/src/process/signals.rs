@@ -1,5 +1,5 @@
 //! The signals that end a flight: TERM, INT and, unless it is ignored from the
-//! start, HUP.
+//! start, HUP; and those that must not stop or end it.
 
 use std::fs;
 use std::io;
@@ -11,20 +11,44 @@ use nix::sys::signal::{SigSet, Signal};
 
 const ENDING: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
 
+/// What a terminal sends to a process in the background that reads or writes
+/// it.
+const BACKGROUND: [Signal; 2] = [Signal::SIGTTIN, Signal::SIGTTOU];
+
+/// Prepares for a flight, before any thread is started: a process that is
+/// stopped holds the controls, and one that is killed for the size of a file
+/// does not release them itself.
+pub(crate) fn tolerate() -> io::Result<()> {
+    // A limit on file sizes must end the recording or the telemetry, not the
+    // flight: with this handler, the write beyond the limit fails with an
+    // error.
+    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())?;
+    // Blocked, in the threads started from here on too: the terminal then
+    // accepts what is written. A handler would be called again and again.
+    SigSet::from_iter(BACKGROUND).thread_block()?;
+    Ok(())
+}
+
+/// What the signals have done.
+#[derive(Default)]
+pub(super) struct Caught {
+    /// It was a signal that ended the flight.
+    pub(super) interrupted: Arc<AtomicBool>,
+    /// Ctrl-Z was pressed, and had no effect.
+    pub(super) suspended: Arc<AtomicBool>,
+}
+
 /// The signals set the loop's stop flag, which is safe in a signal handler; the
-/// loop releases the controls in its next tick. The returned flag shows
-/// afterwards that it was a signal.
-pub(super) fn stop_by(stop: &StopHandle) -> io::Result<Arc<AtomicBool>> {
-    let interrupted = Arc::new(AtomicBool::new(false));
+/// loop releases the controls in its next tick.
+pub(super) fn stop_by(stop: &StopHandle) -> io::Result<Caught> {
+    let caught = Caught::default();
+    signal_hook::flag::register(Signal::SIGTSTP as i32, Arc::clone(&caught.suspended))?;
     for signal in ENDING.into_iter().filter(|signal| !is_ignored(*signal)) {
-        for flag in [stop.flag(), Arc::clone(&interrupted)] {
+        for flag in [stop.flag(), Arc::clone(&caught.interrupted)] {
             signal_hook::flag::register(signal as i32, flag)?;
         }
     }
-    // A limit on file sizes must end the recording, not the flight: with this
-    // handler, the write beyond the limit fails with an error.
-    signal_hook::flag::register(Signal::SIGXFSZ as i32, Arc::default())?;
-    Ok(interrupted)
+    Ok(caught)
 }
 
 /// Whether this program was started to ignore a hang-up of its terminal, as by
@@ -49,7 +73,7 @@ pub(super) struct BlockedSignals(SigSet);
 
 impl BlockedSignals {
     pub(super) fn in_new_threads() -> io::Result<Self> {
-        let signals = SigSet::from_iter(ENDING);
+        let signals: SigSet = ENDING.into_iter().chain([Signal::SIGTSTP]).collect();
         signals.thread_block()?;
         Ok(Self(signals))
     }

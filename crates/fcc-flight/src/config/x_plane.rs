@@ -27,7 +27,8 @@ pub struct XPlaneSection {
     pub rate_hz: u16,
     /// The number of engines whose throttle is written.
     pub engines: u8,
-    /// The dataref of the engage switch: on from 0.5 upwards.
+    /// The dataref of the engage switch: on from 0.75 upwards, off below 0.25,
+    /// unchanged in between.
     pub engage_switch: String,
     /// A dataref without a value for this long is requested again.
     pub resubscribe_s: f64,

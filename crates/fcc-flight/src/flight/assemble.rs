@@ -66,9 +66,13 @@ pub enum AssemblyError {
 }
 
 impl AssemblyError {
-    /// Whether another program has the local port.
+    /// Whether another program has the local port, or that of the beacons.
     pub fn is_taken(&self) -> bool {
-        matches!(self, Self::XPlane(OpenError::Bind { source, .. }) if source.kind() == ErrorKind::AddrInUse)
+        matches!(
+            self,
+            Self::XPlane(OpenError::Bind { source, .. } | OpenError::Beacon { source, .. })
+                if source.kind() == ErrorKind::AddrInUse
+        )
     }
 }
 
@@ -195,5 +199,24 @@ impl Assembly {
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+
+    use super::*;
+
+    #[test]
+    fn a_port_that_another_program_has_is_taken() {
+        let beacon = |kind: ErrorKind| {
+            AssemblyError::XPlane(OpenError::Beacon {
+                group: XPlaneConfig::default().beacon,
+                source: io::Error::from(kind),
+            })
+        };
+        assert!(beacon(ErrorKind::AddrInUse).is_taken());
+        assert!(!beacon(ErrorKind::PermissionDenied).is_taken());
     }
 }

@@ -10,6 +10,7 @@ mod commands;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod event_log;
+mod flapping;
 mod fly;
 mod follow;
 mod hang;
@@ -31,6 +32,7 @@ mod scorer;
 mod truth_recorder;
 
 pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};
+pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use host::Host;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};

@@ -113,6 +113,10 @@ impl Controller for Pilot {
         self.autopilot.outputs_are_valid(outputs)
     }
 
+    fn plausible(&self, measurements: &Measurements) -> Flags {
+        self.autopilot.plausible(measurements)
+    }
+
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         self.autopilot.switch(measurements)
     }

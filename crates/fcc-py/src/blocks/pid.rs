@@ -12,7 +12,7 @@ use crate::arguments::finite;
 ///
 /// `kp` is output per error, `ki` output per error and second, `kd` output per
 /// error per second; `derivative_tau_s` is the time constant of the
-/// derivative's low pass. The integral stands still in a limit, or is drawn
+/// derivative's low pass. The integral is held in a limit, or is drawn
 /// back with the time constant `tracking_tau_s` if one is given (Åström and
 /// Hägglund 1995, section 3.5).
 #[pyclass(name = "Pid", module = "fcc")]

@@ -25,9 +25,9 @@ pub(crate) struct PyCommander {
 fn refused(error: &CommandError) -> PyErr {
     match error {
         CommandError::Unreachable(_) | CommandError::NotAccepted { .. } => {
-            errors::TELEMETRY.say(error)
+            errors::TELEMETRY.with(error)
         }
-        _ => errors::ORDER.say(error),
+        _ => errors::COMMAND.with(error),
     }
 }
 

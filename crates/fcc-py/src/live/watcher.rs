@@ -15,12 +15,12 @@ use crate::errors;
 use crate::events::{PyEvent, seconds};
 use crate::structured::Rows;
 
-/// How often it looks while it waits.
+/// The interval between reads while it waits.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
-/// How often it asks whether the daemon lives, while nothing comes.
+/// How often it checks that the daemon runs, while nothing arrives.
 const ASK_EVERY: Duration = Duration::from_millis(250);
-/// How long at most it is deaf to the keyboard.
-const HEAR_EVERY: Duration = Duration::from_millis(50);
+/// How often it checks for an interruption from the keyboard.
+const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
 /// Watches a daemon on this machine, by its instance's name. The newest record
 /// and the last 64 events are there at once.
@@ -35,7 +35,7 @@ pub(crate) struct PyWatcher {
 }
 
 fn refused(error: &WatchError) -> PyErr {
-    errors::TELEMETRY.say(error)
+    errors::TELEMETRY.with(error)
 }
 
 #[pymethods]
@@ -92,7 +92,7 @@ impl PyWatcher {
         Ok(events)
     }
 
-    /// How the run stands, as a dict: the newest status, of which one comes
+    /// The status of the run, as a dict: the newest one, of which one comes
     /// each second. Waits up to `timeout_s` (0 to 3,600) for one that was not
     /// given yet, and gives None if none comes.
     #[pyo3(signature = (timeout_s = 1.5))]
@@ -133,7 +133,7 @@ impl PyWatcher {
         self.watcher.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Looks until something is there, patience ends or the daemon does.
+    /// Reads until there is something, the time is over or the daemon has ended.
     fn wait<T: Send>(
         &self,
         py: Python<'_>,
@@ -143,12 +143,12 @@ impl PyWatcher {
         let began = Instant::now();
         let mut asked = began;
         loop {
-            let heard = Instant::now();
+            let checked = Instant::now();
             let found = py.detach(|| -> Result<Option<T>, WatchError> {
                 loop {
                     let found = look(&mut self.watcher())?;
                     let enough = patience.is_some_and(|patience| began.elapsed() >= patience);
-                    if found.is_some() || enough || heard.elapsed() >= HEAR_EVERY {
+                    if found.is_some() || enough || checked.elapsed() >= SIGNALS_EVERY {
                         return Ok(found);
                     }
                     if asked.elapsed() >= ASK_EVERY {
@@ -177,8 +177,7 @@ impl PyWatcher {
         }
     }
 
-    /// Raises what went wrong, and that a daemon which has nothing more to
-    /// tell has ended.
+    /// Raises errors, and the end of the daemon once nothing more is there.
     fn must_live(
         &self,
         py: Python<'_>,
@@ -214,7 +213,7 @@ fn kind_of(code: u32) -> &'static str {
     const KINDS: [&str; 17] = [
         "remark",
         "state-changed",
-        "ordered",
+        "command-received",
         "engage-refused",
         "sensor-fault",
         "sensor-recovered",

@@ -56,21 +56,21 @@ machine_class! {
     ///
     /// `measurements` are those of the sensors; `None` if nothing arrives.
     /// `missing` names the readings that do not arrive in this tick: attitude,
-    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `standing`
+    /// heading, `body_rates`, `specific_force`, airspeed, altitude. `readback`
     /// is the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers; `None` if the aircraft
     /// has none. `switch` is the engage switch; `None` if there is none.
-    #[pyo3(signature = (measurements = None, *, missing = Vec::new(), standing = None,
+    #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
                         switch = None))]
     fn step(
         &mut self,
         measurements: Option<&PyMeasurements>,
         missing: Vec<String>,
-        standing: Option<&Bound<'_, PyAny>>,
+        readback: Option<&Bound<'_, PyAny>>,
         switch: Option<bool>,
     ) -> PyResult<Option<PySurfaces>> {
         let missing = known_readings(missing)?;
-        let readback = standing.map(surfaces).transpose()?;
+        let readback = readback.map(surfaces).transpose()?;
         let switch = switch.map(|on| if on { Switch::On } else { Switch::Off });
         let sample = measurements.map(|measurements| {
             let sample = measurements.sample(|name| missing.iter().any(|missing| missing == name));

@@ -43,7 +43,7 @@ impl<C: Recorded> Lockstep<C> {
         config: &LoopConfig,
         about: About,
     ) -> PyResult<Self> {
-        let refused = |error: TimerError| errors::TIMER.say(error);
+        let refused = |error: TimerError| errors::TIMER.with(error);
         let (samples, sensor) = QueuedSensor::new();
         let (held, actuator) = HeldFlag::new();
         let parts = Parts {
@@ -100,10 +100,10 @@ impl<C: Recorded> Lockstep<C> {
     pub fn send(&mut self, command: LoopCommand<C::Command>) -> PyResult<()> {
         if self.machine.state() == State::Stopped {
             return Err(errors::ENGAGE
-                .say("the loop has stopped and takes no commands: make another Machine"));
+                .with("the loop has stopped and takes no commands: make another Machine"));
         }
         let sent = self.link.commands.send(command);
-        sent.map_err(|full| errors::ENGAGE.say(full))
+        sent.map_err(|full| errors::ENGAGE.with(full))
     }
 
     /// The events since the last call.

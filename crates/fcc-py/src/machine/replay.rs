@@ -44,5 +44,8 @@ pub fn replay<'py, C: Controller>(
             identity,
         })
     });
-    json::to_python(py, &compared.map_err(|words| errors::RECORDING.say(words))?)
+    json::to_python(
+        py,
+        &compared.map_err(|words| errors::RECORDING.with(words))?,
+    )
 }

@@ -1,10 +1,7 @@
 //! What the daemon's commands do with recordings: list, recover, report,
 //! replay.
 
-#![expect(
-    clippy::needless_pass_by_value,
-    reason = "pyo3 hands paths over by value"
-)]
+#![expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
 
 use std::path::PathBuf;
 
@@ -49,7 +46,7 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
         };
         Ok(files.into_iter().map(entry).collect())
     });
-    json::to_python(py, &listed.map_err(|words| errors::RECORDING.say(words))?)
+    json::to_python(py, &listed.map_err(|words| errors::RECORDING.with(words))?)
 }
 
 /// Makes a whole recording of one that was cut off or damaged, in its place; a
@@ -58,7 +55,7 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py
         .detach(|| fcc_record::recover(&path, |_| {}))
-        .map_err(|error| errors::RECORDING.say(error))?;
+        .map_err(|error| errors::RECORDING.with(error))?;
     json::to_python(py, &recovered)
 }
 
@@ -86,7 +83,7 @@ pub(crate) fn report(
         }
         Ok(report)
     });
-    json::to_python(py, &made.map_err(|words| errors::RECORDING.say(words))?)
+    json::to_python(py, &made.map_err(|words| errors::RECORDING.with(words))?)
 }
 
 /// The pattern that was to be flown; a configuration of another version may
@@ -151,5 +148,5 @@ pub(crate) fn replay<'py>(
             deviation,
         })
     });
-    json::to_python(py, &flown.map_err(|words| errors::RECORDING.say(words))?)
+    json::to_python(py, &flown.map_err(|words| errors::RECORDING.with(words))?)
 }

@@ -18,7 +18,7 @@ use crate::json;
 use crate::structured::Rows;
 
 /// Rows that are asked room for at most before they are there: an hour at
-/// 40 Hz. What a file says of itself is not believed further.
+/// 40 Hz. A larger count in a file is not trusted.
 const ROOM: u64 = 144_000;
 
 /// A recording of a flight, whole or cut off: what is known of the flight, its
@@ -54,7 +54,7 @@ impl PyRecording {
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let recording = py
             .detach(|| Recording::open(path))
-            .map_err(|error| errors::RECORDING.say(error))?;
+            .map_err(|error| errors::RECORDING.with(error))?;
         Ok(Self {
             recording,
             contents: PyOnceLock::new(),
@@ -63,8 +63,8 @@ impl PyRecording {
 
     /// All records, oldest first, as a structured array (`fcc.RECORD`): a row
     /// for each tick, a column for each number, with the unit at the end of its
-    /// name. Instants are ns on the loop's clock, the smallest number standing
-    /// for never; the value beside such a time means nothing.
+    /// name. Instants are ns on the loop's clock, the smallest number meaning
+    /// never; the value beside such a time means nothing.
     #[getter]
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(self.contents(py)?.records.bind(py).clone())
@@ -110,7 +110,7 @@ impl PyRecording {
     fn account<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let end = py
             .detach(|| self.recording.account())
-            .map_err(|error| errors::RECORDING.say(error))?;
+            .map_err(|error| errors::RECORDING.with(error))?;
         account(py, &end)
     }
 
@@ -164,13 +164,13 @@ impl PyRecording {
 
     fn read(&self) -> PyResult<Read> {
         let about = self.recording.about();
-        let said = self.recording.end().map_or(0, |end| end.ticks);
-        let mut rows = Rows::with_room(said.min(ROOM) as usize);
+        let ticks = self.recording.end().map_or(0, |end| end.ticks);
+        let mut rows = Rows::with_room(ticks.min(ROOM) as usize);
         let mut events = Vec::new();
         let mut messages = self
             .recording
             .messages::<FlightMessage>()
-            .map_err(|error| errors::RECORDING.say(error))?;
+            .map_err(|error| errors::RECORDING.with(error))?;
         for message in &mut messages {
             match message {
                 Message::Tick(record) => rows.push(&record),

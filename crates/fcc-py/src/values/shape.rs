@@ -137,7 +137,7 @@ impl Shape {
     }
 
     /// Marks as never taken the readings of which every number is NaN, and
-    /// those for which `missing` says so.
+    /// those that are `missing`.
     pub(crate) fn forget<T: Schema>(&self, of: &mut T, missing: impl Fn(&str) -> bool) {
         let values = flat(of);
         let has_number = |reading: usize| {

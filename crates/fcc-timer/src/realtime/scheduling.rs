@@ -36,12 +36,10 @@ pub(super) fn become_fifo(priority: u8) -> Result<(), DeniedRequest> {
             &raw const param,
         )
     };
-    let remedy = format!(
-        "give the service LimitRTPRIO={priority} (a shell: ulimit -r {priority}), \
-         or the program the right to: setcap cap_sys_nice+ep"
-    );
-    Errno::result(answer)
-        .map_err(|errno| DeniedRequest::by_kernel(request.clone(), errno, remedy.clone()))?;
+    let remedy = remedy_for(priority, Errno::EPERM);
+    Errno::result(answer).map_err(|errno| {
+        DeniedRequest::by_kernel(request.clone(), errno, remedy_for(priority, errno))
+    })?;
     if policy() == "SCHED_FIFO" && static_priority() == i32::from(priority) {
         Ok(())
     } else {
@@ -51,6 +49,19 @@ pub(super) fn become_fifo(priority: u8) -> Result<(), DeniedRequest> {
             reason,
             remedy,
         })
+    }
+}
+
+/// What to do if the kernel denies `SCHED_FIFO` for this reason.
+fn remedy_for(priority: u8, errno: Errno) -> String {
+    match errno {
+        Errno::ENOMEM => "the kernel has no memory for it: raise the limit on the address space, \
+                          LimitAS (a shell: ulimit -v unlimited)"
+            .to_owned(),
+        _ => format!(
+            "give the service LimitRTPRIO={priority} (a shell: ulimit -r {priority}), \
+             or the program the right to: setcap cap_sys_nice+ep"
+        ),
     }
 }
 
@@ -145,4 +156,16 @@ pub(super) fn allowed_cpus() -> Vec<usize> {
                 .collect()
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_remedy_is_for_the_kernels_reason() {
+        assert!(remedy_for(80, Errno::EPERM).contains("LimitRTPRIO=80"));
+        let remedy = remedy_for(80, Errno::ENOMEM);
+        assert!(remedy.contains("LimitAS") && !remedy.contains("LimitRTPRIO"));
+    }
 }

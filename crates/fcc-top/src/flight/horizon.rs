@@ -11,17 +11,17 @@ use crate::picture::Picture;
 
 /// A character is about twice as high as it is wide.
 const ASPECT: f64 = 2.0;
-/// Pitch from the middle of the picture to its upper edge, degrees.
+/// Pitch range from the middle to the upper edge, degrees.
 const REACH_DEG: f64 = 20.0;
-/// Between the rungs of the ladder, degrees.
+/// Interval of the pitch ladder, degrees.
 const RUNG_DEG: f64 = 10.0;
-/// From the middle to the end of a rung, columns.
+/// Half the width of a rung, columns.
 const RUNG_COLUMNS: f64 = 3.5;
 
 const SKY: Color = Color::Blue;
 const GROUND: Color = Color::Yellow;
 
-/// Draws it, once the attitude is known.
+/// Draws the horizon when the attitude is known.
 pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilot>) {
     match &picture.record {
         Some(record) if !record.measurements.attitude.is_never() => {
@@ -38,7 +38,7 @@ pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilo
     }
 }
 
-/// What a pilot sees: sky above ground, the ground higher on the side of the
+/// The view of a pilot: sky above ground, the ground higher on the side of the
 /// lower wing.
 struct Horizon {
     pitch_rad: f64,
@@ -46,9 +46,9 @@ struct Horizon {
 }
 
 impl Horizon {
-    /// Which way one looks through a point of the picture, `x` columns right
-    /// and `y` columns up from its middle: degrees above the horizon, and
-    /// columns along it.
+    /// The direction of a point of the picture, `x` columns right and `y`
+    /// columns up from its middle: degrees above the horizon, and columns along
+    /// it.
     fn look(&self, x: f64, y: f64, deg_per_column: f64) -> (f64, f64) {
         let (sin, cos) = self.roll_rad.sin_cos();
         let above_deg = self.pitch_rad.to_degrees() + (y * cos - x * sin) * deg_per_column;
@@ -94,7 +94,7 @@ impl Widget for Horizon {
     }
 }
 
-/// The aircraft, which stays where it is.
+/// The symbol of the aircraft, which does not move.
 fn aircraft(area: Rect, buffer: &mut Buffer) {
     const WINGS: &str = "──── ● ────";
     let width = WINGS.chars().count() as u16;

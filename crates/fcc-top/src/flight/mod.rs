@@ -1,5 +1,5 @@
-//! What only an aircraft's screen has: the horizon, and a table in feet, knots
-//! and degrees.
+//! The parts of the screen for an aircraft: the horizon, and a table in feet,
+//! knots and degrees.
 
 mod horizon;
 mod table;
@@ -20,7 +20,7 @@ impl Watched for Autopilot {
     ];
 
     fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
-        // Engaged, the mode of guidance and where it is.
+        // When engaged, the mode of guidance and its progress.
         let flown = match record {
             Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
             _ => "Flight".to_owned(),

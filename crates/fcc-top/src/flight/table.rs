@@ -1,4 +1,4 @@
-//! What is flown: actual values, set points, and where the controls stand.
+//! Actual values, set points, and the positions of the controls.
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Reading, RecordOf, State};
@@ -13,8 +13,8 @@ use crate::picture::Picture;
 
 const MPS_FPM: f64 = 60.0 * M_FT;
 
-/// Characters of a control's name and of its number.
-const WORDS: usize = 15;
+/// Width of a control's name and value.
+const LABEL_WIDTH: usize = 15;
 
 /// Draws the table and, below it, the controls.
 pub(super) fn draw(frame: &mut Frame<'_>, area: Rect, picture: &Picture<Autopilot>) {
@@ -121,7 +121,7 @@ fn table(record: &RecordOf<Autopilot>) -> Vec<Line<'static>> {
 
 fn controls(record: &RecordOf<Autopilot>, width: usize) -> Vec<Line<'static>> {
     let outputs = &record.outputs;
-    let room = width.saturating_sub(WORDS).max(3);
+    let room = width.saturating_sub(LABEL_WIDTH).max(3);
     [
         ("throttle", outputs.throttle, bar(outputs.throttle, room)),
         (

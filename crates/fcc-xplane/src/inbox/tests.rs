@@ -233,13 +233,16 @@ fn rows_for_another_program_are_ignored() {
 }
 
 #[test]
-fn the_switch_is_on_from_a_half_up() {
+fn noise_on_the_switch_does_not_switch() {
     let mut bench = Bench::new(None);
     for (value, switch) in [
-        (0.0, Switch::Off),
+        (0.51, Switch::Off),
         (0.49, Switch::Off),
-        (0.5, Switch::On),
-        (1.0, Switch::On),
+        (0.75, Switch::On),
+        (0.49, Switch::On),
+        (0.25, Switch::On),
+        (0.24, Switch::Off),
+        (0.74, Switch::Off),
     ] {
         bench.tick(&[values(&[(Quantity::EngageSwitch, value)])]);
         assert_eq!(bench.measurements.engage_switch.value, switch);

@@ -117,6 +117,32 @@ fn frames_longer_than_a_twentieth_of_a_second_are_slow() {
     assert_eq!(frames(&mut bench, 0.030), SimulatorState::Running);
 }
 
+/// X-Plane makes no step longer than a twentieth of a second.
+#[test]
+fn three_frames_a_second_are_slow_also_without_a_frame_period() {
+    for before in [1.0, 0.5] {
+        let mut bench = Bench::new();
+        bench.fly(120, before);
+        for frame in 0..30 {
+            bench.now = bench.now + 12 * Bench::TICK;
+            bench.time_s += 0.05;
+            let state = bench.receive(SimulatorReport {
+                time_s: Some(bench.time_s),
+                ..SimulatorReport::default()
+            });
+            let expected = if before < 1.0 || frame >= 2 {
+                SimulatorState::Slow
+            } else {
+                state
+            };
+            assert_eq!(state, expected, "frame {frame} after a pace of {before}");
+            // A position without a time, a tick after its frame.
+            let state = bench.receive(SimulatorReport::default());
+            assert_ne!(state, SimulatorState::Stalled);
+        }
+    }
+}
+
 #[test]
 fn a_loaded_flight_is_a_jump_for_one_tick() {
     let mut bench = Bench::new();

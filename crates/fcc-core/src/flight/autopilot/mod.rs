@@ -393,6 +393,14 @@ impl Controller for Autopilot {
         outputs.is_valid()
     }
 
+    fn plausible(&self, measurements: &Measurements) -> Flags {
+        plausibility_gate(
+            &mut self.accepted.clone(),
+            measurements,
+            self.config.max_age,
+        )
+    }
+
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {
         measurements.engage_switch
     }

@@ -11,7 +11,7 @@ use core::time::Duration;
 
 use crate::blocks::wrap_pi;
 use crate::flight::{Attitude, BodyRates, Measurements, Plant, SpecificForce, Surfaces};
-use crate::framework::Reading;
+use crate::framework::{Flags, Reading};
 
 /// The largest plausible speed, that of sound, m/s.
 const MAX_AIRSPEED_MPS: f64 = 340.0;
@@ -85,11 +85,16 @@ impl PlausibilityLimit {
     }
 }
 
-/// Copies the plausible values from `new` into `good`. Readings are too old at
-/// `max_age`.
-pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max_age: Duration) {
+/// Copies the plausible values from `new` into `good`, and returns which they
+/// are: a bit for each, in the order of the measurements. Readings are too old
+/// at `max_age`.
+pub(crate) fn plausibility_gate(
+    good: &mut Measurements,
+    new: &Measurements,
+    max_age: Duration,
+) -> Flags {
     let convinced = ACCEPTED_AFTER * max_age;
-    take(
+    let attitude = take(
         &mut good.attitude,
         &new.attitude,
         convinced,
@@ -99,21 +104,21 @@ pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max
                 && ATTITUDE_RAD.holds(wrap_pi(b.roll_rad - a.roll_rad), gap_s)
         },
     );
-    take(
+    let heading = take(
         &mut good.heading_rad,
         &new.heading_rad,
         convinced,
         |rad| within(*rad, MAX_ANGLE_RAD),
         |a, b, gap_s| HEADING_RAD.holds(wrap_pi(b - a), gap_s),
     );
-    take(
+    let rates = take(
         &mut good.body_rates,
         &new.body_rates,
         convinced,
-        |r| rates(r).iter().all(|rate| within(*rate, MAX_RATE_RADPS)),
-        |a, b, gap_s| near(rates(a), rates(b), &RATES_RADPS, gap_s),
+        |r| turning(r).iter().all(|rate| within(*rate, MAX_RATE_RADPS)),
+        |a, b, gap_s| near(turning(a), turning(b), &RATES_RADPS, gap_s),
     );
-    take(
+    let force = take(
         &mut good.specific_force,
         &new.specific_force,
         convinced,
@@ -123,14 +128,14 @@ pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max
         },
         |a, b, gap_s| near(forces(a), forces(b), &SPECIFIC_FORCE_MPS2, gap_s),
     );
-    take(
+    let airspeed = take(
         &mut good.airspeed_mps,
         &new.airspeed_mps,
         convinced,
         |mps| within(*mps, MAX_AIRSPEED_MPS),
         |a, b, gap_s| AIRSPEED_MPS.holds(b - a, gap_s),
     );
-    take(
+    let altitude = take(
         &mut good.altitude_m,
         &new.altitude_m,
         convinced,
@@ -138,21 +143,21 @@ pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max
         |a, b, gap_s| HEIGHT_M.holds(b - a, gap_s),
     );
     let anywhere = Duration::ZERO;
-    take(
+    let angle = take(
         &mut good.angle_of_attack_rad,
         &new.angle_of_attack_rad,
         anywhere,
         |rad| within(*rad, MAX_ANGLE_RAD),
         |_, _, _| true,
     );
-    take(
+    let surfaces = take(
         &mut good.surfaces,
         &new.surfaces,
         anywhere,
         Surfaces::is_valid,
         |_, _, _| true,
     );
-    take(
+    let plant = take(
         &mut good.plant,
         &new.plant,
         anywhere,
@@ -162,6 +167,15 @@ pub(crate) fn plausibility_gate(good: &mut Measurements, new: &Measurements, max
     good.engage_switch = new.engage_switch;
     good.position = new.position;
     good.velocity = new.velocity;
+    [
+        attitude, heading, rates, force, airspeed, altitude, angle, true, true, surfaces, true,
+        plant,
+    ]
+    .into_iter()
+    .zip(0..)
+    .fold(Flags::NONE, |all, (plausible, bit)| {
+        all.with(Flags::bit(bit), plausible)
+    })
 }
 
 fn take<T: Copy>(
@@ -170,17 +184,17 @@ fn take<T: Copy>(
     convinced: Duration,
     can_be_true: impl Fn(&T) -> bool,
     can_follow: impl Fn(&T, &T, f64) -> bool,
-) {
-    if !can_be_true(&new.value) {
-        return;
-    }
+) -> bool {
     let gap = new.taken.since(good.taken);
-    if gap >= convinced || can_follow(&good.value, &new.value, gap.as_secs_f64()) {
+    let plausible = can_be_true(&new.value)
+        && (gap >= convinced || can_follow(&good.value, &new.value, gap.as_secs_f64()));
+    if plausible {
         *good = *new;
     }
+    plausible
 }
 
-fn rates(r: &BodyRates) -> [f64; 3] {
+fn turning(r: &BodyRates) -> [f64; 3] {
     [r.roll_radps, r.pitch_radps, r.yaw_radps]
 }
 
@@ -200,7 +214,7 @@ fn within(value: f64, most: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::framework::Time;
+    use crate::framework::{Readings, Time};
 
     const MAX_AGE: Duration = Duration::from_millis(250);
 
@@ -245,6 +259,22 @@ mod tests {
         new.altitude_m.value = 1_200.0;
         plausibility_gate(&mut good, &new, MAX_AGE);
         assert_eq!(good.altitude_m, new.altitude_m);
+    }
+
+    #[test]
+    fn which_values_are_plausible_is_returned_in_the_order_of_the_measurements() {
+        let mut good = flying(ms(0));
+        let mut new = flying(ms(25));
+        assert_eq!(plausibility_gate(&mut good, &new, MAX_AGE).bits(), 0xfff);
+        // 30 m in 25 ms, and 400 kt more.
+        new.altitude_m = Reading::new(944.0, ms(50));
+        new.airspeed_mps = Reading::new(257.0, ms(50));
+        new.plant.value.time_s = f64::NAN;
+        let plausible = plausibility_gate(&mut good, &new, MAX_AGE);
+        let rejected = (0..12)
+            .filter(|bit| !plausible.contains(Flags::bit(*bit)))
+            .map(|bit| <Measurements as Readings>::NAMES[bit as usize]);
+        assert!(rejected.eq(["airspeed", "altitude", "the plant's state"]));
     }
 
     #[test]
