@@ -122,7 +122,8 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     assert [path.parent for path in files] == [tmp_path / "flights"]
     messages = by_index(files[0])
     assert sum(message.topic == RECORD for message in messages) == 81
-    assert sum(message.topic == EVENT for message in messages) == 1
+    # Engaged, and the mode that began with it.
+    assert sum(message.topic == EVENT for message in messages) == 2
     log = metadata(files[0])
     assert log["fcc.recording"]["plant"] == "a Cessna"
     assert log["fcc.end"]["ending"] == "enough"

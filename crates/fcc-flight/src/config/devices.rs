@@ -219,7 +219,11 @@ mod tests {
     fn lists_alone_are_enough_without_a_simulator() {
         let own = "actuator = []\n[[sensor]]\nkind = \"x-plane\"\n";
         assert_eq!(kinds(own), (vec!["x-plane"], 0));
-        assert!(Config::parse(own, "test").unwrap().aircraft().is_none());
+        let config = Config::parse(own, "test").unwrap();
+        assert!(config.aircraft().is_none());
+        let assembly = crate::flight::assemble(&config).unwrap();
+        let parts = (assembly.sensors.len(), assembly.actuators.len());
+        assert_eq!(parts, (1, 0));
         for lacking in [
             "[[sensor]]\nkind = \"x-plane\"\n",
             "actuator = []\n",

@@ -210,7 +210,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 17] = [
+    const KINDS: [&str; 19] = [
         "remark",
         "state-changed",
         "command-received",
@@ -228,6 +228,8 @@ fn kind_of(code: u32) -> &'static str {
         "overrun",
         "overruns-over",
         "hung",
+        "source-changed",
+        "mode-changed",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }
