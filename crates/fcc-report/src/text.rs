@@ -117,6 +117,10 @@ impl RunReport {
             ("Kernel", origin.kernel.clone()),
         ]);
         rows.retain(|(_, value)| !value.is_empty());
+        // A name may contain the end of a line, and would pass for another row.
+        for (_, value) in &mut rows {
+            *value = value.replace('\n', "\\n");
+        }
         rows
     }
 }

@@ -37,7 +37,7 @@ pub(super) fn list(args: &ListArgs) -> Exit {
     }
     bar.finish_and_clear();
     for error in &refused {
-        output::message(error);
+        output::message(error.to_string().replace('\n', "\\n"));
     }
     let is_damaged = |entry: &Entry| !entry.damages.is_empty();
     let exit = if entries.iter().any(is_damaged) || !refused.is_empty() {

@@ -125,6 +125,10 @@ fn control_characters_in_names_are_escaped() {
         assert!(!said.contains(&0x1b), "{}", said.escape_ascii());
         let said = String::from_utf8(said).unwrap();
         assert!(said.contains("\\u{1b}[3"), "{said}");
+        assert!(
+            said.lines().all(|line| !line.starts_with("d.mcap")),
+            "{said}"
+        );
     }
 }
 
