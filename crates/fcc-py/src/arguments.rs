@@ -1,6 +1,7 @@
 //! Arguments checked: every refusal names the argument, what it was and what
 //! it may be.
 
+use fcc_telemetry::units;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -35,14 +36,9 @@ pub(crate) fn within(name: &str, value: f64, least: f64, most: f64) -> PyResult<
     if (least..=most).contains(&value) {
         return Ok(value);
     }
-    // Not hundreds of digits.
-    let value = if value.abs() < 1e12 {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    };
     Err(PyValueError::new_err(format!(
-        "{name} is {value}: choose {least} to {most}"
+        "{name} is {}: choose {least} to {most}",
+        units::number(value)
     )))
 }
 

@@ -3,7 +3,9 @@
 //! The reader's messages are about fields, variants and `f64`; users of a
 //! configuration file know keys, values and numbers.
 
-use super::ranges::{in_words, number, range_of};
+use fcc_telemetry::units::number;
+
+use super::ranges::{in_words, range_of};
 use super::similar::{elsewhere, most_alike};
 
 /// Rewords the reader's error about `key`.

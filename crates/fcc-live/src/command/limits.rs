@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD, M_FT, MPS_KT};
+use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD, M_FT, MPS_KT, number};
 
 /// Limits for any aircraft.
 const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
@@ -76,14 +76,15 @@ impl OutsideLimits {
             Quantity::Altitude => "altitude",
         };
         // To a hundredth: a value printed as a limit is accepted.
-        let [value, least, most] = [self.value, self.least, self.most]
-            .map(|number| (number * factor * 100.0).round() / 100.0);
-        // Not hundreds of digits.
-        let value = if value.abs() < 1e12 {
-            value.to_string()
+        let round = |number: f64| (number * factor * 100.0).round() / 100.0;
+        let (least, most) = (round(self.least), round(self.most));
+        // A huge one has no hundredths, and times a hundred it may be infinite.
+        let is_huge = self.value.abs() > 1e12;
+        let value = number(if is_huge {
+            self.value * factor
         } else {
-            format!("{value:e}")
-        };
+            round(self.value)
+        });
         let space = if unit == "°" { "" } else { " " };
         format!("{name} is {value}{space}{unit}: choose {least} to {most}{space}{unit}")
     }
