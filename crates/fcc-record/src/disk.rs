@@ -86,7 +86,8 @@ impl DiskFile for File {
         let own = self.metadata().ok()?;
         if own.len() != bytes {
             let now = own.len();
-            return Some(format!("has {now} bytes of the {bytes} written to it"));
+            let what = format!("was truncated or changed ({now} bytes instead of {bytes})");
+            return Some(what);
         }
         match fs::metadata(path) {
             Ok(there) if (there.dev(), there.ino()) == (own.dev(), own.ino()) => None,

@@ -35,7 +35,7 @@ pub(super) fn text(outcome: &Outcome) -> String {
             let files = recording.files_deleted;
             let _ = write!(
                 text,
-                "\ndeleted: the {files} files before, by keep_total_mb"
+                "\ndeleted: {files} earlier files of it, by keep_total_mb"
             );
         }
         if recording.not_recorded > 0 {

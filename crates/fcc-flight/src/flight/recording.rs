@@ -209,12 +209,22 @@ impl<C: Recorded> Observer<C> for Recording<C> {
         for notice in notices {
             pass_on(notice, reports);
         }
-        if status.stopped.is_some() || status.not_recorded > 0 || outcome.records_dropped > 0 {
+        // Finished parts may be deleted too.
+        let (files, deleted): (Vec<_>, Vec<_>) =
+            status.files.into_iter().partition(|file| file.exists());
+        for file in &deleted {
+            let file = file.display();
+            reports.remark(format!("{file}: was deleted or renamed in flight"));
+        }
+        if !deleted.is_empty()
+            || status.stopped.is_some()
+            || status.not_recorded > 0
+            || outcome.records_dropped > 0
+        {
             outcome.was_not_recorded();
         }
         outcome.recording = Some(RecordingOutcome {
-            files: status
-                .files
+            files: files
                 .iter()
                 .map(|path| path.display().to_string())
                 .collect(),

@@ -92,6 +92,13 @@ fn a_start_finds_the_last_recording_only() {
     fs::write(&older, cut).unwrap();
     fs::write(&path, cut).unwrap();
     assert_eq!(entry(&path).unwrap().file, Wholeness::Cut);
+    // Not a file: it is neither opened nor deleted.
+    fs::create_dir(
+        folder
+            .path()
+            .join("2099-01-01T00-00-00.000Z-built-in-01.mcap"),
+    )
+    .unwrap();
     assert_eq!(last_unfinished(folder.path()), Some(path.clone()));
     // The end of the flight stops it.
     let stopped = recover_while(&path, |_| false).unwrap_err().to_string();
