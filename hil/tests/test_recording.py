@@ -103,6 +103,31 @@ def kill_in_flight(daemon: DaemonUnderTest) -> int:
     return killed_ns
 
 
+def test_a_recording_deleted_in_flight_is_reported_and_continued(
+    fccd: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "recordings"
+    words = [fccd, "fly", "--json", "--config", write_config(tmp_path, 40), "--seconds", "3"]
+    with subprocess.Popen(
+        [*map(str, words), "--recordings", folder],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as flight:
+        wait_until(lambda: any(path.stat().st_size for path in folder.glob("*")), "it is recorded")
+        time.sleep(MAX_LOST_S)
+        only_recording(folder).unlink()
+        out, said = flight.communicate()
+    assert flight.returncode == RECORDING_LOST
+    assert "was deleted or renamed in flight" in said
+    recording = json.loads(out)["recording"]
+    assert recording["files"] == [str(only_recording(folder))]
+    kept = ticks(in_sequence(only_recording(folder)))
+    assert len(kept) == recording["ticks"]
+    # The messages that are lost are the ticks before, and events.
+    assert recording["not_recorded"] >= kept[0] - 1 > 0
+
+
 def test_a_killed_flight_loses_a_second_at_most(fccd: Path, tmp_path: Path) -> None:
     chance = random.Random(20_261_120)
     config = write_config(tmp_path, 40)

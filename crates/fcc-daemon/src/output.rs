@@ -20,7 +20,7 @@ use crate::exit::Exit;
 /// result could not be printed. A reader that has left (`| head -1`) is no
 /// failure.
 pub(crate) fn result(text: impl Display, exit: Exit) -> Exit {
-    bytes(format!("{text}\n").as_bytes(), exit)
+    bytes(line(text).as_bytes(), exit)
 }
 
 /// Prints a result as JSON.
@@ -50,11 +50,27 @@ fn not_printed(error: &dyn Display, exit: Exit) -> Exit {
 
 /// Prints a message.
 pub(crate) fn message(text: impl Display) {
-    let line = format!("{text}\n");
+    let line = line(text);
     match background().as_mut() {
         Some(lines) => lines.give(line),
         None => write(&line),
     }
+}
+
+/// A text with its end of line. Names of files and keys in it may contain
+/// anything: other control characters, which a terminal obeys, are escaped.
+fn line(text: impl Display) -> String {
+    let is_obeyed = |c: char| c.is_control() && c != '\n' && c != '\t';
+    let mut line = String::new();
+    for c in text.to_string().chars() {
+        if is_obeyed(c) {
+            line.extend(c.escape_default());
+        } else {
+            line.push(c);
+        }
+    }
+    line.push('\n');
+    line
 }
 
 fn write(line: &str) {

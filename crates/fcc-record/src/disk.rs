@@ -1,7 +1,8 @@
 //! Where recordings are written: a file system, or a failing disk in a test.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io::{self, Read as _, Write};
+use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
 /// Where recordings are written.
@@ -27,6 +28,13 @@ pub trait DiskFile: Write {
     /// # Errors
     /// The system's error.
     fn cut_to(&mut self, bytes: u64) -> io::Result<()>;
+
+    /// What another program did to the file at `path`, of which `bytes` were
+    /// written: deleted, replaced or truncated it. None if nothing is known.
+    fn change(&self, path: &Path, bytes: u64) -> Option<String> {
+        let _ = (path, bytes);
+        None
+    }
 }
 
 /// The file system.
@@ -73,6 +81,23 @@ impl DiskFile for File {
     fn cut_to(&mut self, bytes: u64) -> io::Result<()> {
         self.set_len(bytes)
     }
+
+    fn change(&self, path: &Path, bytes: u64) -> Option<String> {
+        let own = self.metadata().ok()?;
+        if own.len() != bytes {
+            let now = own.len();
+            let what = format!("was truncated or changed ({now} bytes instead of {bytes})");
+            return Some(what);
+        }
+        match fs::metadata(path) {
+            Ok(there) if (there.dev(), there.ino()) == (own.dev(), own.ino()) => None,
+            Ok(_) => Some("was replaced by another file".to_owned()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                Some("was deleted or renamed".to_owned())
+            }
+            Err(_) => None,
+        }
+    }
 }
 
 /// Waits until the name of a file survives a loss of power. Not every file
@@ -87,16 +112,57 @@ pub(super) fn sync_folder_of(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Opens a file to read it. A FIFO or a device is refused: opening one may block
-/// without end.
+/// Opens a file to read it. A pipe or a device is refused: opening one may
+/// block without end, and it may have no end.
+///
+/// # Errors
+/// The system's error, or that it is not a regular file.
 pub(super) fn open(path: &Path) -> io::Result<File> {
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "it is not a regular file: give a recording, a file that ends in .mcap",
-        ));
+    let kind = fs::metadata(path)?;
+    let refused = |kind, why| Err(io::Error::new(kind, why));
+    if kind.is_dir() {
+        return refused(io::ErrorKind::IsADirectory, "it is a folder");
+    }
+    if !kind.is_file() {
+        let why = "it is not a regular file: it is a pipe or a device";
+        return refused(io::ErrorKind::InvalidInput, why);
     }
     File::open(path)
+}
+
+/// Reads a regular file of at most `most_bytes`.
+///
+/// # Errors
+/// The system's error, or that it is larger or not a regular file.
+pub fn read_file(path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path)?.take(most_bytes + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most_bytes {
+        let why = format!("it has more than {most_bytes} bytes: choose another file");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
+    }
+    Ok(bytes)
+}
+
+/// Creates a file, or replaces its content, unless it is one of the files that
+/// are read, under whatever name.
+///
+/// # Errors
+/// The system's error, or that it is one of `inputs`.
+pub fn create_output<P: AsRef<Path>>(path: &Path, inputs: &[P]) -> io::Result<File> {
+    let file = |path: &Path| fs::metadata(path).map(|file| (file.dev(), file.ino()));
+    if let Ok(there) = file(path)
+        && let Some(input) = inputs
+            .iter()
+            .find(|input| file(input.as_ref()).is_ok_and(|of| of == there))
+    {
+        let input = input.as_ref().display();
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("it is {input}, which is read: choose another name"),
+        ));
+    }
+    File::create(path)
 }
 
 /// Locks a file against other writers until the returned value is dropped; none

@@ -247,6 +247,11 @@ impl<C: Recorded> RecordingFile<C> {
         &self.path
     }
 
+    /// What another program did to the file; none if nothing is known.
+    pub(super) fn change(&self) -> Option<String> {
+        self.outlet.change(&self.path)
+    }
+
     /// Bytes synced to the disk.
     pub(super) fn bytes(&self) -> u64 {
         self.outlet.synced_bytes()

@@ -12,7 +12,7 @@ use super::{disk, name};
 pub(super) fn recordings(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut found: Vec<PathBuf> = fs::read_dir(folder)?
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
-        .filter(|path| name::is_recording(path))
+        .filter(|path| name::is_recording(path) && path.is_file())
         .collect();
     found.sort();
     Ok(found)

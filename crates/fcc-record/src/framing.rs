@@ -51,8 +51,8 @@ fn is_known(bytes: &[u8], position: u64, file_bytes: u64) -> bool {
         op::CHUNK => is_chunk_of(body, length),
         // A channel, and an array of pairs of numbers.
         op::MESSAGE_INDEX => u32_at(2).is_some_and(|bytes| bytes + 6 == length && bytes % 16 == 0),
-        // A name, and a map.
-        op::METADATA => u32_at(0)
+        // A name, and another or a map.
+        op::HEADER | op::METADATA => u32_at(0)
             .and_then(|name| Some((name, u32_at(usize::try_from(name).ok()?.checked_add(4)?)?)))
             .is_some_and(|(name, map)| name + map + 8 == length),
         // Two times, a name, a media type, the data and a checksum.

@@ -251,11 +251,21 @@ impl<M: RecordedMessage> Iterator for Messages<M> {
 }
 
 /// The channels of a file, by content.
-#[derive(Default)]
 pub(super) struct Channels {
-    record: Option<u16>,
-    pub(super) event: Option<u16>,
-    pub(super) log: Option<u16>,
+    record: u16,
+    pub(super) event: u16,
+    pub(super) log: u16,
+}
+
+/// As the recorder numbers them: the chunk that declares them may be damaged.
+impl Default for Channels {
+    fn default() -> Self {
+        Self {
+            record: Topic::Record.channel(),
+            event: Topic::Event.channel(),
+            log: Topic::Log.channel(),
+        }
+    }
 }
 
 impl Channels {
@@ -273,13 +283,13 @@ impl Channels {
                     (Topic::Log, &mut self.log),
                 ] {
                     if channel.topic == topic.name() {
-                        *id = Some(channel.id);
+                        *id = channel.id;
                     }
                 }
                 None
             }
             Record::Message { header, data } => {
-                let id = Some(header.channel_id);
+                let id = header.channel_id;
                 if id == self.record {
                     Some(
                         M::record(data)

@@ -66,18 +66,19 @@ mod wire;
 mod writing;
 
 pub use about::About;
-pub use crash::repair_last;
+pub use crash::last_unfinished;
 pub use damage::Damage;
-pub use disk::{Disk, DiskFile, FileSystem, is_being_written};
+pub use disk::{Disk, DiskFile, FileSystem, create_output, is_being_written, read_file};
 pub use end::End;
 pub use items::{Item, Items, Messages, RecordedMessage};
 pub use list::{Entry, Wholeness, entry, files, glance};
+pub use name::serialize as serialize_path;
 pub use reader::{OpenError, Recording, Verified};
 pub use recorded::{Recorded, Views};
 #[cfg(feature = "flight")]
 pub use recorder::Recorder;
 pub use recorder::RecorderOf;
-pub use recover::{RecoverError, Recovered, recover};
+pub use recover::{RecoverError, Recovered, recover, recover_while};
 pub use remark::Remark;
 pub use schema::{PACKAGE, messages};
 pub use settings::{Compression, RecorderSettings, RecordingPace};

@@ -13,6 +13,7 @@ use super::{disk, name, utc};
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Entry {
     /// The file.
+    #[serde(serialize_with = "name::serialize")]
     pub path: PathBuf,
     /// When the flight began, in UTC: `2026-11-20T04:21:33Z`.
     pub started: String,

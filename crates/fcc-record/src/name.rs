@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::{Serialize as _, Serializer};
+
 use super::utc;
 
 /// The file extension of recordings.
@@ -34,6 +36,25 @@ pub(super) fn is_recording(path: &Path) -> bool {
                 b'0' => byte.is_ascii_digit(),
                 other => byte == other,
             })
+}
+
+/// Writes a path into JSON: what is not UTF-8 is replaced.
+///
+/// # Errors
+/// The serializer's.
+pub fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(&path.display())
+}
+
+/// As [`serialize`].
+#[expect(clippy::ref_option, reason = "serde passes the field")]
+pub(super) fn serialize_option<S: Serializer>(
+    path: &Option<PathBuf>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    path.as_ref()
+        .map(|path| path.to_string_lossy())
+        .serialize(to)
 }
 
 /// The temporary file that will replace `path`.

@@ -5,6 +5,7 @@
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::mem;
+use std::path::Path;
 use std::rc::Rc;
 
 use super::disk::DiskFile;
@@ -44,6 +45,12 @@ impl Outlet {
     /// Bytes synced.
     pub(super) fn synced_bytes(&self) -> u64 {
         self.0.borrow().synced
+    }
+
+    /// What another program did to the file; see [`DiskFile::change`].
+    pub(super) fn change(&self, path: &Path) -> Option<String> {
+        let state = self.0.borrow();
+        state.file.change(path, state.written)
     }
 
     /// Truncates to the last commit, and writes no more.

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io;
+use std::mem;
 use std::path::{Path, PathBuf};
 
 use fcc_core::framework::MessageOf;
@@ -16,6 +17,8 @@ pub(super) struct Part<C: Recorded> {
     file: RecordingFile<C>,
     /// Records committed.
     committed_ticks: u64,
+    /// Messages committed.
+    committed: Lost,
     /// Messages not committed yet.
     uncommitted: Lost,
     /// Gaps reported in the file and not committed yet: the messages in them
@@ -45,6 +48,7 @@ impl<C: Recorded> Part<C> {
         Self {
             file,
             committed_ticks: 0,
+            committed: Lost::default(),
             uncommitted: Lost::default(),
             gaps: Lost::default(),
             remarks: Vec::new(),
@@ -71,10 +75,16 @@ impl<C: Recorded> Part<C> {
     pub(super) fn commit(&mut self) -> io::Result<()> {
         self.file.commit()?;
         self.committed_ticks = self.file.ticks();
-        self.uncommitted = Lost::default();
+        self.committed.join(mem::take(&mut self.uncommitted));
         self.gaps = Lost::default();
         self.remarks.clear();
         Ok(())
+    }
+
+    /// What another program did to the file, and the committed messages that
+    /// are lost by that; none if nothing is known.
+    pub(super) fn change(&self) -> Option<(String, Lost)> {
+        self.file.change().map(|what| (what, self.committed))
     }
 
     /// Finishes the file.

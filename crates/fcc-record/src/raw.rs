@@ -9,7 +9,7 @@
 
 use std::cell::OnceCell;
 use std::fs::File;
-use std::io::{self, BufRead as _, BufReader, Read, Seek as _, SeekFrom};
+use std::io::{self, BufReader, Read, Seek as _, SeekFrom};
 use std::mem;
 use std::ops::Range;
 
@@ -114,9 +114,9 @@ impl RawReader {
     /// Where the file is cut off; nothing can be read after that.
     pub(super) fn next<T>(&mut self, take: impl FnOnce(Record<'_>) -> T) -> Result<Next<T>, Cut> {
         if self.position == 0
-            && let Some(damage) = self.read_magic()?
+            && let Some(why) = self.read_magic()?
         {
-            return Ok(Next::Damage(damage));
+            return self.skip(0, why);
         }
         loop {
             if self.finished {
@@ -177,28 +177,13 @@ impl RawReader {
         }
     }
 
-    fn read_magic(&mut self) -> Result<Option<DamagedBytes>, Cut> {
+    /// Reads the magic number; returns what is wrong with it.
+    fn read_magic(&mut self) -> Result<Option<&'static str>, Cut> {
         if self.length < MAGIC_BYTES {
             return Err(Cut::Off(self.length));
         }
         self.read_body(MAGIC_BYTES)?;
-        if self.body == mcap::MAGIC {
-            return Ok(None);
-        }
-        // It may still be a recording, if a header follows.
-        let next = self
-            .file
-            .fill_buf()
-            .map(framing::head)
-            .map_err(|source| Cut::Unreadable { after: 0, source })?;
-        match next {
-            Some((op::HEADER, length)) if length < MAX_HEADER_BYTES => Ok(Some(DamagedBytes {
-                bytes: 0..MAGIC_BYTES,
-                why: "the magic number is wrong".to_owned(),
-                messages: false,
-            })),
-            _ => Err(Cut::NotMcap),
-        }
+        Ok((self.body != mcap::MAGIC).then_some(NO_MAGIC))
     }
 
     /// Reads the next record of the file; returns its opcode, or what is wrong
@@ -265,14 +250,17 @@ impl RawReader {
         let next = self
             .seek_next(start, claimed)
             .map_err(|error| self.unreadable(error))?;
-        if next.is_none() && why == TOO_LONG {
-            return Err(Cut::Off(self.length));
+        match why {
+            TOO_LONG if next.is_none() => return Err(Cut::Off(self.length)),
+            NO_MAGIC if next.is_none() => return Err(Cut::NotMcap),
+            _ => {}
         }
         self.position = next.unwrap_or(self.length);
         let bytes = start..self.position;
-        let messages = self
-            .summary()
-            .is_none_or(|summary| summary.has_chunk_in(&bytes));
+        let messages = bytes.end > MAGIC_BYTES
+            && self
+                .summary()
+                .is_none_or(|summary| summary.has_chunk_in(&bytes));
         if messages {
             self.repeat_declarations();
         }
@@ -363,8 +351,8 @@ impl RawReader {
     }
 }
 
-/// Longer than a profile and the name of a program.
-const MAX_HEADER_BYTES: u64 = 1_024;
+/// It may still be a recording, if records follow.
+const NO_MAGIC: &str = "the magic number is wrong";
 
 /// Either the file was cut off, or the length is damaged.
 const TOO_LONG: &str = "a record claims more bytes than there are";

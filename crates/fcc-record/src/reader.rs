@@ -11,7 +11,7 @@ use super::disk;
 use super::end::{End, RunStatistics};
 use super::items::{AnyMessage, Items, Messages, RecordedMessage};
 use super::raw::{Next, RawReader};
-use super::schema;
+use super::schema::{self, Topic};
 use super::summary;
 
 /// An opened recording: what is known of the flight, and its messages.
@@ -80,7 +80,7 @@ pub struct Verified {
     pub cut: Option<String>,
 }
 
-/// Ticks read between two checks of the clock.
+/// Ticks read between two reports of progress.
 const CHECK_EVERY: u64 = 1_024;
 
 impl Recording {
@@ -260,11 +260,12 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
     enum Content {
         Profile(Writer),
         Flight(bool),
+        OwnTopic,
         Other,
         Messages,
     }
     let mut about = About::default();
-    let (mut is_ours, mut known) = (false, false);
+    let (mut is_ours, mut known, mut has_header) = (false, false, false);
     loop {
         let content = raw.next(|record| match record {
             Record::Header(header) => Content::Profile(match header.profile.as_str() {
@@ -279,6 +280,7 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
                 about.take_attachment(&header.name, &data);
                 Content::Other
             }
+            Record::Channel(channel) if channel.topic == Topic::Record.name() => Content::OwnTopic,
             Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => {
                 Content::Messages
             }
@@ -292,14 +294,22 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
                     schema::PROFILE
                 ));
             }
-            Next::Record(Content::Profile(written)) => is_ours = matches!(written, Writer::Present),
+            Next::Record(Content::Profile(written)) => {
+                has_header = true;
+                is_ours = matches!(written, Writer::Present);
+            }
+            // With all before it damaged.
+            Next::Record(Content::OwnTopic) if !has_header => return Ok(about),
             Next::Record(Content::Flight(taken)) => known |= taken,
             Next::Record(Content::Other) | Next::Damage(_) => {}
             // Either of the two may be damaged.
-            Next::Record(Content::Messages) if is_ours || known => return Ok(about),
+            Next::Record(Content::OwnTopic | Content::Messages) if is_ours || known => {
+                return Ok(about);
+            }
+            Next::Record(Content::Messages) if !has_header => {}
             Next::End if known => return Ok(about),
             Next::End if is_ours => return Err("it contains no metadata of a flight".to_owned()),
-            Next::Record(Content::Messages) | Next::End => {
+            Next::Record(Content::OwnTopic | Content::Messages) | Next::End => {
                 return Err("another program wrote it".to_owned());
             }
         }

@@ -1,10 +1,10 @@
 //! Finishes a file that is unfinished or damaged.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write as _};
+use std::mem;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use mcap::records::{MessageHeader, Metadata, Record};
 use mcap::write::NoSeek;
@@ -18,10 +18,10 @@ use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
 use super::items::{AnyMessage, Channels, Item};
-use super::name::{damaged, unfinished};
+use super::name::{self, damaged, unfinished};
 use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};
-use super::schema::encode_event;
+use super::schema::{ENCODING, encode_event, undeclared};
 use super::settings::Compression;
 use super::wire::log::Level;
 
@@ -29,6 +29,7 @@ use super::wire::log::Level;
 #[derive(Clone, PartialEq, Debug, Serialize)]
 pub struct Recovered {
     /// The file, under its own name.
+    #[serde(serialize_with = "name::serialize")]
     pub path: PathBuf,
     /// Whether it was already finished and undamaged; then nothing was done.
     pub was_whole: bool,
@@ -40,6 +41,7 @@ pub struct Recovered {
     pub damages: Vec<Damage>,
     /// The path of the original file, kept if it was damaged; none if the
     /// recovered one contains all of it.
+    #[serde(serialize_with = "name::serialize_option")]
     pub kept: Option<PathBuf>,
 }
 
@@ -61,9 +63,9 @@ pub enum RecoverError {
         /// The system's error.
         source: io::Error,
     },
-    /// It takes longer than permitted.
-    #[error("{0}: takes too long to recover during a start: run `fccd recover` on it")]
-    TooLong(PathBuf),
+    /// It was told to stop.
+    #[error("{0}: the flight ended before it was recovered: run `fccd recover` on it")]
+    Stopped(PathBuf),
 }
 
 /// Finishes a file that is unfinished or damaged: it then contains all messages
@@ -80,20 +82,21 @@ pub enum RecoverError {
 /// When it cannot be read or written. The file is then unchanged.
 pub fn recover(
     path: impl AsRef<Path>,
-    progress: impl FnMut(u64),
-) -> Result<Recovered, RecoverError> {
-    attempt(path.as_ref(), None, progress)
-}
-
-/// As [`recover`], with a time limit.
-pub(super) fn recover_within(path: &Path, limit: Duration) -> Result<Recovered, RecoverError> {
-    attempt(path, Some(Instant::now() + limit), |_| {})
-}
-
-fn attempt(
-    path: &Path,
-    deadline: Option<Instant>,
     mut progress: impl FnMut(u64),
+) -> Result<Recovered, RecoverError> {
+    recover_while(path.as_ref(), |read| {
+        progress(read);
+        true
+    })
+}
+
+/// As [`recover`], and stops when `progress` returns false.
+///
+/// # Errors
+/// As [`recover`], or that it was stopped.
+pub fn recover_while(
+    path: &Path,
+    mut progress: impl FnMut(u64) -> bool,
 ) -> Result<Recovered, RecoverError> {
     let unread = |source| OpenError::Io {
         path: path.to_owned(),
@@ -107,18 +110,15 @@ fn attempt(
     if lock.is_none() && !recording.is_whole() {
         return Err(RecoverError::BeingWritten(path.to_owned()));
     }
-    let mut go_on = |read| {
-        // It is read twice.
-        progress(read / 2);
-        deadline.is_none_or(|deadline| Instant::now() < deadline)
-    };
+    // It is read twice.
+    let mut go_on = |read| progress(read / 2);
     let Some(Verified {
         account,
         damages,
         cut,
     }) = recording.verify_while(&mut go_on)?
     else {
-        return Err(RecoverError::TooLong(path.to_owned()));
+        return Err(RecoverError::Stopped(path.to_owned()));
     };
     if damages.is_empty() && cut.is_none() {
         return Ok(Recovered {
@@ -139,10 +139,7 @@ fn attempt(
         source,
     };
     let half = recording.bytes() / 2;
-    let rewritten = rewrite(path, &beside, &damages, |read| {
-        progress(half + read / 2);
-        deadline.is_none_or(|deadline| Instant::now() < deadline)
-    });
+    let rewritten = rewrite(path, &beside, &damages, |read| progress(half + read / 2));
     let result = match rewritten {
         Ok(Rewritten::Whole { ticks }) => replace(path, &beside, !damages.is_empty())
             .map_err(failed)
@@ -155,7 +152,7 @@ fn attempt(
                 kept,
             }),
         Ok(Rewritten::Unreadable(source)) => Err(unread(source).into()),
-        Ok(Rewritten::TooLong) => Err(RecoverError::TooLong(path.to_owned())),
+        Ok(Rewritten::Stopped) => Err(RecoverError::Stopped(path.to_owned())),
         Err(error) => Err(failed(error)),
     };
     if result.is_err() {
@@ -182,7 +179,7 @@ fn replace(path: &Path, finished: &Path, keep: bool) -> io::Result<Option<PathBu
 enum Rewritten {
     Whole { ticks: u64 },
     Unreadable(io::Error),
-    TooLong,
+    Stopped,
 }
 
 /// Writes a finished file with all records that can be read; `damages` are the
@@ -212,10 +209,10 @@ fn rewrite(
         if let Some(at) = damaged_at
             && let Some(damage) = damages.next_if(|damage| damage.from_byte <= at)
         {
-            copy.gap(damage).map_err(to_io)?;
+            copy.gaps.push(damage.clone());
         }
         if copy.records % CHECK_EVERY == 0 && !go_on(raw.bytes_read()) {
-            return Ok(Rewritten::TooLong);
+            return Ok(Rewritten::Stopped);
         }
     };
     let ticks = copy.run_statistics.ticks();
@@ -223,7 +220,7 @@ fn rewrite(
     Ok(Rewritten::Whole { ticks })
 }
 
-/// Records copied between two checks of the clock.
+/// Records copied between two reports of progress.
 const CHECK_EVERY: u64 = 1_024;
 
 type Output = NoSeek<BufWriter<File>>;
@@ -234,6 +231,10 @@ struct Copy {
     channels: Channels,
     run_statistics: RunStatistics,
     records: u64,
+    /// Gaps before the next message: its channel may be declared between.
+    gaps: Vec<Damage>,
+    /// The channels in it.
+    declared: BTreeSet<u16>,
     /// Why the recording ended, if known.
     ending: Option<String>,
     last: MessageHeader,
@@ -247,6 +248,8 @@ impl Copy {
             channels: Channels::default(),
             run_statistics: RunStatistics::default(),
             records: 0,
+            gaps: Vec::new(),
+            declared: BTreeSet::new(),
             ending: None,
             last: MessageHeader {
                 channel_id: 0,
@@ -288,50 +291,73 @@ impl Copy {
                 .writer
                 .add_schema_with_id(header.id, &header.name, &header.encoding, data)
                 .map(drop),
-            Record::Channel(channel) => self
-                .writer
-                .add_channel_with_id(
-                    channel.id,
-                    channel.schema_id,
-                    &channel.topic,
-                    &channel.message_encoding,
-                    &channel.metadata,
-                )
-                .map(drop),
+            Record::Channel(channel) => {
+                self.declared.insert(channel.id);
+                self.writer
+                    .add_channel_with_id(
+                        channel.id,
+                        channel.schema_id,
+                        &channel.topic,
+                        &channel.message_encoding,
+                        &channel.metadata,
+                    )
+                    .map(drop)
+            }
             Record::Message { header, data } => {
                 self.last = *header;
-                self.writer.write_to_known_channel(header, data)
+                self.report_gaps()?;
+                self.message(header, data)
             }
             _ => Ok(()),
         }
     }
 
-    /// Reports a gap: as an event, and as a line of the log.
-    fn gap(&mut self, damage: &Damage) -> Result<(), McapError> {
-        if let Some(event) = damage.event::<()>() {
-            self.run_statistics.take(&AnyMessage::Event(event));
-            let text = damage.event_text();
-            let mut bytes = Vec::new();
-            encode_event(&event, &text, &mut bytes);
-            self.write(self.channels.event, &bytes)?;
+    /// Writes a message. If the declaration of its channel is damaged, it is
+    /// declared as the recorder does; without that it is of no use.
+    fn message(&mut self, header: &MessageHeader, data: &[u8]) -> Result<(), McapError> {
+        let id = header.channel_id;
+        if !self.declared.contains(&id) {
+            let Some((name, message, descriptors)) = undeclared(id, data) else {
+                return Ok(());
+            };
+            let schema = match message.as_str() {
+                "" => 0,
+                _ => self.writer.add_schema(&message, ENCODING, &descriptors)?,
+            };
+            self.writer
+                .add_channel_with_id(id, schema, name, ENCODING, &BTreeMap::new())?;
+            self.declared.insert(id);
         }
-        let text = damage.remark().text;
-        let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
-        self.write(self.channels.log, &line.encode_to_vec())
+        self.writer.write_to_known_channel(header, data)
     }
 
-    fn write(&mut self, channel: Option<u16>, message: &[u8]) -> Result<(), McapError> {
-        let Some(channel_id) = channel else {
-            return Ok(());
-        };
+    /// Reports each gap: as an event, and as a line of the log.
+    fn report_gaps(&mut self) -> Result<(), McapError> {
+        for damage in mem::take(&mut self.gaps) {
+            if let Some(event) = damage.event::<()>() {
+                self.run_statistics.take(&AnyMessage::Event(event));
+                let text = damage.event_text();
+                let mut bytes = Vec::new();
+                encode_event(&event, &text, &mut bytes);
+                self.write(self.channels.event, &bytes)?;
+            }
+            let text = damage.remark().text;
+            let line = foxglove::line(foxglove::REMARK, text, Level::Warning, self.last.log_time);
+            self.write(self.channels.log, &line.encode_to_vec())?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, channel_id: u16, message: &[u8]) -> Result<(), McapError> {
         let header = MessageHeader {
             channel_id,
             ..self.last
         };
-        self.writer.write_to_known_channel(&header, message)
+        self.message(&header, message)
     }
 
     fn finish(mut self, ending: &str) -> io::Result<()> {
+        self.report_gaps().map_err(to_io)?;
         let ending = self.ending.as_deref().unwrap_or(ending);
         let metadata: BTreeMap<_, _> = self.run_statistics.end(ending).to_fields();
         let end = Metadata {

@@ -1,5 +1,7 @@
 //! The topics of a recording and their schemas.
 
+use std::borrow::Cow;
+
 use fcc_core::framework::schema::Schema;
 use fcc_core::framework::{Event, EventOf, RecordOf};
 
@@ -51,6 +53,11 @@ impl Topic {
             Self::Log => "/fcc/log",
         }
     }
+
+    /// The number that the recorder gives its channel.
+    pub(super) const fn channel(self) -> u16 {
+        self as u16 + 1
+    }
 }
 
 /// All topics of a recording.
@@ -70,6 +77,29 @@ pub(super) fn topics<C: Recorded>() -> Vec<TopicOf> {
     let more = C::Views::TOPICS.iter();
     let more = more.map(|(name, of, described)| (*name, (*of).to_owned(), (*described).into()));
     own.into_iter().chain(more).collect()
+}
+
+/// The topic of a channel whose declaration is damaged, by its number and a
+/// message of it; only a flight's messages have a known type.
+pub(super) fn undeclared(channel: u16, message: &[u8]) -> Option<TopicOf> {
+    let own = [Topic::Record, Topic::Event, Topic::Log];
+    let own = own.into_iter().find(|topic| topic.channel() == channel);
+    #[cfg(feature = "flight")]
+    {
+        use crate::items::RecordedMessage as _;
+        use fcc_telemetry::FlightMessage;
+        let is_flight = match own {
+            Some(Topic::Record) => FlightMessage::record(message).is_ok(),
+            Some(Topic::Event) => FlightMessage::event(message).is_ok(),
+            Some(Topic::Log) | None => true,
+        };
+        if is_flight {
+            let mut topics = topics::<fcc_core::flight::Autopilot>().into_iter();
+            return topics.nth(usize::from(channel.checked_sub(1)?));
+        }
+    }
+    let _ = message;
+    Some((own?.name(), String::new(), Cow::Borrowed(&[])))
 }
 
 /// The messages of a loop: its records and events.

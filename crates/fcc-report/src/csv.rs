@@ -11,7 +11,7 @@ use std::path::Path;
 use fcc_core::framework::{Controller, EventOf, Message, MessageOf, RecordOf, Time};
 
 use super::origin::Origin;
-use fcc_record::Remark;
+use fcc_record::{Remark, create_output};
 use fcc_telemetry::describe_event;
 use fcc_telemetry::schema::{Row, header};
 
@@ -32,13 +32,14 @@ impl<C: Controller> CsvFolder<C> {
     /// `events.csv`. Existing files of these names are replaced.
     ///
     /// # Errors
-    /// When the folder or a file cannot be made or written.
-    pub fn create(folder: &Path, origin: &Origin) -> io::Result<Self> {
+    /// When the folder or a file cannot be made or written, or a file is the
+    /// recording.
+    pub fn create(folder: &Path, origin: &Origin, recording: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         let open = |name: &str| -> io::Result<_> {
             Ok(csv::WriterBuilder::new()
                 .buffer_capacity(BUFFER_BYTES)
-                .from_writer(File::create(folder.join(name))?))
+                .from_writer(create_output(&folder.join(name), &[recording])?))
         };
         let mut records = open("records.csv")?;
         records.write_record(header::<RecordOf<C>>())?;

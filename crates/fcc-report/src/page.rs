@@ -1,9 +1,11 @@
 //! A report as one HTML page without other files.
 
+use std::io::Write as _;
 use std::path::Path;
 use std::{fs, io};
 
 use comfy_table::Table;
+use fcc_record::create_output;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Detail, Figure, Figures, figures};
@@ -104,28 +106,25 @@ impl<A: Addition> Report<A> {
     /// # Errors
     /// What could not be written.
     pub fn write_page(&self, path: &Path, recording: &Path) -> Result<(), String> {
-        let refused = |why: String| format!("{}: {why}", path.display());
-        if let (Ok(page), Ok(recording)) = (fs::canonicalize(path), fs::canonicalize(recording))
-            && page == recording
-        {
-            let why = "is the recording: give the page another name";
-            return Err(refused(why.to_owned()));
-        }
-        fs::write(path, self.to_html())
-            .map_err(|error| refused(format!("cannot be written: {error}")))
+        let page = self.to_html();
+        create_output(path, &[recording])
+            .and_then(|mut file| file.write_all(page.as_bytes()))
+            .map_err(|error| format!("{}: cannot be written: {error}", path.display()))
     }
 
     /// Writes each plot into a file in a folder, which is created if it is
-    /// missing.
+    /// missing; none may be the recording itself.
     ///
     /// # Errors
     /// What could not be written.
-    pub fn write_svgs(&self, folder: &Path) -> Result<(), String> {
+    pub fn write_svgs(&self, folder: &Path, recording: &Path) -> Result<(), String> {
         let refused =
             |error: io::Error| format!("{}: cannot be written: {error}", folder.display());
         fs::create_dir_all(folder).map_err(refused)?;
         for (name, svg) in self.to_svgs() {
-            fs::write(folder.join(name), svg).map_err(refused)?;
+            create_output(&folder.join(name), &[recording])
+                .and_then(|mut file| file.write_all(svg.as_bytes()))
+                .map_err(refused)?;
         }
         Ok(())
     }

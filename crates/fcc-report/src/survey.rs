@@ -88,7 +88,7 @@ impl<C: Reported> Survey<C> {
         let not_written =
             |error: std::io::Error| format!("{}: cannot be written: {error}", folder.display());
         let mut tables = csv
-            .map(|folder| CsvFolder::<C>::create(folder, &origin))
+            .map(|folder| CsvFolder::<C>::create(folder, &origin, recording.path()))
             .transpose()
             .map_err(not_written)?;
         let mut survey = Self::new(origin, addition);

@@ -177,9 +177,9 @@ pub fn recordings_table(entries: &[Entry]) -> String {
         let name = entry.path.file_name().unwrap_or(entry.path.as_os_str());
         let tenths = (entry.duration_s * 10.0).round() as u64;
         table.add_row(vec![
-            name.to_string_lossy().into_owned(),
+            name.to_string_lossy().replace('\n', "\\n"),
             entry.started.replace('T', " ").replace('Z', ""),
-            entry.plant.clone(),
+            entry.plant.replace('\n', "\\n"),
             format!("{}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10),
             entry.ticks.to_string(),
             format!("{:.1} µs", entry.worst_lateness_us),

@@ -107,13 +107,13 @@ fn report(outcome: &Outcome, json: bool) -> Exit {
         let over = Arc::new(AtomicBool::new(true));
         let _ = signal_hook::flag::register_conditional_default(signal, over);
     }
+    let exit = outcome.conclusion.into();
     if json {
-        output::json(outcome, outcome.conclusion.into());
-    } else {
-        output::result(outcome::text(outcome), outcome.conclusion.into());
+        return output::json(outcome, exit);
     }
-    // The exit code is the flight's, even if the result cannot be printed.
-    outcome.conclusion.into()
+    output::result(outcome::text(outcome), exit);
+    // Who reads only the exit code wants that of the flight.
+    exit
 }
 
 /// The command line has priority over the file.

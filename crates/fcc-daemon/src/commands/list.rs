@@ -8,8 +8,7 @@ use crate::cli::ListArgs;
 use crate::exit::Exit;
 use crate::output;
 
-/// Lists the recordings in a folder. Prints an error for each file that is not
-/// a recording.
+/// Lists the recordings in a folder, and says which files cannot be read.
 pub(super) fn list(args: &ListArgs) -> Exit {
     let files = match fcc_record::files(&args.folder) {
         Ok(files) => files,
@@ -37,11 +36,11 @@ pub(super) fn list(args: &ListArgs) -> Exit {
         bar.inc(bytes(path));
     }
     bar.finish_and_clear();
-    for error in refused {
+    for error in &refused {
         output::message(error);
     }
     let is_damaged = |entry: &Entry| !entry.damages.is_empty();
-    let exit = if entries.iter().any(is_damaged) {
+    let exit = if entries.iter().any(is_damaged) || !refused.is_empty() {
         Exit::Incomplete
     } else {
         Exit::Success
@@ -55,7 +54,12 @@ pub(super) fn list(args: &ListArgs) -> Exit {
         }
     }
     let text = if entries.is_empty() {
-        format!("{}: no recordings", args.folder.display())
+        let readable = if refused.is_empty() {
+            ""
+        } else {
+            " that can be read"
+        };
+        format!("{}: no recordings{readable}", args.folder.display())
     } else {
         recordings_table(&entries)
     };

@@ -1,13 +1,13 @@
 //! `fccd replay`: replays a recording.
 
-use std::fs::File;
 use std::io::{self, BufWriter};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use fcc_core::flight::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{recorded_config, replay as replay_of};
+use fcc_record::create_output;
 use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
@@ -54,7 +54,7 @@ pub(super) fn replay(args: &ReplayArgs) -> Exit {
             return Exit::Usage;
         }
     };
-    match run(&chain, &recorded, other, args.csv.as_deref()) {
+    match run(&chain, &recorded, other, args) {
         Ok(outcome) => outcome.print(args.json),
         Err(message) => fail(&message),
     }
@@ -65,7 +65,7 @@ fn run(
     chain: &Chain,
     recorded: &Config,
     other: Option<Config>,
-    csv: Option<&Path>,
+    args: &ReplayArgs,
 ) -> Result<Outcome, String> {
     let mut remarks = remarks(chain);
     let mut comparison = Comparison::Identity(Identity::of::<Autopilot>());
@@ -81,11 +81,13 @@ fn run(
             config.tick.rate_hz = recorded.tick.rate_hz;
         }
     }
+    let csv = args.csv.as_deref();
+    let inputs: Vec<&PathBuf> = args.files.iter().chain(&args.config).collect();
     let refused = |error: io::Error| {
         let name = csv.unwrap_or(Path::new("")).display();
         format!("{name}: cannot be written: {error}")
     };
-    let begin = |path| Csv::begin::<Autopilot>(BufWriter::new(File::create(path)?));
+    let begin = |path| Csv::begin::<Autopilot>(BufWriter::new(create_output(path, &inputs)?));
     let mut table = csv.map(begin).transpose().map_err(refused)?;
     let mut written = Ok(());
     let replay = replay_of(&config).map_err(|error| format!("the loop's timer: {error}"))?;

@@ -38,7 +38,7 @@ fn make(args: &ReportArgs) -> Result<FlightReport, String> {
     })?;
     bar.finish_and_clear();
     if let Some(folder) = &args.svg {
-        report.write_svgs(folder)?;
+        report.write_svgs(folder, &args.file)?;
     }
     if let Some(page) = &args.html {
         report.write_page(page, &args.file)?;

@@ -173,4 +173,41 @@ fn a_fifo_and_a_device_are_refused() {
     let output = fccd(&["list", text(folder.path())]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(said.contains("not a regular file"), "{said}");
+    assert_eq!(output.status.code(), INCOMPLETE);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("no recordings that can be read"), "{said}");
+}
+
+/// Under any name: no output replaces what is read.
+#[test]
+fn an_input_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = recorded(folder.path());
+    let whole = fs::read(&file).unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::hard_link(&file, at("page.html")).unwrap();
+    fs::create_dir(at("tables")).unwrap();
+    std::os::unix::fs::symlink(&file, at("link")).unwrap();
+    std::os::unix::fs::symlink(&file, at("tables/events.csv")).unwrap();
+    let config = at("c.toml");
+    fs::write(&config, "[built-in]\n").unwrap();
+    let (file_name, config_name) = (text(&file), text(&config));
+    let replay = ["replay", file_name, "--config", config_name];
+    for arguments in [
+        &[&replay[..], &["--csv", file_name]].concat()[..],
+        &[&replay[..], &["--csv", text(&at("link"))]].concat(),
+        &[&replay[..], &["--csv", config_name]].concat(),
+        &["report", file_name, "--html", text(&at("page.html"))],
+        &["report", file_name, "--csv", text(&at("tables"))],
+    ] {
+        let output = fccd(arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {said}");
+        assert!(
+            said.contains("which is read: choose another name"),
+            "{said}"
+        );
+    }
+    assert!(fs::read(&file).unwrap() == whole);
+    assert_eq!(fs::read_to_string(&config).unwrap(), "[built-in]\n");
 }

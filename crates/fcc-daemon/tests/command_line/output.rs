@@ -92,10 +92,10 @@ fn the_exit_code_is_that_of_the_findings() {
 }
 
 #[test]
-fn a_flight_ends_with_its_own_exit_code() {
+fn a_flight_ends_with_its_own_exit_code_unless_its_result_was_wanted_and_is_lost() {
     let folder = tempfile::tempdir().unwrap();
-    for json in [&["--json"][..], &[]] {
-        for output in [full, left] {
+    for (json, if_full) in [(&["--json"][..], 1), (&[], 0)] {
+        for (output, code) in [(full as fn() -> Stdio, if_full), (left, 0)] {
             let ended = fccd(
                 folder.path(),
                 &["fly", "--lockstep", "--seconds", "2", "--quiet"],
@@ -104,7 +104,50 @@ fn a_flight_ends_with_its_own_exit_code() {
             .stdout(output())
             .status()
             .unwrap();
-            assert_eq!(ended.code(), Some(0));
+            assert_eq!(ended.code(), Some(code), "{json:?}");
         }
+    }
+}
+
+/// A terminal obeys escape sequences, wherever they come from.
+#[test]
+fn control_characters_in_names_are_escaped() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("a\x1b[31m.toml"),
+        "\"b\\u001b[32m\" = 1\n",
+    )
+    .unwrap();
+    std::fs::write(folder.path().join("c\x1b[33m\nd.mcap"), "").unwrap();
+    for words in [&["check", "a\x1b[31m.toml"][..], &["list", "."]] {
+        let ended = fccd(folder.path(), words).output().unwrap();
+        let said = [ended.stdout, ended.stderr].concat();
+        assert!(!said.contains(&0x1b), "{}", said.escape_ascii());
+        let said = String::from_utf8(said).unwrap();
+        assert!(said.contains("\\u{1b}[3"), "{said}");
+    }
+}
+
+/// A name need not be UTF-8.
+#[test]
+fn any_name_of_a_file_is_printed_as_json() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    fly(folder.path());
+    let recordings = folder.path().join("recordings");
+    let flown = fcc_record::files(&recordings).unwrap().remove(0);
+    let name = std::ffi::OsStr::from_bytes(b"f\xff.mcap");
+    std::fs::rename(flown, recordings.join(name)).unwrap();
+    let listed = fccd(&recordings, &["list", ".", "--json"])
+        .output()
+        .unwrap();
+    let recovered = fccd(&recordings, &["recover", "--json"])
+        .arg(name)
+        .output()
+        .unwrap();
+    for ended in [listed, recovered] {
+        assert!(ended.status.success(), "{ended:?}");
+        let json = String::from_utf8(ended.stdout).unwrap();
+        assert!(json.contains("f\u{fffd}.mcap"), "{json}");
     }
 }

@@ -13,7 +13,6 @@ mod cpu;
 mod devices;
 mod early_wake;
 mod error;
-mod file;
 mod guidance;
 mod places;
 mod ranges;
@@ -130,6 +129,10 @@ pub enum Aircraft<'a> {
     BuiltIn(&'a BuiltInSection),
 }
 
+/// The maximum size of a configuration; the longest in config/ has a hundredth
+/// of it.
+const MOST_BYTES: u64 = 1_000_000;
+
 /// That a flight moves nothing is permitted, and said.
 pub(crate) const NO_ACTUATOR: &str =
     "there is no actuator: engaging moves nothing (actuator is an empty list)";
@@ -154,7 +157,7 @@ impl Config {
     /// As [`Config::load`].
     pub fn load_with_text(path: &Path) -> Result<(Self, String), ConfigError> {
         let file = path.display().to_string();
-        let bytes = match file::read(path) {
+        let bytes = match fcc_record::read_file(path, MOST_BYTES) {
             Ok(bytes) => bytes,
             Err(source) => return Err(ConfigError::Unreadable { file, source }),
         };

@@ -19,8 +19,8 @@ pub struct RecordingSection {
     /// When a file covers this much of a flight, a new one is begun; 0 for no
     /// limit.
     pub max_file_minutes: u64,
-    /// The oldest recordings are deleted to keep the total below this; 0 to
-    /// delete none.
+    /// The oldest recordings are deleted to keep the total below this, and a
+    /// file takes at most a quarter of it; 0 to delete none.
     pub keep_total_mb: u64,
     /// How they are compressed.
     pub compression: CompressionChoice,

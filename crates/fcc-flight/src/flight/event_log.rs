@@ -56,7 +56,8 @@ impl<C: Controller> Observer<C> for EventLog {
     }
 
     fn end(&mut self, _: &str, outcome: &mut Outcome, _: &mut Reports) {
-        self.summarise(&self.at.clone(), true);
+        let at = self.at;
+        self.summarise(&at, true);
         outcome.events = std::mem::take(&mut self.events);
     }
 }

@@ -26,6 +26,7 @@ mod outcome;
 mod pilot;
 mod plan;
 mod recording;
+mod repair;
 mod restart;
 mod run_statistics;
 mod scorer;

@@ -1,11 +1,12 @@
 //! The recording of a flight.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 use fcc_record::{
-    About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace, repair_last,
+    About, Notice, Recorded, RecorderOf, RecorderSettings, RecordingPace, last_unfinished,
 };
 use fcc_telemetry::Realtime;
 use nix::sys::utsname::{UtsName, uname};
@@ -13,6 +14,7 @@ use nix::sys::utsname::{UtsName, uname};
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
+use super::repair::Repair;
 use crate::config::{Aircraft, Config};
 
 /// How long a disk may be delayed before records are lost, at 136 Hz or less.
@@ -107,6 +109,9 @@ pub(super) struct Recording<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
+    /// The recording that the last flight left unfinished.
+    unfinished: Option<PathBuf>,
+    repair: Option<Repair>,
     /// When its status was last reported.
     reported: Instant,
 }
@@ -117,23 +122,17 @@ impl<C: Recorded> Recording<C> {
             settings: request.settings,
             about: request.about,
             recorder: None,
+            unfinished: None,
+            repair: None,
             reported: Instant::now(),
         }
     }
 }
 
 impl<C: Recorded> Observer<C> for Recording<C> {
-    /// Repairs what the last flight may have left unfinished.
-    fn prepare(&mut self, reports: &mut Reports) {
-        match repair_last(&self.settings.folder) {
-            Ok(None) => {}
-            Ok(Some(repaired)) => reports.mention(format!(
-                "{}: was unfinished, repaired: {} ticks",
-                repaired.path.display(),
-                repaired.ticks
-            )),
-            Err(error) => reports.remark(format!("the last recording was not repaired: {error}")),
-        }
+    /// Before its own is the newest.
+    fn prepare(&mut self, _: &mut Reports) {
+        self.unfinished = last_unfinished(&self.settings.folder);
     }
 
     /// Begins to record; without a recorder the flight continues, and this is
@@ -159,6 +158,8 @@ impl<C: Recorded> Observer<C> for Recording<C> {
             Ok(recorder) => self.recorder = Some(recorder),
             Err(error) => reports.remark(format!("not recorded: no thread: {error}")),
         }
+        // An hour's takes some seconds, and must not delay the flight.
+        self.repair = self.unfinished.take().and_then(Repair::begin);
     }
 
     fn record(&mut self, record: &RecordOf<C>, _: &FlightTime) {
@@ -180,6 +181,9 @@ impl<C: Recorded> Observer<C> for Recording<C> {
     }
 
     fn poll(&mut self, access: &mut Access<'_, C::Command>) {
+        if let Some(repair) = self.repair.take_if(|repair| repair.is_over()) {
+            repair.end(access.reports);
+        }
         let Some(recorder) = &self.recorder else {
             return;
         };
@@ -194,6 +198,9 @@ impl<C: Recorded> Observer<C> for Recording<C> {
 
     /// Ends the recording and waits for the disk, for a limited time.
     fn end(&mut self, ending: &str, outcome: &mut Outcome, reports: &mut Reports) {
+        if let Some(repair) = self.repair.take() {
+            repair.end(reports);
+        }
         let Some(recorder) = self.recorder.take() else {
             outcome.was_not_recorded();
             return;
@@ -202,15 +209,26 @@ impl<C: Recorded> Observer<C> for Recording<C> {
         for notice in notices {
             pass_on(notice, reports);
         }
-        if status.stopped.is_some() || status.not_recorded > 0 || outcome.records_dropped > 0 {
+        // Finished parts may be deleted too.
+        let (files, deleted): (Vec<_>, Vec<_>) =
+            status.files.into_iter().partition(|file| file.exists());
+        for file in &deleted {
+            let file = file.display();
+            reports.remark(format!("{file}: was deleted or renamed in flight"));
+        }
+        if !deleted.is_empty()
+            || status.stopped.is_some()
+            || status.not_recorded > 0
+            || outcome.records_dropped > 0
+        {
             outcome.was_not_recorded();
         }
         outcome.recording = Some(RecordingOutcome {
-            files: status
-                .files
+            files: files
                 .iter()
                 .map(|path| path.display().to_string())
                 .collect(),
+            files_deleted: status.files_deleted,
             ticks: status.ticks,
             bytes: status.bytes,
             not_recorded: status.not_recorded,
@@ -224,5 +242,59 @@ fn pass_on(notice: Notice, reports: &mut Reports) {
         reports.remark(notice.text);
     } else {
         reports.mention(notice.text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::{self, File};
+
+    use fcc_core::flight::Autopilot;
+    use fcc_record::Recorder;
+
+    use super::*;
+
+    /// After an hour's flight it takes seconds, in which nobody would fly.
+    #[test]
+    fn an_unfinished_recording_is_repaired_while_the_flight_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut config = Config::default();
+        config.recording.folder = folder.path().to_owned();
+        let request = RecordingRequest::of(&config, None).unwrap();
+        let settings = request.settings.clone();
+        let flown = Recorder::start(request.about.clone(), settings).unwrap();
+        let (status, _) = flown.finish("stopped");
+        let path = &status.files[0];
+        let bytes = fs::metadata(path).unwrap().len();
+        File::options()
+            .write(true)
+            .open(path)
+            .and_then(|file| file.set_len(bytes - 9))
+            .unwrap();
+        let is_whole = || fcc_record::Recording::open(path).unwrap().is_whole();
+
+        let (mut recording, mut reports) =
+            (Recording::<Autopilot>::new(request), Reports::default());
+        recording.prepare(&mut reports);
+        assert!(!is_whole());
+        let facts = Facts {
+            rate_hz: 40.0,
+            timer: "timerfd",
+            sensors: &[],
+            actuators: &[],
+            started_unix_ns: 0,
+            clock_offset_ns: 0,
+            pace: Pace::RealTime,
+            granted: None,
+        };
+        recording.begin(&facts, &mut reports);
+        let repair = recording.repair.take().unwrap();
+        while !repair.is_over() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        repair.end(&mut reports);
+        assert!(is_whole());
+        let said = format!("{:?}", reports.take());
+        assert!(said.contains("was unfinished, repaired: 0 ticks"), "{said}");
     }
 }

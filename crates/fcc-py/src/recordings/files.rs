@@ -28,7 +28,11 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
     #[serde(untagged)]
     enum Listed {
         Entry(fcc_record::Entry),
-        Not { path: PathBuf, error: String },
+        Not {
+            #[serde(serialize_with = "fcc_record::serialize_path")]
+            path: PathBuf,
+            error: String,
+        },
     }
     let listed = py.detach(|| -> Result<Vec<Listed>, String> {
         let files = fcc_record::files(&folder).map_err(|error| {
@@ -76,7 +80,7 @@ pub(crate) fn report(
         let addition = FlightAddition::new(pattern(&recording));
         let report = FlightSurvey::read(&recording, addition, csv.as_deref(), |_| {})?;
         if let Some(folder) = &svg {
-            report.write_svgs(folder)?;
+            report.write_svgs(folder, &path)?;
         }
         if let Some(html) = &html {
             report.write_page(html, &path)?;

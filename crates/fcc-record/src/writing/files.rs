@@ -18,8 +18,10 @@ const MAX_ATTEMPTS: usize = 100;
 impl<C: Recorded> Writing<C> {
     pub(super) fn is_full(&self, part: &Part<C>) -> bool {
         let too_large = |most| part.bytes() >= most;
+        let most_of_total = self.settings.keep_total_bytes.map(|total| total / 4);
         let too_old = |most: Duration| u128::from(part.span_ns()) >= most.as_nanos();
         self.settings.max_file_bytes.is_some_and(too_large)
+            || most_of_total.is_some_and(too_large)
             || self.settings.max_file_age.is_some_and(too_old)
     }
 
@@ -134,6 +136,11 @@ impl<C: Recorded> Writing<C> {
                 most / 1_000_000
             );
             self.report(text, false);
+            self.board.update(|status| {
+                let before = status.files.len();
+                status.files.retain(|file| *file != path);
+                status.files_deleted += (before - status.files.len()) as u64;
+            });
         }
     }
 }

@@ -164,6 +164,10 @@ impl<C: Recorded> Writing<C> {
     fn commit(&mut self) -> bool {
         let gaps = self.part.as_ref().map_or_else(Lost::default, Part::gaps);
         let committed = self.attempt(Part::commit);
+        if let (true, Some((what, lost))) = (committed, self.part.as_ref().and_then(Part::change)) {
+            self.lose_file(&what, lost);
+            return false;
+        }
         if committed {
             self.post();
             self.end_trouble(gaps);

@@ -54,6 +54,23 @@ impl<C: Recorded> Writing<C> {
         }
     }
 
+    /// Another program deleted or changed the file: begins the next part, which
+    /// reports the gap.
+    pub(super) fn lose_file(&mut self, what: &str, lost: Lost) {
+        let Some(part) = self.part.take() else {
+            return;
+        };
+        self.lost.join(lost);
+        self.board.update(|status| {
+            status.not_recorded += lost.count;
+            status.files.retain(|file| file != part.path());
+        });
+        let lost = self.lost.description();
+        let text = format!("{}: {what} in flight; {lost}", part.path().display());
+        self.report(text, true);
+        self.begin();
+    }
+
     /// Records nothing until the next attempt. Reported once, however many
     /// attempts fail.
     pub(super) fn stop(&mut self, why: String) {

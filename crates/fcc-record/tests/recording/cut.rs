@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use fcc_core::framework::Message;
 use fcc_record::{
     Compression, OpenError, Recorder, RecorderSettings, Recording, RecoverError, Wholeness, entry,
-    recover, repair_last,
+    last_unfinished, recover, recover_while,
 };
 use fcc_telemetry::FlightMessage;
 use proptest::prelude::*;
@@ -77,11 +77,11 @@ fn a_finished_file_is_not_changed() {
     assert!(recovered.was_whole);
     assert_eq!(recovered.ticks, TICKS);
     assert_eq!(fs::read(&path).unwrap(), before);
-    assert_eq!(repair_last(folder.path()).unwrap(), None);
+    assert_eq!(last_unfinished(folder.path()), None);
 }
 
 #[test]
-fn a_start_repairs_the_last_recording_only() {
+fn a_start_finds_the_last_recording_only() {
     let folder = tempfile::tempdir().unwrap();
     let path = whole(folder.path(), Compression::default());
     let bytes = fs::read(&path).unwrap();
@@ -92,11 +92,22 @@ fn a_start_repairs_the_last_recording_only() {
     fs::write(&older, cut).unwrap();
     fs::write(&path, cut).unwrap();
     assert_eq!(entry(&path).unwrap().file, Wholeness::Cut);
-    let repaired = repair_last(folder.path()).unwrap().unwrap();
-    assert_eq!(repaired.path, path);
+    // Not a file: it is neither opened nor deleted.
+    fs::create_dir(
+        folder
+            .path()
+            .join("2099-01-01T00-00-00.000Z-built-in-01.mcap"),
+    )
+    .unwrap();
+    assert_eq!(last_unfinished(folder.path()), Some(path.clone()));
+    // The end of the flight stops it.
+    let stopped = recover_while(&path, |_| false).unwrap_err().to_string();
+    assert!(stopped.contains("run `fccd recover` on it"), "{stopped}");
+    assert_eq!(fs::read(&path).unwrap(), cut);
+    recover(&path, |_| {}).unwrap();
     assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
     assert_eq!(fs::read(&older).unwrap(), cut);
-    assert_eq!(repair_last(Path::new("/nowhere")).unwrap(), None);
+    assert_eq!(last_unfinished(Path::new("/nowhere")), None);
 }
 
 #[test]
@@ -114,7 +125,7 @@ fn what_is_being_written_is_not_recovered() {
         recover(&path, |_| {}),
         Err(RecoverError::BeingWritten(_))
     ));
-    assert_eq!(repair_last(folder.path()).unwrap(), None);
+    assert_eq!(last_unfinished(folder.path()), None);
     let seen = entry(&path).unwrap();
     assert_eq!((seen.file, seen.ticks), (Wholeness::BeingWritten, 10));
     recorder.finish("stopped by command");
@@ -136,7 +147,7 @@ fn a_file_being_recovered_is_not_recovered_twice() {
                 recover(&path, |_| {}),
                 Err(RecoverError::BeingWritten(_))
             ));
-            assert_eq!(repair_last(folder.path()).unwrap(), None);
+            assert_eq!(last_unfinished(folder.path()), None);
         }
     })
     .unwrap();

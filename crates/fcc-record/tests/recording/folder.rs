@@ -3,10 +3,11 @@
 use std::fs;
 use std::time::Duration;
 
-use fcc_record::{Compression, Recorder, RecorderSettings, Recording};
+use fcc_core::framework::Message;
+use fcc_record::{Compression, Notice, Recorder, RecorderSettings, Recording};
 
-use crate::disks::ticks;
-use crate::flight::{about, flight, record_all, settings};
+use crate::disks::{gaps, ticks, wait_for, wait_for_ticks};
+use crate::flight::{about, flight, only_file, record, record_all, settings};
 
 fn parts(settings: RecorderSettings, ticks: u64) -> Vec<Recording> {
     let folder = settings.folder.clone();
@@ -46,9 +47,19 @@ fn a_recording_is_split_by_age_without_a_gap() {
 
 #[test]
 fn a_recording_is_split_by_size_and_the_folder_kept_small() {
+    split_and_kept_small(Some(2_000_000));
+}
+
+/// A file larger than the total would never be deleted.
+#[test]
+fn a_folder_is_kept_small_whatever_the_limit_of_a_file() {
+    split_and_kept_small(None);
+}
+
+fn split_and_kept_small(max_file_bytes: Option<u64>) {
     let folder = tempfile::tempdir().unwrap();
     let limits = RecorderSettings {
-        max_file_bytes: Some(2_000_000),
+        max_file_bytes,
         keep_total_bytes: Some(5_000_000),
         compression: Compression::None,
         ..settings(folder.path())
@@ -76,6 +87,40 @@ fn a_recording_is_split_by_size_and_the_folder_kept_small() {
     let kept: Vec<u64> = parts.iter().flat_map(|part| ticks(part.path())).collect();
     assert_eq!(*kept.last().unwrap(), 20_000);
     assert!(kept.windows(2).all(|pair| pair[1] == pair[0] + 1));
+}
+
+/// By another program: for example by a user who makes room.
+#[test]
+fn a_file_deleted_or_truncated_in_flight_is_reported_and_the_next_begun() {
+    for truncated in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
+        for message in &flight(10) {
+            recorder.take(message);
+        }
+        wait_for_ticks(&recorder, 10);
+        let first = only_file(folder.path());
+        if truncated {
+            fs::File::create(&first).unwrap();
+        } else {
+            fs::remove_file(&first).unwrap();
+        }
+        recorder.take(&Message::Tick(record(11)));
+        // Ten ticks and an event committed, and the last.
+        wait_for(&recorder, |status| status.not_recorded == 12);
+        recorder.take(&Message::Tick(record(12)));
+        let (status, notices) = recorder.finish("stopped by command");
+        let told = |notice: &Notice| notice.is_trouble && notice.text.contains("in flight; 12");
+        assert!(notices.iter().any(told), "{notices:?}");
+        assert_eq!(
+            (status.ticks, status.not_recorded, status.stopped),
+            (1, 12, None)
+        );
+        let [file] = &status.files[..] else {
+            panic!("{:?}", status.files);
+        };
+        assert_eq!((ticks(file), gaps(file)), (vec![12], vec![(12, 1, 11)]));
+    }
 }
 
 #[test]

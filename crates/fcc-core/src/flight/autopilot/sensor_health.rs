@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use super::{Autopilot, flags};
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Flags, Time};
+use crate::framework::{Flags, Reading, Time};
 
 /// A switch that was read before and is silent for longer than this counts as
 /// lost, since it could not be switched off.
@@ -25,32 +25,18 @@ impl Autopilot {
     }
 
     fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
-        let max_age = self.config.max_age;
-        Flags::NONE
-            .with(
-                flags::ATTITUDE,
-                !measurements.attitude.is_fresh(now, max_age),
-            )
-            .with(
-                flags::HEADING,
-                !measurements.heading_rad.is_fresh(now, max_age),
-            )
-            .with(
-                flags::BODY_RATES,
-                !measurements.body_rates.is_fresh(now, max_age),
-            )
-            .with(
-                flags::SPECIFIC_FORCE,
-                !measurements.specific_force.is_fresh(now, max_age),
-            )
-            .with(
-                flags::AIRSPEED,
-                !measurements.airspeed_mps.is_fresh(now, max_age),
-            )
-            .with(
-                flags::ALTITUDE,
-                !measurements.altitude_m.is_fresh(now, max_age),
-            )
+        let taken = [
+            (flags::ATTITUDE, measurements.attitude.taken),
+            (flags::HEADING, measurements.heading_rad.taken),
+            (flags::BODY_RATES, measurements.body_rates.taken),
+            (flags::SPECIFIC_FORCE, measurements.specific_force.taken),
+            (flags::AIRSPEED, measurements.airspeed_mps.taken),
+            (flags::ALTITUDE, measurements.altitude_m.taken),
+        ];
+        taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
+            let reading = Reading::new((), taken);
+            old.with(flag, !reading.is_fresh(now, self.config.max_age))
+        })
     }
 
     /// The faults that prevent both engaging and staying engaged.

@@ -17,6 +17,8 @@ use super::boot_clock::BootInstant;
 
 /// The beginning of every state file.
 const NAME: &str = "fccd-flight";
+/// A state file has a hundredth of it.
+const MOST_BYTES: u64 = 100_000;
 /// The version of the layout.
 const VERSION: u32 = 2;
 
@@ -72,7 +74,7 @@ pub(super) enum StateFileError {
 
 /// Reads a file; none if it does not exist.
 pub(super) fn read(path: &Path) -> Result<Option<Saved>, StateFileError> {
-    match fs::read(path) {
+    match fcc_record::read_file(path, MOST_BYTES) {
         Ok(bytes) => decode(&bytes).map(Some),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(error.into()),
@@ -235,6 +237,16 @@ mod tests {
         assert!(read(&path).unwrap().is_none());
         remove(&path).unwrap();
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_device_and_a_large_file_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let large = folder.path().join("large");
+        fs::write(&large, vec![b'#'; 100_001]).unwrap();
+        let said = |path: &Path| read(path).unwrap_err().to_string();
+        assert!(said(&large).contains("more than 100000 bytes"));
+        assert!(said(Path::new("/dev/zero")).contains("a pipe or a device"));
     }
 
     #[test]
