@@ -187,6 +187,8 @@ def test_ranges_are_reported() -> None:
         (lambda: fcc.Timer(0.01, "hpet")): "choose timerfd, posix or nanosleep",
         (lambda: fcc.Surfaces(throttle=1.2)): "throttle is 1.2: choose 0 to 1",
         (lambda: engaged().command(altitude_m=9e9)): "altitude_m is 9000000000: choose",
+        (lambda: engaged().command(heading_rad=1e308)): "heading_rad is 1e308: choose -6.28",
+        (lambda: fcc.Machine().command(heading_rad=7.0)): "heading_rad is 7: choose -6.28",
         (lambda: fcc.fly(seconds=-1.0)): "seconds is -1",
         (lambda: fcc.Pid(output_min=1.0, output_max=0.0)): "the first must be less",
         (lambda: fcc.euler_from_quaternion([0, 0, 0, 0])): "has the length 0",

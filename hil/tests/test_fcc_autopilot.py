@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import fcc
 import numpy as np
 import pytest
@@ -30,6 +32,16 @@ def engaged(config: str, measured: np.ndarray) -> fcc.Autopilot:
     autopilot.observe_series(measured[:100])
     autopilot.engage(fcc.Measurements.from_array(measured[100]), throttle=0.6)
     return autopilot
+
+
+def test_threads_use_one_autopilot_in_turn() -> None:
+    autopilot, measured = fcc.Autopilot(HOLD), np.tile(series(), (50, 1))
+    with ThreadPoolExecutor(3) as pool:
+        runs = [pool.submit(autopilot.observe_series, measured) for _ in range(3)]
+        looks = [autopilot.engaged for _ in range(100)]
+        for run in runs:
+            run.result()
+    assert not any(looks)
 
 
 def test_a_series_is_its_steps_to_the_last_bit() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import signal
 import threading
 import time
 
@@ -90,3 +91,16 @@ def test_one_thread_waits_at_a_time() -> None:
 def test_a_timer_that_was_not_started_raises_an_error() -> None:
     with pytest.raises(fcc.TimerError, match="was not started"):
         fcc.Timer(0.01).wait()
+
+
+def test_a_long_wait_can_be_interrupted() -> None:
+    """As Ctrl-C does; the deadline is minutes away."""
+    timer = fcc.Timer(600.0)
+    timer.start()
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    previous = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            timer.wait()
+    finally:
+        signal.signal(signal.SIGALRM, previous)

@@ -161,7 +161,8 @@ def test_python_reads_the_flight(fccd: Path, tmp_path: Path, instance: str) -> N
 def test_without_a_daemon_top_reports_it(fccd: Path, instance: str) -> None:
     asked = snapshot(fccd, instance)
     assert asked.returncode == FAILURE
-    assert f"no fccd named '{instance}' runs here: start one" in asked.stderr
+    # How it goes on depends on whether other users' daemons were here.
+    assert f"no fccd named '{instance}' runs here" in asked.stderr
 
 
 def test_two_daemons_of_one_name_both_fly(fccd: Path, tmp_path: Path, instance: str) -> None:

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use fcc_live::{
     CommandError, Commander, FlightCommand, Info, NewSetpoints, PendingCommand, Publisher, Text,
-    Verdict, WatchError,
+    Verdict,
 };
 use fcc_telemetry::Instance;
 
@@ -18,6 +18,12 @@ fn instance(test: &str) -> Instance {
     format!("command-{}-{test}", std::process::id())
         .parse()
         .unwrap()
+}
+
+/// How the error begins where nobody publishes as this; how it ends depends on
+/// whether other users' daemons are or were on the machine.
+fn absent(instance: &Instance) -> String {
+    format!("no fccd named '{instance}' runs here")
 }
 
 fn describe(mut publisher: Publisher) -> Publisher {
@@ -92,7 +98,10 @@ fn a_program_that_waits_is_answered_when_the_flight_ends() {
         matches!(
             &result,
             Err(CommandError::Refused(words)) if words == "the flight has ended"
-        ) || result == Err(CommandError::Unreachable(WatchError::NotRunning(instance))),
+        ) || matches!(
+            &result,
+            Err(CommandError::Unreachable(error)) if error.to_string().contains(&absent(&instance))
+        ),
         "{result:?}"
     );
 }
@@ -117,10 +126,8 @@ fn an_invalid_command_is_not_sent() {
 #[test]
 fn a_daemon_without_commands_is_distinguished_from_none() {
     let instance = instance("none");
-    assert_eq!(
-        Commander::open(&instance).unwrap_err(),
-        CommandError::Unreachable(WatchError::NotRunning(instance.clone()))
-    );
+    let words = Commander::open(&instance).unwrap_err().to_string();
+    assert!(words.contains(&absent(&instance)), "{words}");
     let _publisher = describe(Publisher::start(&instance, 2_048).unwrap());
     let words = Commander::open(&instance).unwrap_err().to_string();
     assert!(

@@ -1,6 +1,7 @@
 //! Arguments checked: every refusal names the argument, what it was and what
 //! it may be.
 
+use fcc_telemetry::units;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -36,7 +37,8 @@ pub(crate) fn within(name: &str, value: f64, least: f64, most: f64) -> PyResult<
         return Ok(value);
     }
     Err(PyValueError::new_err(format!(
-        "{name} is {value}: choose {least} to {most}"
+        "{name} is {}: choose {least} to {most}",
+        units::number(value)
     )))
 }
 
@@ -88,6 +90,21 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
+    /// Calls something with some rows at a time, which takes a fraction of a
+    /// second: without the GIL, and then looks for a key for interruption.
+    pub(crate) fn in_pieces(
+        &self,
+        py: Python<'_>,
+        mut act: impl FnMut(&[f64]) + Send,
+    ) -> PyResult<()> {
+        const ROWS: usize = 4_096;
+        for piece in self.numbers.chunks(ROWS * self.width.max(1)) {
+            py.detach(|| piece.chunks_exact(self.width.max(1)).for_each(&mut act));
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
     pub(crate) fn iter(&self) -> std::slice::ChunksExact<'_, f64> {
         self.numbers.chunks_exact(self.width.max(1))
     }

@@ -1,11 +1,14 @@
 //! The autopilot, stepped by hand.
 
 use std::ops::RangeInclusive;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
 use fcc_core::framework::Controller;
+use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD};
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
 
 use crate::arguments::{Rows, finite, rows, step_s, within};
 use crate::config::autopilot_config;
@@ -22,9 +25,17 @@ use crate::values::{
 ///
 /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
 /// it; its sections `[guidance]`, `[autopilot]` and `[failsafe]` matter here.
-#[pyclass(name = "Autopilot", module = "fcc")]
+#[pyclass(name = "Autopilot", module = "fcc", frozen)]
 pub(crate) struct PyAutopilot {
-    stepped: Stepped,
+    stepped: Mutex<Stepped>,
+}
+
+impl PyAutopilot {
+    /// One thread after the other.
+    fn stepped(&self, py: Python<'_>) -> MutexGuard<'_, Stepped> {
+        let stepped = self.stepped.lock_py_attached(py);
+        stepped.unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 #[pymethods]
@@ -33,15 +44,15 @@ impl PyAutopilot {
     #[pyo3(signature = (config = None))]
     fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         Ok(Self {
-            stepped: Stepped::new(&autopilot_config(config)?),
+            stepped: Mutex::new(Stepped::new(&autopilot_config(config)?)),
         })
     }
 
     /// Takes measurements `dt` seconds after the last without controlling, so
     /// that the filters settle.
     #[pyo3(signature = (measurements, dt = 0.025))]
-    fn observe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
-        self.stepped.observe(measurements, step_s(dt)?);
+    fn observe(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
+        self.stepped(py).observe(measurements, step_s(dt)?);
         Ok(())
     }
 
@@ -49,18 +60,15 @@ impl PyAutopilot {
     /// (n, m), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe_series(
-        &mut self,
+        &self,
         py: Python<'_>,
         measurements: &Bound<'_, PyAny>,
         dt: f64,
     ) -> PyResult<()> {
         let (series, dt_s) = (series(measurements)?, step_s(dt)?);
-        py.detach(|| {
-            for row in series.iter() {
-                self.stepped.observe(&from_row(row), dt_s);
-            }
-        });
-        Ok(())
+        let mut stepped = self.stepped(py);
+        let stepped = &mut *stepped;
+        series.in_pieces(py, |row| stepped.observe(&from_row(row), dt_s))
     }
 
     /// Engages, `dt` seconds after the last measurements: the present state
@@ -71,7 +79,7 @@ impl PyAutopilot {
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
                         elevator = 0.0, aileron = 0.0, rudder = 0.0))]
     fn engage(
-        &mut self,
+        this: &Bound<'_, Self>,
         measurements: &PyMeasurements,
         dt: f64,
         throttle: f64,
@@ -85,16 +93,18 @@ impl PyAutopilot {
             aileron,
             rudder,
         })?;
-        self.stepped
+        this.get()
+            .stepped(this.py())
             .engage(measurements, step_s(dt)?, readback)
             .map_err(|words| errors::ENGAGE.with(words))
     }
 
     /// One tick, `dt` seconds after the last: the surfaces to set.
     #[pyo3(signature = (measurements, dt = 0.025))]
-    fn step(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
-        self.stepped.must_be_engaged()?;
-        Ok(self.stepped.step(measurements, step_s(dt)?).into())
+    fn step(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
+        let mut stepped = self.stepped(py);
+        stepped.must_be_engaged()?;
+        Ok(stepped.step(measurements, step_s(dt)?).into())
     }
 
     /// One tick for each row of a series, as `step` does: what the autopilot
@@ -103,79 +113,88 @@ impl PyAutopilot {
     /// (n, 4), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn fly<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         measurements: &Bound<'py, PyAny>,
         dt: f64,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (series, dt_s) = (series(measurements)?, step_s(dt)?);
-        self.stepped.must_be_engaged()?;
-        let flown = py.detach(|| {
-            let steps = series
-                .iter()
-                .map(|row| self.stepped.step(&from_row(row), dt_s));
-            table::<PySurfaces>(steps.map(Into::into))
-        });
+        let mut stepped = self.stepped(py);
+        let stepped = &mut *stepped;
+        stepped.must_be_engaged()?;
+        let mut flown = Vec::new();
+        series.in_pieces(py, |row| {
+            let surfaces = stepped.step(&from_row(row), dt_s);
+            as_row::<PySurfaces>(surfaces.into(), &mut flown);
+        })?;
         matrix::<PySurfaces>(py, &flown)
     }
 
     /// One tick of failsafe, `dt` seconds after the last: the safest surfaces
     /// that what is left of the measurements allows.
     #[pyo3(signature = (measurements, dt = 0.025))]
-    fn failsafe(&mut self, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
-        self.stepped.must_be_engaged()?;
-        Ok(self.stepped.failsafe(measurements, step_s(dt)?).into())
+    fn failsafe(
+        &self,
+        py: Python<'_>,
+        measurements: &PyMeasurements,
+        dt: f64,
+    ) -> PyResult<PySurfaces> {
+        let mut stepped = self.stepped(py);
+        stepped.must_be_engaged()?;
+        Ok(stepped.failsafe(measurements, step_s(dt)?).into())
     }
 
     /// Disengages.
-    fn disengage(&mut self) {
-        self.stepped.disengage();
+    fn disengage(&self, py: Python<'_>) {
+        self.stepped(py).disengage();
     }
 
     /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
     /// pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
     fn command(
-        &mut self,
+        &self,
+        py: Python<'_>,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
     ) -> PyResult<()> {
-        self.stepped.must_be_engaged()?;
-        let allowed = self.stepped.autopilot.config().envelope.allowed_airspeeds();
+        let mut stepped = self.stepped(py);
+        stepped.must_be_engaged()?;
+        let allowed = stepped.autopilot.config().envelope.allowed_airspeeds();
         let commands = checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)?;
-        self.stepped.command(commands);
+        stepped.command(commands);
         Ok(())
     }
 
     /// Whether it is engaged.
     #[getter]
-    fn engaged(&self) -> bool {
-        self.stepped.is_engaged()
+    fn engaged(&self, py: Python<'_>) -> bool {
+        self.stepped(py).is_engaged()
     }
 
     /// The present set points.
     #[getter]
-    fn setpoints(&self) -> PySetpoints {
-        self.stepped.autopilot.setpoints().into()
+    fn setpoints(&self, py: Python<'_>) -> PySetpoints {
+        self.stepped(py).autopilot.setpoints().into()
     }
 
     /// Navigation's estimate.
     #[getter]
-    fn estimate(&self) -> PyEstimate {
-        self.stepped.autopilot.estimated().into()
+    fn estimate(&self, py: Python<'_>) -> PyEstimate {
+        self.stepped(py).autopilot.estimated().into()
     }
 
     /// The engage inhibits, in words; empty if it may engage.
     #[getter]
-    fn engage_inhibits(&self) -> Vec<&'static str> {
-        conditions::<Autopilot>(self.stepped.engage_inhibits())
+    fn engage_inhibits(&self, py: Python<'_>) -> Vec<&'static str> {
+        conditions::<Autopilot>(self.stepped(py).engage_inhibits())
     }
 
     /// The faults that make it unsafe to stay engaged, in words.
     #[getter]
-    fn faults(&self) -> Vec<&'static str> {
-        conditions::<Autopilot>(self.stepped.faults())
+    fn faults(&self, py: Python<'_>) -> Vec<&'static str> {
+        conditions::<Autopilot>(self.stepped(py).faults())
     }
 }
 
@@ -201,8 +220,8 @@ pub(crate) fn matrix<'py, V: Values>(
     numbers.to_pyarray(py).reshape([rows, width])
 }
 
-/// Commands for the controller: airspeed in m/s, as the envelope allows; heading in rad, any
-/// number of turns; altitude in m, -500 to 20,000.
+/// Commands for the controller: airspeed in m/s, as the envelope allows;
+/// heading in rad, -2π to 2π; altitude in m, -500 to 20,000.
 pub(crate) fn checked_commands(
     airspeed_mps: Option<f64>,
     heading_rad: Option<f64>,
@@ -212,14 +231,35 @@ pub(crate) fn checked_commands(
     // The limits as the message gives them: they are whole in knots.
     let [least, most] =
         [airspeeds_mps.start(), airspeeds_mps.end()].map(|mps| (mps * 100.0).round() / 100.0);
-    let airspeed = |mps| within("airspeed_mps", finite("airspeed_mps", mps)?, least, most);
-    let altitude = |m| within("altitude_m", finite("altitude_m", m)?, -500.0, 20_000.0);
-    [
-        airspeed_mps.map(|mps| airspeed(mps).map(AutopilotCommand::Airspeed)),
-        heading_rad.map(|rad| finite("heading_rad", rad).map(AutopilotCommand::Heading)),
-        altitude_m.map(|m| altitude(m).map(AutopilotCommand::Altitude)),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let given = [
+        (
+            "airspeed_mps",
+            airspeed_mps,
+            least..=most,
+            AutopilotCommand::Airspeed as fn(f64) -> _,
+        ),
+        (
+            "heading_rad",
+            heading_rad,
+            COMMANDED_HEADING_RAD,
+            AutopilotCommand::Heading,
+        ),
+        (
+            "altitude_m",
+            altitude_m,
+            COMMANDED_ALTITUDE_M,
+            AutopilotCommand::Altitude,
+        ),
+    ];
+    let given = given
+        .into_iter()
+        .filter_map(|(name, value, range, command)| {
+            let (value, least, most) = (value?, *range.start(), *range.end());
+            Some(
+                finite(name, value)
+                    .and_then(|value| within(name, value, least, most))
+                    .map(command),
+            )
+        });
+    given.collect()
 }

@@ -1,6 +1,7 @@
 //! The kernel's timers, and how well they keep time.
 
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
 use std::time::Duration;
 
 use fcc_timer::{Expiry, Timer, TimerKind, TimingStats, TimingSummary};
@@ -111,7 +112,7 @@ impl From<TimingSummary> for PyTimingSummary {
 /// A periodic timer of the kernel, `"timerfd"`, `"posix"` or `"nanosleep"`:
 /// absolute deadlines on `CLOCK_MONOTONIC`, `period_s` (10 µs to 1 h) apart,
 /// whose phase never moves. The GIL is released while it waits; a key for
-/// interruption is heard at the next deadline.
+/// interruption ends the wait within 0.1 s.
 ///
 /// Iterating starts the timer if need be, and gives an `Expiry` for each
 /// deadline, without an end.
@@ -125,8 +126,13 @@ pub(crate) struct PyTimer {
 
 struct Started {
     timer: Box<dyn Timer>,
-    started: bool,
+    /// The next deadline, ns on the timer's clock; none if it was not started.
+    next_ns: Option<i64>,
 }
+
+/// A key for interruption is looked for this often. Shorter waits are left to
+/// the timer itself, which is precise.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 impl PyTimer {
     fn timer(&self) -> PyResult<MutexGuard<'_, Started>> {
@@ -158,7 +164,7 @@ impl PyTimer {
         Ok(Self {
             timer: Mutex::new(Started {
                 timer,
-                started: false,
+                next_ns: None,
             }),
             stats: Mutex::new(TimingStats::new(period).map_err(refused)?),
             kind,
@@ -174,7 +180,7 @@ impl PyTimer {
             .timer
             .start()
             .map_err(|error| errors::TIMER.with(error))?;
-        timer.started = true;
+        timer.next_ns = Some(timer.timer.now_ns() + self.period.as_nanos() as i64);
         self.stats().reset();
         Ok(())
     }
@@ -182,12 +188,18 @@ impl PyTimer {
     /// Waits for the next deadline; never returns before it. Deadlines that
     /// passed unserved are counted, and the latest of them is served at once.
     fn wait(&self, py: Python<'_>) -> PyResult<PyExpiry> {
-        let waited = py.detach(|| -> PyResult<Expiry> {
-            let mut timer = self.timer()?;
-            let expiry = timer
-                .timer
-                .wait()
-                .map_err(|error| errors::TIMER.with(error))?;
+        let mut guard = self.timer()?;
+        let timer = &mut *guard;
+        while timer.next_ns.is_some_and(|next_ns| {
+            next_ns - timer.timer.now_ns() > 2 * LOOK_EVERY.as_nanos() as i64
+        }) {
+            py.detach(|| thread::sleep(LOOK_EVERY));
+            py.check_signals()?;
+        }
+        let waited = py.detach(|| {
+            let expiry = timer.timer.wait();
+            let expiry = expiry.map_err(|error| errors::TIMER.with(error))?;
+            timer.next_ns = Some(expiry.scheduled_ns + self.period.as_nanos() as i64);
             self.stats().record(&expiry);
             Ok(expiry)
         });
@@ -196,7 +208,7 @@ impl PyTimer {
     }
 
     fn __iter__(this: PyRef<'_, Self>) -> PyResult<PyRef<'_, Self>> {
-        let started = this.timer()?.started;
+        let started = this.timer()?.next_ns.is_some();
         if !started {
             this.start()?;
         }

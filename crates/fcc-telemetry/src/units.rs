@@ -1,5 +1,8 @@
 //! The units in which people read values.
 
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
 use crate::schema::Column;
 
 /// Feet per metre.
@@ -10,6 +13,21 @@ pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// Standard gravity, m/s².
 pub const G_MPS2: f64 = 9.806_65;
+
+/// Headings that may be commanded, rad.
+pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
+
+/// Altitudes that may be commanded, m.
+pub const COMMANDED_ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
+
+/// A number as a message gives it; a very large or small one without hundreds of zeros.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
 
 /// The unit in which people read the values whose names end in `end`.
 #[derive(Clone, Copy, PartialEq, Debug)]

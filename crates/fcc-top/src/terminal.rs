@@ -14,7 +14,7 @@ use fcc_telemetry::Instance;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use ratatui::DefaultTerminal;
-use ratatui::crossterm::terminal::disable_raw_mode;
+use ratatui::crossterm::terminal::{disable_raw_mode, size};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::low_level;
@@ -31,6 +31,21 @@ const SILENCE: Duration = Duration::from_secs(1);
 /// Time for which a signal waits for a drawing that the terminal does not
 /// accept.
 const STOPPED: Duration = Duration::from_secs(1);
+
+/// More than any screen has. Each character takes memory and time.
+const MOST_CHARACTERS: u32 = 1_000_000;
+
+/// Refuses a terminal that reports a larger size.
+fn check_size() -> io::Result<()> {
+    let (columns, rows) = size()?;
+    if u32::from(columns) * u32::from(rows) > MOST_CHARACTERS {
+        return Err(io::Error::other(format!(
+            "it has {columns} x {rows} characters: top draws at most {MOST_CHARACTERS}; set its \
+             size with stty"
+        )));
+    }
+    Ok(())
+}
 
 /// Reason why a loop cannot be shown.
 #[derive(Debug)]
@@ -68,6 +83,7 @@ pub fn top<C: Watched>(instance: &Instance) -> Result<(), TopError> {
 }
 
 fn watch<C: Watched>(instance: &Instance, watcher: WatcherOf<C>) -> io::Result<()> {
+    check_size()?;
     let end_requested = end_by_signals()?;
     // From here on a panic restores the terminal before its message is printed.
     let terminal = ratatui::try_init().inspect_err(|_| {
@@ -132,6 +148,7 @@ fn show<C: Watched>(
             }
             None => {}
         }
+        check_size()?;
         terminal.draw(|frame| screen::draw(frame, instance, &picture))?;
         while let Some(key) = key_before(next)? {
             if key == Key::Quit {

@@ -236,8 +236,8 @@ fn the_reading_is_recorded_shared_shown_and_replayed() {
         record.measurements.inflow_mps.value += 1.0;
     }
     let mut other = Identity::of::<after::Tank>();
-    run(replay(), messages.into_iter(), |recorded, again| {
-        other.take(recorded, again)
+    run(replay(), messages, |recorded, again| {
+        other.take(recorded, again);
     });
     assert_eq!(other.first.unwrap().tick, TICKS);
 }

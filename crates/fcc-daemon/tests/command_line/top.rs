@@ -40,6 +40,14 @@ fn ends(child: &mut Child) -> Option<i32> {
 /// A flight, `fccd top` on its own terminal, which has drawn something, and our
 /// side of that terminal.
 fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal) {
+    sized(folder, instance, ["24", "80"])
+}
+
+fn sized(
+    folder: &std::path::Path,
+    instance: &str,
+    [rows, columns]: [&str; 2],
+) -> (Flight, Child, Terminal) {
     let flight = Flight::start(folder, instance);
     // Closed in every program started here: otherwise each would keep its own
     // terminal open.
@@ -47,10 +55,10 @@ fn watched(folder: &std::path::Path, instance: &str) -> (Flight, Child, Terminal
     grantpt(&ours).unwrap();
     unlockpt(&ours).unwrap();
     let name = ptsname_r(&ours).unwrap();
-    let sized = Command::new("stty")
-        .args(["-F", &name, "rows", "24", "cols", "80"])
+    let set = Command::new("stty")
+        .args(["-F", &name, "rows", rows, "cols", columns])
         .status();
-    assert!(sized.unwrap().success());
+    assert!(set.unwrap().success());
     let theirs = File::options()
         .read(true)
         .write(true)
@@ -74,6 +82,14 @@ fn it_ends_with_its_terminal() {
     let folder = tempfile::tempdir().unwrap();
     let (_flight, mut top, terminal) = watched(folder.path(), "top-gone");
     drop((terminal.ours, terminal.theirs));
+    assert_eq!(ends(&mut top), Some(1));
+}
+
+/// Memory for each of its characters does not exist.
+#[test]
+fn a_terminal_that_reports_a_huge_size_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_flight, mut top, _terminal) = sized(folder.path(), "top-huge", ["65535", "65535"]);
     assert_eq!(ends(&mut top), Some(1));
 }
 

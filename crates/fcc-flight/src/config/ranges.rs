@@ -3,6 +3,7 @@
 //! One table of ranges for all numeric keys; a test shows that no key is
 //! missing from it.
 
+use fcc_telemetry::units::number;
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
 
 use super::places::Places;
@@ -133,15 +134,6 @@ pub(super) fn range_of(key: &str) -> Option<(f64, f64)> {
 /// A range, as messages give it.
 pub(super) fn in_words((least, most): (f64, f64)) -> String {
     format!("{} to {}", number(least), number(most))
-}
-
-/// A number; a very large or small one without hundreds of zeros.
-pub(super) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
 }
 
 /// All errors in the values of a configuration, in the order of the text.

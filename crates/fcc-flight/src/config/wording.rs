@@ -3,7 +3,9 @@
 //! The reader's messages are about fields, variants and `f64`; users of a
 //! configuration file know keys, values and numbers.
 
-use super::ranges::{in_words, number, range_of};
+use fcc_telemetry::units::number;
+
+use super::ranges::{in_words, range_of};
 use super::similar::{elsewhere, most_alike};
 
 /// Rewords the reader's error about `key`.
@@ -140,7 +142,11 @@ mod tests {
             ),
             (
                 "[realtime]\ncpu = []\n",
-                "f:3: realtime.cpu: is a list: choose \"auto\" or the number of a CPU, 0 to 1023",
+                "f:3: realtime.cpu: is []: choose \"auto\" or the number of a CPU, 0 to 1023",
+            ),
+            (
+                "[budget]\ntick_us = []\n",
+                "f:3: budget.tick_us: is a list: choose a whole number, 1 to 1000000",
             ),
             (
                 "[recording]\nfolder = 5\n",

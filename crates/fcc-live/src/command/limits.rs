@@ -1,15 +1,12 @@
 //! Limits of commands, and the message for a value outside them.
 
-use std::f64::consts::TAU;
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use fcc_telemetry::units::{M_FT, MPS_KT};
+use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD, M_FT, MPS_KT, number};
 
 /// Limits for any aircraft.
 const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
-const HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
-const ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
 
 /// A value this close to a limit counts as on it: a round limit in knots or
 /// feet is not round in SI units.
@@ -31,8 +28,8 @@ impl Quantity {
     pub(super) const fn range(self) -> RangeInclusive<f64> {
         match self {
             Self::Airspeed => AIRSPEED_MPS,
-            Self::Heading => HEADING_RAD,
-            Self::Altitude => ALTITUDE_M,
+            Self::Heading => COMMANDED_HEADING_RAD,
+            Self::Altitude => COMMANDED_ALTITUDE_M,
         }
     }
 }
@@ -79,8 +76,15 @@ impl OutsideLimits {
             Quantity::Altitude => "altitude",
         };
         // To a hundredth: a value printed as a limit is accepted.
-        let [value, least, most] = [self.value, self.least, self.most]
-            .map(|number| (number * factor * 100.0).round() / 100.0);
+        let round = |number: f64| (number * factor * 100.0).round() / 100.0;
+        let (least, most) = (round(self.least), round(self.most));
+        // A huge one has no hundredths, and times a hundred it may be infinite.
+        let is_huge = self.value.abs() > 1e12;
+        let value = number(if is_huge {
+            self.value * factor
+        } else {
+            round(self.value)
+        });
         let space = if unit == "°" { "" } else { " " };
         format!("{name} is {value}{space}{unit}: choose {least} to {most}{space}{unit}")
     }
@@ -126,12 +130,15 @@ mod tests {
             assert_eq!(outside(mps), None, "{mps}");
         }
         assert!(outside(f64::NAN).is_some());
-        let altitude = OutsideLimits::of(Quantity::Altitude, 21_000.0, &ALTITUDE_M).unwrap();
+        let huge = outside(1e300).unwrap().to_string();
+        assert_eq!(huge, "airspeed is 1e300 m/s: choose 37.55 to 65.33 m/s");
+        let altitude =
+            OutsideLimits::of(Quantity::Altitude, 21_000.0, &COMMANDED_ALTITUDE_M).unwrap();
         assert_eq!(
             altitude.in_knots_degrees_feet(),
             "altitude is 68897.64 ft: choose -1640.42 to 65616.8 ft"
         );
-        let heading = OutsideLimits::of(Quantity::Heading, 7.0, &HEADING_RAD).unwrap();
+        let heading = OutsideLimits::of(Quantity::Heading, 7.0, &COMMANDED_HEADING_RAD).unwrap();
         assert_eq!(
             heading.in_knots_degrees_feet(),
             "heading is 401.07°: choose -360 to 360°"
