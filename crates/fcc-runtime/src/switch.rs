@@ -166,6 +166,7 @@ mod tests {
 
     #[test]
     fn another_sensors_switch_makes_no_edge() {
+        use Switch::{Off, On};
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut second = 0;
         let mut watch = |source, position| {
@@ -174,7 +175,6 @@ mod tests {
             let reading = Reading::new(position, now);
             switch.watch(Reading { source, ..reading }, now)
         };
-        use Switch::{Off, On};
         // The first to deliver one has it, until a more preferred one does.
         assert_eq!(watch(1, Off), None);
         assert_eq!(watch(0, On), None);
@@ -193,12 +193,13 @@ mod tests {
 
     #[test]
     fn a_switch_that_bounces_counts_off_at_once_and_on_when_it_is_steady() {
+        use SwitchEdge::{Off, On};
         let mut switch = EngageSwitch::new(Duration::from_millis(1_500));
         let mut edges = Vec::new();
         for tick in 0..160_i64 {
             let now = Time::from_nanos(tick * 25_000_000);
             // On from tick 2, bouncing from tick 40 to 80, then on.
-            let is_on = tick >= 2 && (tick < 40 || tick > 80 || tick % 2 == 1);
+            let is_on = tick >= 2 && (!(40..=80).contains(&tick) || tick % 2 == 1);
             let position = if is_on { Switch::On } else { Switch::Off };
             if let Some(edge) = switch.watch(Reading::new(position, now), now)
                 && edges.last().is_none_or(|(_, last)| *last != edge)
@@ -206,7 +207,6 @@ mod tests {
                 edges.push((tick, edge));
             }
         }
-        use SwitchEdge::{Off, On};
         // The last off is in tick 80; 0.5 s are 20 ticks.
         assert_eq!(edges, [(2, On), (40, Off), (100, On)]);
     }

@@ -1,5 +1,5 @@
-//! The actuators are released on every way out, and the report says which way
-//! it was.
+//! The actuators are released on every exit path, and the report names the
+//! path.
 
 mod bench;
 
@@ -12,7 +12,7 @@ fn engaged() -> Bench {
     Bench::engaged(&LoopConfig::default())
 }
 
-/// Ends the bench; whatever led here, nothing may be held.
+/// Ends the bench; nothing may be under control then.
 fn released(bench: Bench) -> LoopReport {
     assert_eq!(bench.machine.state(), Stopped);
     assert_eq!(bench.stage.log().held, [false, false]);
@@ -22,7 +22,7 @@ fn released(bench: Bench) -> LoopReport {
 }
 
 #[test]
-fn an_order_to_stop() {
+fn a_stop_command() {
     let mut bench = engaged();
     bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|_| {}), Stopped);
@@ -139,7 +139,7 @@ fn a_panic_in_any_part() {
 }
 
 #[test]
-fn a_panic_in_standby_failsafe_and_on_the_way_out() {
+fn a_panic_in_standby_failsafe_and_while_ending() {
     let mut bench = Bench::new();
     assert_eq!(
         bench.tick(|s| s.panic_in = Some("engage_inhibits")),
@@ -167,7 +167,7 @@ fn a_panic_in_standby_failsafe_and_on_the_way_out() {
 }
 
 #[test]
-fn a_panic_after_an_order_to_stop_is_not_hidden_by_it() {
+fn a_panic_after_a_stop_command_is_not_hidden_by_it() {
     let mut bench = engaged();
     bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|s| s.panic_in = Some("disengage")), Stopped);
@@ -175,7 +175,7 @@ fn a_panic_after_an_order_to_stop_is_not_hidden_by_it() {
 }
 
 #[test]
-fn a_panic_is_told_and_leaves_a_record() {
+fn a_panic_is_reported_and_leaves_a_record() {
     let mut bench = engaged();
     bench.records();
     bench.tick(|s| s.panic_in = Some("control"));
@@ -200,8 +200,8 @@ fn a_panic_is_told_and_leaves_a_record() {
     assert!(!record.sent);
 }
 
-/// The first actuator panics in its release; the second is released all the
-/// same, and the loop is over.
+/// The first actuator panics in its release; the second is released
+/// all the same, and the loop ends.
 #[test]
 fn a_panic_in_a_release() {
     let mut bench = engaged();

@@ -1,5 +1,5 @@
 //! The two rings: what goes in, what comes out, and what happens when nobody
-//! fetches it.
+//! reads it.
 
 mod bench;
 
@@ -34,7 +34,7 @@ fn every_tick_has_one_record() {
 
 /// On the bench a call takes 1, 2, 4, 8 or 16 µs, and every other 32 µs.
 #[test]
-fn every_stage_is_timed_by_itself() {
+fn every_stage_is_timed() {
     let mut bench = Bench::engaged(&LoopConfig::default());
     bench.tick(|_| {});
     let engaged = StageTimes {
@@ -67,7 +67,7 @@ fn every_stage_is_timed_by_itself() {
     };
     assert_eq!(bench.machine.record().stages, failsafe);
 
-    // Let go: the release and the controller's disengagement.
+    // Released: the release and the controller's disengagement.
     bench.command(LoopCommand::Disengage);
     bench.tick(|_| {});
     let standby = StageTimes {
@@ -80,7 +80,7 @@ fn every_stage_is_timed_by_itself() {
 }
 
 #[test]
-fn orders_take_effect_in_their_sequence() {
+fn commands_take_effect_in_their_sequence() {
     let mut bench = Bench::new();
     for command in [
         LoopCommand::Controller(1),
@@ -103,7 +103,7 @@ fn orders_take_effect_in_their_sequence() {
 /// With these and its measurements a recording is replayed: each command once,
 /// in the tick that read it, before what it led to.
 #[test]
-fn every_order_is_told_in_the_tick_that_read_it() {
+fn every_command_is_reported_in_the_tick_that_read_it() {
     let mut bench = Bench::new();
     for command in [
         LoopCommand::Controller(7),
@@ -138,7 +138,7 @@ fn every_order_is_told_in_the_tick_that_read_it() {
 }
 
 #[test]
-fn a_flood_of_orders_is_read_in_portions() {
+fn a_flood_of_commands_is_read_in_portions() {
     let mut bench = Bench::new();
     for n in 0..40 {
         bench.command(LoopCommand::Controller(n));
@@ -154,7 +154,7 @@ fn a_flood_of_orders_is_read_in_portions() {
 }
 
 #[test]
-fn an_order_that_finds_no_room_comes_back() {
+fn a_command_that_finds_no_room_is_returned() {
     let mut bench = Bench::with(&LoopConfig {
         commands_capacity: 2,
         ..LoopConfig::default()
@@ -173,7 +173,7 @@ fn an_order_that_finds_no_room_comes_back() {
 }
 
 #[test]
-fn orders_to_a_loop_that_is_gone_come_back() {
+fn commands_to_a_loop_that_has_ended_are_returned() {
     let bench = Bench::new();
     let mut link = bench.link;
     drop(bench.machine);
@@ -185,7 +185,7 @@ fn orders_to_a_loop_that_is_gone_come_back() {
 }
 
 #[test]
-fn what_was_told_last_can_be_fetched_after_the_loop_is_gone() {
+fn the_last_messages_can_be_received_after_the_loop_has_ended() {
     let bench = Bench::engaged(&LoopConfig::default());
     let mut link = bench.link;
     assert!(!link.messages.is_over());
@@ -201,7 +201,7 @@ fn what_was_told_last_can_be_fetched_after_the_loop_is_gone() {
 }
 
 #[test]
-fn the_lost_records_are_counted_and_told() {
+fn the_lost_records_are_counted_and_reported() {
     let mut bench = Bench::with(&small(10));
     for _ in 0..25 {
         bench.tick(|_| {});
@@ -223,7 +223,7 @@ fn the_lost_records_are_counted_and_told() {
     assert_eq!(event.tick, 26);
     assert_eq!(record.tick.number, 26);
     assert_eq!(record.records_dropped, 15);
-    // Told once; the next gap is a gap of its own.
+    // Reported once; the next gap is reported separately.
     for _ in 0..12 {
         bench.tick(|_| {});
     }
@@ -272,10 +272,10 @@ fn events_get_through_a_ring_full_of_records() {
     assert_eq!(report.events_dropped, 0);
 }
 
-/// Nobody fetches anything, ever, and a sensor goes on and off: the events
-/// that find no room at all are counted, and told once there is some.
+/// Nobody reads anything, and a sensor fails and recovers: the events that find no
+/// room are counted, and reported as soon as there is room.
 #[test]
-fn not_even_an_event_is_lost_without_a_word() {
+fn no_event_is_lost_without_a_report() {
     let mut bench = Bench::with(&small(10));
     for n in 0..1_000 {
         bench.tick(|s| {
@@ -314,7 +314,7 @@ fn not_even_an_event_is_lost_without_a_word() {
     assert_eq!(bench.machine.finish().events_dropped, 1_000 - kept);
 }
 
-/// The same flight twice, once with someone who fetches and once without.
+/// The same flight twice, once with a reader and once without.
 #[test]
 fn a_hung_consumer_changes_nothing_in_the_loop() {
     let fly = |fetches: bool| {
@@ -340,7 +340,7 @@ fn a_hung_consumer_changes_nothing_in_the_loop() {
 }
 
 #[test]
-fn faults_are_told_when_they_change_and_counted_each_time() {
+fn faults_are_reported_when_they_change_and_counted_each_time() {
     let mut bench = Bench::engaged(&LoopConfig::default());
     let fault = ActuatorFault::Unconfirmed;
     let script = [
@@ -374,7 +374,7 @@ fn faults_are_told_when_they_change_and_counted_each_time() {
 
 #[test]
 fn events_read_as_words() {
-    let words = |kind: EventKind| kind.description::<bench::Puppet>().to_string();
+    let words = |kind: EventKind| kind.description::<bench::Stub>().to_string();
     let engage_inhibits = Flags::bit(0) | Flags::bit(1);
     assert_eq!(
         words(EventKind::EngageRefused { engage_inhibits }),

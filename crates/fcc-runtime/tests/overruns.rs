@@ -1,4 +1,4 @@
-//! Ticks that overrun their budget: counted, told of once, and too many of
+//! Ticks that overrun their budget: counted, reported once, and too many of
 //! them in a row are failsafe.
 
 mod bench;
@@ -66,7 +66,7 @@ fn a_tick_as_long_as_its_budget_does_not_overrun() {
 }
 
 #[test]
-fn one_too_long_is_counted_told_and_flown_through() {
+fn one_overrun_is_counted_and_reported_and_the_loop_continues() {
     let mut bench = Bench::engaged(&after(2));
     assert_eq!(tick(&mut bench, 2, 31), Engaged);
     assert_eq!(bench.machine.record().overruns, 1, "in its own record");
@@ -114,7 +114,7 @@ fn as_many_in_a_row_as_configured_are_failsafe_and_one_less_is_not() {
 }
 
 #[test]
-fn ticks_in_turn_slow_and_fast_are_told_once() {
+fn alternating_overruns_are_reported_once() {
     let mut bench = Bench::engaged(&after(2));
     for number in 2..1_000 {
         let total_ms = if number % 2 == 0 { 40 } else { 1 };
@@ -172,7 +172,7 @@ fn a_stage_has_a_budget_of_its_own() {
 }
 
 #[test]
-fn never_is_never_and_nothing_said_is_half_a_second() {
+fn never_is_never_and_the_default_is_half_a_second() {
     let mut bench = Bench::engaged(&after(0));
     for number in 2..1_000 {
         assert_eq!(tick(&mut bench, number, 500), Engaged);
@@ -185,7 +185,7 @@ fn never_is_never_and_nothing_said_is_half_a_second() {
 }
 
 #[test]
-fn a_loop_that_overruns_does_not_take_over() {
+fn a_loop_that_overruns_does_not_engage() {
     let mut bench = Bench::with(&after(2));
     for number in 1..=2 {
         assert_eq!(tick(&mut bench, number, 30), Standby);

@@ -25,7 +25,7 @@ fn refused(engage_inhibits: Flags) -> EventKind {
 }
 
 #[test]
-fn standby_watches_and_touches_nothing() {
+fn standby_reads_and_writes_nothing() {
     let mut bench = Bench::new();
     for _ in 0..100 {
         assert_eq!(bench.tick(|_| {}), Standby);
@@ -62,7 +62,7 @@ fn a_tick_goes_in_one_direction() {
 }
 
 #[test]
-fn an_order_to_disengage_releases() {
+fn a_disengage_command_releases() {
     let mut bench = Bench::engaged(&config());
     assert_eq!(bench.stage.log().held, [true, true]);
     bench.command(LoopCommand::Disengage);
@@ -76,12 +76,12 @@ fn an_order_to_disengage_releases() {
 }
 
 #[test]
-fn a_blocked_order_is_one_refused_attempt() {
+fn an_inhibited_command_is_one_refused_attempt() {
     let mut bench = Bench::new();
     bench.command(LoopCommand::Engage);
     assert_eq!(bench.tick(|s| s.engage_inhibits = LOST), Standby);
     assert_eq!(bench.machine.record().engage_inhibits, LOST);
-    // The obstacle gone, nothing happens until somebody asks again.
+    // With the inhibit gone, nothing happens until the next command.
     assert_eq!(bench.tick(|s| s.engage_inhibits = Flags::NONE), Standby);
     assert_eq!(bench.events(), [refused(LOST)]);
     bench.command(LoopCommand::Engage);
@@ -98,7 +98,7 @@ fn steadily_on(bench: &mut Bench) -> fcc_core::framework::State {
 #[test]
 fn the_switch_engages_on_its_rising_edge_only() {
     let mut bench = Bench::with(&config());
-    // On from the start: somebody left it on.
+    // On from the start, as it was left.
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
     assert_eq!(steadily_on(&mut bench), Engaged);
@@ -110,7 +110,7 @@ fn the_switch_engages_on_its_rising_edge_only() {
 }
 
 #[test]
-fn a_blocked_switch_must_be_thrown_again() {
+fn an_inhibited_switch_must_be_switched_on_again() {
     let mut bench = Bench::with(&config());
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.tick(|s| {
@@ -144,12 +144,12 @@ fn a_stale_switch_does_not_disengage() {
     for _ in 0..50 {
         assert_eq!(bench.tick(|s| s.switch = None), Engaged);
     }
-    // It was thrown while nobody heard: off is what it says.
+    // It was switched off during the gap, and is off now.
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
 }
 
 #[test]
-fn a_switch_that_is_off_does_not_undo_an_order() {
+fn a_switch_that_is_off_does_not_undo_a_command() {
     let mut bench = Bench::with(&config());
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.command(LoopCommand::Engage);
@@ -171,7 +171,7 @@ fn switching_off_stops_if_configured() {
 }
 
 #[test]
-fn letting_go_wins_over_taking_over() {
+fn disengaging_wins_over_engaging() {
     let mut bench = Bench::with(&config());
     bench.tick(|s| s.switch = Some(Switch::Off));
     bench.tick(|s| s.switch = Some(Switch::On));
@@ -188,7 +188,7 @@ fn letting_go_wins_over_taking_over() {
 fn faults_lead_through_failsafe_to_standby() {
     let mut bench = Bench::engaged(&config());
     assert_eq!(bench.tick(|s| s.faults = LOST), Failsafe(SENSORS_LOST));
-    // Held for four periods of tick time: this tick and three more.
+    // Failsafe lasts for four periods of tick time: this tick and three more.
     for _ in 0..3 {
         assert_eq!(bench.tick(|_| {}), Failsafe(SENSORS_LOST));
     }
@@ -231,7 +231,7 @@ fn a_failsafe_of_no_length_releases_at_once() {
 }
 
 #[test]
-fn failsafe_can_be_left_by_every_hand() {
+fn failsafe_can_be_left_by_every_command() {
     let failing = || {
         let mut bench = Bench::with(&config());
         bench.tick(|s| s.switch = Some(Switch::Off));
@@ -288,7 +288,7 @@ fn invalid_outputs_are_never_sent() {
         let mut bench = Bench::engaged(&config());
         let state = bench.tick(|s| s.output = invalid);
         assert_eq!(state, Failsafe(Cause::InvalidOutput));
-        // The failsafe's outputs went out in that very tick.
+        // The failsafe's outputs were written in that tick.
         assert_eq!(bench.stage.log().applied, [-0.25]);
         let record = *bench.machine.record();
         assert!(record.sent);

@@ -7,7 +7,7 @@ mod bench;
 use std::thread;
 use std::time::Duration;
 
-use bench::{Puppet, Stage, parts};
+use bench::{Stage, Stub, parts};
 use fcc_core::framework::{Sensor, SensorFault, State, Tick};
 use fcc_runtime::{
     Ending, Link, Loop, LoopCommand, LoopConfig, LoopHandle, LoopReport, Message, Parts, SpawnError,
@@ -17,7 +17,7 @@ use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, TimerKind};
 /// 500 Hz.
 const PERIOD: Duration = Duration::from_millis(2);
 
-fn spawned(stage: &Stage) -> (LoopHandle, Link<Puppet>) {
+fn spawned(stage: &Stage) -> (LoopHandle, Link<Stub>) {
     let timed = Parts {
         timer: TimerKind::Timerfd.build(PERIOD).unwrap(),
         ..parts(stage)
@@ -26,8 +26,8 @@ fn spawned(stage: &Stage) -> (LoopHandle, Link<Puppet>) {
     (this.spawn().unwrap(), link)
 }
 
-/// Fetches until a record shows this state.
-fn wait_for(link: &mut Link<Puppet>, state: State) {
+/// Reads until a record shows this state.
+fn wait_for(link: &mut Link<Stub>, state: State) {
     loop {
         match link.messages.receive() {
             Some(Message::Tick(record)) if record.state == state => return,
@@ -41,7 +41,7 @@ fn wait_for(link: &mut Link<Puppet>, state: State) {
 }
 
 #[test]
-fn orders_in_and_records_out() {
+fn commands_in_and_records_out() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
     wait_for(&mut link, State::Standby);
@@ -73,7 +73,7 @@ fn the_stop_flag_ends_it_from_another_thread() {
 }
 
 #[test]
-fn a_dropped_handle_leaves_nobody_in_control() {
+fn a_dropped_handle_releases_control() {
     let stage = Stage::default();
     let (handle, mut link) = spawned(&stage);
     link.commands.send(LoopCommand::Engage).unwrap();
@@ -103,7 +103,7 @@ fn a_panic_in_its_thread_is_in_the_report() {
 }
 
 #[test]
-fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
+fn a_required_request_that_is_denied_starts_nothing() {
     let stage = Stage::default();
     let config = LoopConfig {
         realtime: RealtimeRequest {
@@ -124,7 +124,7 @@ fn a_wish_that_must_be_granted_and_is_not_starts_nothing() {
 }
 
 #[test]
-fn here_it_runs_until_the_timer_ends() {
+fn in_this_thread_it_runs_until_the_timer_ends() {
     let stage = Stage::default();
     let (this, mut link) = Loop::new(parts(&stage), &LoopConfig::default()).unwrap();
     link.commands.send(LoopCommand::Engage).unwrap();
@@ -142,7 +142,7 @@ fn here_it_runs_until_the_timer_ends() {
     assert_eq!(stage.log().held, [false, false]);
 }
 
-/// A sensor that takes new memory in one tick, as none should.
+/// A sensor that allocates memory in one tick, as none should.
 struct Greedy {
     tick: u64,
     kept: Vec<u8>,
@@ -259,7 +259,7 @@ fn early_wake_that_needs_a_priority_is_off_without_one_and_reported() {
             .map(|one| one.request.clone())
             .collect()
     };
-    // Nobody asked for a priority: nothing is denied.
+    // No priority was requested: nothing is denied.
     let (margin_us, report) = margin_with(None);
     assert_eq!(margin_us, 0.0);
     assert!(denied(&report).is_empty());

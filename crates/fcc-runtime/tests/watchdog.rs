@@ -67,7 +67,7 @@ fn a_sensor_that_blocks_is_a_hang() {
 }
 
 #[test]
-fn a_loop_that_is_over_is_not_watched_any_more() {
+fn a_loop_that_has_ended_is_not_watched() {
     let parts = Parts {
         timer: TimerKind::Timerfd.build(Duration::from_millis(5)).unwrap(),
         ..parts(&Stage::default())

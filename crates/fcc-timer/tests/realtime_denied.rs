@@ -74,7 +74,7 @@ fn memory_that_may_not_be_locked_can_still_be_had() {
 }
 
 #[test]
-fn strictly_a_refusal_is_an_error_that_tells_everything() {
+fn strictly_a_refusal_is_an_error_with_all_details() {
     without_rights(|| {
         let request = RealtimeRequest {
             priority: Some(80),

@@ -1,5 +1,5 @@
-//! A loop on a bench: every part is a puppet that does as the script says and
-//! writes down what was asked of it.
+//! A loop on a bench: every part is a stub that follows a script and records its
+//! calls.
 #![allow(
     dead_code,
     reason = "each test file uses the part of the bench it needs"
@@ -10,7 +10,7 @@
     reason = "as in any test"
 )]
 
-mod puppets;
+mod stubs;
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -19,14 +19,14 @@ use fcc_core::framework::{ActuatorFault, Flags, Reading, SensorFault, State, Swi
 use fcc_runtime::{Link, LoopConfig, Machine, Message, MessageOf, RecordOf};
 use fcc_timer::Expiry;
 
-pub(crate) use puppets::{Puppet, parts};
+pub(crate) use stubs::{Stub, parts};
 
 pub(crate) type EventKind = fcc_runtime::EventKind<u32>;
 
 /// 40 Hz.
 pub(crate) const PERIOD: Duration = Duration::from_millis(25);
 
-/// What the puppets do from now on.
+/// What the stubs do from now on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Script {
     /// `None`: the switch is silent, its last reading grows old.
@@ -66,7 +66,7 @@ impl Default for Script {
     }
 }
 
-/// What was asked of the puppets.
+/// The calls that the stubs received.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Log {
     /// Calls, those that come each tick in every state left out.
@@ -76,7 +76,7 @@ pub(crate) struct Log {
     /// Whether each actuator holds control.
     pub(crate) held: [bool; 2],
     pub(crate) releases: [u32; 2],
-    /// Numbers ordered of the controller.
+    /// Numbers commanded of the controller.
     pub(crate) ordered: Vec<u32>,
     /// What the calls since the wake-up took, ns.
     pub(crate) took_ns: i64,
@@ -159,10 +159,10 @@ pub(crate) fn expiry(number: u64) -> Expiry {
     }
 }
 
-/// A machine with its puppets.
+/// A machine with its stubs.
 pub(crate) struct Bench {
-    pub(crate) machine: Machine<Puppet>,
-    pub(crate) link: Link<Puppet>,
+    pub(crate) machine: Machine<Stub>,
+    pub(crate) link: Link<Stub>,
     pub(crate) stage: Stage,
 }
 
@@ -183,7 +183,7 @@ impl Bench {
         bench
     }
 
-    /// A bench whose machine is engaged, with nothing left to fetch.
+    /// A bench whose machine is engaged, with all messages read.
     pub(crate) fn engaged(config: &LoopConfig) -> Self {
         let mut bench = Self::with(config);
         bench.command(fcc_runtime::LoopCommand::Engage);
@@ -203,17 +203,17 @@ impl Bench {
         self.machine.step()
     }
 
-    pub(crate) fn messages(&mut self) -> Vec<MessageOf<Puppet>> {
+    pub(crate) fn messages(&mut self) -> Vec<MessageOf<Stub>> {
         std::iter::from_fn(|| self.link.messages.receive()).collect()
     }
 
-    /// Fetches all; what happened, but for the commands: those the script knows.
+    /// Reads all messages; returns the events except commands, which the script knows.
     pub(crate) fn events(&mut self) -> Vec<EventKind> {
         happened(self.messages())
     }
 
-    /// Fetches all; the records.
-    pub(crate) fn records(&mut self) -> Vec<RecordOf<Puppet>> {
+    /// Reads all messages; returns the records.
+    pub(crate) fn records(&mut self) -> Vec<RecordOf<Stub>> {
         self.messages()
             .into_iter()
             .filter_map(|message| match message {
@@ -224,8 +224,8 @@ impl Bench {
     }
 }
 
-/// What happened, but for the commands.
-pub(crate) fn happened(messages: Vec<MessageOf<Puppet>>) -> Vec<EventKind> {
+/// The events except commands.
+pub(crate) fn happened(messages: Vec<MessageOf<Stub>>) -> Vec<EventKind> {
     messages
         .into_iter()
         .filter_map(|message| match message {

@@ -198,7 +198,7 @@ fn the_memory_is_what_the_documentation_says() {
 
 /// Counted by hand: periods 24.999, 25.000 twice, 25.001 and 26.5 ms.
 #[test]
-fn periods_and_latenesses_are_told_one_by_one() {
+fn periods_and_latenesses_are_reported_one_by_one() {
     let mut stats = TimingStats::new(NOMINAL).unwrap();
     for (number, woke_ns) in [
         (1, 25_000_000),

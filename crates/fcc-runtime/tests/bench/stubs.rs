@@ -1,4 +1,4 @@
-//! The puppets: a sensor, a controller, two actuators and a clock that do as
+//! The stubs: a sensor, a controller, two actuators and a clock that do as
 //! the script on their stage says.
 
 use std::time::Duration;
@@ -29,12 +29,12 @@ impl Sensor<Measured> for Probe {
     }
 }
 
-pub(crate) struct Puppet {
+pub(crate) struct Stub {
     stage: Stage,
     dt_s: f64,
 }
 
-impl Controller for Puppet {
+impl Controller for Stub {
     type Measurements = Measured;
     type Estimate = ();
     type Setpoints = f64;
@@ -169,14 +169,14 @@ impl Timer for Clock {
     }
 }
 
-pub(crate) fn parts(stage: &Stage) -> Parts<Puppet> {
+pub(crate) fn parts(stage: &Stage) -> Parts<Stub> {
     Parts {
         timer: Box::new(Clock {
             stage: stage.clone(),
             number: 0,
         }),
         sensors: vec![Box::new(Probe(stage.clone()))],
-        controller: Puppet {
+        controller: Stub {
             stage: stage.clone(),
             dt_s: 0.0,
         },
