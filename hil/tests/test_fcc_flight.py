@@ -31,6 +31,8 @@ def test_the_timed_pattern_is_flown_and_scored() -> None:
     assert np.ptp(flight.truth["altitude_m"]) == pytest.approx(150 * FOOT_M, abs=6.0)
     assert flight.times_real_time > SLOWEST_TIMES_REAL_TIME
     assert flight.timing["ticks"] == 7_280
+    modes = [event.text for event in flight.events if event.kind == "mode-changed"]
+    assert modes == ["mode: timed-pattern, was none"]
 
 
 def test_the_same_seed_flies_the_same_flight_to_the_last_bit() -> None:

@@ -86,15 +86,15 @@ pub(super) fn undeclared(channel: u16, message: &[u8]) -> Option<TopicOf> {
     let own = own.into_iter().find(|topic| topic.channel() == channel);
     #[cfg(feature = "flight")]
     {
-        use crate::items::RecordedMessage as _;
-        use fcc_telemetry::FlightMessage;
+        use fcc_core::flight::Autopilot;
+        use fcc_telemetry::schema::protobuf::decode;
         let is_flight = match own {
-            Some(Topic::Record) => FlightMessage::record(message).is_ok(),
-            Some(Topic::Event) => FlightMessage::event(message).is_ok(),
+            Some(Topic::Record) => decode::<RecordOf<Autopilot>>(message).is_ok(),
+            Some(Topic::Event) => decode::<EventOf<Autopilot>>(message).is_ok(),
             Some(Topic::Log) | None => true,
         };
         if is_flight {
-            let mut topics = topics::<fcc_core::flight::Autopilot>().into_iter();
+            let mut topics = topics::<Autopilot>().into_iter();
             return topics.nth(usize::from(channel.checked_sub(1)?));
         }
     }

@@ -7,7 +7,7 @@ use fcc_core::framework::RecordOf;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use super::plot::Figure;
+use super::plot::figure::Figure;
 use super::plots::{Plot, Quantities, declared};
 use super::report::RunReport;
 use super::terms::Terms;

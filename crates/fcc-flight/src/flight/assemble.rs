@@ -13,11 +13,11 @@ use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
 #[cfg(feature = "live")]
 use super::commands::Commands;
+use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
-use super::pilot::ControlOverride;
 use super::plan::Pace;
 use super::recording::{Recording, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};

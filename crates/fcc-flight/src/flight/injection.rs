@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Sensor, SensorFault, Tick, Time};
 
-use super::pilot::ControlOverride;
+use super::control_override::ControlOverride;
 
 /// Injected faults of control.
 #[derive(Debug)]

@@ -9,6 +9,7 @@ mod assemble;
 mod commands;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
+mod control_override;
 mod event_log;
 mod flapping;
 mod fly;
@@ -33,12 +34,13 @@ mod scorer;
 mod truth_recorder;
 
 pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connection};
+pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use host::Host;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
-pub use pilot::{ControlOverride, Pilot};
+pub use pilot::Pilot;
 pub use plan::{Length, Pace, Plan};
 pub use recording::{RecordingRequest, about};
 pub use scorer::true_sample;

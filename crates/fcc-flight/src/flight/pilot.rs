@@ -7,21 +7,7 @@ use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick};
 
-/// Replaces the outputs of the autopilot while it is engaged. Navigation,
-/// guidance, states and failsafe remain the autopilot's.
-pub trait ControlOverride: Send {
-    /// The autopilot engages.
-    fn engage(&mut self, _tick: &Tick) {}
-
-    /// The outputs to send in place of the autopilot's.
-    fn control(
-        &mut self,
-        autopilot: &Autopilot,
-        tick: &Tick,
-        measurements: &Measurements,
-        surfaces: Surfaces,
-    ) -> Surfaces;
-}
+use super::control_override::ControlOverride;
 
 /// The controller of a flight's loop.
 pub struct Pilot {
@@ -64,6 +50,14 @@ impl Controller for Pilot {
 
     fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         Autopilot::write_command(command, f)
+    }
+
+    fn mode(&self) -> u8 {
+        self.autopilot.mode()
+    }
+
+    fn mode_name(mode: u8) -> &'static str {
+        Autopilot::mode_name(mode)
     }
 
     fn engage(&mut self, tick: &Tick, measurements: &Measurements) {

@@ -15,13 +15,13 @@ use crate::cut::{TICKS, read, whole};
 
 /// The bytes of a finished recording, its messages, and the places of its
 /// records.
-struct Original {
-    bytes: Vec<u8>,
-    messages: Vec<FlightMessage>,
+pub(crate) struct Original {
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) messages: Vec<FlightMessage>,
     records: Vec<(u8, Range<usize>)>,
 }
 
-static ORIGINALS: LazyLock<[Original; 3]> = LazyLock::new(|| {
+pub(crate) static ORIGINALS: LazyLock<[Original; 3]> = LazyLock::new(|| {
     [Compression::None, Compression::Zstd, Compression::Lz4].map(|compression| {
         let folder = tempfile::tempdir().unwrap();
         let path = whole(folder.path(), compression);
@@ -51,7 +51,7 @@ fn records(bytes: &[u8]) -> Vec<(u8, Range<usize>)> {
 
 impl Original {
     /// Where the records of a kind are.
-    fn all(&self, opcode: u8) -> Vec<Range<usize>> {
+    pub(crate) fn all(&self, opcode: u8) -> Vec<Range<usize>> {
         let of_kind = |(kind, place): &(u8, Range<usize>)| (*kind == opcode).then(|| place.clone());
         self.records.iter().filter_map(of_kind).collect()
     }
@@ -59,14 +59,14 @@ impl Original {
 
 /// What is read from a damaged file: messages, damage, and whether it is cut
 /// off.
-fn read_damaged(path: &Path) -> (Vec<FlightMessage>, Vec<Damage>, Option<String>) {
+pub(crate) fn read_damaged(path: &Path) -> (Vec<FlightMessage>, Vec<Damage>, Option<String>) {
     let mut messages = Recording::open(path).unwrap().messages().unwrap();
     let all = messages.by_ref().collect();
     let cut = messages.cut().map(str::to_owned);
     (all, messages.damages().to_vec(), cut)
 }
 
-fn ticks(messages: &[FlightMessage]) -> Vec<u64> {
+pub(crate) fn ticks(messages: &[FlightMessage]) -> Vec<u64> {
     let tick = |message: &FlightMessage| match message {
         Message::Tick(record) => Some(record.tick.number),
         Message::Event(_) => None,
@@ -75,7 +75,7 @@ fn ticks(messages: &[FlightMessage]) -> Vec<u64> {
 }
 
 /// The ticks reported missing.
-fn reported_missing(damages: &[Damage]) -> Vec<u64> {
+pub(crate) fn reported_missing(damages: &[Damage]) -> Vec<u64> {
     damages
         .iter()
         .filter_map(|damage| Some(damage.first_tick?..=damage.last_tick?))
@@ -84,7 +84,7 @@ fn reported_missing(damages: &[Damage]) -> Vec<u64> {
 }
 
 /// Number, first, last and sum: shorter to print than all.
-fn span(ticks: &[u64]) -> Option<(usize, u64, u64, u64)> {
+pub(crate) fn span(ticks: &[u64]) -> Option<(usize, u64, u64, u64)> {
     let (first, last) = (ticks.first()?, ticks.last()?);
     Some((ticks.len(), *first, *last, ticks.iter().sum()))
 }
@@ -172,7 +172,7 @@ fn place(original: &Original, part: Part, which: prop::sample::Index) -> Range<u
 
 /// The ticks in the chunks that overlap a place; read by another program,
 /// `mcap`'s own reader.
-fn ticks_in(original: &Original, place: &Range<usize>) -> Vec<u64> {
+pub(crate) fn ticks_in(original: &Original, place: &Range<usize>) -> Vec<u64> {
     let summary = mcap::Summary::read(&original.bytes).unwrap().unwrap();
     summary
         .chunk_indexes
@@ -344,91 +344,4 @@ fn a_recovered_file_reports_what_is_missing() {
     let again = recover(&path, |_| {}).unwrap();
     assert_ne!(again.kept, recovered.kept);
     assert_eq!(fs::read(recovered.kept.unwrap()).unwrap(), bytes);
-}
-
-/// The first chunk declares the channels, and an unfinished file has no copy of
-/// that.
-#[test]
-fn an_unfinished_file_with_a_damaged_first_chunk_is_read_and_recovered() {
-    let original = &ORIGINALS[1];
-    let chunks = original.all(op::CHUNK);
-    let mut bytes = original.bytes[..chunks[4].start].to_vec();
-    bytes[chunks[0].end - 20] ^= 0x10;
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("damaged.mcap");
-    fs::write(&path, &bytes).unwrap();
-    let all = ticks_in(original, &(0..chunks[4].start)).len();
-    let rest = all - ticks_in(original, &chunks[0]).len();
-    assert!(rest > 0);
-    assert_eq!(ticks(&read_damaged(&path).0).len(), rest);
-
-    assert_eq!(recover(&path, |_| {}).unwrap().ticks, rest as u64);
-    assert_eq!(ticks(&read(&path).0).len(), rest);
-    // With the schemas that other programs need.
-    let bytes = fs::read(&path).unwrap();
-    let messages = mcap::MessageStream::new(&bytes).unwrap();
-    let channels: std::collections::BTreeSet<_> = messages
-        .map(|message| message.unwrap().channel)
-        .map(|channel| {
-            (
-                channel.topic.clone(),
-                channel.schema.clone().unwrap().name.clone(),
-            )
-        })
-        .collect();
-    let known = |topic: &str, schema: &str| channels.contains(&(topic.into(), schema.into()));
-    assert!(known("/fcc/record", "fcc.v2.Record"), "{channels:?}");
-    assert!(known("/fcc/log", "foxglove.Log"), "{channels:?}");
-}
-
-#[test]
-fn a_file_whose_beginning_is_overwritten_is_read_from_the_next_record() {
-    let original = &ORIGINALS[1];
-    for length in [8, 512, 4_096, 65_536] {
-        let mut bytes = original.bytes.clone();
-        bytes[..length].fill(0);
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("damaged.mcap");
-        fs::write(&path, &bytes).unwrap();
-        let (messages, damages, cut) = read_damaged(&path);
-        assert_eq!((damages[0].from_byte, cut), (0, None), "{length}");
-        let missing = ticks_in(original, &(0..length));
-        assert_eq!(
-            span(&reported_missing(&damages)),
-            span(&missing),
-            "{length}"
-        );
-        assert_eq!(
-            ticks(&messages).len() + missing.len(),
-            TICKS as usize,
-            "{length}"
-        );
-        assert_eq!(
-            recover(&path, |_| {}).unwrap().ticks,
-            ticks(&messages).len() as u64
-        );
-        assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
-    }
-}
-
-/// A loss of power can leave zeros in place of data.
-#[test]
-fn zeros_after_the_data_are_reported_and_removed() {
-    let original = &ORIGINALS[1];
-    let chunks = original.all(op::CHUNK);
-    let mut bytes = original.bytes[..chunks[2].start + 1_000].to_vec();
-    bytes[chunks[2].start..].fill(0);
-    bytes.resize(bytes.len() + 100_000, 0);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("damaged.mcap");
-    fs::write(&path, &bytes).unwrap();
-    let (messages, damages, cut) = read_damaged(&path);
-    assert!(messages == original.messages[..messages.len()]);
-    assert_eq!(
-        messages.len(),
-        1 + ticks_in(original, &(0..chunks[2].start)).len()
-    );
-    assert_eq!(damages.len(), 1);
-    assert_eq!(damages[0].from_byte, chunks[2].start as u64);
-    assert_eq!(cut.unwrap(), format!("cut off after {} bytes", bytes.len()));
 }

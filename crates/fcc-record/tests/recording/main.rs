@@ -5,6 +5,7 @@
 mod any;
 mod cut;
 mod damage;
+mod damaged_ends;
 mod disks;
 mod flight;
 mod folder;

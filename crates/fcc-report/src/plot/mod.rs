@@ -8,7 +8,7 @@
 
 pub(crate) mod axis;
 mod curves;
-mod figure;
+pub(crate) mod figure;
 mod marks;
 pub(crate) mod panel;
 mod percentile_ranges;

@@ -276,20 +276,10 @@ impl Controller for Autopilot {
         let estimate = *self.navigation.estimate();
         let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
         let envelope = self.config.envelope;
-        let lateral = self.heading.step(
-            self.targets.heading_rad,
-            &estimate,
-            &envelope,
-            schedule,
-            dt_s,
-        );
-        let vertical = self.altitude.step(
-            self.targets.altitude_m,
-            &estimate,
-            &envelope,
-            schedule,
-            dt_s,
-        );
+        let to = self.targets;
+        let (heading, altitude) = (&mut self.heading, &mut self.altitude);
+        let lateral = heading.step(to.heading_rad, &estimate, &envelope, schedule, dt_s);
+        let vertical = altitude.step(to.altitude_m, &estimate, &envelope, schedule, dt_s);
         let demand = self.throttle_demand(vertical.climb_rate_mps);
         let throttle = self.airspeed.step(&demand, &estimate, dt_s);
         self.setpoints = Setpoints {
