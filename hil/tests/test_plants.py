@@ -69,7 +69,7 @@ def test_a_pendulum_in_python_is_balanced_recorded_and_replayed(tmp_path: Path) 
         assert message.measurements.angle_rad.value == row["angle_rad"]
         assert message.measurements.rate_radps.value == row["rate_radps"]
         assert message.outputs.torque_nm == row["commanded_torque_nm"]
-    assert metadata(file)["fcc.recording"]["aircraft"] == "pendulum"
+    assert metadata(file)["fcc.recording"]["plant"] == "pendulum"
 
     again = pendulum.Machine.replay(file)
     assert again["ticks"] == TICKS + 1

@@ -221,7 +221,7 @@ pub(crate) fn matrix<'py, V: Values>(
 }
 
 /// Commands for the controller: airspeed in m/s, as the envelope allows;
-/// heading in rad, -2π to 2π; altitude in m, -500 to 20,000.
+/// heading in rad, -4π to 4π; altitude in m, -500 to 20,000.
 pub(crate) fn checked_commands(
     airspeed_mps: Option<f64>,
     heading_rad: Option<f64>,
@@ -241,7 +241,8 @@ pub(crate) fn checked_commands(
         (
             "heading_rad",
             heading_rad,
-            COMMANDED_HEADING_RAD,
+            // The sum of two headings, too.
+            2.0 * COMMANDED_HEADING_RAD.start()..=2.0 * COMMANDED_HEADING_RAD.end(),
             AutopilotCommand::Heading,
         ),
         (
