@@ -71,7 +71,7 @@ pub struct FlyArgs {
     /// config/built-in.toml]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// How long to fly after engaging [default: the hold and 8 legs]
+    /// How long to fly engaged; standby does not count [default: the hold and 8 legs]
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise

@@ -68,8 +68,13 @@ impl Lost {
         if self.is_none() {
             "nothing is lost".to_owned()
         } else {
+            let earlier = if self.first > 1 {
+                ", all earlier ones are recorded"
+            } else {
+                ""
+            };
             format!(
-                "{} messages of ticks {} to {} are lost, all earlier ones are recorded",
+                "{} messages of ticks {} to {} are lost{earlier}",
                 self.count, self.first, self.last
             )
         }

@@ -11,8 +11,9 @@ use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
 use crate::table::{figure, table, timing_table};
 
-/// At most this many events are shown.
-const MOST_EVENTS: usize = 20;
+/// At most this many events are shown: the first ones, and the last ones.
+const FIRST_EVENTS: usize = 14;
+const LAST_EVENTS: usize = 6;
 
 impl<A: Addition> Report<A> {
     /// The report as text.
@@ -53,15 +54,19 @@ impl RunReport {
             return;
         }
         text.push('\n');
-        for event in self.events.iter().take(MOST_EVENTS) {
-            let _ = writeln!(text, "{:10.3} s  {}", event.time_s, event.text);
-        }
-        if self.event_count > MOST_EVENTS {
-            let more = self.event_count - MOST_EVENTS;
-            let _ = writeln!(
-                text,
-                "and {more} more: see the page (--html) or events.csv (--csv)"
-            );
+        let omitted = self.event_count.saturating_sub(FIRST_EVENTS + LAST_EVENTS);
+        let resumes = self.events.len().saturating_sub(LAST_EVENTS);
+        for (index, event) in self.events.iter().enumerate() {
+            if omitted > 0 && index == FIRST_EVENTS {
+                let _ = writeln!(
+                    text,
+                    "{:>10}    {omitted} more: see the page (--html) or events.csv (--csv)",
+                    "..."
+                );
+            }
+            if omitted == 0 || index < FIRST_EVENTS || index >= resumes {
+                let _ = writeln!(text, "{:10.3} s  {}", event.time_s, event.text);
+            }
         }
     }
 

@@ -75,8 +75,14 @@ enum Command {
     Top,
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
-    let arguments = Arguments::parse();
+fn main() -> ExitCode {
+    run(Arguments::parse()).unwrap_or_else(|error| {
+        let _ = writeln!(io::stderr(), "thermostat: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
     let out = &mut io::stdout();
     match arguments.command {
         None => {

@@ -50,7 +50,7 @@ pub(super) fn check(args: &CheckArgs) -> Exit {
             let aircraft = match config.aircraft() {
                 Some(Aircraft::XPlane(_)) => "X-Plane's aircraft",
                 Some(Aircraft::BuiltIn(_)) => "the built-in aircraft",
-                None => "listed sensors and actuators, no simulator",
+                None => "by the listed sensors and actuators",
             };
             let mut text = format!(
                 "{}: valid: flies {aircraft} at {} Hz by {}",
