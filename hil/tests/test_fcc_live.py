@@ -64,7 +64,8 @@ def test_records_events_and_status_arrive(fccd: Path, tmp_path: Path, instance: 
             return len(rows) >= 40
 
         wait_until(has_come, "40 records have come")
-        assert watcher.events()[-1].text == "standby -> engaged"
+        engaged = ["standby -> engaged", "mode: hold, was none"]
+        assert [event.text for event in watcher.events()][-2:] == engaged
         status = watcher.status(PATIENCE_S)
         assert status is not None
         assert status["not_published"] == 0

@@ -75,7 +75,8 @@ def test_ten_minutes_are_recorded_tick_by_tick(fccd: Path, tmp_path: Path) -> No
     assert is_in_log_time_order(messages)
     assert [seen.data for seen in in_sequence(path)] == [seen.data for seen in messages]
     kinds = [seen.content.kind.WhichOneof("kind") for seen in messages if seen.topic == EVENT]
-    assert kinds == ["state_changed", "stop_requested", "state_changed", "released"]
+    engaged, ended = ["state_changed", "mode_changed"], ["state_changed", "released"]
+    assert kinds == [*engaged, "stop_requested", *ended, "mode_changed"]
     # A record is a flight's: where the aircraft was told to be, it is.
     last = [seen.content for seen in messages if seen.topic == RECORD][-2]
     flies_at_mps = last.measurements.airspeed_mps.value
