@@ -28,6 +28,8 @@
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
+//! | `traffic` | how much is sent to X-Plane |
+//! | `engage_switch` | the dataref that engages |
 //! | `controls`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `authority`, `status` | who has control, and the state of the connection, seen from outside the loop |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
@@ -52,6 +54,7 @@ mod config;
 mod confirmation;
 mod controls;
 mod discovery;
+mod engage_switch;
 mod inbox;
 mod link;
 mod missing;
@@ -67,6 +70,7 @@ mod simulator;
 mod specific_force;
 mod status;
 mod subscriptions;
+mod traffic;
 mod udp_port;
 mod units;
 mod values;

@@ -96,6 +96,8 @@ pub(crate) struct SharedState {
     version: AtomicU32,
     /// A [`ValueSet`].
     missing: AtomicU64,
+    /// An f32, s.
+    frame_period: AtomicU32,
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
     read_back: [Readback; READ_BACK.len()],
@@ -113,6 +115,7 @@ impl SharedState {
             unconfirmed: AtomicBool::new(false),
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
+            frame_period: AtomicU32::new(0),
             ground: AtomicU8::new(0),
             read_back: [const { Readback::never() }; READ_BACK.len()],
             counters: Counters::default(),
@@ -208,6 +211,16 @@ impl SharedState {
 
     pub(crate) fn set_version(&self, version: u32) {
         self.version.store(version, Ordering::Relaxed);
+    }
+
+    /// The simulator's last frame period, s; 0 until it is known.
+    pub(crate) fn frame_period_s(&self) -> f64 {
+        f32::from_bits(self.frame_period.load(Ordering::Relaxed)).into()
+    }
+
+    pub(crate) fn set_frame_period_s(&self, frame_period_s: f64) {
+        let bits = (frame_period_s as f32).to_bits();
+        self.frame_period.store(bits, Ordering::Relaxed);
     }
 
     pub(crate) fn on_ground(&self) -> Option<bool> {

@@ -6,6 +6,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use crate::config::DataRows;
+use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
 use crate::missing::Missing;
 use crate::simulator::SimulatorState;
@@ -137,7 +138,16 @@ impl XPlaneStatus {
     /// Requested values that do not arrive while others do: for 4 to 6 s if a
     /// value never arrived, and longer if it did.
     pub fn missing(&self) -> Vec<Missing> {
-        Missing::of(self.link.missing(), &self.engage_switch, self.rows)
+        let mut missing = Missing::of(self.link.missing(), &self.engage_switch, self.rows);
+        let lights = self
+            .version()
+            .and_then(|version| lights_if_beyond(&self.engage_switch, version));
+        if let Some(lights) = lights {
+            let path = self.engage_switch().to_owned();
+            missing.retain(|what| !matches!(what, Missing::EngageSwitch(_)));
+            missing.push(Missing::GenericLight { path, lights });
+        }
+        missing
     }
 
     /// What is wrong with the connection now; `None` while nothing is.

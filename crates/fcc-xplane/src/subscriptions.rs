@@ -8,8 +8,9 @@
 //! single request was lost, and then (it may not have it) every
 //! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe).
 //!
-//! X-Plane accepts about 100 requests and then needs a pause of 100 ms. There
-//! are fewer than that in total, and they are spread over several ticks.
+//! Requests are sent in portions (`traffic`), so that X-Plane takes them all.
+//! Each value is requested at a rate above X-Plane's usual ones, so that every
+//! frame has all of them.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -23,12 +24,7 @@ use crate::port::Errno;
 use crate::protocol::{PathError, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows::row_of;
-
-/// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
-pub(crate) const REQUESTS_PER_TICK: usize = 8;
-/// The number of requests that X-Plane accepts without a pause.
-const REQUESTS_AT_ONCE: usize = 100;
-const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
+use crate::traffic::{REQUESTS_PER_PORTION, RequestPace};
 
 /// A lost request is repeated after this long, this many times; all of them
 /// when the simulator has been silent for this long.
@@ -84,6 +80,7 @@ pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
     restarted: Time,
+    pace: RequestPace,
     missing_values: MissingValues,
 }
 
@@ -116,6 +113,7 @@ impl Subscriptions {
             list,
             resubscribe: config.resubscribe,
             restarted: Time::NEVER,
+            pace: RequestPace::begin(),
             missing_values: MissingValues::new(expected, config.resubscribe),
         })
     }
@@ -148,8 +146,8 @@ impl Subscriptions {
         }
     }
 
-    /// Sends the requests that are due, at most [`REQUESTS_PER_TICK`]. A
-    /// request that could not be sent counts as sent and lost.
+    /// Sends the requests that are due, at most a portion. A request that could
+    /// not be sent counts as sent and lost.
     pub(crate) fn send_due(
         &mut self,
         now: Time,
@@ -161,7 +159,10 @@ impl Subscriptions {
             self.restart(now);
         }
         let mut outcome = Ok(());
-        let mut budget = REQUESTS_PER_TICK;
+        if !self.pace.is_due(now) {
+            return outcome;
+        }
+        let mut budget = REQUESTS_PER_PORTION;
         for subscription in &mut self.list {
             if budget == 0 {
                 break;
@@ -184,6 +185,9 @@ impl Subscriptions {
                 outcome = outcome.and(send(subscription.request.datagram()));
                 budget -= 1;
             }
+        }
+        if budget < REQUESTS_PER_PORTION {
+            self.pace.sent(now);
         }
         outcome
     }

@@ -184,7 +184,9 @@ fn x_plane(at: &str, section: &XPlaneSection, problems: &mut Vec<Problem>, place
         return;
     };
     let key = match error {
-        XPlaneConfigError::EngageSwitch { .. } => format!("{at}.engage_switch"),
+        XPlaneConfigError::EngageSwitch { .. } | XPlaneConfigError::NoSuchLight { .. } => {
+            format!("{at}.engage_switch")
+        }
         XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
         XPlaneConfigError::LocalPort | XPlaneConfigError::OwnPort(_) => format!("{at}.local_port"),
         _ if problems.iter().any(|problem| problem.is_in(at)) => return,

@@ -25,7 +25,7 @@ use fcc_core::framework::{Tick, Time};
 use fcc_xplane::{Errno, Port, Simulator, XPlaneConfig};
 
 pub const P: &str = "sim/flightmodel/position/";
-pub const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[0]";
+pub const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[56]";
 pub const OVERRIDE_JOYSTICK: &str = "sim/operation/override/override_joystick";
 pub const OVERRIDE_THROTTLES: &str = "sim/operation/override/override_throttles";
 pub const YOKE_PITCH: &str = "sim/joystick/yoke_pitch_ratio";
