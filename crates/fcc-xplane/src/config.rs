@@ -3,7 +3,7 @@
 use core::time::Duration;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 
-use crate::address::{Simulator, XPLANE_PORT};
+use crate::address::{Simulator, XPLANE_PORT, XPLANE_REPLY_PORT};
 use crate::engage_switch;
 use crate::protocol::{PathError, beacon, check_path, rref};
 
@@ -23,10 +23,18 @@ use crate::protocol::{PathError, beacon, check_path, rref};
 pub struct XPlaneConfig {
     /// Where X-Plane is. Default: 127.0.0.1:49000.
     pub simulator: Simulator,
-    /// The UDP port to receive on, 0 for any that is free. Default: 0, since
-    /// RREF replies go to the port that sent the request. Rows of Data Output
-    /// go to the port that is set in X-Plane, so [`Input::Data`] needs one.
+    /// The UDP port to receive on. Default: 0 for
+    /// [`USUAL_LOCAL_PORT`](crate::USUAL_LOCAL_PORT), or
+    /// another that is free if a program has it, or if X-Plane is on this
+    /// machine, where no firewall needs a rule. RREF replies go to the port that
+    /// sent the request. Rows of Data Output go to the port that is set in
+    /// X-Plane, so [`Input::Data`] needs one.
     pub local_port: u16,
+    /// The port from which X-Plane is expected to answer, 0 if that is not
+    /// known. While it is silent, a datagram without effect is sent there each
+    /// second, so that a firewall on this side lets the replies in; afterwards
+    /// the port that answers is known. Default: 49001, X-Plane's own.
+    pub reply_port: u16,
     /// How measurements are received. Default: [`Input::Rref`].
     pub input: Input,
     /// How control surfaces are written. Default: [`Output::Dref`].
@@ -67,6 +75,7 @@ impl Default for XPlaneConfig {
         Self {
             simulator: Simulator::At((Ipv4Addr::LOCALHOST, XPLANE_PORT).into()),
             local_port: 0,
+            reply_port: XPLANE_REPLY_PORT,
             input: Input::Rref,
             output: Output::Dref,
             rate_hz: 250,

@@ -79,24 +79,25 @@ impl Inbox {
         self.clock.last_received()
     }
 
-    /// Reads a datagram of the simulator.
+    /// Reads a datagram of the simulator; returns whether anything in it was
+    /// requested.
     pub(crate) fn accept(
         &mut self,
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         match Kind::of(datagram) {
             Some(Kind::Rref) => self.accept_values(datagram, now, link),
             Some(Kind::Rpos) => self.accept_position(datagram, now),
             Some(Kind::Data) => match self.rows {
                 Some(rows) => self.accept_rows(rows, datagram, now, link),
                 // Data Output that the user sends for another program.
-                None => Ok(()),
+                None => Ok(false),
             },
             Some(Kind::Beacon) | None => {
                 count(&link.counters.unknown);
-                Ok(())
+                Ok(false)
             }
         }
     }
@@ -106,7 +107,7 @@ impl Inbox {
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
             let quantity = Quantity::from_index(index)?;
@@ -119,19 +120,23 @@ impl Inbox {
             .find(|(quantity, _)| *quantity == Quantity::FlightTime)
             .and_then(|(quantity, value)| quantity.validate(value));
         if self.is_late(now, time_s, link) {
-            return Ok(());
+            return Ok(false);
         }
         let mut report = SimulatorReport {
             time_s,
             ..SimulatorReport::default()
         };
+        let mut is_requested = false;
         self.values.begin_frame();
         for (quantity, raw) in pairs {
+            is_requested = true;
             self.take(quantity, raw, now, &mut report, link);
         }
         self.values.end_frame();
-        self.clock.receive(now, report);
-        Ok(())
+        if is_requested {
+            self.clock.receive(now, report);
+        }
+        Ok(is_requested)
     }
 
     fn accept_rows(
@@ -140,11 +145,11 @@ impl Inbox {
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
         if self.is_late(now, time_s, link) {
-            return Ok(());
+            return Ok(false);
         }
         let mut report = SimulatorReport {
             time_s,
@@ -161,10 +166,10 @@ impl Inbox {
         }
         self.values.end_frame();
         self.clock.receive(now, report);
-        Ok(())
+        Ok(true)
     }
 
-    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<(), Malformed> {
+    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<bool, Malformed> {
         let reply = rpos::parse(datagram)?;
         if self.rows.is_none() {
             let position = Position {
@@ -175,7 +180,7 @@ impl Inbox {
             self.position = Reading::new(position, now);
         }
         self.clock.receive(now, SimulatorReport::default());
-        Ok(())
+        Ok(self.rows.is_none())
     }
 
     fn is_late(&self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {

@@ -40,6 +40,14 @@ impl ValueSet {
         self.0
     }
 
+    /// Whether all values are missing that are requested when rows are the
+    /// input.
+    pub(crate) fn has_all_requested(self) -> bool {
+        Quantity::all()
+            .filter(|quantity| !quantity.comes_in_rows())
+            .all(|quantity| self.holds(Expected::Value(quantity).bit()))
+    }
+
     const fn holds(self, bit: u64) -> bool {
         self.0 & bit != 0
     }

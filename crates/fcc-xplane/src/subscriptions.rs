@@ -31,6 +31,10 @@ use crate::traffic::{REQUESTS_PER_PORTION, RequestPace};
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
 
+/// For [`Subscriptions::without_effect`]: no subscription has this index.
+const UNUSED_INDEX: i32 = 9_003;
+const ANY_DATAREF: &str = "sim/time/paused";
+
 /// The position is for navigation, which does not need it every frame.
 const POSITION_RATE_HZ: u16 = 20;
 
@@ -80,6 +84,7 @@ pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
     restarted: Time,
+    without_effect: Box<[u8; rref::REQUEST_BYTES]>,
     pace: RequestPace,
     missing_values: MissingValues,
 }
@@ -108,11 +113,14 @@ impl Subscriptions {
         if rows.is_none() {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
+        let mut without_effect = Box::new([0; rref::REQUEST_BYTES]);
+        rref::request(&mut without_effect, 0, UNUSED_INDEX, ANY_DATAREF)?;
         expected.extend(list.iter().map(|asked| asked.request.expected()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
             restarted: Time::NEVER,
+            without_effect,
             pace: RequestPace::begin(),
             missing_values: MissingValues::new(expected, config.resubscribe),
         })
@@ -144,6 +152,16 @@ impl Subscriptions {
                 subscription.unanswered = 0;
             }
         }
+    }
+
+    /// Whether everything was requested again in this tick.
+    pub(crate) fn restarted(&self, now: Time) -> bool {
+        self.restarted == now
+    }
+
+    /// A request that ends a subscription which does not exist.
+    pub(crate) fn without_effect(&self) -> &[u8] {
+        self.without_effect.as_slice()
     }
 
     /// Sends the requests that are due, at most a portion. A request that could

@@ -38,7 +38,10 @@ pub const PAUSED: &str = "sim/time/paused";
 /// A minimal X-Plane: stores requests and writes, and sends frames when the
 /// test calls for them.
 pub struct FakeXPlane {
+    /// Listens.
     pub socket: UdpSocket,
+    /// Sends, from another port, as X-Plane does.
+    pub sender: UdpSocket,
     /// The last requester.
     pub client: Option<SocketAddr>,
     /// Index -> path.
@@ -63,6 +66,8 @@ impl FakeXPlane {
     pub fn at(address: &str) -> Self {
         let socket = UdpSocket::bind(address).unwrap();
         socket.set_nonblocking(true).unwrap();
+        let ip = socket.local_addr().unwrap().ip();
+        let sender = UdpSocket::bind((ip, 0)).unwrap();
         let mut values: HashMap<String, f32> = [
             (PAUSED, 0.0),
             (FLIGHT_TIME, 100.0),
@@ -101,6 +106,7 @@ impl FakeXPlane {
         }
         Self {
             socket,
+            sender,
             client: None,
             subscribed: HashMap::new(),
             requests: 0,
@@ -230,7 +236,7 @@ impl FakeXPlane {
 
     pub fn send(&self, datagram: &[u8]) {
         if let Some(client) = self.client {
-            self.socket.send_to(datagram, client).unwrap();
+            self.sender.send_to(datagram, client).unwrap();
         }
     }
 
@@ -297,7 +303,7 @@ impl FakeXPlane {
             }
         }
         let to = SocketAddrV4::new([127, 0, 0, 1].into(), port);
-        self.socket.send_to(&datagram, to).unwrap();
+        self.sender.send_to(&datagram, to).unwrap();
     }
 }
 
