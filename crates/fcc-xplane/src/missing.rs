@@ -40,12 +40,16 @@ impl ValueSet {
         self.0
     }
 
-    /// Whether all values are missing that are requested when rows are the
-    /// input.
-    pub(crate) fn has_all_requested(self) -> bool {
-        Quantity::all()
-            .filter(|quantity| !quantity.comes_in_rows())
-            .all(|quantity| self.holds(Expected::Value(quantity).bit()))
+    /// Whether values are missing that every version has and no row: then no
+    /// request is answered.
+    pub(crate) fn has_no_answer(self) -> bool {
+        [
+            Quantity::Paused,
+            Quantity::OverrideJoystick,
+            Quantity::OverrideThrottles,
+        ]
+        .into_iter()
+        .all(|quantity| self.holds(Expected::Value(quantity).bit()))
     }
 
     const fn holds(self, bit: u64) -> bool {

@@ -122,7 +122,7 @@ impl Silence {
         if !std::mem::take(&mut self.refused_again) {
             self.refusal = None;
         }
-        if self.probes % PROBES_PER_SOCKET == 0 {
+        if self.probes.is_multiple_of(PROBES_PER_SOCKET) {
             self.probe = open_probe(self.simulator).ok();
         }
         self.probes = self.probes.wrapping_add(1);
@@ -200,7 +200,7 @@ mod tests {
         let status = sensor.status();
         let at = "127.0.0.1:49000".parse().unwrap();
         let mut silence = Silence::begin(&config, &status, at);
-        let std::net::SocketAddr::V4(there) = group.local_addr().unwrap() else {
+        let SocketAddr::V4(there) = group.local_addr().unwrap() else {
             panic!("IPv4");
         };
         drop(group);

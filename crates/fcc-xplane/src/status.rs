@@ -168,7 +168,7 @@ impl XPlaneStatus {
         match self.simulator() {
             None => Some(Trouble::NoBeacon),
             Some(at) if self.state() == SimulatorState::Silent => Some(Trouble::Silent(at)),
-            Some(at) if self.rows.is_some() && self.link.missing().has_all_requested() => {
+            Some(at) if self.rows.is_some() && self.link.missing().has_no_answer() => {
                 Some(Trouble::Unanswered(at))
             }
             Some(at) if self.is_unconfirmed() => Some(Trouble::Unconfirmed(at)),

@@ -3,17 +3,17 @@
 mod support;
 
 use std::net::{SocketAddr, UdpSocket};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{ControlAuthority, PlantId, Released, Sensor};
 use fcc_xplane::{
-    DataRows, Errno, Input, Port, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority,
-    XPlaneConfig,
+    DataRows, Input, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority, XPlaneConfig,
 };
 use support::bench::{Bench, close};
-use support::{FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, P, Ticks, free_port};
+use support::{
+    Addressed, FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, P, Ticks, Wire, free_port,
+};
 
 const KNOT_MPS: f64 = 1.852 / 3.6;
 
@@ -119,57 +119,37 @@ fn a_release_without_a_connection_learns_the_port() {
     simulator.assert_shows(OVERRIDE_THROTTLES, 0.0);
 }
 
-/// What was sent, and where to; answers as if from this address.
-#[derive(Clone, Default)]
-struct Wire {
-    sent: Arc<Mutex<Vec<(Vec<u8>, SocketAddr)>>>,
-    arriving: Arc<Mutex<Vec<(Vec<u8>, SocketAddr)>>>,
-}
-
-impl Port for Wire {
-    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
-        Ok(self.arriving.lock().unwrap().pop().map(|(datagram, from)| {
-            into[..datagram.len()].copy_from_slice(&datagram);
-            (datagram.len(), from)
-        }))
-    }
-
-    fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno> {
-        self.sent.lock().unwrap().push((datagram.to_vec(), to));
-        Ok(())
-    }
-}
-
-/// The destinations other than the simulator, each with its datagram, of a
-/// second and a half of silence after `answer` has arrived.
-fn openings(at: &str, reply_port: u16, answer: Option<SocketAddr>) -> Vec<(Vec<u8>, SocketAddr)> {
-    let simulator: SocketAddr = at.parse().unwrap();
+/// The datagrams to other addresses than the simulator's, of a second and a half
+/// of silence after a datagram from `answer`.
+fn openings(simulator: SocketAddr, reply_port: u16, answer: Option<SocketAddr>) -> Vec<Addressed> {
     let config = XPlaneConfig {
         simulator: Simulator::At(simulator),
         reply_port,
         ..XPlaneConfig::default()
     };
     let wire = Wire::default();
-    let (mut sensor, _actuator) = XPlane::over(&config, wire.clone(), None).unwrap();
+    let Ok((mut sensor, _actuator)) = XPlane::over(&config, wire.clone(), None) else {
+        return Vec::new();
+    };
     let (mut ticks, mut measurements) = (Ticks::new(), Measurements::default());
     if let Some(from) = answer {
         // Index 0 is the flight's time.
-        let datagram = b"RREF,\0\0\0\0\0\0\xc8\x42".to_vec();
-        wire.arriving.lock().unwrap().push((datagram, from));
+        wire.arrives(b"RREF,\0\0\0\0\0\0\xc8\x42", from);
         let _ = sensor.sample(&ticks.next(), &mut measurements);
-        wire.sent.lock().unwrap().clear();
+        wire.take_sent();
     }
     for _ in 0..60 {
         let _ = sensor.sample(&ticks.next(), &mut measurements);
     }
-    let mut sent = wire.sent.lock().unwrap().clone();
+    let mut sent = wire.take_sent();
     sent.retain(|(_, to)| *to != simulator);
     sent
 }
 
 #[test]
 fn a_datagram_without_effect_lets_answers_through_a_firewall_on_this_side() {
-    let there = "192.0.2.1:49000";
+    let there = "192.0.2.1:49000".parse().unwrap();
+    let here = "127.0.0.1:49000".parse().unwrap();
     let sent = openings(there, 49_001, None);
     // At once, and after a second.
     assert_eq!(sent.len(), 2);
@@ -186,7 +166,7 @@ fn a_datagram_without_effect_lets_answers_through_a_firewall_on_this_side() {
         [answered]
     );
     // None where it is of no use, or not wished.
-    assert_eq!(openings("127.0.0.1:49000", 49_001, None), []);
+    assert_eq!(openings(here, 49_001, None), []);
     assert_eq!(openings(there, 0, None), []);
     assert_eq!(openings(there, 49_000, None), []);
 }

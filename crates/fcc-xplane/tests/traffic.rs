@@ -2,45 +2,18 @@
 
 mod support;
 
-use std::net::SocketAddr;
-use std::sync::Mutex;
 use std::time::Duration;
 
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Actuator, Sensor, Tick, Time};
-use fcc_xplane::{Errno, Port, XPlane, XPlaneConfig};
+use fcc_xplane::{XPlane, XPlaneConfig};
+use support::Wire;
 use support::bench::SURFACES;
 
 /// About as many messages are taken in one frame of X-Plane.
 const MESSAGES_PER_FRAME: usize = 140;
 /// Its longest frame at which its time is not slow.
 const FRAME_MS: usize = 50;
-
-/// Counts the messages of each tick; nothing arrives.
-#[derive(Default)]
-struct Counting(Mutex<Vec<usize>>);
-
-impl Counting {
-    fn next_tick(&self) {
-        self.0.lock().unwrap().push(0);
-    }
-}
-
-/// A [`Port`] of which the test keeps a share.
-struct Shared(std::sync::Arc<Counting>);
-
-impl Port for Shared {
-    fn receive(&self, _: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
-        Ok(None)
-    }
-
-    fn send(&self, _: &[u8], _: SocketAddr) -> Result<(), Errno> {
-        if let Some(last) = self.0.0.lock().unwrap().last_mut() {
-            *last += 1;
-        }
-        Ok(())
-    }
-}
 
 /// A loop of 1 kHz with eight engines that subscribes, engages, flies and
 /// releases, and subscribes anew each second because nothing arrives.
@@ -50,12 +23,11 @@ fn no_frame_of_x_plane_gets_more_messages_than_it_takes() {
         engines: 8,
         ..XPlaneConfig::default()
     };
-    let counting = std::sync::Arc::<Counting>::default();
-    let port = Shared(std::sync::Arc::clone(&counting));
-    let (mut sensor, mut actuator) = XPlane::over(&config, port, None).unwrap();
+    let wire = Wire::default();
+    let (mut sensor, mut actuator) = XPlane::over(&config, wire.clone(), None).unwrap();
     let mut measurements = Measurements::default();
+    let mut counts = Vec::new();
     for number in 1..=4_000_u64 {
-        counting.next_tick();
         let now = Time::from_nanos(1_000_000_000_000) + Duration::from_millis(number);
         let tick = Tick {
             number,
@@ -70,8 +42,8 @@ fn no_frame_of_x_plane_gets_more_messages_than_it_takes() {
             3_500 => actuator.release().unwrap(),
             _ => {}
         }
+        counts.push(wire.take_sent().len());
     }
-    let counts = counting.0.lock().unwrap().clone();
     let most = counts
         .windows(FRAME_MS)
         .map(|frame| frame.iter().sum::<usize>())
