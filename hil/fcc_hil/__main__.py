@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+from . import actions, watcher_load
 from . import commands as flights
-from . import watcher_load
 from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
 from .faults import Address, Faults
@@ -25,10 +26,12 @@ from .plant import TrimError, Weather
 from .plot import plot_flight
 from .process import StandInError, StandInProcess
 from .soak import SoakError
-from .standin import BEACON_GROUP, Mode, Settings
+from .standin import BEACON_GROUP, Settings
 from .table import table
+from .udp import ReplyPort
 
 _LOOK_S = 0.05
+_KILL = actions.Action("end at once, as a crash does", lambda _, __: None)
 
 
 def _address(text: str) -> Address:
@@ -45,24 +48,41 @@ def _rows(text: str) -> tuple[int, ...]:
         raise argparse.ArgumentTypeError(f"'{text}': give row numbers, as in 3,17,20") from None
 
 
-_ACTIONS: dict[str, Callable[[StandInProcess], None]] = {
-    "run": lambda simulator: simulator.set_mode(Mode.RUNNING),
-    "pause": lambda simulator: simulator.set_mode(Mode.PAUSED),
-    "stall": lambda simulator: simulator.set_mode(Mode.STALLED),
-    "freeze": lambda simulator: simulator.set_mode(Mode.FROZEN),
-    "restart": lambda simulator: simulator.restart_flight(),
-}
-
-
 def _appointment(text: str) -> tuple[float, str]:
     seconds, _, action = text.partition(":")
     try:
         at_s = float(seconds)
     except ValueError:
         at_s = -1.0
-    if at_s < 0.0 or action not in (*_ACTIONS, "kill"):
-        raise argparse.ArgumentTypeError(f"'{text}': give SECONDS:ACTION, as in 30:pause")
+    if not 0.0 <= at_s < math.inf or not action:
+        raise argparse.ArgumentTypeError(
+            f"'{text}': give SECONDS:ACTION or SECONDS:ACTION:ARGUMENT, as in 30:pause, 30:freeze:2"
+        )
+    if action != "kill":
+        try:
+            actions.parse(action)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
     return at_s, action
+
+
+def _reply_port(text: str) -> ReplyPort:
+    if text in ("same", "next"):
+        return cast(ReplyPort, text)
+    if not text.isdigit() or int(text) > 65_535:
+        raise argparse.ArgumentTypeError(f"'{text}': give a port, next or same")
+    return int(text)
+
+
+def _frame_rates(text: str) -> tuple[float, float]:
+    least, dash, greatest = text.partition("-")
+    try:
+        rates_hz = float(least), float(greatest)
+    except ValueError:
+        rates_hz = 0.0, 0.0
+    if not dash or not 1.0 <= rates_hz[0] <= rates_hz[1] <= 1_000.0:
+        raise argparse.ArgumentTypeError(f"'{text}': give LEAST-GREATEST, as in 20-144")
+    return rates_hz
 
 
 def _simulator_options(parser: argparse.ArgumentParser) -> None:
@@ -83,11 +103,39 @@ def _simulator_options(parser: argparse.ArgumentParser) -> None:
         help="UDP port to listen on, 0 for any free one (default %(default)s)",
     )
     parser.add_argument(
+        "--reply-port",
+        type=_reply_port,
+        default=default.reply_port,
+        metavar="PORT",
+        help="UDP port to send from: a number, 0 for any free one, next for the one after --port, "
+        "as X-Plane sends from 49001, or same (default %(default)s)",
+    )
+    parser.add_argument(
         "--frame-rate",
         type=float,
         default=default.frame_rate_hz,
         metavar="HZ",
-        help="frames a second; below 20 simulated time slows down (default %(default)s)",
+        help="frames a second; below 19 simulated time slows down (default %(default)s)",
+    )
+    parser.add_argument(
+        "--frame-rates",
+        type=_frame_rates,
+        default=default.frame_rates_hz,
+        metavar="LEAST-GREATEST",
+        help="frame rates that vary at random about --frame-rate, as in 20-144",
+    )
+    parser.add_argument("--plain", action="store_true", help="without a real X-Plane's manners")
+    parser.add_argument(
+        "--axial-sign",
+        type=int,
+        choices=(1, -1),
+        default=1,
+        help="of the axial load in row 4, in which sources differ",
+    )
+    parser.add_argument(
+        "--silent-windows",
+        action="store_true",
+        help="send nothing while a map, a menu or an alert is open",
     )
     parser.add_argument(
         "--xplane-version",
@@ -105,6 +153,7 @@ def _simulator_options(parser: argparse.ArgumentParser) -> None:
         help="magnetic variation, positive to the east",
     )
     air = parser.add_argument_group("air and sensors")
+    air.add_argument("--qnh", type=float, metavar="INHG", help="pressure at sea level")
     air.add_argument("--noise", action="store_true", help="noise on the sensors")
     air.add_argument("--wind-from", type=float, default=0.0, metavar="DEG", help="true direction")
     air.add_argument("--wind", type=float, default=0.0, metavar="KT", help="steady wind")
@@ -139,11 +188,16 @@ def _settings(options: argparse.Namespace) -> Settings:
         delay_s=options.delay / 1e3,
         jitter_s=options.jitter / 1e3,
     )
-    return Settings(
+    given: dict[str, Any] = {} if options.qnh is None else {"qnh_inhg": options.qnh}
+    if not options.plain:
+        given["frame_rates_hz"] = options.frame_rates
+    return (Settings.plain if options.plain else Settings)(
+        **given,
         aircraft=options.aircraft,
         seed=options.seed,
         host=options.host,
         port=options.port,
+        reply_port=options.reply_port,
         frame_rate_hz=options.frame_rate,
         version=options.xplane_version,
         heading_deg=options.heading,
@@ -154,6 +208,8 @@ def _settings(options: argparse.Namespace) -> Settings:
             turbulence_severity=options.turbulence,
         ),
         noise=options.noise,
+        axial_sign=float(options.axial_sign),
+        sends_while_stalled=not options.silent_windows,
         inbound=faults,
         outbound=faults,
     )
@@ -211,7 +267,10 @@ def _standin(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     with StandInProcess(settings) as simulator:
-        print(f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port}; Ctrl-C ends it")
+        print(
+            f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port} and sends from "
+            f"port {simulator.reply_port}; Ctrl-C ends it"
+        )
         sys.stdout.flush()
         began_s = time.monotonic()
         todo = sorted(options.at)
@@ -223,7 +282,7 @@ def _standin(options: argparse.Namespace) -> int:
                 if action == "kill":
                     simulator.kill()
                     return 0
-                _ACTIONS[action](simulator)
+                simulator.act(action)
             if options.seconds is not None and ran_s >= options.seconds:
                 break
         status: dict[str, Any] = simulator.status()
@@ -308,7 +367,13 @@ def _parser() -> argparse.ArgumentParser:
         action="append",
         default=[],
         metavar="S:ACTION",
-        help=f"S seconds after the start do one of {', '.join(_ACTIONS)}, kill; may be repeated",
+        help="S seconds after the start do an action; may be repeated, as in --at 30:pause "
+        "--at 40:run --at 50:freeze:1.5",
+    )
+    serves.formatter_class = argparse.RawDescriptionHelpFormatter
+    serves.epilog = "actions, for --at:\n" + "\n".join(
+        f"  {name + str(action.argument):24}{action.does}"
+        for name, action in (*actions.ACTIONS.items(), ("kill", _KILL))
     )
     _simulator_options(serves)
     serves.set_defaults(run=_standin)
