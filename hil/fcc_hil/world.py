@@ -29,6 +29,7 @@ _SMOOTHING_S = 0.5
 """Of `sim/time/framerate_period`."""
 _REMEMBERED_S = 60.0
 """How much flight is kept for a replay, at least if flown."""
+_ROUNDING_S = 1e-6
 _WRITER_RATIO = 0.3
 _WRITER_PERIOD_S = 2.0
 _RUNWAY_ELEVATION_FT = 440.0
@@ -96,7 +97,7 @@ class World:
 
     def is_frozen(self) -> bool:
         """Return whether it hangs."""
-        return self.mode is Mode.FROZEN or self._running_time_s < self._freeze_ends_s
+        return self.mode is Mode.FROZEN or self._running_time_s < self._freeze_ends_s - _ROUNDING_S
 
     def cut_link(self, seconds: float = math.inf) -> None:
         """Let the network lose everything for so many seconds; 0 mends it."""
@@ -276,12 +277,12 @@ class World:
         return max(0.0, self.cockpit.read(SIM_SPEED) or 0.0)
 
     def _end_states(self) -> None:
-        if self._mode_ends is not None and self._running_time_s >= self._mode_ends[1]:
+        if self._mode_ends is not None and self._running_time_s >= self._mode_ends[1] - _ROUNDING_S:
             # A test may have entered another state since.
             if self.mode is self._mode_ends[0]:
                 self.mode = Mode.RUNNING
             self._mode_ends = None
-        if self._running_time_s >= self._cut_ends_s:
+        if self._running_time_s >= self._cut_ends_s - _ROUNDING_S:
             self.link_is_cut = False
 
     def _follow_qnh(self, seconds: float) -> None:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import select
 import socket
 import struct
 from collections.abc import Iterator
-from typing import Any
 
 import pytest
+from standin_bench import Bench, Client
 
 from fcc_hil.cockpit import (
     GENERIC_LIGHTS,
@@ -25,55 +24,6 @@ TIME = "sim/time/total_flight_time_sec"
 PAUSED = "sim/time/paused"
 ROLL = "sim/flightmodel/position/phi"
 AILERON = "fcs/left-aileron-pos-norm"
-
-
-class Client:
-    """Bytes from the layouts, and nothing of the package."""
-
-    def __init__(self, port: int) -> None:
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.simulator = ("127.0.0.1", port)
-        self.socket.setblocking(False)
-
-    def send(self, datagram: bytes) -> None:
-        self.socket.sendto(datagram, self.simulator)
-
-    def subscribe(self, index: int, path: str, frequency_hz: int = 60) -> None:
-        self.send(b"RREF\0" + struct.pack("<ii400s", frequency_hz, index, path.encode()))
-
-    def write(self, path: str, value: float) -> None:
-        self.send(b"DREF\0" + struct.pack("<f500s", value, path.encode()))
-
-    def datagrams(self) -> list[bytes]:
-        found = []
-        while select.select([self.socket], [], [], 0.0)[0]:
-            found.append(self.socket.recv(2048))
-        return found
-
-    def values(self) -> dict[int, float]:
-        found: dict[int, float] = {}
-        for datagram in self.datagrams():
-            assert datagram[:4] == b"RREF"
-            found.update(dict(struct.iter_unpack("<if", datagram[5:])))
-        return found
-
-
-class Bench:
-    def __init__(self, **changes: Any) -> None:
-        self.simulator = StandIn(Settings.plain(port=0, **changes))
-        self.client = Client(self.simulator.port)
-
-    def frames(self, count: int) -> dict[int, float]:
-        """Run frames; return the values of the last one that brought any."""
-        latest: dict[int, float] = {}
-        for _ in range(count):
-            self.simulator.frame()
-            latest = self.client.values() or latest
-        return latest
-
-    def close(self) -> None:
-        self.simulator.close()
-        self.client.socket.close()
 
 
 @pytest.fixture
