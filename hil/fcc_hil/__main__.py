@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import signal
 import sys
 import threading
@@ -12,207 +11,23 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from . import actions, watcher_load
+from . import actions, simulator_options, watcher_load
 from . import commands as flights
-from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
-from .faults import Address, Faults
 from .fly import FlightError, Plan, fly, peer_row, print_progress, write_document
 from .pattern import TimedPattern
 from .peer import fly_peer
-from .plant import TrimError, Weather
+from .plant import TrimError
 from .plot import plot_flight
 from .process import StandInError, StandInProcess
 from .soak import SoakError
-from .standin import BEACON_GROUP, Settings
+from .standin import BEACON_GROUP
 from .table import table
-from .udp import ReplyPort
 
 _LOOK_S = 0.05
 _KILL = actions.Action("end at once, as a crash does", lambda _, __: None)
-
-
-def _address(text: str) -> Address:
-    host, colon, port = text.rpartition(":")
-    if not colon or not port.isdigit() or not 0 < int(port) < 65_536:
-        raise argparse.ArgumentTypeError(f"'{text}': give HOST:PORT, as in 127.0.0.1:49001")
-    return host, int(port)
-
-
-def _rows(text: str) -> tuple[int, ...]:
-    try:
-        return tuple(int(number) for number in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}': give row numbers, as in 3,17,20") from None
-
-
-def _appointment(text: str) -> tuple[float, str]:
-    seconds, _, action = text.partition(":")
-    try:
-        at_s = float(seconds)
-    except ValueError:
-        at_s = -1.0
-    if not 0.0 <= at_s < math.inf or not action:
-        raise argparse.ArgumentTypeError(
-            f"'{text}': give SECONDS:ACTION or SECONDS:ACTION:ARGUMENT, as in 30:pause, 30:freeze:2"
-        )
-    if action != "kill":
-        try:
-            actions.parse(action)
-        except ValueError as error:
-            raise argparse.ArgumentTypeError(str(error)) from None
-    return at_s, action
-
-
-def _reply_port(text: str) -> ReplyPort:
-    if text in ("same", "next"):
-        return cast(ReplyPort, text)
-    if not text.isdigit() or int(text) > 65_535:
-        raise argparse.ArgumentTypeError(f"'{text}': give a port, next or same")
-    return int(text)
-
-
-def _frame_rates(text: str) -> tuple[float, float]:
-    least, dash, greatest = text.partition("-")
-    try:
-        rates_hz = float(least), float(greatest)
-    except ValueError:
-        rates_hz = 0.0, 0.0
-    if not dash or not 1.0 <= rates_hz[0] <= rates_hz[1] <= 1_000.0:
-        raise argparse.ArgumentTypeError(f"'{text}': give LEAST-GREATEST, as in 20-144")
-    return rates_hz
-
-
-def _simulator_options(parser: argparse.ArgumentParser) -> None:
-    default = Settings()
-    parser.add_argument(
-        "--aircraft",
-        default=default.aircraft,
-        choices=list(AIRCRAFT),
-        metavar="NAME",
-        help=f"one of {', '.join(AIRCRAFT)} (default %(default)s)",
-    )
-    parser.add_argument("--seed", type=int, default=default.seed, help="of every random sequence")
-    parser.add_argument("--host", default=default.host, help="address to listen on (%(default)s)")
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=default.port,
-        help="UDP port to listen on, 0 for any free one (default %(default)s)",
-    )
-    parser.add_argument(
-        "--reply-port",
-        type=_reply_port,
-        default=default.reply_port,
-        metavar="PORT",
-        help="UDP port to send from: a number, 0 for any free one, next for the one after --port, "
-        "as X-Plane sends from 49001, or same (default %(default)s)",
-    )
-    parser.add_argument(
-        "--frame-rate",
-        type=float,
-        default=default.frame_rate_hz,
-        metavar="HZ",
-        help="frames a second; below 19 simulated time slows down (default %(default)s)",
-    )
-    parser.add_argument(
-        "--frame-rates",
-        type=_frame_rates,
-        default=default.frame_rates_hz,
-        metavar="LEAST-GREATEST",
-        help="frame rates that vary at random about --frame-rate, as in 20-144",
-    )
-    parser.add_argument("--plain", action="store_true", help="without a real X-Plane's manners")
-    parser.add_argument(
-        "--axial-sign",
-        type=int,
-        choices=(1, -1),
-        default=1,
-        help="of the axial load in row 4, in which sources differ",
-    )
-    parser.add_argument(
-        "--silent-windows",
-        action="store_true",
-        help="send nothing while a map, a menu or an alert is open",
-    )
-    parser.add_argument(
-        "--xplane-version",
-        type=int,
-        default=default.version,
-        metavar="N",
-        help="as X-Plane reports it: 101500, 115501, 121000 (default %(default)s)",
-    )
-    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="initial heading")
-    parser.add_argument(
-        "--variation",
-        type=float,
-        default=0.0,
-        metavar="DEG",
-        help="magnetic variation, positive to the east",
-    )
-    air = parser.add_argument_group("air and sensors")
-    air.add_argument("--qnh", type=float, metavar="INHG", help="pressure at sea level")
-    air.add_argument("--noise", action="store_true", help="noise on the sensors")
-    air.add_argument("--wind-from", type=float, default=0.0, metavar="DEG", help="true direction")
-    air.add_argument("--wind", type=float, default=0.0, metavar="KT", help="steady wind")
-    air.add_argument(
-        "--turbulence",
-        type=int,
-        default=0,
-        choices=range(8),
-        metavar="0..7",
-        help="severity after MIL-F-8785C: 0 calm, 3 light, 4 moderate",
-    )
-    network = parser.add_argument_group("network faults, in both directions")
-    for name, what in (
-        ("loss", "lost"),
-        ("duplicate", "duplicated"),
-        ("reorder", "overtaken by the next"),
-        ("truncate", "truncated"),
-    ):
-        network.add_argument(
-            f"--{name}", type=float, default=0.0, metavar="FRACTION", help=f"of datagrams {what}"
-        )
-    network.add_argument("--delay", type=float, default=0.0, metavar="MS", help="of every datagram")
-    network.add_argument("--jitter", type=float, default=0.0, metavar="MS", help="added, uniform")
-
-
-def _settings(options: argparse.Namespace) -> Settings:
-    faults = Faults(
-        loss=options.loss,
-        duplicate=options.duplicate,
-        reorder=options.reorder,
-        truncate=options.truncate,
-        delay_s=options.delay / 1e3,
-        jitter_s=options.jitter / 1e3,
-    )
-    given: dict[str, Any] = {} if options.qnh is None else {"qnh_inhg": options.qnh}
-    if not options.plain:
-        given["frame_rates_hz"] = options.frame_rates
-    return (Settings.plain if options.plain else Settings)(
-        **given,
-        aircraft=options.aircraft,
-        seed=options.seed,
-        host=options.host,
-        port=options.port,
-        reply_port=options.reply_port,
-        frame_rate_hz=options.frame_rate,
-        version=options.xplane_version,
-        heading_deg=options.heading,
-        magnetic_variation_deg=options.variation,
-        weather=Weather(
-            wind_from_deg=options.wind_from,
-            wind_kt=options.wind,
-            turbulence_severity=options.turbulence,
-        ),
-        noise=options.noise,
-        axial_sign=float(options.axial_sign),
-        sends_while_stalled=not options.silent_windows,
-        inbound=faults,
-        outbound=faults,
-    )
 
 
 def _interrupt(*_: object) -> None:
@@ -222,7 +37,9 @@ def _interrupt(*_: object) -> None:
 def _fly(options: argparse.Namespace) -> int:
     # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, _interrupt)
-    plan = Plan(command(options.fccd, options.config), _settings(options), options.legs)
+    plan = Plan(
+        command(options.fccd, options.config), simulator_options.settings(options), options.legs
+    )
     flight = fly(plan, print_progress)
     peer = peer_row(plan)
     print(
@@ -258,7 +75,7 @@ def _fly(options: argparse.Namespace) -> int:
 
 def _standin(options: argparse.Namespace) -> int:
     settings = replace(
-        _settings(options),
+        simulator_options.settings(options),
         beacon=BEACON_GROUP if options.beacon else None,
         data_target=options.data_target,
         data_rows=options.data_rows,
@@ -349,21 +166,28 @@ def _parser() -> argparse.ArgumentParser:
     flies.add_argument("--legs", type=int, default=8, help="of 20 s each (default %(default)s)")
     flies.add_argument("--json", type=Path, metavar="FILE", help="write timing and score here")
     flies.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
-    _simulator_options(flies)
+    simulator_options.add(flies)
     flies.set_defaults(run=_fly)
 
     serves = commands.add_parser("standin", help="run the stand-in for X-Plane until Ctrl-C")
     serves.add_argument("--beacon", action="store_true", help="send the beacon by multicast")
     serves.add_argument(
-        "--data-target", type=_address, metavar="HOST:PORT", help="target of Data Output"
+        "--data-target",
+        type=simulator_options.address,
+        metavar="HOST:PORT",
+        help="target of Data Output",
     )
     serves.add_argument(
-        "--data-rows", type=_rows, default=(), metavar="N,N", help="its rows, as in 3,17,20"
+        "--data-rows",
+        type=simulator_options.rows,
+        default=(),
+        metavar="N,N",
+        help="its rows, as in 3,17,20",
     )
     serves.add_argument("--seconds", type=float, metavar="S", help="end after so many seconds")
     serves.add_argument(
         "--at",
-        type=_appointment,
+        type=simulator_options.appointment,
         action="append",
         default=[],
         metavar="S:ACTION",
@@ -375,7 +199,7 @@ def _parser() -> argparse.ArgumentParser:
         f"  {name + str(action.argument):24}{action.does}"
         for name, action in (*actions.ACTIONS.items(), ("kill", _KILL))
     )
-    _simulator_options(serves)
+    simulator_options.add(serves)
     serves.set_defaults(run=_standin)
 
     peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")

@@ -49,7 +49,7 @@ class Settings:
     reply_port: ReplyPort = "same"
     """The port that it sends from, as X-Plane sends from 49001."""
     frame_rate_hz: float = 60.0
-    frame_rates_hz: tuple[float, float] | None = None
+    frame_rates_hz: tuple[float, float] | None = (20.0, 144.0)
     """Least and greatest rate of frames that vary at random about `frame_rate_hz`; None for
     constant ones."""
     version: int = 115_501
@@ -58,11 +58,11 @@ class Settings:
     magnetic_variation_deg: float = 0.0
     """Positive where magnetic north lies east of true."""
     weather: Weather = field(default_factory=Weather)
-    qnh_inhg: float = STANDARD_INHG
+    qnh_inhg: float = 30.12
     """The pressure at sea level. The pilot's altimeter is set to it at first."""
-    origin_offset_deg: tuple[float, float] = (0.0, 0.0)
+    origin_offset_deg: tuple[float, float] = (0.5, 0.5)
     """Latitude and longitude of the local axes' origin less those of the aircraft at first."""
-    surface_rate: float = math.inf
+    surface_rate: float = 2.0
     """How fast the control surfaces move, in full deflections a second."""
     axial_sign: float = 1.0
     """The sign of the axial load in row 4, in which sources differ: 1 is positive when pushed
