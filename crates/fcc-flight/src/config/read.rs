@@ -74,6 +74,7 @@ pub(super) trait Entry: Sized {
 }
 
 /// Reads nothing: the list was taken out of the table before, and read apart.
+#[expect(clippy::unnecessary_wraps, reason = "serde requires it")]
 pub(super) fn apart<'de, T: Default, D: serde::Deserializer<'de>>(_: D) -> Result<T, D::Error> {
     Ok(T::default())
 }
