@@ -186,18 +186,18 @@ mod tests {
         assert!(own.starts_with("test:3: x-plane.local_port: simulator 127.0.0.1:49557 is the"));
     }
 
-    /// 100 frames a second in 1 tick a second, and 40.
+    /// 250 frames a second in 1 tick a second, and 40.
     #[test]
     fn a_tick_reads_all_datagrams_that_arrive_in_a_period() {
         let few = message("[x-plane]\n[loop]\nrate_hz = 1\n");
         assert!(
-            few.starts_with("test:1: x-plane.datagrams_per_tick: is 64: choose at least 600 ="),
+            few.starts_with("test:1: x-plane.datagrams_per_tick: is 128: choose at least 1000 ="),
             "{few}"
         );
         let one = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\ndatagrams_per_tick = ";
-        let few = message(&format!("{one}14\n"));
-        assert!(few.contains("test:4: sensor[0].datagrams_per_tick: is 14: choose at least 15 ="));
-        kinds(&format!("{one}15\n"));
+        let few = message(&format!("{one}24\n"));
+        assert!(few.contains("test:4: sensor[0].datagrams_per_tick: is 24: choose at least 25 ="));
+        kinds(&format!("{one}25\n"));
     }
 
     #[test]

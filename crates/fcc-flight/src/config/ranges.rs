@@ -106,6 +106,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
     ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
     ("x-plane.local_port", 0.0, 65_535.0),
+    ("x-plane.reply_port", 0.0, 65_535.0),
     ("x-plane.data_version", 9.0, 12.0),
     ("x-plane.magnetic_heading_column", 2.0, 7.0),
     ("x-plane.rate_hz", 1.0, 1_000.0),
@@ -218,7 +219,9 @@ fn x_plane(
 ) -> Option<Problem> {
     let error = XPlaneConfig::from(section).validate().err()?;
     let key = match error {
-        XPlaneConfigError::EngageSwitch { .. } => format!("{at}.engage_switch"),
+        XPlaneConfigError::EngageSwitch { .. } | XPlaneConfigError::NoSuchLight { .. } => {
+            format!("{at}.engage_switch")
+        }
         XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
         XPlaneConfigError::LocalPort | XPlaneConfigError::OwnPort(_) => format!("{at}.local_port"),
         _ if problems.iter().any(|problem| problem.is_in(at)) => return None,
