@@ -10,6 +10,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::EXIT_CODES;
+use crate::x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
@@ -45,6 +46,8 @@ pub enum Action {
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
+    /// Check fccd against a running X-Plane
+    XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
     /// Release X-Plane's controls if the daemon is killed; started by the

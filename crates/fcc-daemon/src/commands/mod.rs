@@ -28,6 +28,7 @@ use clap_complete::Shell;
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
+use crate::x_plane::x_plane;
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
@@ -61,6 +62,7 @@ fn carry_out(command: Action) -> Exit {
         Action::Top(args) => top::top(&args),
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args),
+        Action::XPlane(args) => x_plane(&args),
         Action::Report(args) => report::report(&args),
         Action::ReleaseHelper => release_helper::release_helper(),
         Action::Completions { shell } => completions(shell),
