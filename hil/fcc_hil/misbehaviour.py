@@ -21,7 +21,6 @@ from .cockpit import (
     YOKE_ROLL,
 )
 from .protocol import WriteDataref
-from .settings import STANDARD_INHG
 from .units import STANDARD_GRAVITY_MPS2
 
 _P = "sim/flightmodel/position/"
@@ -109,15 +108,14 @@ def _hold_ailerons(world: Any) -> None:
 
 
 def _by_knob(world: Any, altitude_ft: float) -> float:
-    return altitude_ft + _FT_PER_INHG * (world.cockpit.read(ALTIMETER_SETTING) - STANDARD_INHG)
+    turned_inhg = world.cockpit.read(ALTIMETER_SETTING) - world.settings.qnh_inhg
+    return float(altitude_ft + _FT_PER_INHG * turned_inhg)
 
 
 _DROPS = "releases the controls by itself"
 
 MISBEHAVIOURS: dict[int, Misbehaviour] = {
-    1: Misbehaviour(
-        "does not send the airspeed", withholds=frozenset({_P + "indicated_airspeed"})
-    ),
+    1: Misbehaviour("does not send the airspeed", withholds=frozenset({_P + "indicated_airspeed"})),
     2: Misbehaviour("sends the values of a frame in two datagrams", splits=True),
     3: Misbehaviour("takes writes with incoming connections off", ignores_person=True),
     4: Misbehaviour("replies of new connections are dropped", knows_nobody_else=True),
@@ -146,9 +144,7 @@ MISBEHAVIOURS: dict[int, Misbehaviour] = {
     16: Misbehaviour("hides that its autopilot is on", distorts={SERVOS_ON: lambda *_: 0.0}),
     17: Misbehaviour("runs four times as fast when asked for twice", takes=_run_too_fast),
     18: Misbehaviour(_DROPS, each_frame=_drop_overrides),
-    19: Misbehaviour(
-        "keeps the overrides", takes=_keep_overrides, each_frame=_set_overrides_again
-    ),
+    19: Misbehaviour("keeps the overrides", takes=_keep_overrides, each_frame=_set_overrides_again),
     20: Misbehaviour("keeps the overrides", takes=_keep_overrides),
 }
 """By the number of the step."""

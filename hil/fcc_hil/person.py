@@ -7,10 +7,13 @@ of each step, and what only a person can do. X-Plane's own commands work as with
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 from .cockpit import SIM_SPEED
+from .datarefs import Getter
 from .faults import Address
+from .frames import FrameClock
 from .misbehaviour import MISBEHAVIOURS, Misbehaviour
 from .protocol import HEADER_BYTES, RunCommand, WriteDataref, WriteRows, parse
 from .readout import Readout
@@ -39,10 +42,6 @@ class Hands:
         self._rudder = 0.0
         self._nudge = Controls()
         self._nudged_s = 0.0
-
-    def take(self) -> None:
-        """Take an aircraft that was set up anew."""
-        self.__init__()  # type: ignore[misc]
 
     def deflect(self, controls: Controls) -> None:
         """Deflect the controls for a moment."""
@@ -91,26 +90,16 @@ class _Subscriptions(Subscriptions):
     ) -> list[tuple[Address, bytes]]:
         """Return the datagrams due on this frame."""
         bad = self.misbehaviour
-        for client in self._clients.values():
-            for value in client.values.values():
-                change = bad.distorts.get(value.path)
-                original = getattr(value.read, "original", value.read)
-                if change is None:
-                    value.read = original
-                elif value.read is original:
-                    value.read = _distorted(original, change, self.world)
         datagrams = super().due(now_s, readout, withheld | bad.withholds)
         if not bad.splits:
             return datagrams
         return [(client, part) for client, whole in datagrams for part in _halves(whole)]
 
-
-def _distorted(original, change, world):  # type: ignore[no-untyped-def]
-    def read(readout: Readout) -> float:
-        return float(change(world, original(readout)))
-
-    read.original = original  # type: ignore[attr-defined]
-    return read
+    def value_of(self, path: str, read: Getter, readout: Readout) -> float:
+        """Return a value as it is sent."""
+        change = self.misbehaviour.distorts.get(path)
+        value = read(readout)
+        return value if change is None else change(self.world, value)
 
 
 def _halves(datagram: bytes) -> list[bytes]:
@@ -127,10 +116,12 @@ class AttendedStandIn(StandIn):
     def __init__(self, settings: Settings) -> None:
         """Set it up as any stand-in."""
         super().__init__(settings)
-        self._subscriptions = _Subscriptions(
+        self._replies_to = _Subscriptions(
             self.dialect, shuffle=settings.shuffle, seed=settings.seed
         )
-        self._subscriptions.world = self
+        self._replies_to.world = self
+        self._subscriptions = self._replies_to
+        self._usual_clock = self.clock
         self._hands = Hands()
         self._joystick_is_over = False
         self._incoming_is_on = True
@@ -165,7 +156,7 @@ class AttendedStandIn(StandIn):
         message = parse(datagram)
         if isinstance(message, RunCommand) and message.path.startswith(CUES):
             number, _, action = message.path.removeprefix(CUES).partition("/")
-            self._follow(int(number), action)
+            self.follow(int(number), action)
             return
         if isinstance(message, WriteDataref | WriteRows | RunCommand) and not (
             self._incoming_is_on and self._bad.takes(self, message)
@@ -180,64 +171,82 @@ class AttendedStandIn(StandIn):
             return
         super()._transmit(client, datagram)
 
-    def _follow(self, step: int, action: str) -> None:
-        """Do what a cue asks for."""
-        hands = self._hands
-        match action:
-            case "begin":
-                self._begin(step)
-            case "end":
-                self._end(step)
-            case "incoming-off":
-                self._incoming_is_on = self._bad.ignores_person
-            case "incoming-on":
-                self._incoming_is_on = True
-            case "firewall-on":
-                self._firewall_drops = True
-            case "firewall-off":
-                self._firewall_drops = False
-            case "park":
-                self.reload(on_runway=True, elsewhere=False)
-            case "take-off":
-                if self.plant.state().on_ground:
-                    self.reload(on_runway=False, elsewhere=False)
-                    hands.take()
-            case "turn":
-                hands.bank_rad = _TURN_BANK_RAD
-            case "level":
-                hands.bank_rad = 0.0
-            case "pull":
-                hands.deflect(Controls(elevator=_NUDGE))
-            case "roll-right":
-                hands.deflect(Controls(aileron=_NUDGE))
-            case "right-pedal":
-                hands.deflect(Controls(rudder=_NUDGE))
-            case "joystick-over":
-                self._joystick_is_over = True
-            case "joystick-centred":
-                self._joystick_is_over = False
-            case "frames-15":
-                self.clock.set_rate(_FEW_FRAMES_HZ)
-            case "frames-normal":
-                self.clock.set_rate(self.settings.frame_rate_hz)
-            case "freeze":
-                self.enter(Mode.FROZEN, _FREEZE_S)
+    def follow(self, step: int, action: str) -> None:
+        """Do what a cue asks for; what no person does is ignored."""
+        if action == "begin":
+            self._begin(step)
+        elif action == "end":
+            self._end(step)
+        elif action in _ACTIONS:
+            _ACTIONS[action](self)
+
+    def switch_incoming(self, *, on: bool) -> None:
+        """Accept incoming connections, or not."""
+        self._incoming_is_on = on or self._bad.ignores_person
+
+    def switch_firewall(self, *, on: bool) -> None:
+        """Let a firewall drop all replies, or none."""
+        self._firewall_drops = on
+
+    def fly_bank(self, bank_rad: float) -> None:
+        """Fly with this bank."""
+        self._hands.bank_rad = bank_rad
+
+    def deflect(self, controls: Controls) -> None:
+        """Deflect the controls for a moment."""
+        self._hands.deflect(controls)
+
+    def hold_over(self, *, on: bool) -> None:
+        """Hold the joystick fully to the right and back, or let it go."""
+        self._joystick_is_over = on
+
+    def take_off(self) -> None:
+        """Be in the air again."""
+        if self.plant.state().on_ground:
+            self.reload(on_runway=False, elsewhere=False)
+            self._hands = Hands()
+
+    def make_frames(self, rate_hz: float | None) -> None:
+        """Make so many frames a second, or as many as before."""
+        self.clock = self._usual_clock if rate_hz is None else FrameClock(rate_hz)
+        self.clock.restart()
 
     def _begin(self, step: int) -> None:
         self.has_stopped = self.was_held = False
         if step in self.settings.misbehaves_in:
             self._bad = MISBEHAVIOURS[step]
-            self._subscriptions.misbehaviour = self._bad
+            self._replies_to.misbehaviour = self._bad
             if self._bad.knows_nobody_else:
                 self._known = set(self._subscriptions.paths())
 
     def _end(self, step: int) -> None:
         if step not in self.settings.misbehaves_in:
             return
-        self._bad = self._subscriptions.misbehaviour = Misbehaviour("")
+        self._bad = self._replies_to.misbehaviour = Misbehaviour("")
         self._known = None
         self._joystick_is_over = self._firewall_drops = False
         self._incoming_is_on = True
         self.enter(Mode.RUNNING)
         self.cockpit.clear_overrides()
         self.cockpit.set(SIM_SPEED, 1.0)
+
+
+_ACTIONS: dict[str, Callable[[AttendedStandIn], object]] = {
+    "incoming-off": lambda sim: sim.switch_incoming(on=False),
+    "incoming-on": lambda sim: sim.switch_incoming(on=True),
+    "firewall-on": lambda sim: sim.switch_firewall(on=True),
+    "firewall-off": lambda sim: sim.switch_firewall(on=False),
+    "park": lambda sim: sim.reload(on_runway=True, elsewhere=False),
+    "take-off": AttendedStandIn.take_off,
+    "turn": lambda sim: sim.fly_bank(_TURN_BANK_RAD),
+    "level": lambda sim: sim.fly_bank(0.0),
+    "pull": lambda sim: sim.deflect(Controls(elevator=_NUDGE)),
+    "roll-right": lambda sim: sim.deflect(Controls(aileron=_NUDGE)),
+    "right-pedal": lambda sim: sim.deflect(Controls(rudder=_NUDGE)),
+    "joystick-over": lambda sim: sim.hold_over(on=True),
+    "joystick-centred": lambda sim: sim.hold_over(on=False),
+    "frames-15": lambda sim: sim.make_frames(_FEW_FRAMES_HZ),
+    "frames-normal": lambda sim: sim.make_frames(None),
+    "freeze": lambda sim: sim.enter(Mode.FROZEN, _FREEZE_S),
+}
+"""What only a person can do, by the check's word for it."""
