@@ -156,7 +156,7 @@ def test_without_a_person_and_without_yes_it_says_what_to_do(fccd: Path, tmp_pat
 def test_the_page_has_every_step_by_its_title(fccd: Path) -> None:
     page = (Path(__file__).parents[2] / "docs" / "x-plane.md").read_text()
     listed = subprocess.run(
-        [fccd, "x-plane", "check", "--list", "--json"], capture_output=True, text=True, check=True
+        [fccd, "x-plane", "steps", "--json"], capture_output=True, text=True, check=True
     )
     steps = json.loads(listed.stdout)
     assert [step["number"] for step in steps] == list(STEPS)

@@ -65,12 +65,8 @@ pub enum CheckError {
     },
 }
 
-/// Does the steps one after another, and returns the results. Waits for the
-/// network and for people.
-///
-/// # Errors
-/// If it could not begin.
-pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckError> {
+/// Connects to X-Plane, and prepares to start the daemon.
+pub(crate) fn open(request: Request, screen: &mut dyn Screen) -> Result<Bench<'_>, CheckError> {
     let io = |what: String| move |source| CheckError::Io { what, source };
     let address = locate(&request.x_plane)?;
     let port = request.local_port;
@@ -78,18 +74,28 @@ pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckE
         .map_err(io(format!("cannot receive on UDP port {port}")))?;
     fs::create_dir_all(&request.folder)
         .map_err(io(format!("cannot make {}", request.folder.display())))?;
-    let config = request.config.clone();
-    let mut bench = Bench::new(
+    Ok(Bench::new(
         link,
         (request.program, request.folder),
         screen,
         if request.is_short { SHORT } else { FULL },
         (request.is_unattended, request.config),
-    );
+    ))
+}
+
+/// Does the steps one after another, and returns the results. Waits for the
+/// network and for people.
+///
+/// # Errors
+/// If it could not begin.
+pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckError> {
+    let (only, config) = (request.only.clone(), request.config.clone());
+    let how = (request.is_short, request.is_unattended);
+    let mut bench = open(request, screen)?;
     let mut results = Vec::new();
     let mut has_quit = false;
     for step in &STEPS {
-        if !request.only.is_empty() && !request.only.contains(&step.number) {
+        if !only.is_empty() && !only.contains(&step.number) {
             continue;
         }
         if has_quit {
@@ -102,12 +108,7 @@ pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckE
     }
     bench.daemon.stop();
     let simulator = Simulator::seen(&bench.link);
-    Ok(Report::new(
-        simulator,
-        results,
-        (request.is_short, request.is_unattended),
-        config,
-    ))
+    Ok(Report::new(simulator, results, how, config))
 }
 
 fn not_done(step: &Step) -> StepResult {

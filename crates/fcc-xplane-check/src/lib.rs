@@ -12,6 +12,7 @@
 //! | `bench` | what a step works with: waits, figures, the person or the cues |
 //! | `link`, `watched` | the connection to X-Plane and the datarefs read over it |
 //! | `daemon`, `configuration` | the daemon's process and its configuration |
+//! | `identify` | how an aircraft responds to its controls |
 //! | `waits` | how long each part takes, in full and shortened |
 //! | `screen` | what a program that runs the check has to provide |
 //! | `report` | the results as text and JSON |
@@ -28,6 +29,7 @@ mod check;
 mod configuration;
 mod daemon;
 mod figure;
+mod identify;
 mod link;
 mod report;
 mod screen;
@@ -39,6 +41,7 @@ mod watched;
 pub use check::{CheckError, Request, check};
 pub use configuration::ConfigurationError;
 pub use figure::Figure;
+pub use identify::{Identified, IdentifyError, Response, identify};
 pub use report::{Report, Simulator};
 pub use screen::{Answer, Screen};
 pub use step::{Outcome, Step, StepResult};

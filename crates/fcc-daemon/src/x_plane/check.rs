@@ -1,33 +1,22 @@
 //! `fccd x-plane check`: the twenty steps against a running X-Plane.
 
-use std::env;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, ErrorKind, IsTerminal};
 use std::path::Path;
 
-use fcc_flight::config::{Config, XPlaneSection};
-use fcc_xplane_check::{CheckError, Report, Request, STEPS, check as carry_out};
+use fcc_xplane_check::{CheckError, Report, Request, check as carry_out};
 
-use super::XPlaneCheckArgs;
 use super::terminal::Terminal;
+use super::{XPlaneCheckArgs, fail, request};
 use crate::exit::Exit;
 use crate::output;
 
-/// The configuration if none is given: X-Plane on this machine.
-const DEFAULT: &str = "[x-plane]\n";
-
 /// Checks `fccd` against a running X-Plane.
 pub(super) fn check(args: &XPlaneCheckArgs) -> Exit {
-    if args.list {
-        return list(args.json);
-    }
-    let (config, x_plane) = match configuration(args.config.as_deref()) {
-        Ok(configured) => configured,
-        Err(message) => {
-            output::message(message);
-            return Exit::Usage;
-        }
+    let request = match request(&args.connection, args.report.with_extension("files")) {
+        Ok(request) => request,
+        Err(exit) => return exit,
     };
     if !args.yes && !io::stdin().is_terminal() {
         output::message(
@@ -36,19 +25,11 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Exit {
         );
         return Exit::Usage;
     }
-    let program = match env::current_exe() {
-        Ok(program) => program,
-        Err(error) => return fail(&format!("its own program cannot be found: {error}")),
-    };
     let request = Request {
-        program,
-        config,
-        x_plane: (&x_plane).into(),
-        folder: args.report.with_extension("files"),
         only: args.only.clone(),
         is_unattended: args.yes,
         is_short: args.quick,
-        local_port: args.local_port,
+        ..request
     };
     let mut terminal = match Terminal::open(!args.yes) {
         Ok(terminal) => terminal,
@@ -65,25 +46,6 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Exit {
             if taken { Exit::Taken } else { Exit::Failure }
         }
     }
-}
-
-/// The text of the configuration, and where it says that X-Plane is.
-fn configuration(file: Option<&Path>) -> Result<(String, XPlaneSection), String> {
-    let (config, text) = match file {
-        Some(file) => Config::load_with_text(file).map_err(|error| error.to_string())?,
-        None => {
-            let config = Config::parse(DEFAULT, "the default");
-            (
-                config.map_err(|error| error.to_string())?,
-                DEFAULT.to_owned(),
-            )
-        }
-    };
-    let section = config.x_plane.ok_or(
-        "fccd x-plane is for X-Plane: give a file with a section [x-plane], such as \
-         config/x-plane.toml",
-    )?;
-    Ok((text, section))
 }
 
 /// Writes the report and prints the summary.
@@ -114,38 +76,4 @@ fn finish(report: &Report, file: &Path, json: bool) -> Exit {
         let _ = write!(text, "\nreport: {file}, {beside}");
     }
     output::result(text, exit)
-}
-
-/// Prints the steps.
-fn list(json: bool) -> Exit {
-    if json {
-        let steps: Vec<_> = STEPS
-            .iter()
-            .map(|step| {
-                serde_json::json!({
-                    "number": step.number,
-                    "title": step.title,
-                    "action": step.action,
-                    "passes": step.passes,
-                    "source": step.source,
-                    "advice": step.advice,
-                })
-            })
-            .collect();
-        return output::json(&steps, Exit::Success);
-    }
-    let mut text = String::new();
-    for step in &STEPS {
-        let _ = write!(
-            text,
-            "{:2}. {}\n    {}\n    Passes: {}\n    Limits: {}.\n\n",
-            step.number, step.title, step.action, step.passes, step.source
-        );
-    }
-    output::result(text.trim_end(), Exit::Success)
-}
-
-fn fail(message: &str) -> Exit {
-    output::message(format!("fccd: {message}"));
-    Exit::Failure
 }
