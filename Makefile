@@ -68,7 +68,8 @@ test-rust: $(STAMPS)/rust
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	cargo build --locked --release -p thermostat
-	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
+	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
+	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
 test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (10 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`cli`], [`commands`], [`exit`] | what people type, what it does, how it ends |
 //! | [`doctor`] | checks whether the machine suits a real-time loop |
-//! | [`x_plane`] | commands for a person with X-Plane |
 //! | `process`, `observers` | what a flight needs of the process around it, and who observes it there |
 //! | `output` | prints, and never panics where that fails |
 //!
@@ -17,4 +16,3 @@ pub mod exit;
 mod observers;
 mod output;
 mod process;
-pub mod x_plane;

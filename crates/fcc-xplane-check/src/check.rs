@@ -65,12 +65,19 @@ pub enum CheckError {
     },
 }
 
+impl CheckError {
+    /// Whether another program uses the port.
+    pub fn is_taken(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::AddrInUse)
+    }
+}
+
 /// Connects to X-Plane, and prepares to start the daemon.
 pub(crate) fn open(request: Request, screen: &mut dyn Screen) -> Result<Bench<'_>, CheckError> {
     let io = |what: String| move |source| CheckError::Io { what, source };
     let address = locate(&request.x_plane)?;
     let port = request.local_port;
-    let link = Link::open(address, &request.x_plane.engage_switch, port)
+    let link = Link::open(address, &request.x_plane, port)
         .map_err(io(format!("cannot receive on UDP port {port}")))?;
     fs::create_dir_all(&request.folder)
         .map_err(io(format!("cannot make {}", request.folder.display())))?;

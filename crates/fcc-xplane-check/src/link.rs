@@ -5,6 +5,7 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
+use fcc_xplane::XPlaneConfig;
 use fcc_xplane::protocol::{cmnd, dref, rref};
 
 use crate::watched::Watched;
@@ -59,6 +60,8 @@ pub(crate) struct Link {
     socket: UdpSocket,
     simulator: SocketAddr,
     engage_switch: String,
+    /// Where replies are expected to come from.
+    reply_port: u16,
     samples: VecDeque<Sample>,
     requested: Instant,
 }
@@ -67,7 +70,7 @@ impl Link {
     /// Subscribes from `local_port`, 0 for any that is free.
     pub(crate) fn open(
         simulator: SocketAddr,
-        engage_switch: &str,
+        x_plane: &XPlaneConfig,
         local_port: u16,
     ) -> io::Result<Self> {
         let any: IpAddr = if simulator.is_ipv4() {
@@ -78,10 +81,12 @@ impl Link {
         let link = Self {
             socket: UdpSocket::bind((any, local_port))?,
             simulator,
-            engage_switch: engage_switch.to_owned(),
+            engage_switch: x_plane.engage_switch.clone(),
+            reply_port: x_plane.reply_port,
             samples: VecDeque::with_capacity(KEPT),
             requested: Instant::now(),
         };
+        link.let_replies_in();
         link.subscribe(RATE_HZ, |_| true);
         Ok(link)
     }
@@ -93,6 +98,32 @@ impl Link {
     /// The name of a watched dataref.
     pub(crate) fn path(&self, what: Watched) -> &str {
         what.path(&self.engage_switch)
+    }
+
+    /// A further connection to the same X-Plane.
+    pub(crate) fn another(&self) -> io::Result<Self> {
+        let x_plane = XPlaneConfig {
+            engage_switch: self.engage_switch.clone(),
+            reply_port: self.reply_port,
+            ..XPlaneConfig::default()
+        };
+        Self::open(self.simulator, &x_plane, 0)
+    }
+
+    /// Ends a subscription that does not exist, at the port that replies come
+    /// from: a firewall on this side lets in only what comes from an address
+    /// that was written to.
+    fn let_replies_in(&self) {
+        let mut request = [0; rref::REQUEST_BYTES];
+        let to = SocketAddr::new(self.simulator.ip(), self.reply_port);
+        let path = self.path(Watched::Paused);
+        let index = FIRST_INDEX - 1;
+        if self.reply_port != 0
+            && !to.ip().is_loopback()
+            && rref::request(&mut request, 0, index, path).is_ok()
+        {
+            let _ = self.socket.send_to(&request, to);
+        }
     }
 
     fn subscribe(&self, rate_hz: u16, wanted: impl Fn(Watched) -> bool) {
@@ -178,7 +209,10 @@ impl Link {
             Some(last) if last.at.elapsed() < AGAIN_AFTER => {
                 self.subscribe(RATE_HZ, |what| last.get(what).is_none());
             }
-            _ => self.subscribe(RATE_HZ, |_| true),
+            _ => {
+                self.let_replies_in();
+                self.subscribe(RATE_HZ, |_| true);
+            }
         }
     }
 

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use crate::bench::{Bench, Done, failed};
 use crate::configuration::Guidance;
 use crate::figure::Limit;
-use crate::link::Link;
 use crate::step::Step;
 use crate::watched::Watched;
 
@@ -301,11 +300,7 @@ fn firewall(bench: &mut Bench<'_>) -> Done {
     if !hears {
         return failed("X-Plane's replies do not arrive");
     }
-    let (address, switch) = (
-        bench.link.simulator(),
-        bench.link.path(Watched::EngageSwitch),
-    );
-    let Ok(mut fresh) = Link::open(address, switch, 0) else {
+    let Ok(mut fresh) = bench.link.another() else {
         return failed("no further socket can be opened");
     };
     let asked = Instant::now();

@@ -2,30 +2,29 @@
 
 use std::fmt::Write as _;
 
-use fcc_xplane_check::{Identified, identify as carry_out};
+use fcc_xplane_check::{Identified, IdentifyError, identify as carry_out};
 
 use super::terminal::Terminal;
-use super::{IdentifyArgs, fail, request};
+use super::{Failure, not_begun, request};
+use crate::cli::x_plane::IdentifyArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Measures the responses, and prints gains.
-pub(super) fn identify(args: &IdentifyArgs) -> Exit {
-    let request = match request(&args.connection, args.files.clone()) {
-        Ok(request) => request,
-        Err(exit) => return exit,
-    };
-    let mut terminal = match Terminal::open(false) {
-        Ok(terminal) => terminal,
-        Err(error) => return fail(&format!("signals cannot be caught: {error}")),
-    };
+pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
+    let request = request(&args.connection, args.files.clone())?;
+    let mut terminal = Terminal::open(false)?;
     let result = carry_out(request, &mut terminal);
     drop(terminal);
-    match result {
-        Ok(found) if args.json => output::json(&found, Exit::Success),
-        Ok(found) => output::result(text(&found), Exit::Success),
-        Err(error) => fail(&error.to_string()),
-    }
+    let found = result.map_err(|error| match error {
+        IdentifyError::NotBegun(error) => not_begun(&error),
+        error => Failure::new(error),
+    })?;
+    Ok(if args.json {
+        output::json(&found, Exit::Success)
+    } else {
+        output::result(text(&found), Exit::Success)
+    })
 }
 
 /// A table as comments, and the lines for the configuration.

@@ -2,28 +2,25 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, ErrorKind, IsTerminal};
+use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use fcc_xplane_check::{CheckError, Report, Request, check as carry_out};
+use fcc_xplane_check::{Report, Request, check as carry_out};
 
 use super::terminal::Terminal;
-use super::{XPlaneCheckArgs, fail, request};
+use super::{Failure, not_begun, request};
+use crate::cli::x_plane::XPlaneCheckArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Checks `fccd` against a running X-Plane.
-pub(super) fn check(args: &XPlaneCheckArgs) -> Exit {
-    let request = match request(&args.connection, args.report.with_extension("files")) {
-        Ok(request) => request,
-        Err(exit) => return exit,
-    };
+pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
+    let request = request(&args.connection, args.report.with_extension("files"))?;
     if !args.yes && !io::stdin().is_terminal() {
-        output::message(
+        return Err(Failure::usage(
             "fccd: a person is needed, and standard input is no terminal: run it in one, or \
              give --yes against a stand-in for X-Plane",
-        );
-        return Exit::Usage;
+        ));
     }
     let request = Request {
         only: args.only.clone(),
@@ -31,21 +28,11 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Exit {
         is_short: args.quick,
         ..request
     };
-    let mut terminal = match Terminal::open(!args.yes) {
-        Ok(terminal) => terminal,
-        Err(error) => return fail(&format!("signals cannot be caught: {error}")),
-    };
+    let mut terminal = Terminal::open(!args.yes)?;
     let result = carry_out(request, &mut terminal);
     drop(terminal);
-    match result {
-        Ok(report) => finish(&report, &args.report, args.json),
-        Err(error) => {
-            let taken = matches!(&error, CheckError::Io { source, .. }
-                if source.kind() == ErrorKind::AddrInUse);
-            fail(&error.to_string());
-            if taken { Exit::Taken } else { Exit::Failure }
-        }
-    }
+    let report = result.map_err(|error| not_begun(&error))?;
+    Ok(finish(&report, &args.report, args.json))
 }
 
 /// Writes the report and prints the summary.
@@ -61,7 +48,7 @@ fn finish(report: &Report, file: &Path, json: bool) -> Exit {
         .and_then(|text| fs::write(&beside, text + "\n"))
         .and_then(|()| fs::write(file, report.markdown()));
     if let Err(error) = &written {
-        fail(&format!("{}: {error}", file.display()));
+        output::message(format!("fccd: {}: {error}", file.display()));
     }
     let exit = match written {
         Err(_) if exit == Exit::Success => Exit::Failure,

@@ -10,6 +10,7 @@ use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
 use indicatif::ProgressBar;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
+use super::Failure;
 use crate::output;
 
 /// The keys, once.
@@ -26,10 +27,11 @@ pub(super) struct Terminal {
 impl Terminal {
     /// Catches signals, so that the daemon is ended properly, and reads answers
     /// if there is a person.
-    pub(super) fn open(has_person: bool) -> io::Result<Self> {
+    pub(super) fn open(has_person: bool) -> Result<Self, Failure> {
         let stopped = Arc::<AtomicBool>::default();
         for signal in [SIGINT, SIGTERM, SIGHUP] {
-            signal_hook::flag::register(signal, Arc::clone(&stopped))?;
+            signal_hook::flag::register(signal, Arc::clone(&stopped))
+                .map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
         }
         let terminal = Self {
             live: ProgressBar::new_spinner(),
