@@ -293,7 +293,7 @@ impl Inbox {
                 Quantity::AccelerationEast,
                 Quantity::AccelerationUp,
                 Quantity::AccelerationSouth,
-                Quantity::TrueHeading,
+                Quantity::LocalHeading,
                 Quantity::Pitch,
                 Quantity::Roll,
             ],

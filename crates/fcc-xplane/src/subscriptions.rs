@@ -98,7 +98,7 @@ impl Subscriptions {
         for quantity in Quantity::all() {
             if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
                 let comes = row_of(rows, quantity).map(|_| Expected::Value(quantity));
-                expected.extend(comes);
+                expected.extend(comes.filter(|_| quantity.is_needed()));
                 continue;
             }
             let Some(path) = quantity.path(&config.engage_switch) else {
@@ -111,7 +111,8 @@ impl Subscriptions {
         if rows.is_none() {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
-        expected.extend(list.iter().map(|asked| asked.request.expected()));
+        let asked = list.iter().map(|asked| asked.request.expected());
+        expected.extend(asked.filter(|asked| asked.is_needed()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,

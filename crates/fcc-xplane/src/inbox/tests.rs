@@ -127,7 +127,7 @@ fn frozen_accelerations_give_a_frozen_force() {
             (Quantity::AccelerationEast, east),
             (Quantity::AccelerationUp, 0.5),
             (Quantity::AccelerationSouth, 0.0),
-            (Quantity::TrueHeading, 0.0),
+            (Quantity::LocalHeading, 0.0),
             (Quantity::Pitch, 2.0),
             (Quantity::Roll, roll_deg),
         ])
