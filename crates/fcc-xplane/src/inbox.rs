@@ -14,13 +14,18 @@
 //! one) this cannot be detected: a late one gives a state some milliseconds old
 //! for one tick.
 
+use core::time::Duration;
+
 use fcc_core::flight::{
     Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{Reading, Switch, Time};
 
+use crate::axial_load::AxialLoadSign;
 use crate::config::DataRows;
+use crate::consistency::ConsistencyCheck;
 use crate::link::{SharedState, count};
+use crate::other_control::OtherControlWatch;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
@@ -32,6 +37,11 @@ use crate::values::{Group, Values};
 /// between it stays as it was, at first off. So noise on it does not switch.
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
+/// An X-Plane that has true angles sends them in every frame: without one for
+/// this long, two frames at the lowest rate, those of the local axes are used.
+const TRUE_WITHIN: Duration = Duration::from_millis(100);
+/// Below this pitch, headings in the local axes and true ones can be compared.
+const HEADING_UP_TO_PITCH_RAD: f64 = 1.0;
 
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
@@ -46,6 +56,9 @@ pub(crate) struct Inbox {
     accelerations: [f64; 3],
     force: SpecificForce,
     switch: Switch,
+    other_control: OtherControlWatch,
+    consistency: ConsistencyCheck,
+    axial_load: AxialLoadSign,
 }
 
 impl Inbox {
@@ -58,6 +71,9 @@ impl Inbox {
             accelerations: [f64::NAN; 3],
             force: SpecificForce::default(),
             switch: Switch::Off,
+            other_control: OtherControlWatch::default(),
+            consistency: ConsistencyCheck::default(),
+            axial_load: AxialLoadSign::new(rows.map(|rows| rows.axial_load)),
         }
     }
 
@@ -215,8 +231,8 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
-        self.publish_attitude(into);
-        self.publish_motion(into);
+        self.publish_attitude(now, into);
+        self.publish_motion(now, into, link);
         let values = &mut self.values;
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed, [Quantity::Airspeed]) {
             into.airspeed_mps = Reading::new(airspeed, taken);
@@ -238,8 +254,9 @@ impl Inbox {
                 Quantity::YokeHeading,
             ],
         ) {
+            // In reverse it is negative, and with emergency power above 1.
             let surfaces = Surfaces {
-                throttle,
+                throttle: throttle.clamp(0.0, 1.0),
                 elevator,
                 aileron,
                 rudder,
@@ -254,14 +271,34 @@ impl Inbox {
             };
             into.engage_switch = Reading::new(self.switch, taken);
         }
+        if self.clock.last_received() == now {
+            self.publish_observations(now, into, link);
+        }
         self.publish_plant(now, into, link)
     }
 
-    fn publish_attitude(&mut self, into: &mut Measurements) {
+    /// What is known about the aircraft besides its measurements: in every tick
+    /// in which something arrived.
+    fn publish_observations(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
+        let other = self.other_control.step(now, &self.values, link);
+        into.other_control = Reading::new(other, now);
+        let accelerates = self.values.recent(Quantity::AccelerationUp, now);
+        let computed = accelerates.map(|_| self.force);
+        let suspect = self.consistency.step(now, &self.values, computed);
+        into.suspect = Reading::new(suspect, now);
+        link.set_loads_differ(suspect.specific_force);
+    }
+
+    fn publish_attitude(&mut self, now: Time, into: &mut Measurements) {
         let values = &mut self.values;
-        if let Some(([pitch_rad, roll_rad], taken)) =
-            values.whole(Group::Attitude, [Quantity::Pitch, Quantity::Roll])
-        {
+        let truly = values.whole(
+            Group::TrueAttitude,
+            [Quantity::TruePitch, Quantity::TrueRoll],
+        );
+        let locally = values
+            .whole(Group::Attitude, [Quantity::Pitch, Quantity::Roll])
+            .filter(|_| now.since(values.arrived(Quantity::TruePitch)) > TRUE_WITHIN);
+        if let Some(([pitch_rad, roll_rad], taken)) = truly.or(locally) {
             let attitude = Attitude {
                 pitch_rad,
                 roll_rad,
@@ -285,7 +322,7 @@ impl Inbox {
         }
     }
 
-    fn publish_motion(&mut self, into: &mut Measurements) {
+    fn publish_motion(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
         let values = &mut self.values;
         if let Some(([east, up, south, heading, pitch, roll], taken)) = values.whole(
             Group::Acceleration,
@@ -305,7 +342,11 @@ impl Inbox {
             let accelerations = [east, up, south];
             if accelerations != self.accelerations {
                 self.accelerations = accelerations;
-                self.force = specific_force(accelerations, [heading, pitch, roll]);
+                let attitude = Attitude {
+                    pitch_rad: values.recent(Quantity::TruePitch, now).unwrap_or(pitch),
+                    roll_rad: values.recent(Quantity::TrueRoll, now).unwrap_or(roll),
+                };
+                self.force = specific_force(accelerations, [heading, pitch, roll], attitude);
             }
             into.specific_force = Reading::new(self.force, taken);
         }
@@ -317,8 +358,12 @@ impl Inbox {
                 Quantity::LoadSide,
             ],
         ) {
+            let pitch = values.recent(Quantity::Pitch, now);
+            let airspeed = values.recent(Quantity::Airspeed, now);
+            self.axial_load.step(now, axial, pitch.zip(airspeed));
+            link.set_axial_backwards(self.axial_load.is_backwards());
             let force = SpecificForce {
-                x_mps2: axial,
+                x_mps2: self.axial_load.forwards(axial),
                 y_mps2: side,
                 z_mps2: -normal,
             };
@@ -332,9 +377,10 @@ impl Inbox {
                 Quantity::VelocitySouth,
             ],
         ) {
+            let (sin, cos) = local_north(values, now).sin_cos();
             let velocity = Velocity {
-                north_mps: -south,
-                east_mps: east,
+                north_mps: -south * cos - east * sin,
+                east_mps: east * cos - south * sin,
                 down_mps: -up,
             };
             into.velocity = Reading::new(velocity, taken);
@@ -363,6 +409,17 @@ impl Inbox {
         }
         state
     }
+}
+
+/// The true direction of the local axes' north, rad clockwise from true north;
+/// 0 where it is not known.
+fn local_north(values: &Values, now: Time) -> f64 {
+    let recent = |quantity| values.recent(quantity, now);
+    let level = recent(Quantity::Pitch).filter(|pitch| pitch.abs() < HEADING_UP_TO_PITCH_RAD);
+    recent(Quantity::TrueHeading)
+        .zip(recent(Quantity::LocalHeading))
+        .zip(level)
+        .map_or(0.0, |((truly, locally), _)| truly - locally)
 }
 
 /// Wraps an angle into 0..2π.

@@ -10,8 +10,11 @@
 //! it steps when the setting is changed: do not change it while engaged.
 //!
 //! X-Plane's local axes (x east, y up, z south) are those of its scenery's
-//! reference point: true north at the aircraft differs from them by the
-//! convergence of the meridians, a fraction of a degree.
+//! reference point, which moves with the scenery: up and north at the aircraft
+//! differ from them by up to a degree, and angles from them step when the
+//! reference point moves. So attitude is taken from the horizontal below the
+//! aircraft where X-Plane has it; only accelerations, which are in the local
+//! axes, need the angles from these.
 
 #[cfg(test)]
 mod document;
@@ -60,6 +63,24 @@ pub(crate) enum Quantity {
     LoadNormal,
     LoadAxial,
     LoadSide,
+    TruePitch,
+    TrueRoll,
+    TrueHeading,
+    LoadFactor,
+    TrueAirspeed,
+    AirDensity,
+    Servos,
+    Servos2,
+    Servos3,
+    Autothrottle,
+    OverrideStability,
+    OverrideFlightControl,
+    OverrideSurfaces,
+    StabilityPitch,
+    StabilityRoll,
+    StabilityHeading,
+    EngineMode,
+    ThrottleLever,
 }
 
 impl Quantity {

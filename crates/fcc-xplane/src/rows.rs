@@ -8,8 +8,8 @@
 //! - Row 17, attitude: magnetic heading in column 3, or in 4 according to one
 //!   capture.
 //! - Row 4, load factors in g: normal (column 4) is positive upwards, so it is
-//!   -z of the body; axial (5) and side (6) are taken as +x and +y, as two
-//!   independent programs do.
+//!   -z of the body; side (6) is +y, as two independent programs take it; on the
+//!   sign of axial (5) they disagree ([`axial_load`](crate::axial_load)).
 //! - Row 1, times: column 2 is the time of this flight, which does not advance
 //!   while paused and is reset when a flight is loaded.
 //! - Row 20: latitude and longitude are f32 here and lose about a metre.

@@ -28,6 +28,10 @@ const PACE_OVER: Duration = Duration::from_secs(1);
 /// Slow below this share of our time, until it is above [`PACE_REGAINED`].
 const PACE_LOST: f64 = 0.9;
 const PACE_REGAINED: f64 = 0.95;
+/// Fast above this share of our time, until it is below [`PACE_SLOWED`]: twice
+/// our time, which is flown, plus the jitter of the measurement.
+const PACE_FAST: f64 = 2.2;
+const PACE_SLOWED: f64 = 2.1;
 /// Slow above this frame period (20 frames a second, where X-Plane begins to
 /// slow its time), until it is below [`FRAME_REGAINED_S`] (22 a second).
 const FRAME_LOST_S: f64 = 1.0 / 20.0;
@@ -53,6 +57,9 @@ pub enum SimulatorState {
     /// In this tick its clock went back by a second or more, or gained a second
     /// on ours: a flight was loaded. This lasts for one tick only.
     Jumped = 5,
+    /// Its time runs more than 2.2 times as fast as ours over 1 to 2 s, until it
+    /// is less than 2.1 times as fast.
+    Fast = 6,
 }
 
 impl SimulatorState {
@@ -66,6 +73,7 @@ impl SimulatorState {
             Self::Stalled => Some(PlantState::Stalled),
             Self::Slow => Some(PlantState::Slow),
             Self::Jumped => Some(PlantState::Jumped),
+            Self::Fast => Some(PlantState::Fast),
         }
     }
 
@@ -77,6 +85,7 @@ impl SimulatorState {
             3 => Self::Stalled,
             4 => Self::Slow,
             5 => Self::Jumped,
+            6 => Self::Fast,
             _ => Self::Silent,
         }
     }
@@ -120,6 +129,7 @@ pub(crate) struct SimulatorClock {
     /// younger is [`PACE_OVER`] old.
     marks: [ClockSample; 2],
     slow: bool,
+    fast: bool,
     jumped: bool,
 }
 
@@ -134,6 +144,7 @@ impl SimulatorClock {
             frame_period_s: 0.0,
             marks: [ClockSample::default(); 2],
             slow: false,
+            fast: false,
             jumped: false,
         }
     }
@@ -202,6 +213,7 @@ impl SimulatorClock {
         self.advanced = now;
         self.marks = [self.latest; 2];
         self.slow = false;
+        self.fast = false;
     }
 
     fn update_pace(&mut self, now: Time) {
@@ -222,6 +234,11 @@ impl SimulatorClock {
             self.slow = true;
         } else if measured && pace > PACE_REGAINED && self.frame_period_s < FRAME_REGAINED_S {
             self.slow = false;
+        }
+        if pace > PACE_FAST {
+            self.fast = true;
+        } else if measured && pace < PACE_SLOWED {
+            self.fast = false;
         }
     }
 
@@ -259,6 +276,8 @@ impl SimulatorClock {
             SimulatorState::Stalled
         } else if self.slow {
             SimulatorState::Slow
+        } else if self.fast {
+            SimulatorState::Fast
         } else {
             SimulatorState::Running
         }

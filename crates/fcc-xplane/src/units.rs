@@ -20,6 +20,7 @@ pub(crate) enum Unit {
     MetresPerSecond,
     MetresPerSecondSquared,
     RadiansPerSecond,
+    KilogramsPerCubicMetre,
     Degrees,
     Knots,
     Feet,
@@ -36,7 +37,8 @@ impl Unit {
             | Self::Ratio
             | Self::MetresPerSecond
             | Self::MetresPerSecondSquared
-            | Self::RadiansPerSecond => value,
+            | Self::RadiansPerSecond
+            | Self::KilogramsPerCubicMetre => value,
             Self::Degrees => value.to_radians(),
             Self::Knots => value * KNOT_MPS,
             Self::Feet => value * FOOT_M,

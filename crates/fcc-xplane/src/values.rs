@@ -1,5 +1,7 @@
 //! The latest value of each quantity, and which measurements they complete.
 
+use core::time::Duration;
+
 use fcc_core::framework::Time;
 
 use crate::quantity::Quantity;
@@ -9,6 +11,7 @@ use crate::quantity::Quantity;
 #[repr(u8)]
 pub(crate) enum Group {
     Attitude,
+    TrueAttitude,
     Heading,
     Rates,
     Acceleration,
@@ -22,8 +25,12 @@ pub(crate) enum Group {
 }
 
 impl Group {
-    const COUNT: usize = 11;
+    const COUNT: usize = 12;
 }
+
+/// A value that stands alone is used up to this age: some frames at the lowest
+/// rate, and a lost datagram.
+const RECENT: Duration = Duration::from_millis(500);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Value {
@@ -57,6 +64,12 @@ impl Values {
     /// When a quantity last arrived.
     pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
         self.value(quantity).arrived
+    }
+
+    /// The latest value of a quantity, if it is not older than [`RECENT`].
+    pub(crate) fn recent(&self, quantity: Quantity, now: Time) -> Option<f64> {
+        let Value { value, arrived } = self.value(quantity);
+        (!arrived.is_never() && now.since(arrived) <= RECENT).then_some(value)
     }
 
     fn value(&self, quantity: Quantity) -> Value {

@@ -126,6 +126,20 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
             EventKind::ModeChanged { from, to } => {
                 write!(f, "mode: {}, was {}", C::mode_name(to), C::mode_name(from))
             }
+            EventKind::ConditionsChanged { began, ended } => {
+                if !began.is_empty() {
+                    f.write_str("now: ")?;
+                    name_flags::<C>(f, began)?;
+                }
+                if !began.is_empty() && !ended.is_empty() {
+                    f.write_str("; ")?;
+                }
+                if !ended.is_empty() {
+                    f.write_str("no longer: ")?;
+                    name_flags::<C>(f, ended)?;
+                }
+                Ok(())
+            }
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {
                     let separator = if n > 0 { ", " } else { "" };

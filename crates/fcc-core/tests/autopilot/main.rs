@@ -5,4 +5,5 @@
 mod cockpit;
 mod faults;
 mod flying;
+mod other_control;
 mod resuming;
