@@ -349,7 +349,10 @@ fn conditions_are_reported_while_control_is_held() {
     );
     bench.tick(|_| {});
     bench.tick(|script| script.conditions = second);
-    assert_eq!(bench.tick(|script| script.conditions = Flags::NONE), Engaged);
+    assert_eq!(
+        bench.tick(|script| script.conditions = Flags::NONE),
+        Engaged
+    );
     assert_eq!(
         bench.events(),
         [changed(second, first), changed(Flags::NONE, second)]

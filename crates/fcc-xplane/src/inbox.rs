@@ -62,7 +62,7 @@ pub(crate) struct Inbox {
 }
 
 impl Inbox {
-    pub(crate) fn new(rows: Option<DataRows>, silent_after: core::time::Duration) -> Self {
+    pub(crate) fn new(rows: Option<DataRows>, silent_after: Duration) -> Self {
         Self {
             rows,
             clock: SimulatorClock::new(silent_after),

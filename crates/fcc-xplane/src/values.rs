@@ -39,7 +39,7 @@ struct Value {
 }
 
 /// The latest value of each quantity.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Values {
     values: [Value; Quantity::COUNT],
     /// For each group, a bit for each quantity that arrived since the group was
@@ -49,6 +49,15 @@ pub(crate) struct Values {
 
 const fn bit(quantity: Quantity) -> u64 {
     1 << (quantity as u8)
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self {
+            values: [Value::default(); Quantity::COUNT],
+            new: [0; Group::COUNT],
+        }
+    }
 }
 
 impl Values {

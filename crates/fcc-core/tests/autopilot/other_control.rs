@@ -141,7 +141,11 @@ fn a_suspect_airspeed_is_a_fault_and_is_not_used() {
     assert_eq!(cockpit.faults(), flags::SUSPECT_AIRSPEED);
     assert_eq!(cockpit.engage_inhibits(), flags::SUSPECT_AIRSPEED);
     cockpit.steps(11);
-    assert!(cockpit.faults().contains(flags::AIRSPEED | flags::SUSPECT_AIRSPEED));
+    assert!(
+        cockpit
+            .faults()
+            .contains(flags::AIRSPEED | flags::SUSPECT_AIRSPEED)
+    );
     let after = cockpit.autopilot.estimated().airspeed_mps;
     assert!((after - before).abs() < 0.5, "{before} m/s, then {after}");
     cockpit.suspect = Suspect::default();

@@ -205,7 +205,7 @@ pub(super) const TABLE: &[Entry] = &[
         .is("clockwise from true north").instead("the local axes' north counts as true north"),
     Entry::new(Quantity::LoadFactor, Dataref("sim/flightmodel/forces/g_nrml"), Unit::Gravities, [-100.0, 100.0]).in_rows().by(ListAndArduPilot)
         .is("up along the aircraft's axis, 1 in level flight").instead("the local accelerations are not checked"),
-    Entry::new(Quantity::TrueAirspeed, Position("true_airspeed"), Unit::MetresPerSecond, [-1e4, 1e4])
+    Entry::new(Quantity::TrueAirspeed, Position("true_airspeed"), Unit::MetresPerSecond, [-1e4, 1e4]).in_rows()
         .is("forwards").instead("the indicated airspeed is not checked"),
     Entry::new(Quantity::AirDensity, Dataref("sim/weather/rho"), Unit::KilogramsPerCubicMetre, [0.0, 10.0])
         .is("at the aircraft").instead("the indicated airspeed is not checked"),
