@@ -1,6 +1,6 @@
 //! The sign of the axial load in row 4 of Data Output.
 //!
-//! Sources disagree: ArduPilot takes it as positive forwards, px4xplane as
+//! Sources disagree: `ArduPilot` takes it as positive forwards, px4xplane as
 //! positive backwards. An accelerometer along the aircraft's x measures g·sin
 //! pitch and the change of the airspeed, so a flight shows which it is: with the
 //! nose raised or while accelerating, the load is forwards.

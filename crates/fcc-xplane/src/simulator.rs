@@ -128,9 +128,16 @@ pub(crate) struct SimulatorClock {
     /// The samples from which the pace is measured: the older one, until the
     /// younger is [`PACE_OVER`] old.
     marks: [ClockSample; 2],
-    slow: bool,
-    fast: bool,
+    pace: Pace,
     jumped: bool,
+}
+
+/// How fast the simulator's time runs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Pace {
+    Slow,
+    Even,
+    Fast,
 }
 
 impl SimulatorClock {
@@ -143,8 +150,7 @@ impl SimulatorClock {
             paused: false,
             frame_period_s: 0.0,
             marks: [ClockSample::default(); 2],
-            slow: false,
-            fast: false,
+            pace: Pace::Even,
             jumped: false,
         }
     }
@@ -212,8 +218,7 @@ impl SimulatorClock {
     fn begin_pace(&mut self, now: Time) {
         self.advanced = now;
         self.marks = [self.latest; 2];
-        self.slow = false;
-        self.fast = false;
+        self.pace = Pace::Even;
     }
 
     fn update_pace(&mut self, now: Time) {
@@ -231,14 +236,17 @@ impl SimulatorClock {
             1.0
         };
         if pace < PACE_LOST || self.frame_period_s > FRAME_LOST_S {
-            self.slow = true;
-        } else if measured && pace > PACE_REGAINED && self.frame_period_s < FRAME_REGAINED_S {
-            self.slow = false;
-        }
-        if pace > PACE_FAST {
-            self.fast = true;
-        } else if measured && pace < PACE_SLOWED {
-            self.fast = false;
+            self.pace = Pace::Slow;
+        } else if pace > PACE_FAST {
+            self.pace = Pace::Fast;
+        } else if measured {
+            self.pace = match self.pace {
+                Pace::Slow if pace <= PACE_REGAINED || self.frame_period_s >= FRAME_REGAINED_S => {
+                    Pace::Slow
+                }
+                Pace::Fast if pace >= PACE_SLOWED => Pace::Fast,
+                _ => Pace::Even,
+            };
         }
     }
 
@@ -274,12 +282,12 @@ impl SimulatorClock {
             SimulatorState::Paused
         } else if self.has_stopped() {
             SimulatorState::Stalled
-        } else if self.slow {
-            SimulatorState::Slow
-        } else if self.fast {
-            SimulatorState::Fast
         } else {
-            SimulatorState::Running
+            match self.pace {
+                Pace::Slow => SimulatorState::Slow,
+                Pace::Even => SimulatorState::Running,
+                Pace::Fast => SimulatorState::Fast,
+            }
         }
     }
 }

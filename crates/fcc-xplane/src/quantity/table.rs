@@ -40,9 +40,9 @@ pub(super) enum IfMissing {
 pub(super) enum StatedBy {
     /// X-Plane's own list of datarefs.
     List,
-    /// The same; the sign is that which ArduPilot uses.
+    /// The same; the sign is that which `ArduPilot` uses.
     ListAndArduPilot,
-    /// The same; that gravity is not in it: SimHub's issue 1981.
+    /// The same; that gravity is not in it: issue 1981 of `SimHub`.
     ListAndSimHub,
 }
 
