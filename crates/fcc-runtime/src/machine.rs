@@ -3,15 +3,15 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Cause, Controller, EventKind, Flags, LoopCommand, Record, RecordOf, StageTimes, State,
-    SwitchOff, Tick, Time,
+    AfterRelease, Cause, Controller, EventKind, Flags, LoopCommand, Record, RecordOf, StageTimes,
+    State, Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
 
 use crate::actuators::Actuators;
 use crate::commands;
-use crate::config::{AfterFailsafe, LoopConfig, Parts};
+use crate::config::{LoopConfig, Parts};
 use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
@@ -35,9 +35,9 @@ pub struct Machine<C: Controller> {
     pub(crate) controller: C,
     pub(crate) actuators: Actuators<C::Outputs>,
 
-    pub(crate) switch_off: SwitchOff,
+    pub(crate) switch_off: AfterRelease,
     pub(crate) failsafe_hold: Duration,
-    pub(crate) after_failsafe: AfterFailsafe,
+    pub(crate) after_failsafe: AfterRelease,
 
     pub(crate) commands: Consumer<LoopCommand<C::Command>>,
     pub(crate) telemetry: TelemetryProducer<C>,

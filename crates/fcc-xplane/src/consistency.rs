@@ -99,7 +99,7 @@ mod tests {
         let mut known = Values::default();
         let mut now = Time::from_nanos(1_000_000_000);
         let mut suspect = Suspect::default();
-        for _ in 0..seconds * 40 + 1 {
+        for _ in 0..=seconds * 40 {
             now = now + TICK;
             for (quantity, value) in values {
                 known.set(*quantity, *value, now);
