@@ -22,6 +22,7 @@ use fcc_core::framework::{Reading, Switch, Time};
 use crate::axial_load::AxialLoadSign;
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
+use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{SharedState, count};
 use crate::other_control::OtherControlWatch;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
@@ -56,6 +57,8 @@ pub(crate) struct Inbox {
     /// Pitch and roll from the horizontal below the aircraft, less those from
     /// that of the local axes.
     lean: [f64; 2],
+    /// When the former last arrived.
+    true_attitude: Time,
     switch: Switch,
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
@@ -72,6 +75,7 @@ impl Inbox {
             accelerations: [f64::NAN; 3],
             force: SpecificForce::default(),
             lean: [0.0; 2],
+            true_attitude: Time::NEVER,
             switch: Switch::Off,
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
@@ -130,6 +134,9 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
+            if index == NONEXISTENT_INDEX {
+                link.set_answers_anything();
+            }
             let quantity = Quantity::from_index(index)?;
             // Left over from a run with RREF input: now only rows are read.
             let elsewhere = with_rows && quantity.comes_in_rows();
@@ -298,9 +305,13 @@ impl Inbox {
         let values = &mut self.values;
         let locally = values
             .whole(Group::Attitude)
-            .filter(|_| now.since(values.arrived(Quantity::TruePitch)) > TRUE_WITHIN);
-        let truly = values.whole(Group::TrueAttitude);
-        if let Some(([pitch, roll, local_pitch, local_roll], _)) = truly {
+            .filter(|_| now.since(self.true_attitude) > TRUE_WITHIN);
+        // Exactly level to the last bit is the answer of a version without it.
+        let truly = values
+            .whole(Group::TrueAttitude)
+            .filter(|([pitch, roll, _, _], _)| (*pitch, *roll) != (0.0, 0.0));
+        if let Some(([pitch, roll, local_pitch, local_roll], taken)) = truly {
+            self.true_attitude = taken;
             self.lean = [pitch - local_pitch, roll - local_roll];
         } else if locally.is_some() {
             self.lean = [0.0; 2];

@@ -105,6 +105,7 @@ pub(crate) struct SharedState {
     other_writer: AtomicBool,
     loads_differ: AtomicBool,
     axial_backwards: AtomicBool,
+    answers_anything: AtomicBool,
     version: AtomicU32,
     /// A [`ValueSet`].
     missing: AtomicU64,
@@ -130,6 +131,7 @@ impl SharedState {
             other_writer: AtomicBool::new(false),
             loads_differ: AtomicBool::new(false),
             axial_backwards: AtomicBool::new(false),
+            answers_anything: AtomicBool::new(false),
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
             frame_period: AtomicU32::new(0),
@@ -252,6 +254,15 @@ impl SharedState {
 
     pub(crate) fn set_axial_backwards(&self, backwards: bool) {
         self.axial_backwards.store(backwards, Ordering::Relaxed);
+    }
+
+    /// Whether the simulator answers requests for datarefs that it does not have.
+    pub(crate) fn answers_anything(&self) -> bool {
+        self.answers_anything.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_answers_anything(&self) {
+        self.answers_anything.store(true, Ordering::Relaxed);
     }
 
     pub(crate) fn missing(&self) -> ValueSet {
