@@ -485,6 +485,9 @@ class Autopilot:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     @property
     def engaged(self) -> bool: ...
@@ -546,6 +549,9 @@ class Machine:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
@@ -870,4 +876,7 @@ class Commander:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> int: ...

@@ -34,6 +34,7 @@ mod blocks;
 #[cfg(feature = "flight")]
 mod callbacks;
 #[cfg(feature = "flight")]
+mod commanded;
 mod config;
 mod errors;
 pub mod events;
