@@ -222,6 +222,15 @@ mod tests {
         assert_eq!(FlightCommand::Stop.check_for(&limits(60.0..=70.0)), Ok(()));
     }
 
+    /// The autopilot ignores others.
+    #[test]
+    fn the_altimeter_settings_are_those_of_the_autopilot() {
+        assert_eq!(
+            Quantity::AltimeterSetting.range(),
+            fcc_core::flight::ALTIMETER_SETTINGS_PA
+        );
+    }
+
     #[test]
     fn an_altitude_says_what_it_refers_to() {
         let both = FlightCommand::Set(NewSetpoints {

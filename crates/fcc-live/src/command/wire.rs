@@ -267,9 +267,25 @@ mod tests {
     proptest! {
         /// Invalid bytes in shared memory never give an invalid command.
         #[test]
-        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
-            let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
-            let request = CommandRequest { version, code, airspeed_mps, heading_rad, altitude_m };
+        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 6]) {
+            let [
+                airspeed_mps,
+                heading_rad,
+                altitude_m,
+                pressure_altitude_m,
+                height_m,
+                altimeter_setting_pa,
+            ] = bits.map(f64::from_bits);
+            let request = CommandRequest {
+                version,
+                code,
+                airspeed_mps,
+                heading_rad,
+                altitude_m,
+                pressure_altitude_m,
+                height_m,
+                altimeter_setting_pa,
+            };
             if let Ok(command) = request.command() {
                 prop_assert!(command.check().is_ok());
             }
