@@ -286,7 +286,7 @@ pub struct SetArgs {
     /// Pressure altitude: flight level 55 is 5500
     #[arg(long, value_name = "FT", allow_negative_numbers = true)]
     pub pressure_altitude_ft: Option<f64>,
-    /// Height above altimeter.field_elevation_ft
+    /// Height above the configured field elevation
     #[arg(long, value_name = "FT", allow_negative_numbers = true)]
     pub height_ft: Option<f64>,
     /// Altimeter setting (QNH), 940 to 1060; also in standby
