@@ -34,7 +34,7 @@ class _Link:
         self._daemon: tuple[str, int] | None = None
         self._outside = self._open()
         self._inside = self._open()
-        self._inside.connect(("127.0.0.1", simulator_port))
+        self._simulator = ("127.0.0.1", simulator_port)
         self._over = False
 
     @property
@@ -75,7 +75,7 @@ class _Link:
             path = datagram[_TAG_BYTES + _REQUEST.size :].partition(b"\0")[0]
             self._paths[index] = path.decode()
         if not self._cut["to"]:
-            self._inside.send(datagram)
+            self._inside.sendto(datagram, self._simulator)
 
     def _outwards(self) -> None:
         datagram = self._inside.recv(_LARGEST_DATAGRAM)
