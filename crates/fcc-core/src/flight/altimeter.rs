@@ -38,11 +38,11 @@ schema! {
 }
 
 impl AltitudeReference {
-    /// Its name, as text for users.
+    /// Its name, as in tables.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::PressureLevel => "pressure level",
-            Self::SeaLevel => "sea level",
+            Self::PressureLevel => "pressure-level",
+            Self::SeaLevel => "sea-level",
             Self::Field => "field",
         }
     }
