@@ -1,9 +1,8 @@
 //! `[altimeter]`: the altimeter setting, and what heights refer to.
 
 use fcc_core::flight::Altimeter;
+use fcc_core::units::{FOOT_M, HECTOPASCAL_PA};
 use serde::{Deserialize, Serialize};
-
-use super::units::{FOOT_M, HECTOPASCAL_PA};
 
 /// The standard pressure.
 const STANDARD_HPA: f64 = 1_013.25;

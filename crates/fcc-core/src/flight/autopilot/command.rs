@@ -7,6 +7,7 @@ use crate::blocks::wrap_pi;
 use crate::flight::guidance::ModeInput;
 use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference};
 use crate::schema;
+use crate::units::{FOOT_M, HECTOPASCAL_PA, KNOT_MPS};
 
 schema! {
     /// A command to the autopilot. Those of a set point change it, end a pattern
@@ -57,15 +58,18 @@ schema! {
     }
 }
 
+/// In the units in which commands are given: knots, degrees, feet, hectopascals.
 impl fmt::Display for AutopilotCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
+            Self::Airspeed(mps) => write!(f, "airspeed {:.1} kt", mps / KNOT_MPS),
             Self::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
-            Self::Altitude(m) => write!(f, "altitude {m:.1} m"),
-            Self::PressureAltitude(m) => write!(f, "pressure altitude {m:.1} m"),
-            Self::Height(m) => write!(f, "height {m:.1} m"),
-            Self::AltimeterSetting(pa) => write!(f, "altimeter setting {:.2} hPa", pa / 100.0),
+            Self::Altitude(m) => write!(f, "altitude {:.0} ft", m / FOOT_M),
+            Self::PressureAltitude(m) => write!(f, "pressure altitude {:.0} ft", m / FOOT_M),
+            Self::Height(m) => write!(f, "height {:.0} ft", m / FOOT_M),
+            Self::AltimeterSetting(pa) => {
+                write!(f, "altimeter setting {:.2} hPa", pa / HECTOPASCAL_PA)
+            }
             Self::Resume(Resume { progress, .. }) => {
                 write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
             }

@@ -216,6 +216,7 @@ impl Controller for Autopilot {
             .unwrap_or("unknown condition")
     }
 
+    /// In the units in which commands are given: knots, degrees, feet.
     fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{command}")
     }
