@@ -2,7 +2,7 @@
 
     with StandInProcess(Settings(port=0)) as simulator:
         simulator.port                                # fly against it
-        simulator.write("sim/cockpit2/switches/generic_lights_switch[0]", 1.0)
+        simulator.write("sim/cockpit2/switches/generic_lights_switch[56]", 1.0)
         simulator.act("freeze:1.5")                   # what a person or X-Plane itself does
         truth = simulator.truth()
 

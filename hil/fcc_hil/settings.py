@@ -46,7 +46,7 @@ class Settings:
     """Of IPv4 or of IPv6."""
     port: int = 49_000
     """The port that it listens on; 0 selects a free one."""
-    reply_port: ReplyPort = "same"
+    reply_port: ReplyPort = "next"
     """The port that it sends from, as X-Plane sends from 49001."""
     frame_rate_hz: float = 60.0
     frame_rates_hz: tuple[float, float] | None = (20.0, 144.0)

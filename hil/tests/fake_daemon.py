@@ -17,7 +17,7 @@ import struct
 import time
 
 SIM = "sim/flightmodel/position/"
-SWITCH = "sim/cockpit2/switches/generic_lights_switch[0]"
+SWITCH = "sim/cockpit2/switches/generic_lights_switch[56]"
 READ = [
     SIM + "theta",
     SIM + "phi",

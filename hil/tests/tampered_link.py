@@ -63,7 +63,9 @@ class _Link:
 
     def _obey(self) -> None:
         try:
-            self._cut, self._says = self._pipe.recv()
+            self._cut, self._says, datagram = self._pipe.recv()
+            if datagram and self._daemon is not None:
+                self._outside.sendto(datagram, self._daemon)
             self._pipe.send(None)
         except (EOFError, OSError):
             self._over = True
@@ -131,12 +133,16 @@ class TamperedLink:
         """Replace the values of these datarefs; nothing is cut."""
         self._command({"to": False, "from": False}, dict(values))
 
+    def send(self, datagram: bytes) -> None:
+        """Send the daemon a datagram as the simulator would, and cut and replace nothing."""
+        self._command({"to": False, "from": False}, {}, datagram)
+
     def restore(self) -> None:
         """Forward everything unchanged."""
         self.replace_values({})
 
-    def _command(self, cut: dict[str, bool], says: dict[str, float]) -> None:
-        self._pipe.send((cut, says))
+    def _command(self, cut: dict[str, bool], says: dict[str, float], send: bytes = b"") -> None:
+        self._pipe.send((cut, says, send))
         self._answer()
 
     def _answer(self) -> int:
