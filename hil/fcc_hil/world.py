@@ -122,6 +122,7 @@ class World:
 
         By at least 1 degree of longitude, as at the edge of a scenery tile.
         """
+        self._origin_moved = True
         state = self.plant.state()
         to_origin_rad = self.axes.longitude_rad - state.longitude_rad
         moved_rad = math.copysign(max(abs(2.0 * to_origin_rad), math.radians(1.0)), -to_origin_rad)
@@ -260,6 +261,8 @@ class World:
             self.plant.step()
             if self.plant.steps % STEPS_PER_ROW == 0:
                 self.truth.append(row(self.plant.state(), self.plant.controls))
+        if not self._origin_moved and self.plant.time_s >= self.settings.origin_moves_after_s:
+            self.shift_origin()
         self._remember(self.plant.state())
 
     def _set_up(self, plant: Plant) -> None:
@@ -271,6 +274,7 @@ class World:
             start.latitude_rad + math.radians(offset[0]),
             start.longitude_rad + math.radians(offset[1]),
         )
+        self._origin_moved = False
         self._attitude = MeasuredAttitude()
         self._autopilot = SimulatorAutopilot()
         self._time_offset_s = 0.0

@@ -265,6 +265,19 @@ def test_the_true_attitude_is_not_about_the_local_axes() -> None:
     bench.close()
 
 
+def test_the_origin_moves_by_itself_once() -> None:
+    bench = Bench(origin_offset_deg=(0.5, 0.5), origin_moves_after_s=0.5)
+    before_deg = bench.read(P + "phi")
+    bench.frames(29)
+    assert bench.read(P + "phi") == pytest.approx(before_deg, abs=0.1)
+    bench.frames(2)
+    moved_deg = bench.read(P + "phi")
+    assert moved_deg - before_deg == pytest.approx(1.0, abs=0.1)
+    bench.frames(60)
+    assert bench.read(P + "phi") == pytest.approx(moved_deg, abs=0.1)
+    bench.close()
+
+
 def test_a_frozen_or_broken_angle_is_so_about_the_local_axes_too() -> None:
     bench = Bench(origin_offset_deg=(0.5, 0.5))
     names = ("theta", "phi", "psi", "true_phi")
