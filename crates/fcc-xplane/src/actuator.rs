@@ -29,7 +29,7 @@ const ASSERT_EVERY: Duration = Duration::from_secs(1);
 ///
 /// The first [`apply`](Actuator::apply) after a release sets the overrides,
 /// then writes, in every tick unless X-Plane cannot take so much in one frame
-/// (in a loop above 180 Hz). [`release`](Actuator::release) centres the surfaces and
+/// (in a loop above 100 Hz). [`release`](Actuator::release) centres the surfaces and
 /// releases the overrides, three times; dropping does the same. A sensor that
 /// is still being sampled checks that the release took effect.
 #[derive(Debug)]

@@ -18,6 +18,7 @@ use fcc_core::flight::{
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
+use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{SharedState, count};
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
@@ -110,6 +111,9 @@ impl Inbox {
     ) -> Result<bool, Malformed> {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
+            if index == NONEXISTENT_INDEX {
+                link.set_answers_anything();
+            }
             let quantity = Quantity::from_index(index)?;
             // Left over from a run with RREF input: now only rows are read.
             let elsewhere = with_rows && quantity.comes_in_rows();

@@ -99,6 +99,7 @@ pub(crate) struct SharedState {
     state: AtomicU8,
     control: AtomicU8,
     unconfirmed: AtomicBool,
+    answers_anything: AtomicBool,
     version: AtomicU32,
     /// A [`ValueSet`].
     missing: AtomicU64,
@@ -121,6 +122,7 @@ impl SharedState {
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
+            answers_anything: AtomicBool::new(false),
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
             frame_period: AtomicU32::new(0),
@@ -216,6 +218,15 @@ impl SharedState {
 
     pub(crate) fn set_unconfirmed(&self, unconfirmed: bool) {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
+    }
+
+    /// Whether the simulator answers requests for datarefs that it does not have.
+    pub(crate) fn answers_anything(&self) -> bool {
+        self.answers_anything.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_answers_anything(&self) {
+        self.answers_anything.store(true, Ordering::Relaxed);
     }
 
     pub(crate) fn missing(&self) -> ValueSet {

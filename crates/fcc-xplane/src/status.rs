@@ -160,6 +160,10 @@ impl XPlaneStatus {
             missing.retain(|what| !matches!(what, Missing::EngageSwitch(_)));
             missing.push(Missing::GenericLight { path, lights });
         }
+        if self.link.answers_anything() {
+            let path = self.engage_switch().to_owned();
+            missing.push(Missing::MaybeEngageSwitch(path));
+        }
         missing
     }
 
