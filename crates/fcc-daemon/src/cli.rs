@@ -282,9 +282,21 @@ pub struct SetArgs {
     /// Magnetic heading, -360 to 360; turns the shorter way
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
-    /// Barometric altitude
+    /// Altitude above sea level by the altimeter setting
     #[arg(long, value_name = "FT", allow_negative_numbers = true)]
     pub altitude_ft: Option<f64>,
+    /// Pressure altitude: flight level 55 is 5500
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub pressure_altitude_ft: Option<f64>,
+    /// Height above the configured field elevation
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub height_ft: Option<f64>,
+    /// Altimeter setting (QNH), 940 to 1060; also in standby
+    #[arg(long, value_name = "HPA")]
+    pub altimeter_hpa: Option<f64>,
+    /// The same in inches of mercury, 27.76 to 31.3
+    #[arg(long, value_name = "INHG", conflicts_with = "altimeter_hpa")]
+    pub altimeter_inhg: Option<f64>,
     /// Indicated airspeed
     #[arg(long, value_name = "KT", allow_negative_numbers = true)]
     pub airspeed_kt: Option<f64>,
