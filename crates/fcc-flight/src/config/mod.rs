@@ -51,6 +51,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
+pub use values::keyed;
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
