@@ -2,7 +2,9 @@
 #![cfg(test)]
 #![cfg(feature = "flight")]
 
+mod altimeter;
 mod cockpit;
 mod faults;
 mod flying;
+mod other_control;
 mod resuming;
