@@ -72,6 +72,12 @@ pub enum EventCode {
     /// The controller's mode changed (mode before, mode now). An autopilot's: 0
     /// none, 1 hold, 2 timed pattern.
     ModeChanged = 18,
+    /// The controller noticed something (how long it lasted, ns); the index is
+    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost.
+    Noticed = 20,
+    /// Control is given back at once (why, one bit each, as in the flags of a
+    /// state).
+    ReleasedAtOnce = 21,
 }
 
 impl Event {
@@ -163,6 +169,16 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         EventKind::ModeChanged { from, to } => {
             (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
         }
+        EventKind::Noticed(notice) => (
+            EventCode::Noticed,
+            notice.kind.into(),
+            [notice.lasted_ns, 0, 0],
+        ),
+        EventKind::ReleasedAtOnce { conditions } => (
+            EventCode::ReleasedAtOnce,
+            0,
+            [conditions.bits().into(), 0, 0],
+        ),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),
     }

@@ -17,8 +17,10 @@ impl<C: Controller> Machine<C> {
             self.release(tick, ReleaseReport::OnSuccess);
         }
         let measurements = &self.measurements;
+        let mut release_now = Flags::NONE;
         if before.holds_control() {
-            self.record.faults = self.controller.faults(tick, measurements);
+            release_now = self.controller.must_release(tick, measurements);
+            self.record.faults = self.controller.faults(tick, measurements) | release_now;
         }
         if before != State::Engaged {
             self.record.engage_inhibits = self.controller.engage_inhibits(tick, measurements);
@@ -40,6 +42,9 @@ impl<C: Controller> Machine<C> {
         }
         if command == StateRequest::Disengage {
             self.apply_input(Input::Disengage, tick);
+        }
+        if self.state.holds_control() && !release_now.is_empty() {
+            self.release_at_once(release_now, tick);
         }
         let faults = self.record.faults;
         if self.state == State::Engaged && !faults.is_empty() {
@@ -83,6 +88,17 @@ impl<C: Controller> Machine<C> {
         match self.after_failsafe {
             AfterFailsafe::Standby => self.apply_input(Input::FailsafeEnded, tick),
             AfterFailsafe::Stop => self.stop_for(Ending::FailsafeEnded, tick),
+        }
+    }
+
+    /// Gives control back without a failsafe; what follows is what follows a
+    /// failsafe.
+    fn release_at_once(&mut self, conditions: Flags, tick: &Tick) {
+        let kind = EventKind::ReleasedAtOnce { conditions };
+        self.telemetry.events.push(tick, kind);
+        match self.after_failsafe {
+            AfterFailsafe::Standby => self.apply_input(Input::ReleaseNow, tick),
+            AfterFailsafe::Stop => self.stop_for(Ending::ReleasedAtOnce, tick),
         }
     }
 

@@ -20,7 +20,7 @@ use fcc_core::flight::{
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
-use crate::link::{SharedState, count};
+use crate::link::{Control, SharedState, count};
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
@@ -46,6 +46,8 @@ pub(crate) struct Inbox {
     accelerations: [f64; 3],
     force: SpecificForce,
     switch: Switch,
+    /// Whether both overrides were seen set since control was taken.
+    overridden: bool,
 }
 
 impl Inbox {
@@ -58,6 +60,7 @@ impl Inbox {
             accelerations: [f64::NAN; 3],
             force: SpecificForce::default(),
             switch: Switch::Off,
+            overridden: false,
         }
     }
 
@@ -200,6 +203,7 @@ impl Inbox {
         link.show(quantity, value, now);
         match quantity {
             Quantity::Paused => report.paused = Some(value >= 0.5),
+            Quantity::Replay => report.replaying = Some(value >= 0.5),
             Quantity::FramePeriod => report.frame_period_s = Some(value),
             Quantity::OnGround => link.set_on_ground(value >= 0.5),
             Quantity::Version => link.set_version(value as u32),
@@ -344,6 +348,23 @@ impl Inbox {
         }
     }
 
+    /// Notices that both overrides, which were set, are cleared although control
+    /// is held: X-Plane clears them when it loads an aircraft. One of them alone
+    /// may be another program's doing; it is set again.
+    fn notice_reload(&mut self, link: &SharedState) {
+        let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
+        let shown = overrides.map(|of| link.shown(of).map(|(value, _)| value >= 0.5));
+        match shown {
+            _ if link.control() != Control::Held => self.overridden = false,
+            [Some(true), Some(true)] => self.overridden = true,
+            [Some(false), Some(false)] if self.overridden => {
+                self.overridden = false;
+                self.clock.reload();
+            }
+            _ => {}
+        }
+    }
+
     /// The simulator's clock and state: written in every tick in which it sent
     /// something, once its clock is known.
     fn publish_plant(
@@ -352,6 +373,7 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
+        self.notice_reload(link);
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);

@@ -13,7 +13,7 @@
 //! | P`local_vx/vy/vz` | `velocity` |
 //! | the first engine's `ENGN_thro_use`, the three `yoke_*_ratio` | `surfaces` |
 //! | the configured switch | `engage_switch` |
-//! | `sim/time/total_flight_time_sec`, `paused`, `framerate_period` | `plant` |
+//! | `sim/time/total_flight_time_sec`, `paused`, `framerate_period`, `is_in_replay` | `plant` |
 //! | `onground_any`, `xplane_internal_version` | [`XPlaneStatus`](crate::XPlaneStatus) |
 //! | the overrides and the controls written under them | readback of the written controls |
 //!
@@ -69,6 +69,7 @@ pub(crate) enum Quantity {
     LoadNormal,
     LoadAxial,
     LoadSide,
+    Replay,
 }
 
 /// Where X-Plane provides a quantity.
@@ -130,10 +131,11 @@ const TABLE: [Entry; Quantity::COUNT] = [
     Entry(Quantity::LoadNormal, Row, Unit::Gravities, -100.0, 100.0),
     Entry(Quantity::LoadAxial, Row, Unit::Gravities, -100.0, 100.0),
     Entry(Quantity::LoadSide, Row, Unit::Gravities, -100.0, 100.0),
+    Entry(Quantity::Replay, Dataref("sim/time/is_in_replay"), Unit::Si, 0.0, 1.0),
 ];
 
 impl Quantity {
-    pub(crate) const COUNT: usize = 31;
+    pub(crate) const COUNT: usize = 32;
 
     /// All of them, in the order of their numbers.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
@@ -200,7 +202,7 @@ mod tests {
 
     #[test]
     fn an_unknown_index_is_no_quantity() {
-        for index in [-1, i32::MIN, 31, 1_000, i32::MAX] {
+        for index in [-1, i32::MIN, 32, 1_000, i32::MAX] {
             assert_eq!(Quantity::from_index(index), None);
         }
     }

@@ -6,3 +6,4 @@ mod cockpit;
 mod faults;
 mod flying;
 mod resuming;
+mod silence;

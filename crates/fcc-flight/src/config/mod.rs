@@ -217,6 +217,7 @@ impl Config {
     pub fn autopilot_config(&self) -> AutopilotConfig {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
+            max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
             ..self.autopilot.to_core(
                 &self.guidance,
                 Duration::from_millis(self.failsafe.sensor_max_age_ms),

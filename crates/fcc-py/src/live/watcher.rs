@@ -210,7 +210,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 19] = [
+    const KINDS: [&str; 22] = [
         "remark",
         "state-changed",
         "command-received",
@@ -230,6 +230,9 @@ fn kind_of(code: u32) -> &'static str {
         "hung",
         "source-changed",
         "mode-changed",
+        "conditions-changed",
+        "noticed",
+        "released-at-once",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

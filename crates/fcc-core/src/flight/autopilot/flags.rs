@@ -23,7 +23,7 @@ pub const PLANT_PAUSED: Flags = Flags::bit(7);
 pub const TOO_SLOW: Flags = Flags::bit(8);
 /// Bank or pitch is too large for engaging.
 pub const UPSET: Flags = Flags::bit(9);
-/// The simulator's clock has stopped although it is not paused.
+/// The simulator's clock has stopped, but the aircraft moves.
 pub const PLANT_STALLED: Flags = Flags::bit(10);
 /// The engage switch was read before and is now silent.
 pub const ENGAGE_SWITCH: Flags = Flags::bit(11);
@@ -45,6 +45,18 @@ pub const FROZEN_ALTITUDE: Flags = Flags::bit(18);
 /// One of the readings that are too old does arrive, but is implausible: out of
 /// range, or too far from the last.
 pub const REJECTED: Flags = Flags::bit(19);
+
+/// Nothing arrives from the simulator.
+pub const PLANT_SILENT: Flags = Flags::bit(20);
+/// The simulator took back the controls by itself: it was reloaded.
+pub const PLANT_RELOADED: Flags = Flags::bit(21);
+/// The aircraft was moved to another place.
+pub const RELOCATED: Flags = Flags::bit(22);
+/// The simulator shows a recorded flight.
+pub const PLANT_REPLAYING: Flags = Flags::bit(23);
+
+/// The quantities that control needs.
+pub(super) const NEEDED: Flags = Flags::from_bits(0x3f);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -68,7 +80,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 20] = [
+pub(super) const NAMES: [&str; 24] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -89,6 +101,10 @@ pub(super) const NAMES: [&str; 20] = [
     "airspeed is frozen",
     "altitude is frozen",
     "measured values are implausible",
+    "nothing arrives from the simulator",
+    "the simulator was reloaded",
+    "the aircraft was moved",
+    "the simulator shows a replay",
 ];
 
 #[cfg(test)]
