@@ -1,4 +1,4 @@
-//! The autopilot, stepped by hand.
+//! The autopilot, one call per tick.
 
 use std::ops::RangeInclusive;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -19,12 +19,12 @@ use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, as_row, checked, from_row, names,
 };
 
-/// The autopilot, stepped by hand: `observe` while the pilot flies,
-/// `engage` once, then `step` for each tick; `observe_series` and `fly` do the
+/// The autopilot, one call per tick: `observe` while the pilot flies,
+/// `engage` once, then `step` in each tick; `observe_series` and `fly` do the
 /// same for a recorded series of measurements.
 ///
 /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
-/// it; its sections `[guidance]`, `[autopilot]` and `[failsafe]` matter here.
+/// it; only `[guidance]`, `[autopilot]` and `[failsafe]` are used.
 #[pyclass(name = "Autopilot", module = "fcc", frozen)]
 pub(crate) struct PyAutopilot {
     stepped: Mutex<Stepped>,
@@ -48,15 +48,15 @@ impl PyAutopilot {
         })
     }
 
-    /// Takes measurements `dt` seconds after the last without controlling, so
-    /// that the filters settle.
+    /// Processes measurements `dt` seconds after the previous ones without
+    /// controlling, so that the filters settle.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
         self.stepped(py).observe(measurements, step_s(dt)?);
         Ok(())
     }
 
-    /// Takes a series of measurements without controlling: an array of shape
+    /// Processes a series of measurements without controlling: an array of shape
     /// (n, m), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe_series(
@@ -71,11 +71,11 @@ impl PyAutopilot {
         series.in_pieces(py, |row| stepped.observe(&from_row(row), dt_s))
     }
 
-    /// Engages, `dt` seconds after the last measurements: the present state
+    /// Engages, `dt` seconds after the previous measurements: the present state
     /// becomes the set points. `throttle`, `elevator`, `aileron` and `rudder`
-    /// are the present position of the controls.
+    /// are the present positions of the controls.
     ///
-    /// Raises `EngageError` with the engage inhibits if there are any.
+    /// Raises `EngageError` with the engage inhibits, if there are any.
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
                         elevator = 0.0, aileron = 0.0, rudder = 0.0))]
     fn engage(
@@ -99,7 +99,7 @@ impl PyAutopilot {
             .map_err(|words| errors::ENGAGE.with(words))
     }
 
-    /// One tick, `dt` seconds after the last: the surfaces to set.
+    /// One tick, `dt` seconds after the previous one; returns the surfaces.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
         let mut stepped = self.stepped(py);
@@ -107,8 +107,7 @@ impl PyAutopilot {
         Ok(stepped.step(measurements, step_s(dt)?).into())
     }
 
-    /// One tick for each row of a series, as `step` does: what the autopilot
-    /// would have set. `measurements` is an array of shape (n, m), the columns
+    /// One tick for each row of a series, as by `step`. `measurements` is an array of shape (n, m), the columns
     /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
     /// (n, 4), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
@@ -130,8 +129,8 @@ impl PyAutopilot {
         matrix::<PySurfaces>(py, &flown)
     }
 
-    /// One tick of failsafe, `dt` seconds after the last: the safest surfaces
-    /// that what is left of the measurements allows.
+    /// One tick of failsafe, `dt` seconds after the previous one; returns the
+    /// safest surfaces that the remaining measurements allow.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn failsafe(
         &self,
@@ -185,13 +184,13 @@ impl PyAutopilot {
         self.stepped(py).autopilot.estimated().into()
     }
 
-    /// The engage inhibits, in words; empty if it may engage.
+    /// The engage inhibits, as text; empty if it may engage.
     #[getter]
     fn engage_inhibits(&self, py: Python<'_>) -> Vec<&'static str> {
         conditions::<Autopilot>(self.stepped(py).engage_inhibits())
     }
 
-    /// The faults that make it unsafe to stay engaged, in words.
+    /// The faults that make it unsafe to stay engaged, as text.
     #[getter]
     fn faults(&self, py: Python<'_>) -> Vec<&'static str> {
         conditions::<Autopilot>(self.stepped(py).faults())

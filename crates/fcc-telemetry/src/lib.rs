@@ -13,6 +13,7 @@ mod instance;
 mod message;
 #[cfg(feature = "flight")]
 mod pattern_scorer;
+mod quantity;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
@@ -26,6 +27,7 @@ pub use message::describe_event;
 pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
+pub use quantity::RecordedQuantity;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::{RecordWords, Telemetry};

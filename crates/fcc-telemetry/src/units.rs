@@ -3,16 +3,16 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
+use fcc_core::units::FOOT_M;
+pub use fcc_core::units::GRAVITY_MPS2 as G_MPS2;
+
 use crate::schema::Column;
 
 /// Feet per metre.
-pub const M_FT: f64 = 1.0 / 0.304_8;
+pub const M_FT: f64 = 1.0 / FOOT_M;
 
 /// Knots per metre per second.
 pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
-
-/// Standard gravity, m/s².
-pub const G_MPS2: f64 = 9.806_65;
 
 /// Headings that may be commanded, rad.
 pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;

@@ -16,6 +16,7 @@ use crate::link::{Control, SharedState, count};
 use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
+use crate::reply_port::ReplyPorts;
 use crate::simulator::SimulatorState;
 use crate::status::XPlaneStatus;
 use crate::subscriptions::Subscriptions;
@@ -39,8 +40,8 @@ const BEACONS_PER_TICK: usize = 4;
 /// configured; the rest are discarded) and to send (a few requests), none of
 /// which waits. Readings are stamped with the time of the tick in which they
 /// arrived. Only datagrams from
-/// the simulator's IP address are accepted, from any of its ports, since
-/// replies need not come from the port on which X-Plane listens.
+/// the simulator's IP address are accepted, from the first of its ports that
+/// answers: X-Plane does not answer from the port on which it listens.
 #[derive(Debug)]
 pub struct XPlaneSensor<P: Port = UdpPort> {
     port: Arc<P>,
@@ -48,7 +49,11 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     beacons: Option<P>,
     link: Arc<SharedState>,
     inbox: Inbox,
+    reply_ports: ReplyPorts,
     subscriptions: Subscriptions,
+    /// The port from which X-Plane is expected to answer; 0 if that is not
+    /// known.
+    expected_reply_port: u16,
     engage_switch: Arc<str>,
     rows: Option<DataRows>,
     release_monitor: ReleaseMonitor,
@@ -79,7 +84,9 @@ impl<P: Port> XPlaneSensor<P> {
             beacons,
             link,
             inbox: Inbox::new(rows, config.silent_after),
+            reply_ports: ReplyPorts::default(),
             subscriptions: Subscriptions::new(config)?,
+            expected_reply_port: config.reply_port,
             engage_switch: config.engage_switch.as_str().into(),
             rows,
             release_monitor: ReleaseMonitor::new(Controls::new(config)?),
@@ -98,6 +105,10 @@ impl<P: Port> XPlaneSensor<P> {
     pub fn status(&self) -> XPlaneStatus {
         let engage_switch = Arc::clone(&self.engage_switch);
         XPlaneStatus::new(Arc::clone(&self.link), engage_switch, self.rows)
+    }
+
+    pub(crate) fn set_local_port(&self, port: u16) {
+        self.link.set_local_port(port);
     }
 
     /// Reads beacons: connects to the first simulator that computes a flight,
@@ -144,16 +155,31 @@ impl<P: Port> XPlaneSensor<P> {
             }
             count(&self.link.counters.received);
             let datagram = self.buffer.get(..length).unwrap_or_default();
-            if self.inbox.accept(datagram, now, &self.link).is_err() {
-                count(&self.link.counters.malformed);
-                outcome = Err(SensorFault::Malformed);
+            let kind = Kind::of(datagram);
+            let port = from.port();
+            if kind.is_some_and(|kind| !self.reply_ports.accepts(kind, port, now)) {
+                count(&self.link.counters.foreign);
+                continue;
             }
-            if let Some(Kind::Rref | Kind::Data) = Kind::of(datagram) {
+            match self.inbox.accept(datagram, now, &self.link) {
+                Ok(true) => {
+                    if let Some(kind) = kind {
+                        self.reply_ports.hold(kind, port, now);
+                        self.link.set_reply_port(port);
+                    }
+                }
+                Ok(false) => {}
+                Err(_) => {
+                    count(&self.link.counters.malformed);
+                    outcome = Err(SensorFault::Malformed);
+                }
+            }
+            if let Some(Kind::Rref | Kind::Data) = kind {
                 mem::swap(&mut self.buffer, &mut self.last_values);
                 self.last_values_bytes = length;
             }
         }
-        if let Some(length) = self.discard_rest() {
+        if let Some(length) = self.discard_rest(now) {
             // Of many that waited, as after a disturbance of the network, the
             // newest counts.
             let newest = self.last_values.get(..length).unwrap_or_default();
@@ -168,7 +194,7 @@ impl<P: Port> XPlaneSensor<P> {
     /// Left until the next tick, datagrams would be stamped with a time at which
     /// they did not arrive, and each tick would read older ones. Returns the
     /// length of the last one with values, if there was one.
-    fn discard_rest(&mut self) -> Option<usize> {
+    fn discard_rest(&mut self, now: Time) -> Option<usize> {
         let simulator = self.link.simulator().map(|at| at.ip());
         let mut newest = None;
         for _ in 0..DISCARDED_PER_TICK {
@@ -177,8 +203,9 @@ impl<P: Port> XPlaneSensor<P> {
             };
             count(&self.link.counters.discarded);
             let datagram = self.buffer.get(..length).unwrap_or_default();
-            if let Some(Kind::Rref | Kind::Data) = Kind::of(datagram)
+            if let Some(kind @ (Kind::Rref | Kind::Data)) = Kind::of(datagram)
                 && Some(from.ip()) == simulator
+                && self.reply_ports.accepts(kind, from.port(), now)
             {
                 mem::swap(&mut self.buffer, &mut self.last_values);
                 self.last_values_bytes = length;
@@ -190,10 +217,27 @@ impl<P: Port> XPlaneSensor<P> {
 
     fn send_requests(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
-        self.subscriptions.send_due(now, &self.inbox, |request| {
+        let outcome = self.subscriptions.send_due(now, &self.inbox, |request| {
             count(&link.counters.requests);
             send(port.as_ref(), link, request, simulator)
-        })
+        });
+        if self.subscriptions.restarted(now)
+            && let Some(reply_port) = self.reply_address(simulator)
+        {
+            // Without it a firewall may drop every reply, and with it nothing
+            // is certain: no failure.
+            let _ = port.send(self.subscriptions.without_effect(), reply_port);
+        }
+        outcome
+    }
+
+    /// Where a datagram is sent so that a firewall or an address translation on
+    /// this side, which lets in only what comes from an address that was written
+    /// to, lets the replies in. None on this machine: nothing is in between.
+    fn reply_address(&self, simulator: SocketAddr) -> Option<SocketAddr> {
+        let port = self.link.reply_port().unwrap_or(self.expected_reply_port);
+        let is_needed = port != 0 && port != simulator.port() && !simulator.ip().is_loopback();
+        is_needed.then(|| SocketAddr::new(simulator.ip(), port))
     }
 
     fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
@@ -228,7 +272,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         self.inbox.begin();
         let missed_s = tick.dt_s - tick.dt_s / tick.missed.saturating_add(1) as f64;
         let received = if missed_s > OLD_AFTER_S {
-            self.discard_rest();
+            self.discard_rest(now);
             Ok(())
         } else {
             self.receive(now, simulator)

@@ -8,8 +8,9 @@
 //! single request was lost, and then (it may not have it) every
 //! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe).
 //!
-//! X-Plane accepts about 100 requests and then needs a pause of 100 ms. There
-//! are fewer than that in total, and they are spread over several ticks.
+//! Requests are sent in portions (`traffic`), so that X-Plane takes them all.
+//! Each value is requested at a rate above X-Plane's usual ones, so that every
+//! frame has all of them.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -23,17 +24,16 @@ use crate::port::Errno;
 use crate::protocol::{PathError, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows::row_of;
-
-/// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
-pub(crate) const REQUESTS_PER_TICK: usize = 8;
-/// The number of requests that X-Plane accepts without a pause.
-const REQUESTS_AT_ONCE: usize = 100;
-const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
+use crate::traffic::{REQUESTS_PER_PORTION, RequestPace};
 
 /// A lost request is repeated after this long, this many times; all of them
 /// when the simulator has been silent for this long.
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
+
+/// For [`Subscriptions::without_effect`]: no subscription has this index.
+const UNUSED_INDEX: i32 = 9_003;
+const ANY_DATAREF: &str = "sim/time/paused";
 
 /// The position is for navigation, which does not need it every frame.
 const POSITION_RATE_HZ: u16 = 20;
@@ -84,6 +84,8 @@ pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
     restarted: Time,
+    without_effect: Box<[u8; rref::REQUEST_BYTES]>,
+    pace: RequestPace,
     missing_values: MissingValues,
 }
 
@@ -111,11 +113,15 @@ impl Subscriptions {
         if rows.is_none() {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
+        let mut without_effect = Box::new([0; rref::REQUEST_BYTES]);
+        rref::request(&mut without_effect, 0, UNUSED_INDEX, ANY_DATAREF)?;
         expected.extend(list.iter().map(|asked| asked.request.expected()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
             restarted: Time::NEVER,
+            without_effect,
+            pace: RequestPace::begin(),
             missing_values: MissingValues::new(expected, config.resubscribe),
         })
     }
@@ -148,8 +154,18 @@ impl Subscriptions {
         }
     }
 
-    /// Sends the requests that are due, at most [`REQUESTS_PER_TICK`]. A
-    /// request that could not be sent counts as sent and lost.
+    /// Whether everything was requested again in this tick.
+    pub(crate) fn restarted(&self, now: Time) -> bool {
+        self.restarted == now
+    }
+
+    /// A request that ends a subscription which does not exist.
+    pub(crate) fn without_effect(&self) -> &[u8] {
+        self.without_effect.as_slice()
+    }
+
+    /// Sends the requests that are due, at most a portion. A request that could
+    /// not be sent counts as sent and lost.
     pub(crate) fn send_due(
         &mut self,
         now: Time,
@@ -161,7 +177,10 @@ impl Subscriptions {
             self.restart(now);
         }
         let mut outcome = Ok(());
-        let mut budget = REQUESTS_PER_TICK;
+        if !self.pace.is_due(now) {
+            return outcome;
+        }
+        let mut budget = REQUESTS_PER_PORTION;
         for subscription in &mut self.list {
             if budget == 0 {
                 break;
@@ -184,6 +203,9 @@ impl Subscriptions {
                 outcome = outcome.and(send(subscription.request.datagram()));
                 budget -= 1;
             }
+        }
+        if budget < REQUESTS_PER_PORTION {
+            self.pace.sent(now);
         }
         outcome
     }

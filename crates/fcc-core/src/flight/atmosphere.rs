@@ -5,14 +5,7 @@
 
 use libm::{pow, sqrt};
 
-/// Standard gravity, m/s².
-///
-/// ```
-/// use fcc_core::flight::atmosphere::GRAVITY_MPS2;
-/// // ISO 80000-3.
-/// assert_eq!(GRAVITY_MPS2, 9.806_65);
-/// ```
-pub const GRAVITY_MPS2: f64 = 9.806_65;
+use crate::units::GRAVITY_MPS2;
 
 const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;

@@ -1,13 +1,13 @@
 //! `fccd command`: commands to a daemon on this machine.
 
+use fcc_core::units::{FOOT_M, KNOT_MPS};
 use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use serde::Serialize;
 
-use super::fail;
+use super::failure::Failure;
 use crate::cli::{CommandArgs, CommandChoice, SetArgs};
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
 struct Sent {
@@ -20,12 +20,11 @@ struct Sent {
 }
 
 /// Sends a command and prints the result.
-pub(super) fn command(args: &CommandArgs) -> Exit {
+pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     let command = FlightCommand::from(&args.what);
-    if let Err(error) = command.check() {
-        fail(&error.in_knots_degrees_feet());
-        return Exit::Usage;
-    }
+    command
+        .check()
+        .map_err(|error| Failure::of(Exit::Usage, error.in_knots_degrees_feet()))?;
     let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
     let exit = match &result {
         Ok(_) => Exit::Success,
@@ -50,14 +49,12 @@ pub(super) fn command(args: &CommandArgs) -> Exit {
             Ok(tick) => {
                 output::result(format!("carried out in tick {tick}"), exit);
             }
-            Err(text) => {
-                fail(&text);
-            }
+            Err(text) => return Err(Failure::of(exit, text)),
         }
     }
     // A command that was carried out is a success, even if the result cannot be
     // printed.
-    exit
+    Ok(exit)
 }
 
 impl From<&CommandChoice> for FlightCommand {

@@ -11,7 +11,8 @@ use fcc_record::create_output;
 use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::ReplayArgs;
 use crate::exit::Exit;
 use crate::output;
@@ -34,30 +35,13 @@ struct Outcome {
 }
 
 /// Replays a recording.
-pub(super) fn replay(args: &ReplayArgs) -> Exit {
-    let opened = Chain::open(&args.files).map_err(|error| error.to_string());
-    let opened = opened.and_then(|chain| {
-        let config = recorded_config(&chain).map_err(|error| error.to_string())?;
-        Ok((chain, config))
-    });
-    let (chain, recorded) = match opened {
-        Ok(opened) => opened,
-        Err(error) => {
-            fail(&error);
-            return Exit::NotReplayed;
-        }
-    };
-    let other = match args.config.as_deref().map(Config::load).transpose() {
-        Ok(other) => other,
-        Err(error) => {
-            output::message(error);
-            return Exit::Usage;
-        }
-    };
-    match run(&chain, &recorded, other, args) {
-        Ok(outcome) => outcome.print(args.json),
-        Err(message) => fail(&message),
-    }
+pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
+    let chain = Chain::open(&args.files).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
+    let recorded =
+        recorded_config(&chain).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
+    let other = args.config.as_deref().map(Config::load).transpose()?;
+    let outcome = run(&chain, &recorded, other, args).map_err(Failure::new)?;
+    Ok(outcome.print(args.json))
 }
 
 /// Replays with the recorded configuration or another, and compares.

@@ -1,38 +1,34 @@
 //! `fccd report FILE`: a report on a recording.
 
-use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_flight::replay::recorded_pattern;
 use fcc_record::Recording;
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::ReportArgs;
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::config::Config;
 
 /// Reads a recording and reports on it.
-pub(super) fn report(args: &ReportArgs) -> Exit {
-    let report = match make(args) {
-        Ok(report) => report,
-        Err(message) => return fail(&message),
-    };
+pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
+    let report = make(args).map_err(Failure::new)?;
     let exit = if report.is_complete() || fcc_record::is_being_written(&args.file) {
         Exit::Success
     } else {
         Exit::Incomplete
     };
-    if args.json {
+    Ok(if args.json {
         output::json(&report, exit)
     } else {
         output::result(report.to_text(), exit)
-    }
+    })
 }
 
 fn make(args: &ReportArgs) -> Result<FlightReport, String> {
     let recording = Recording::open(&args.file).map_err(|error| error.to_string())?;
     let bar = progress::bar(recording.bytes(), "reading");
-    let addition = FlightAddition::new(pattern(&recording));
+    let addition = FlightAddition::new(recorded_pattern(recording.about()));
     let report = FlightSurvey::read(&recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
@@ -44,14 +40,4 @@ fn make(args: &ReportArgs) -> Result<FlightReport, String> {
         report.write_page(page, &args.file)?;
     }
     Ok(report)
-}
-
-/// The pattern in the recorded configuration; a configuration of another
-/// version may be invalid, and then nothing is scored.
-fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
-    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.guidance {
-        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-        GuidanceConfig::Hold => None,
-    }
 }

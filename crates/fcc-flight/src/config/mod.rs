@@ -23,7 +23,6 @@ mod restart;
 mod runtime;
 mod similar;
 mod telemetry;
-mod units;
 mod values;
 mod wording;
 mod x_plane;
@@ -44,13 +43,12 @@ pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
-pub use recording::{CompressionChoice, RecordingSection};
+pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
 pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
-pub use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -87,10 +85,16 @@ pub struct Config {
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
     /// Sensors in addition to the simulator's, the most preferred first.
-    #[serde(skip_serializing_if = "Vec::is_empty", skip_deserializing)]
+    #[serde(
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "read::apart"
+    )]
     pub sensor: Vec<SensorEntry>,
     /// The actuators; the simulator's without a list.
-    #[serde(skip_serializing_if = "Option::is_none", skip_deserializing)]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read::apart"
+    )]
     pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
@@ -102,14 +106,8 @@ fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
         mut problems,
         places,
     } = read;
-    // A section that could not be read may be reported as missing; report each
-    // line once.
-    let unread: Vec<_> = problems.iter().map(|problem| problem.line).collect();
-    let more = ranges::check(&config, &places);
-    problems.extend(more.into_iter().filter(|problem| match problem.line {
-        None => unread.is_empty(),
-        line => !unread.contains(&line),
-    }));
+    let more = ranges::check(&config, &places, &problems);
+    problems.extend(more);
     problems.sort_by_key(|problem| problem.line);
     if problems.is_empty() {
         return Ok(config);
@@ -209,6 +207,22 @@ impl Config {
         }
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());
+        }
+        let sensors: Vec<_> = self.sensors().enumerate().collect();
+        let most = self.failsafe.sensor_max_age_ms;
+        // After the last there is no other to fall back to.
+        for (at, sensor) in sensors.iter().rev().skip(1).rev() {
+            let (key, section) = match sensor {
+                SensorEntry::Simulator(_) => ("x-plane".to_owned(), self.x_plane.as_ref()),
+                SensorEntry::XPlane(section) => (format!("sensor[{at}]"), Some(section.as_ref())),
+            };
+            if let Some(section) = section.filter(|section| section.fallback_after_ms >= most) {
+                remarks.push(format!(
+                    "{key}.fallback_after_ms is {}, failsafe.sensor_max_age_ms is {most}: if this \
+                     sensor is lost, failsafe comes before the next sensor is used; choose less",
+                    section.fallback_after_ms
+                ));
+            }
         }
         remarks
     }

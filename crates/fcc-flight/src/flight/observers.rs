@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn every_observer_keeps_what_the_trait_promises() {
+    fn every_observer_of_a_flight_conforms() {
         let folder = tempfile::tempdir().unwrap();
         let config = config(&folder);
         observer_conforms(|| Box::new(EventLog::default()));

@@ -96,7 +96,11 @@ fn thirty_cuts_are_told_from_freezes_and_the_bank_command_never_steps() {
                 flight.restore();
                 flight.fly(0.5);
                 assert_told(&mut flight, LINK_LOST, length_s);
-                assert!(flight.bank_deg().abs() < 60.0, "{length_s} s: {}°", flight.bank_deg());
+                assert!(
+                    flight.bank_deg().abs() < 60.0,
+                    "{length_s} s: {}°",
+                    flight.bank_deg()
+                );
             }
             let step_deg = flight.largest_bank_step_deg();
             assert!(step_deg <= 5.0, "{step_deg}°");

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 use super::instance;
 use crate::errors;
 
-/// Gives commands to a daemon on this machine, by its instance's name. Each call
-/// waits until the command is carried out and returns the tick that did; the GIL
-/// is released meanwhile.
+/// Sends commands to a daemon on this machine, by its instance's name. Each call
+/// waits until the command is carried out, with the GIL released, and returns the
+/// tick that did it.
 ///
 /// Raises `CommandError` with the daemon's reason if it refuses, and
 /// `TelemetryError` if it cannot be reached.
@@ -46,24 +46,24 @@ impl PyCommander {
         })
     }
 
-    /// Take over as things are.
+    /// Engages: the present state becomes the set points.
     fn engage(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, FlightCommand::Engage)
     }
 
-    /// Give the controls back.
+    /// Disengages: releases the controls.
     fn disengage(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, FlightCommand::Disengage)
     }
 
-    /// Give the controls back and end the daemon.
+    /// Releases the controls and ends the daemon.
     fn stop(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, FlightCommand::Stop)
     }
 
-    /// Fly by other set points, those that are not given staying: indicated
-    /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π), barometric
-    /// altitude (m, -500 to 20,000). Ends a pattern.
+    /// Commands other set points; those not given keep their value: indicated
+    /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π),
+    /// barometric altitude (m, -500 to 20,000). Ends a pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
     fn set(
         &self,

@@ -1,4 +1,4 @@
-//! A running daemon: watched, and given commands.
+//! A running daemon: watching it, and sending commands.
 
 mod commander;
 mod watcher;

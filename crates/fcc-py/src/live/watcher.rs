@@ -27,7 +27,7 @@ const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 ///
 /// Raises `TelemetryError` if there is no such daemon, if it is of another
 /// version, and when it has ended. Iterating gives each record as it comes, as
-/// a row of `fcc.RECORD`, until the daemon ends, which is raised.
+/// a row of `fcc.RECORD`, and raises `TelemetryError` when the daemon ends.
 #[pyclass(name = "Watcher", module = "fcc")]
 pub(crate) struct PyWatcher {
     watcher: Mutex<Watcher>,
@@ -53,8 +53,7 @@ impl PyWatcher {
         })
     }
 
-    /// The newest record, as a row of `fcc.RECORD`; those before it are passed
-    /// over. Waits up to `timeout_s` (0 to 3,600) for one that was not given
+    /// The newest record, as a row of `fcc.RECORD`; older ones are skipped. Waits up to `timeout_s` (0 to 3,600) for one that was not given
     /// yet, and gives None if none comes.
     #[pyo3(signature = (timeout_s = 1.0))]
     fn latest<'py>(&self, py: Python<'py>, timeout_s: f64) -> PyResult<Option<Bound<'py, PyAny>>> {
@@ -63,8 +62,8 @@ impl PyWatcher {
         found.map(|record| row(py, &record)).transpose()
     }
 
-    /// All records that came since they were last asked for, oldest first, as
-    /// a structured array (`fcc.RECORD`). 1,024 wait, then the oldest make room.
+    /// All records since the last call, oldest first, as a structured array
+    /// (`fcc.RECORD`). Of more than 1,024 the oldest are dropped.
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Rows::with_room(0);
         let read = py.detach(|| {
@@ -78,7 +77,7 @@ impl PyWatcher {
         rows.into_array(py)
     }
 
-    /// All events that came since they were last asked for, oldest first.
+    /// All events since the last call, oldest first.
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEvent>> {
         let mut events = Vec::new();
         let read = py.detach(|| {
@@ -102,7 +101,7 @@ impl PyWatcher {
         found.map(|status| status_dict(py, &status)).transpose()
     }
 
-    /// Who publishes, as a dict.
+    /// The daemon, as a dict: program, process, loop.
     #[getter]
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         info_dict(py, self.watcher().info())

@@ -18,8 +18,8 @@ use crate::values::{
 };
 
 machine_class! {
-    /// The loop that `fccd` runs, one call a tick, on a clock that does not move
-    /// between calls.
+    /// The loop that `fccd` runs, one call per tick, on a clock that advances only
+    /// in calls.
     ///
     /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
     /// it. Its aircraft is not used: the plant is in Python.
@@ -27,8 +27,6 @@ machine_class! {
     struct PyMachine(Autopilot) {
         /// The airspeeds that may be commanded.
         airspeeds_mps: RangeInclusive<f64>,
-        /// When the next tick is due, s.
-        next_s: f64,
     }
     setpoints PySetpoints, estimate PyEstimate;
 
@@ -47,23 +45,22 @@ machine_class! {
                 &parsed.loop_config(),
                 about,
             )?),
-            next_s: period.as_secs_f64(),
         })
     }
 
-    /// One tick: gives the surfaces to set, or `None` if the loop sends none,
-    /// because it does not hold the controls.
+    /// One tick; returns the surfaces, or `None` if the loop sends none because
+    /// it does not hold the controls.
     ///
     /// `measurements` are those of the sensors; `None` if nothing arrives.
     /// `missing` names the readings that do not arrive in this tick: attitude,
     /// heading, `body_rates`, `specific_force`, airspeed, altitude. `readback`
-    /// is the readback of the controls: throttle 0..1, elevator, aileron and
+    /// contains the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers; `None` if the aircraft
     /// has none. `switch` is the engage switch; `None` if there is none.
     #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
                         switch = None))]
     fn step(
-        &mut self,
+        &self,
         measurements: Option<&PyMeasurements>,
         missing: Vec<String>,
         readback: Option<&Bound<'_, PyAny>>,
@@ -72,19 +69,19 @@ machine_class! {
         let missing = known_readings(missing)?;
         let readback = readback.map(surfaces).transpose()?;
         let switch = switch.map(|on| if on { Switch::On } else { Switch::Off });
+        let mut lockstep = self.lockstep();
         let sample = measurements.map(|measurements| {
             let sample = measurements.sample(|name| missing.iter().any(|missing| missing == name));
-            with_plant(&sample, self.next_s, readback, switch)
+            with_plant(&sample, lockstep.next_s(), readback, switch)
         });
-        self.next_s += self.lockstep().period_s();
-        Ok(self.lockstep().step(sample).map(PySurfaces::from))
+        Ok(lockstep.step(sample).map(PySurfaces::from))
     }
 
     /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
     /// pattern.
     #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
     fn command(
-        &mut self,
+        &self,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,

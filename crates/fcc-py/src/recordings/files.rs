@@ -1,16 +1,12 @@
-//! What the daemon's commands do with recordings: list, recover, report,
-//! replay.
+//! The daemon's commands for recordings: list, recover, report, replay.
 
 #![expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
 
 use std::path::PathBuf;
 
 use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_flight::config::Config;
-use fcc_flight::replay::{recorded_config, replay as replay_of};
-use fcc_record::Recording;
+use fcc_flight::replay::{recorded_config, recorded_pattern, replay as replay_of};
+use fcc_record::{Listed, Recording};
 use fcc_replay::{Chain, Deviation, Identity, Replayed};
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 use pyo3::prelude::*;
@@ -20,20 +16,10 @@ use crate::config::configuration;
 use crate::errors;
 use crate::json;
 
-/// The recordings in a folder, oldest first, each as a dict. What is no
-/// recording has the keys `path` and `error` alone.
+/// The recordings in a folder, oldest first, each as a dict. A file that cannot
+/// be read has only the keys `path` and `error`.
 #[pyfunction]
 pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-    #[derive(Serialize)]
-    #[serde(untagged)]
-    enum Listed {
-        Entry(fcc_record::Entry),
-        Not {
-            #[serde(serialize_with = "fcc_record::serialize_path")]
-            path: PathBuf,
-            error: String,
-        },
-    }
     let listed = py.detach(|| -> Result<Vec<Listed>, String> {
         let files = fcc_record::files(&folder).map_err(|error| {
             format!(
@@ -41,20 +27,14 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
                 folder.display()
             )
         })?;
-        let entry = |path: PathBuf| match fcc_record::entry(&path) {
-            Ok(entry) => Listed::Entry(entry),
-            Err(error) => Listed::Not {
-                path,
-                error: error.to_string(),
-            },
-        };
-        Ok(files.into_iter().map(entry).collect())
+        let listed = files.into_iter().map(|file| Listed::of(file, false));
+        Ok(listed.collect())
     });
     json::to_python(py, &listed.map_err(|words| errors::RECORDING.with(words))?)
 }
 
-/// Makes a whole recording of one that was cut off or damaged, in its place; a
-/// whole one is left alone. What came of it is a dict.
+/// Replaces a recording that was cut off or damaged by a whole one; a whole one
+/// is unchanged. Returns the result as a dict.
 #[pyfunction]
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py
@@ -77,7 +57,7 @@ pub(crate) fn report(
 ) -> PyResult<Bound<'_, PyAny>> {
     let made = py.detach(|| -> Result<FlightReport, String> {
         let recording = Recording::open(&path).map_err(|error| error.to_string())?;
-        let addition = FlightAddition::new(pattern(&recording));
+        let addition = FlightAddition::new(recorded_pattern(recording.about()));
         let report = FlightSurvey::read(&recording, addition, csv.as_deref(), |_| {})?;
         if let Some(folder) = &svg {
             report.write_svgs(folder, &path)?;
@@ -90,20 +70,9 @@ pub(crate) fn report(
     json::to_python(py, &made.map_err(|words| errors::RECORDING.with(words))?)
 }
 
-/// The pattern that was to be flown; a configuration of another version may
-/// not be understood, and then nothing is scored.
-fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
-    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.guidance {
-        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-        GuidanceConfig::Hold => None,
-    }
-}
-
-/// Flies a recording again through the very code that flew it, as
-/// `fccd replay` does: a dict with `identical`, and where it is not. With
-/// another `config` the dict says where that one would have commanded
-/// otherwise. `paths` is a file, or the parts of a recording, oldest first.
+/// Replays a recording with the code that flew it, as `fccd replay` does;
+/// returns a dict with `identical`, and the differences. With another `config`
+/// the dict contains the deviation of its commands. `paths` is a file, or the parts of a recording, oldest first.
 #[pyfunction]
 #[pyo3(signature = (paths, config = None))]
 pub(crate) fn replay<'py>(

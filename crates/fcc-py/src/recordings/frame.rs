@@ -5,7 +5,7 @@ use fcc_telemetry::{FlightRecord, schema};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A table of records; what was never measured is NaN.
+/// A table of records; values that were never measured are NaN.
 pub(super) fn of<'py>(records: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let py = records.py();
     let pandas = py.import("pandas")?;

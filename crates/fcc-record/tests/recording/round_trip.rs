@@ -52,7 +52,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn every_bit_of_a_record_comes_back(
+    fn every_bit_of_a_record_is_restored(
         records in proptest::collection::vec(any_record(), 1..8),
         compression in prop_oneof![
             Just(Compression::None), Just(Compression::Lz4), Just(Compression::Zstd)
@@ -75,7 +75,7 @@ proptest! {
 }
 
 #[test]
-fn every_event_comes_back() {
+fn every_event_is_restored() {
     let gap = (3, 5, 1 << 60);
     let (count, first, last) = gap;
     let failsafe = State::Failsafe(Cause::Faults(Flags::bit(31)));
@@ -198,7 +198,7 @@ fn a_file_contains_metadata_and_ending() {
 }
 
 #[test]
-fn remarks_come_back_at_the_time_of_the_message_before() {
+fn remarks_have_the_time_of_the_message_before() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
     for message in &flight(3) {

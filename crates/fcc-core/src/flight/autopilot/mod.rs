@@ -29,6 +29,7 @@ use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate}
 use super::{Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::{wrap_pi, wrap_two_pi};
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
+use crate::units::{FOOT_M, KNOT_MPS};
 
 /// Beyond this bank or pitch the autopilot does not engage, rad.
 const UPSET_RAD: f64 = 1.047;
@@ -230,11 +231,12 @@ impl Controller for Autopilot {
             .unwrap_or("unknown condition")
     }
 
+    /// In the units in which commands are given: knots, degrees, feet.
     fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match command {
-            AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
+            AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {:.1} kt", mps / KNOT_MPS),
             AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
-            AutopilotCommand::Altitude(m) => write!(f, "altitude {m:.1} m"),
+            AutopilotCommand::Altitude(m) => write!(f, "altitude {:.0} ft", m / FOOT_M),
             AutopilotCommand::Resume(Resume { progress, .. }) => {
                 write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
             }

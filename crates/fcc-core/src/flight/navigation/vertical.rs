@@ -9,8 +9,8 @@ use super::vertical_covariance::{CrossCovariance, VerticalCovariance};
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
-use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::framework::Time;
+use crate::units::GRAVITY_MPS2;
 
 /// Altitude and climb rate.
 #[derive(Clone, Copy, Debug, Default)]

@@ -13,13 +13,11 @@ use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::{Controller, EventKind, Flags, LoopCommand, Message, State, Switch};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
+use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
 use super::state_file::Saved;
 use crate::flight::pilot::Pilot;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// A flight that is to be recovered.
 #[derive(Debug)]

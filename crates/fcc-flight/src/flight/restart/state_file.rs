@@ -277,7 +277,7 @@ mod tests {
         }
 
         #[test]
-        fn nothing_crashes_it(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn any_content_of_a_state_file_is_handled(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             let _ = decode(&bytes);
         }
     }
