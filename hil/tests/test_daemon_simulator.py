@@ -21,7 +21,7 @@ FAILURE = 1
 FAILSAFE = 3
 
 TOO_OLD = "attitude is missing or too old"
-MAX_SILENCE_S = 0.5
+MAX_SILENCE_S = 0.3
 """As configured; the default is 30 s."""
 SAID_AFTER_S = 1.5
 """Silent after half a second, and for another second."""

@@ -33,6 +33,10 @@ impl<C: Controller> Machine<C> {
         } else if command == StateRequest::Stop {
             self.stop_for(Ending::StopCommand, tick);
         }
+        // Before the switch: what loads a flight may switch it off, too.
+        if self.state.holds_control() && !release_now.is_empty() {
+            self.release_at_once(release_now, tick);
+        }
         if edge == Some(SwitchEdge::Off) {
             self.apply_input(Input::SwitchedOff, tick);
             if self.state == State::Stopped {
@@ -41,9 +45,6 @@ impl<C: Controller> Machine<C> {
         }
         if command == StateRequest::Disengage {
             self.apply_input(Input::Disengage, tick);
-        }
-        if self.state.holds_control() && !release_now.is_empty() {
-            self.release_at_once(release_now, tick);
         }
         let faults = self.record.faults;
         if self.state == State::Engaged && !faults.is_empty() {

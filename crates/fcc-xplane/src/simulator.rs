@@ -119,6 +119,10 @@ impl ClockSample {
 
 /// Tracks the simulator's clock.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "separate properties, each set or not"
+)]
 pub(crate) struct SimulatorClock {
     silent_after: Duration,
     received: Time,

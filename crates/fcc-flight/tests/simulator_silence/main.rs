@@ -1,12 +1,6 @@
 //! A simulator that freezes, is cut off, shows a map or a replay, and is loaded
 //! anew: the whole loop on X-Plane's protocol, in lockstep.
 #![cfg(test)]
-#![expect(
-    clippy::unwrap_used,
-    clippy::indexing_slicing,
-    clippy::panic,
-    reason = "a test may panic, and so may what it calls"
-)]
 
 mod flight;
 mod world;
