@@ -191,8 +191,9 @@ impl Flight {
             .map(|event| event.tick)
     }
 
-    pub(crate) fn bank_deg(&self) -> f64 {
-        self.machine.record().estimate.roll_rad.to_degrees()
+    pub(crate) fn true_bank_deg(&self) -> f64 {
+        let roll_rad = self.wire.world().aircraft.truth().roll_rad;
+        roll_rad.to_degrees()
     }
 
     pub(crate) fn largest_bank_step_deg(&self) -> f64 {
