@@ -81,6 +81,33 @@ def attitude(turn: Turn, pitch_rad: float, roll_rad: float, heading_rad: float) 
     )
 
 
+class MeasuredAttitude:
+    """Attitude about the local axes, from one that is measured about the level at the aircraft.
+
+    The difference is that of the true attitude, so that a sensor's error of one angle stays in that
+    one. An angle whose measurement stands still stands still here, too: a frozen sensor is frozen.
+    """
+
+    def __init__(self) -> None:
+        """Begin without a measurement."""
+        self._last: list[tuple[LocalAxes, float, float] | None] = [None] * 3
+
+    def measure(self, axes: LocalAxes, turn: Turn, true: Vector, measured: Vector) -> Vector:
+        """Return pitch, roll and heading about `axes`, to which `turn` leads."""
+        local = attitude(turn, *true)
+        pitch, roll, heading = (
+            self._angle(place, axes, measured[place], local[place] - true[place])
+            for place in range(3)
+        )
+        return (pitch, roll, heading % math.tau)
+
+    def _angle(self, place: int, axes: LocalAxes, measured: float, differs: float) -> float:
+        last = self._last[place]
+        if last is None or last[:2] != (axes, measured):
+            last = self._last[place] = (axes, measured, measured + differs)
+        return last[2]
+
+
 def _level_axes(latitude_rad: float, longitude_rad: float) -> tuple[Vector, Vector, Vector]:
     """Return north, east and down at a place, in axes fixed to the earth."""
     sin_a, cos_a = math.sin(latitude_rad), math.cos(latitude_rad)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 from .cockpit import ALTIMETER_SETTING, PITOT_ICE, Cockpit
 from .local_axes import LocalAxes, Turn, Vector, attitude
@@ -24,7 +25,7 @@ SLOWEST_TRUE_PERIOD_S = 1.0 / 19.0
 runs slower than the wall clock (DataRefs.txt, at `sim/time/sim_speed_actual_ogl`)."""
 
 
-@dataclass(slots=True)
+@dataclass
 class Readout:
     """Everything that a dataref can be computed from, at one frame."""
 
@@ -50,28 +51,36 @@ class Readout:
     surfaces: Controls | None = None
     """Where the control surfaces are; None for where they are commanded."""
     aircraft: str = ""
-    _turn: Turn = field(init=False)
+    attitude_rad: Vector | None = None
+    """Pitch, roll and heading about the local axes, as measured; None for those of `state`."""
 
-    def __post_init__(self) -> None:
-        """Compute the rotation to the local axes once."""
-        self._turn = self.axes.turn(self.state.latitude_rad, self.state.longitude_rad)
+    @cached_property
+    def _turn(self) -> Turn:
+        """The rotation from the level axes at the aircraft to the local ones."""
+        return self.axes.turn(self.state.latitude_rad, self.state.longitude_rad)
 
+    @cached_property
     def local_attitude_deg(self) -> Vector:
         """Return pitch, roll and heading about the local axes; heading 0..360."""
         s = self.state
-        pitch, roll, heading = attitude(self._turn, s.pitch_rad, s.roll_rad, s.heading_rad)
+        pitch, roll, heading = self.attitude_rad or attitude(
+            self._turn, s.pitch_rad, s.roll_rad, s.heading_rad
+        )
         return (math.degrees(pitch), math.degrees(roll), wrap_heading(math.degrees(heading)))
 
+    @cached_property
     def local_position_m(self) -> Vector:
         """Return x, y, z."""
         s = self.state
         return self.axes.position_m(s.latitude_rad, s.longitude_rad, s.elevation_m)
 
+    @cached_property
     def local_velocity_mps(self) -> Vector:
         """Return the velocity over the ground along x, y, z."""
         s = self.state
         return self._along_local((s.north_mps, s.east_mps, s.down_mps))
 
+    @cached_property
     def local_acceleration_mps2(self) -> Vector:
         """Return the acceleration over the ground along x, y, z."""
         return self._along_local(self.acceleration_mps2())
@@ -135,8 +144,8 @@ class Readout:
     def position(self) -> Position:
         """Return the content of RPOS."""
         s = self.state
-        pitch_deg, roll_deg, heading_deg = self.local_attitude_deg()
-        east_mps, up_mps, south_mps = self.local_velocity_mps()
+        pitch_deg, roll_deg, heading_deg = self.local_attitude_deg
+        east_mps, up_mps, south_mps = self.local_velocity_mps
         return Position(
             longitude_deg=math.degrees(s.longitude_rad),
             latitude_deg=math.degrees(s.latitude_rad),

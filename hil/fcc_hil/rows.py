@@ -70,7 +70,7 @@ def _rates(r: Readout) -> Sequence[float]:
 
 
 def _attitude(r: Readout) -> Sequence[float]:
-    return (*r.local_attitude_deg(), r.magnetic_heading_deg())
+    return (*r.local_attitude_deg, r.magnetic_heading_deg())
 
 
 def _air_angles(r: Readout) -> Sequence[float]:
@@ -92,10 +92,10 @@ def _place(r: Readout) -> Sequence[float]:
 
 
 def _local(r: Readout) -> Sequence[float]:
-    x, y, z = r.local_position_m()
+    x, y, z = r.local_position_m
     distance_m = math.hypot(x, z)
     travelled = (distance_m / FT_TO_M, distance_m / _METRES_PER_NAUTICAL_MILE)
-    return (x, y, z, *r.local_velocity_mps(), *travelled)
+    return (x, y, z, *r.local_velocity_mps, *travelled)
 
 
 def _throttles(r: Readout) -> Sequence[float]:

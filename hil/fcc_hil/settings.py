@@ -62,6 +62,8 @@ class Settings:
     """The pressure at sea level. The pilot's altimeter is set to it at first."""
     origin_offset_deg: tuple[float, float] = (0.5, 0.5)
     """Latitude and longitude of the local axes' origin less those of the aircraft at first."""
+    origin_moves_after_s: float = 45.0
+    """When the origin moves by itself, as at the edge of a scenery tile, in simulated time."""
     surface_rate: float = 2.0
     """How fast the control surfaces move, in full deflections a second."""
     axial_sign: float = 1.0
@@ -86,18 +88,23 @@ class Settings:
     data_rows: tuple[int, ...] = ()
     """The rows selected there."""
     data_rate_hz: float = 20.0
+    person: bool = False
+    """Whether a person sits at it, who does what `fccd x-plane check --yes` asks for (`person`)."""
+    misbehaves_in: tuple[int, ...] = ()
+    """The steps of that check in which it misbehaves (`misbehaviour`); needs the person."""
 
     @classmethod
     def plain(cls, **changes: Any) -> Settings:
         """Return settings without the manners.
 
-        Constant frames, the standard pressure, local axes level at the aircraft's start, surfaces
-        that follow at once.
+        Constant frames, the standard pressure, local axes that stay level at the aircraft's start,
+        surfaces that follow at once.
         """
         plain: dict[str, Any] = {
             "frame_rates_hz": None,
             "qnh_inhg": STANDARD_INHG,
             "origin_offset_deg": (0.0, 0.0),
+            "origin_moves_after_s": math.inf,
             "surface_rate": math.inf,
         }
         return cls(**{**plain, **changes})

@@ -60,6 +60,8 @@ class StandIn(World):
         """Why datagrams were refused, newest last."""
         self.unsent = 0
         """Datagrams that the kernel would not send."""
+        self.unknown_commands: dict[str, int] = {}
+        """Commands without an effect here, with their number."""
         self.overflowed = 0
         """Datagrams lost because too many arrived for one frame."""
         self._subscriptions = Subscriptions(
@@ -129,6 +131,7 @@ class StandIn(World):
             "reply_port": self.reply_port,
             "clients": {f"{host}:{port}": paths for (host, port), paths in clients.items()},
             "unknown_datarefs": dict(self._subscriptions.unknown),
+            "unknown_commands": dict(self.unknown_commands),
             "messages": dict(self.messages),
             "refused": self.refused,
             "overflowed": self.overflowed,
@@ -183,7 +186,8 @@ class StandIn(World):
             case SelectRows(rows, on):
                 self._selected = self._selected | set(rows) if on else self._selected - set(rows)
             case RunCommand(path):
-                run_command(self, path)
+                if not run_command(self, path):
+                    self.unknown_commands[path] = self.unknown_commands.get(path, 0) + 1
 
     def _send(self) -> None:
         now_s = time.monotonic()
@@ -192,7 +196,7 @@ class StandIn(World):
         measured, missing = self.sensors.read(self.plant.time_s, sensed)
         silent = self.mode is Mode.STALLED and not self.settings.sends_while_stalled
         if measured is not None and not silent:
-            readout = self.readout(measured)
+            readout = self.measured_readout(state, measured)
             paths = withheld(missing)
             for client, datagram in self._subscriptions.due(self._frame_time_s, readout, paths):
                 self._outbound.offer(now_s, client, datagram)

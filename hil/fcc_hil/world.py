@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, SIM_SPEED, YOKE_ROLL, Cockpit
 from .datarefs import getter
 from .frames import FrameClock, VaryingRate
-from .local_axes import LocalAxes
+from .local_axes import LocalAxes, MeasuredAttitude
 from .plant import STEPS_PER_SECOND, Plant
 from .protocol import Dialect
 from .readout import SLOWEST_TRUE_PERIOD_S, Readout
@@ -122,6 +122,7 @@ class World:
 
         By at least 1 degree of longitude, as at the edge of a scenery tile.
         """
+        self._origin_moved = True
         state = self.plant.state()
         to_origin_rad = self.axes.longitude_rad - state.longitude_rad
         moved_rad = math.copysign(max(abs(2.0 * to_origin_rad), math.radians(1.0)), -to_origin_rad)
@@ -210,6 +211,13 @@ class World:
             aircraft=self.settings.aircraft,
         )
 
+    def measured_readout(self, true: State, measured: State) -> Readout:
+        """Return what is sent when sensors measure this instead of the true state."""
+        turn = self.axes.turn(true.latitude_rad, true.longitude_rad)
+        angles = [(s.pitch_rad, s.roll_rad, s.heading_rad) for s in (true, measured)]
+        attitude_rad = self._attitude.measure(self.axes, turn, *angles)
+        return replace(self.readout(measured), attitude_rad=attitude_rad)
+
     def overridden(self) -> bool:
         """Return whether a client overrides the joystick or the throttles."""
         return self.cockpit.is_on(OVERRIDE_JOYSTICK) or self.cockpit.is_on(OVERRIDE_THROTTLES)
@@ -253,6 +261,8 @@ class World:
             self.plant.step()
             if self.plant.steps % STEPS_PER_ROW == 0:
                 self.truth.append(row(self.plant.state(), self.plant.controls))
+        if not self._origin_moved and self.plant.time_s >= self.settings.origin_moves_after_s:
+            self.shift_origin()
         self._remember(self.plant.state())
 
     def _set_up(self, plant: Plant) -> None:
@@ -264,6 +274,8 @@ class World:
             start.latitude_rad + math.radians(offset[0]),
             start.longitude_rad + math.radians(offset[1]),
         )
+        self._origin_moved = False
+        self._attitude = MeasuredAttitude()
         self._autopilot = SimulatorAutopilot()
         self._time_offset_s = 0.0
         self._owed_steps = 0.0

@@ -311,6 +311,16 @@ def test_a_wrong_action_is_refused_with_what_can_be_given(
     assert why in " ".join(capsys.readouterr().err.split())
 
 
+def test_the_command_line_acts_at_its_times(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["standin", "--port", "0", "--seconds", "0.6", "--at", "0.3:knob:30.22"]
+    assert main([*words, "--at", "0.1:freeze:0.1", "--at", "0.4:pause"]) == 0
+    first, *done = capsys.readouterr().out.splitlines()
+    assert "and sends from port" in first
+    acted = [line.partition(" s: ")[2] for line in done if " s: " in line]
+    assert acted == ["freeze:0.1", "knob:30.22", "pause"]
+    assert '"mode": "paused"' in "".join(done)
+
+
 def test_every_action_can_be_written_as_its_help_says(bench: Bench) -> None:
     for name, action in ACTIONS.items():
         argument = action.argument

@@ -25,6 +25,7 @@ from fcc_hil.cockpit import (
 from fcc_hil.frames import VaryingRate
 from fcc_hil.local_axes import LocalAxes, attitude
 from fcc_hil.rows import row_values
+from fcc_hil.sensor_faults import Faults
 from fcc_hil.standin import Settings, StandIn
 from fcc_hil.state import Controls
 
@@ -261,6 +262,40 @@ def test_the_true_attitude_is_not_about_the_local_axes() -> None:
     assert bench.read(P + "theta") - bench.read(P + "true_theta") == pytest.approx(0.5, abs=0.01)
     assert bench.read(P + "phi") - bench.read(P + "true_phi") == pytest.approx(-0.5, abs=0.01)
     assert bench.read("sim/flightmodel2/position/true_theta") == bench.read(P + "true_theta")
+    bench.close()
+
+
+def test_the_origin_moves_by_itself_once() -> None:
+    bench = Bench(origin_offset_deg=(0.5, 0.5), origin_moves_after_s=0.5)
+    before_deg = bench.read(P + "phi")
+    bench.frames(29)
+    assert bench.read(P + "phi") == pytest.approx(before_deg, abs=0.1)
+    bench.frames(2)
+    moved_deg = bench.read(P + "phi")
+    assert moved_deg - before_deg == pytest.approx(1.0, abs=0.1)
+    bench.frames(60)
+    assert bench.read(P + "phi") == pytest.approx(moved_deg, abs=0.1)
+    bench.close()
+
+
+def test_a_frozen_or_broken_angle_is_so_about_the_local_axes_too() -> None:
+    bench = Bench(origin_offset_deg=(0.5, 0.5))
+    names = ("theta", "phi", "psi", "true_phi")
+    for index, name in enumerate(names):
+        bench.client.subscribe(index, P + name)
+    bench.simulator.cockpit.hold(Controls(aileron=0.3, throttle=0.7))
+    frozen = bench.frames(30)
+    faults = Faults(lambda: bench.simulator.plant.time_s, bench.simulator.sensors.set_faults)
+    faults.freeze("attitude")
+    first = bench.frames(1)
+    last = bench.frames(60)
+    assert (last[0], last[1], last[3]) == (first[0], first[1], first[3])
+    assert last[2] != frozen[2], "the heading is not frozen"
+    faults.end()
+    faults.nan("heading")
+    values = bench.frames(1)
+    assert math.isnan(values[2])
+    assert math.isfinite(values[0] + values[1])
     bench.close()
 
 

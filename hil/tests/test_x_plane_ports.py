@@ -86,3 +86,22 @@ def test_a_generic_light_that_this_version_lacks_is_named(fccd: Path, tmp_path: 
         assert "generic lights 0 to 63" in words
         ending = daemon.end(signal.SIGTERM)
     assert ending.exit_code == SUCCESS
+
+
+def test_a_fast_loop_sends_no_more_than_a_frame_takes(fccd: Path, tmp_path: Path) -> None:
+    """A loop of 1 kHz with eight engines, at 30 frames a second: without a limit, 366 a frame."""
+    with flight(
+        fccd,
+        tmp_path,
+        settings=Settings.plain(port=0, frame_rate_hz=30.0),
+        x_plane="engines = 8",
+        others="[loop]\nrate_hz = 1000\n[budget]\nfailsafe_after = 0\n",
+    ) as (simulator, daemon):
+        engage(simulator, daemon)
+        for _ in range(3):
+            assert "engaged" in daemon.wait_for("heading")
+        status = simulator.status()
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.report["released"] is True
+    assert status["messages"]["WriteDataref"] > 1_000
+    assert status["overflowed"] == 0

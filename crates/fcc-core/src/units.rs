@@ -22,3 +22,20 @@ pub const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
 /// assert_eq!(fcc_core::units::GRAVITY_MPS2, 9.806_65);
 /// ```
 pub const GRAVITY_MPS2: f64 = 9.806_65;
+
+/// One hectopascal in Pa.
+///
+/// ```
+/// // ISO 2533: 101 325 Pa at sea level.
+/// assert_eq!(1_013.25 * fcc_core::units::HECTOPASCAL_PA, 101_325.0);
+/// ```
+pub const HECTOPASCAL_PA: f64 = 100.0;
+
+/// One conventional inch of mercury in Pa (NIST Special Publication 811, 2008,
+/// appendix B.8).
+///
+/// ```
+/// // The standard pressure is 29.921 26 inHg.
+/// assert!((101_325.0 / fcc_core::units::INHG_PA - 29.921_26).abs() < 1e-5);
+/// ```
+pub const INHG_PA: f64 = 3_386.389;

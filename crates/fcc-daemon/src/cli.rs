@@ -1,5 +1,7 @@
 //! The command line.
 
+pub mod x_plane;
+
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -10,6 +12,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::EXIT_CODES;
+use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
@@ -45,6 +48,8 @@ pub enum Action {
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
+    /// Check fccd against a running X-Plane
+    XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
     /// Release X-Plane's controls if the daemon is killed; started by the
@@ -81,6 +86,7 @@ impl Action {
             Self::Check(args) => args.json,
             Self::Doctor(args) => args.json,
             Self::Report(args) => args.json,
+            Self::XPlane(args) => args.what.json(),
             Self::ReleaseHelper | Self::Completions { .. } | Self::Man { .. } => false,
         }
     }
@@ -282,9 +288,21 @@ pub struct SetArgs {
     /// Magnetic heading, -360 to 360; turns the shorter way
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
-    /// Barometric altitude
+    /// Altitude above sea level by the altimeter setting
     #[arg(long, value_name = "FT", allow_negative_numbers = true)]
     pub altitude_ft: Option<f64>,
+    /// Pressure altitude: flight level 55 is 5500
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub pressure_altitude_ft: Option<f64>,
+    /// Height above the configured field elevation
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub height_ft: Option<f64>,
+    /// Altimeter setting (QNH), 940 to 1060; also in standby
+    #[arg(long, value_name = "HPA")]
+    pub altimeter_hpa: Option<f64>,
+    /// The same in inches of mercury, 27.76 to 31.3
+    #[arg(long, value_name = "INHG", conflicts_with = "altimeter_hpa")]
+    pub altimeter_inhg: Option<f64>,
     /// Indicated airspeed
     #[arg(long, value_name = "KT", allow_negative_numbers = true)]
     pub airspeed_kt: Option<f64>,

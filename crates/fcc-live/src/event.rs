@@ -72,6 +72,9 @@ pub enum EventCode {
     /// The controller's mode changed (mode before, mode now). An autopilot's: 0
     /// none, 1 hold, 2 timed pattern.
     ModeChanged = 18,
+    /// Conditions that the controller reports while control is held changed
+    /// (those that began, those that ended).
+    ConditionsChanged = 19,
     /// The controller noticed something (how long it lasted, ns); the index is
     /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost.
     Noticed = 20,
@@ -168,6 +171,10 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         }
         EventKind::ModeChanged { from, to } => {
             (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
+        }
+        EventKind::ConditionsChanged { began, ended } => {
+            let values = [began.bits().into(), ended.bits().into(), 0];
+            (EventCode::ConditionsChanged, 0, values)
         }
         EventKind::Noticed(notice) => (
             EventCode::Noticed,

@@ -37,8 +37,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    COMMANDS_VERSION, CommandError, Commander, FlightCommand, InvalidCommand, NewSetpoints,
-    OutsideLimits, PendingCommand, Quantity, Verdict,
+    AircraftLimits, COMMANDS_VERSION, CommandError, Commander, FlightCommand, InvalidCommand,
+    NewSetpoints, OutsideLimits, PendingCommand, Quantity, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};

@@ -54,6 +54,9 @@ const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
     airspeed_mps: None,
     heading_rad: Some(1.25),
     altitude_m: None,
+    pressure_altitude_m: None,
+    height_m: None,
+    altimeter_setting_pa: None,
 });
 
 #[test]

@@ -1,16 +1,15 @@
 //! The autopilot, one call per tick.
 
-use std::ops::RangeInclusive;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
+use fcc_core::flight::{Autopilot, Surfaces};
 use fcc_core::framework::Controller;
-use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD};
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
-use crate::arguments::{Rows, finite, rows, step_s, within};
+use crate::arguments::{Rows, rows, step_s};
+use crate::commanded::Commanded;
 use crate::config::autopilot_config;
 use crate::errors;
 use crate::machine::conditions;
@@ -148,20 +147,37 @@ impl PyAutopilot {
         self.stepped(py).disengage();
     }
 
-    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
-    /// pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
+    /// level by the altimeter setting, or a pressure altitude, or a height above
+    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none,
+    /// and is also set without being engaged.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
+                        pressure_altitude_m = None, height_m = None,
+                        altimeter_setting_pa = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn command(
         &self,
         py: Python<'_>,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
+        pressure_altitude_m: Option<f64>,
+        height_m: Option<f64>,
+        altimeter_setting_pa: Option<f64>,
     ) -> PyResult<()> {
+        let given = Commanded {
+            airspeed_mps,
+            heading_rad,
+            altitude_m,
+            pressure_altitude_m,
+            height_m,
+            altimeter_setting_pa,
+        };
         let mut stepped = self.stepped(py);
-        stepped.must_be_engaged()?;
-        let allowed = stepped.autopilot.config().envelope.allowed_airspeeds();
-        let commands = checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)?;
+        if given.is_more_than_a_setting() {
+            stepped.must_be_engaged()?;
+        }
+        let commands = given.checked(stepped.autopilot.config())?;
         stepped.command(commands);
         Ok(())
     }
@@ -217,49 +233,4 @@ pub(crate) fn matrix<'py, V: Values>(
     let width = names::<V>().count();
     let rows = numbers.len() / width.max(1);
     numbers.to_pyarray(py).reshape([rows, width])
-}
-
-/// Commands for the controller: airspeed in m/s, as the envelope allows;
-/// heading in rad, -4π to 4π; altitude in m, -500 to 20,000.
-pub(crate) fn checked_commands(
-    airspeed_mps: Option<f64>,
-    heading_rad: Option<f64>,
-    altitude_m: Option<f64>,
-    airspeeds_mps: &RangeInclusive<f64>,
-) -> PyResult<Vec<AutopilotCommand>> {
-    // The limits as the message gives them: they are whole in knots.
-    let [least, most] =
-        [airspeeds_mps.start(), airspeeds_mps.end()].map(|mps| (mps * 100.0).round() / 100.0);
-    let given = [
-        (
-            "airspeed_mps",
-            airspeed_mps,
-            least..=most,
-            AutopilotCommand::Airspeed as fn(f64) -> _,
-        ),
-        (
-            "heading_rad",
-            heading_rad,
-            // The sum of two headings, too.
-            2.0 * COMMANDED_HEADING_RAD.start()..=2.0 * COMMANDED_HEADING_RAD.end(),
-            AutopilotCommand::Heading,
-        ),
-        (
-            "altitude_m",
-            altitude_m,
-            COMMANDED_ALTITUDE_M,
-            AutopilotCommand::Altitude,
-        ),
-    ];
-    let given = given
-        .into_iter()
-        .filter_map(|(name, value, range, command)| {
-            let (value, least, most) = (value?, *range.start(), *range.end());
-            Some(
-                finite(name, value)
-                    .and_then(|value| within(name, value, least, most))
-                    .map(command),
-            )
-        });
-    given.collect()
 }

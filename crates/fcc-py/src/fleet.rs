@@ -110,9 +110,10 @@ impl PyFleet {
     /// rad, altitude in m, roll in rad, climb rate in m/s, pitch in rad.
     #[getter]
     fn setpoints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        // Guidance's mode and progress are nested, and come after these.
+        // Guidance's mode and progress are nested, and come after these, before
+        // the altimeter.
         let leaves = PySetpoints::attributes().leaves.iter();
-        let own = leaves.filter(|(_, leaf)| !leaf.column.path.contains('.'));
+        let own = leaves.take_while(|(_, leaf)| !leaf.column.path.contains('.'));
         let width = own.count();
         let mut numbers = Vec::new();
         for (n, autopilot) in self.autopilots.iter().enumerate() {

@@ -35,6 +35,7 @@ mod blocks;
 #[cfg(feature = "flight")]
 mod callbacks;
 #[cfg(feature = "flight")]
+mod commanded;
 mod config;
 mod errors;
 pub mod events;

@@ -8,6 +8,8 @@
 //! All of it runs outside the loop's thread.
 
 #[cfg(feature = "flight")]
+mod altitude;
+#[cfg(feature = "flight")]
 mod flight;
 mod instance;
 mod message;
@@ -21,6 +23,8 @@ mod telemetry;
 mod timing;
 pub mod units;
 
+#[cfg(feature = "flight")]
+pub use altitude::ShownAltitude;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]

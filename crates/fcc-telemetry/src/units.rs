@@ -20,6 +20,12 @@ pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
 /// Altitudes that may be commanded, m.
 pub const COMMANDED_ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
 
+/// Altimeter settings that may be commanded, Pa.
+pub const COMMANDED_ALTIMETER_SETTING_PA: RangeInclusive<f64> = 94_000.0..=106_000.0;
+
+/// Hectopascals per pascal.
+pub const PA_HPA: f64 = 0.01;
+
 /// A number as a message gives it; a very large or small one without hundreds of zeros.
 pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&value.abs()) {
@@ -61,6 +67,7 @@ pub const AVIATION: &[Shown] = &[
     shown("_rad", "°", RAD_DEG),
     shown("_radps", "°/s", RAD_DEG),
     shown("_radps2", "°/s²", RAD_DEG),
+    shown("_pa", "hPa", PA_HPA),
 ];
 
 impl Shown {

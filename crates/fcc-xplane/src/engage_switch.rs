@@ -20,6 +20,13 @@ pub(crate) const MOST: u32 = 128;
 /// 11.10, as `xplane_internal_version` has it.
 const MORE_SINCE: u32 = 111_000;
 
+/// A version that answers requests for datarefs that it does not have is known
+/// by its answer to this one. It is asked only for another switch than a generic
+/// light: which of those exist is known.
+pub(crate) const NONEXISTENT_DATAREF: &str = "fccd/does_not_exist";
+/// No subscription has this index.
+pub(crate) const NONEXISTENT_INDEX: i32 = 9_005;
+
 /// The element, if the path is one of a generic light.
 pub(crate) fn generic_light(path: &str) -> Option<u32> {
     let element = path.strip_prefix(GENERIC_LIGHTS)?;

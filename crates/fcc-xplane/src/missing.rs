@@ -4,8 +4,9 @@
 //! does it report that a row of Data Output is switched off: a mistyped path, a
 //! plugin that is not loaded and an old version all result in silence. (A
 //! version that answers such a request with 0 cannot be distinguished from a
-//! switch that is off, so the switch's path is logged at the first contact; a
-//! generic light that this version does not have is known by its number.)
+//! switch that is off, so the switch's path is logged at the first contact. That
+//! a version answers so is known by its answer to a request for a dataref that
+//! does not exist; that it lacks a generic light, by the light's number.)
 
 use core::fmt;
 use core::time::Duration;
@@ -69,6 +70,14 @@ impl Expected {
         match self {
             Self::Value(quantity) => 1 << (quantity as u8),
             Self::Position => POSITION,
+        }
+    }
+
+    /// Whether its absence is reported.
+    pub(crate) fn is_needed(self) -> bool {
+        match self {
+            Self::Value(quantity) => quantity.is_needed(),
+            Self::Position => true,
         }
     }
 }
@@ -144,6 +153,9 @@ pub enum Missing {
         /// The number of generic lights that it has.
         lights: u32,
     },
+    /// The same, of a version that answers requests for datarefs that it does
+    /// not have: whether it has this one is not known.
+    MaybeEngageSwitch(String),
     /// Another dataref.
     Dataref(String),
     /// A row of Data Output.
@@ -179,7 +191,9 @@ impl Missing {
     /// A short name of the value.
     pub fn what(&self) -> String {
         match self {
-            Self::EngageSwitch(path) | Self::GenericLight { path, .. } => {
+            Self::EngageSwitch(path)
+            | Self::GenericLight { path, .. }
+            | Self::MaybeEngageSwitch(path) => {
                 format!("x-plane.engage_switch \"{path}\"")
             }
             Self::Dataref(path) => format!("the dataref {path}"),
@@ -201,9 +215,17 @@ impl fmt::Display for Missing {
                 engage_switch::DEFAULT
             );
         }
+        if let Self::MaybeEngageSwitch(path) = self {
+            return write!(
+                f,
+                "x-plane.engage_switch \"{path}\" may not exist: this version of X-Plane answers \
+                 requests for datarefs that it does not have, too. If it does not engage, check \
+                 its spelling, and that the plugin or aircraft that provides it is loaded."
+            );
+        }
         write!(f, "X-Plane does not send {}", self.what())?;
         f.write_str(match self {
-            Self::GenericLight { .. } => "",
+            Self::GenericLight { .. } | Self::MaybeEngageSwitch(_) => "",
             Self::EngageSwitch(_) => {
                 ", so it cannot be used to engage. Check its spelling (X-Plane's own datarefs are \
                  listed in its Resources/plugins/DataRefs.txt), and that the plugin or aircraft \

@@ -10,6 +10,7 @@ use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
+use crate::quantity::Quantity;
 use crate::simulator::SimulatorState;
 
 /// The status of the connection to X-Plane, readable from any thread without a
@@ -114,6 +115,24 @@ impl XPlaneStatus {
         self.link.is_unconfirmed()
     }
 
+    /// The position of the first engine's throttle lever, 0 to 1, less in
+    /// reverse; once received.
+    pub fn throttle_lever(&self) -> Option<f64> {
+        let (lever, _) = self.link.shown(Quantity::ThrottleLever)?;
+        Some(lever.into())
+    }
+
+    /// Whether the accelerations that are used contradict the load factor.
+    pub fn do_loads_differ(&self) -> bool {
+        self.link.do_loads_differ()
+    }
+
+    /// Whether the axial load in row 4 of Data Output is positive backwards: as
+    /// configured, or found out.
+    pub fn is_axial_backwards(&self) -> bool {
+        self.link.is_axial_backwards()
+    }
+
     /// X-Plane's version, 115501 for 11.55r01, once received.
     pub fn version(&self) -> Option<u32> {
         self.link.version()
@@ -159,6 +178,10 @@ impl XPlaneStatus {
             let path = self.engage_switch().to_owned();
             missing.retain(|what| !matches!(what, Missing::EngageSwitch(_)));
             missing.push(Missing::GenericLight { path, lights });
+        }
+        if self.link.answers_anything() {
+            let path = self.engage_switch().to_owned();
+            missing.push(Missing::MaybeEngageSwitch(path));
         }
         missing
     }

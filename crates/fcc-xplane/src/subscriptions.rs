@@ -18,6 +18,7 @@ use core::time::Duration;
 use fcc_core::framework::Time;
 
 use crate::config::{Input, XPlaneConfig};
+use crate::engage_switch::{self, NONEXISTENT_DATAREF, NONEXISTENT_INDEX};
 use crate::inbox::Inbox;
 use crate::missing::{Expected, MissingValues, ValueSet};
 use crate::port::Errno;
@@ -40,6 +41,8 @@ const POSITION_RATE_HZ: u16 = 20;
 
 #[derive(Debug)]
 enum Request {
+    /// A dataref that does not exist: whether X-Plane answers nevertheless.
+    Nonexistent(Box<[u8; rref::REQUEST_BYTES]>),
     Value(Quantity, Box<[u8; rref::REQUEST_BYTES]>),
     Position([u8; rpos::REQUEST_BYTES], usize),
 }
@@ -47,15 +50,17 @@ enum Request {
 impl Request {
     fn datagram(&self) -> &[u8] {
         match self {
-            Self::Value(_, request) => request.as_slice(),
+            Self::Nonexistent(request) | Self::Value(_, request) => request.as_slice(),
             Self::Position(request, length) => request.get(..*length).unwrap_or_default(),
         }
     }
 
-    const fn expected(&self) -> Expected {
+    /// None if no answer is expected.
+    const fn expected(&self) -> Option<Expected> {
         match self {
-            Self::Value(quantity, _) => Expected::Value(*quantity),
-            Self::Position(..) => Expected::Position,
+            Self::Nonexistent(_) => None,
+            Self::Value(quantity, _) => Some(Expected::Value(*quantity)),
+            Self::Position(..) => Some(Expected::Position),
         }
     }
 }
@@ -100,7 +105,7 @@ impl Subscriptions {
         for quantity in Quantity::all() {
             if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
                 let comes = row_of(rows, quantity).map(|_| Expected::Value(quantity));
-                expected.extend(comes);
+                expected.extend(comes.filter(|_| quantity.is_needed()));
                 continue;
             }
             let Some(path) = quantity.path(&config.engage_switch) else {
@@ -115,7 +120,13 @@ impl Subscriptions {
         }
         let mut without_effect = Box::new([0; rref::REQUEST_BYTES]);
         rref::request(&mut without_effect, 0, UNUSED_INDEX, ANY_DATAREF)?;
-        expected.extend(list.iter().map(|asked| asked.request.expected()));
+        if engage_switch::generic_light(&config.engage_switch).is_none() {
+            let mut request = Box::new([0; rref::REQUEST_BYTES]);
+            rref::request(&mut request, 1, NONEXISTENT_INDEX, NONEXISTENT_DATAREF)?;
+            list.push(Subscription::to(Request::Nonexistent(request)));
+        }
+        let asked = list.iter().filter_map(|asked| asked.request.expected());
+        expected.extend(asked.filter(|asked| asked.is_needed()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
@@ -185,7 +196,8 @@ impl Subscriptions {
             if budget == 0 {
                 break;
             }
-            let arrived_at = arrived(inbox, subscription.request.expected());
+            let expected = subscription.request.expected();
+            let arrived_at = expected.map_or(Time::NEVER, |expected| arrived(inbox, expected));
             let answered = arrived_at > self.restarted && now.since(arrived_at) < resubscribe;
             if answered && !subscription.anew {
                 subscription.unanswered = 0;
@@ -193,8 +205,10 @@ impl Subscriptions {
             }
             let wait = if subscription.unanswered <= LOST_TIMES {
                 resubscribe.min(LOST_AFTER)
-            } else {
+            } else if expected.is_some() {
                 resubscribe
+            } else {
+                Duration::MAX
             };
             if subscription.anew || now.since(subscription.asked) >= wait {
                 subscription.anew = false;
@@ -214,7 +228,7 @@ impl Subscriptions {
     pub(crate) fn end(&mut self, mut send: impl FnMut(&[u8])) {
         for subscription in &mut self.list {
             match &mut subscription.request {
-                Request::Value(_, request) => {
+                Request::Nonexistent(request) | Request::Value(_, request) => {
                     rref::set_frequency(request, 0);
                     send(request.as_slice());
                 }

@@ -4,8 +4,9 @@
 //! Laminar Research, pull request 3 of github.com/charlylima/XPlaneUDP, 2017).
 //! Its longest regular frame lasts a twentieth of a second: with fewer frames
 //! its time slows down. So the writes of the controls and the requests are
-//! limited by time, each to its share of such a frame. A loop of up to 180 Hz
-//! writes in every tick, whatever the number of engines.
+//! limited by time, each to its share of such a frame, and a quarter is left for
+//! frames that come late. A loop of up to 100 Hz writes in every tick, whatever
+//! the number of engines; more often than it draws, X-Plane reads nothing.
 
 use core::time::Duration;
 
@@ -18,8 +19,8 @@ const MESSAGES_PER_FRAME: usize = 140;
 /// which the writes are spread further.
 const FRAME: Duration = Duration::from_millis(50);
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
-/// The share of the controls. The overrides and a release need 17.
-const WRITES_PER_FRAME: f64 = 100.0;
+/// The share of the controls.
+const WRITES_PER_FRAME: f64 = 60.0;
 
 /// The requests sent together, and the interval between two of such portions:
 /// at most three portions in a frame.
@@ -92,22 +93,22 @@ mod tests {
     fn a_fast_loop_writes_less_often_and_a_usual_one_in_every_tick() {
         for messages in [1, 4, 11] {
             assert_eq!(writes(40, messages, 0.016), 40);
-            assert_eq!(writes(180, messages, 0.016), 180);
+            assert_eq!(writes(100, messages, 0.016), 100);
         }
-        // 100 messages in 50 ms are 500 times 4 in a second.
-        assert_eq!(writes(1_000, 4, 0.016), 500);
-        assert!(writes(1_000, 11, 0.016) * 11 <= 2_000);
-        // At ten frames a second, 100 in 100 ms.
-        assert_eq!(writes(1_000, 4, 0.1), 250);
+        // 60 messages in 50 ms are 4 every 3.3 ms: every fourth tick.
+        assert_eq!(writes(1_000, 4, 0.016), 250);
+        assert!(writes(1_000, 11, 0.016) * 11 <= 1_200);
+        // At ten frames a second, 60 in 100 ms.
+        assert!(writes(1_000, 4, 0.1) * 4 <= 600);
     }
 
     #[test]
-    fn writes_and_requests_fit_a_frame() {
+    fn writes_and_requests_fill_three_quarters_of_a_frame_at_most() {
         let portions = FRAME.as_millis().div_ceil(PORTION_EVERY.as_millis()) as usize;
         let overrides = 2;
         // Three surfaces and two overrides, three times.
         let release = 15;
         let all = WRITES_PER_FRAME as usize + portions * REQUESTS_PER_PORTION + overrides + release;
-        assert!(all <= MESSAGES_PER_FRAME, "{all}");
+        assert!(all * 4 <= MESSAGES_PER_FRAME * 3, "{all}");
     }
 }

@@ -143,9 +143,15 @@ pub trait Controller: Send {
         f.write_str("a notice of the controller")
     }
 
+    /// Conditions to report while control is held that need not be faults; empty
+    /// if there are none. The loop reports each change as an event.
+    fn conditions(&self, _tick: &Tick, _measurements: &Self::Measurements) -> Flags {
+        Flags::NONE
+    }
+
     /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits),
-    /// [`faults`](Self::faults) and [`must_release`](Self::must_release), as
-    /// text for users.
+    /// [`faults`](Self::faults), [`must_release`](Self::must_release) and
+    /// [`conditions`](Self::conditions), as text for users.
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;

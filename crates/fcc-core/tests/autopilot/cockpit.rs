@@ -4,8 +4,8 @@ use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{
-    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, Plant, PlantState, Position,
-    SpecificForce, Surfaces, flags,
+    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, OtherControl, Plant, PlantState,
+    Position, SpecificForce, Surfaces, Suspect, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
@@ -35,6 +35,8 @@ pub(crate) struct Cockpit {
     pub(crate) stood_s: f64,
     /// Degrees north of the start.
     pub(crate) north_deg: f64,
+    pub(crate) other_control: OtherControl,
+    pub(crate) suspect: Suspect,
 }
 
 #[derive(Clone, Copy)]
@@ -86,6 +88,8 @@ impl Cockpit {
             switch: None,
             stood_s: 0.0,
             north_deg: 0.0,
+            other_control: OtherControl::default(),
+            suspect: Suspect::default(),
         };
         for _ in 0..80 {
             cockpit.observe();
@@ -145,6 +149,8 @@ impl Cockpit {
                 };
                 Reading::new(position, now)
             }),
+            other_control: Reading::new(self.other_control, now),
+            suspect: Reading::new(self.suspect, now),
             plant: feel.plant.map_or_else(Reading::default, |state| {
                 Reading::new(
                     Plant {
@@ -235,5 +241,9 @@ impl Cockpit {
 
     pub(crate) fn faults(&self) -> Flags {
         self.autopilot.faults(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn conditions(&self) -> Flags {
+        self.autopilot.conditions(&self.tick, &self.measurements)
     }
 }

@@ -2,8 +2,10 @@
 #![cfg(test)]
 #![cfg(feature = "flight")]
 
+mod altimeter;
 mod cockpit;
 mod faults;
 mod flying;
+mod other_control;
 mod resuming;
 mod silence;

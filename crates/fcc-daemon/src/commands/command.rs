@@ -1,6 +1,6 @@
 //! `fccd command`: commands to a daemon on this machine.
 
-use fcc_core::units::{FOOT_M, KNOT_MPS};
+use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
 use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
 use serde::Serialize;
 
@@ -74,6 +74,12 @@ impl From<&SetArgs> for NewSetpoints {
             airspeed_mps: set.airspeed_kt.map(|kt| kt * KNOT_MPS),
             heading_rad: set.heading_deg.map(f64::to_radians),
             altitude_m: set.altitude_ft.map(|ft| ft * FOOT_M),
+            pressure_altitude_m: set.pressure_altitude_ft.map(|ft| ft * FOOT_M),
+            height_m: set.height_ft.map(|ft| ft * FOOT_M),
+            altimeter_setting_pa: set
+                .altimeter_hpa
+                .map(|hpa| hpa * HECTOPASCAL_PA)
+                .or_else(|| set.altimeter_inhg.map(|inhg| inhg * INHG_PA)),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! conversion to the core's. Optional keys have defaults; a value out of its
 //! range is refused with line, key and range.
 
+mod altimeter;
 mod as_text;
 mod autopilot;
 mod budget;
@@ -35,6 +36,7 @@ use fcc_runtime::{Budget, LoopConfig};
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
+pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
@@ -49,6 +51,7 @@ pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
+pub use values::keyed;
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -76,6 +79,8 @@ pub struct Config {
     pub telemetry: TelemetrySection,
     /// The mode after engaging.
     pub guidance: GuidanceSection,
+    /// The altimeter setting.
+    pub altimeter: AltimeterSection,
     /// Gains and limits.
     pub autopilot: AutopilotSection,
     /// The aircraft is X-Plane's.
@@ -232,6 +237,8 @@ impl Config {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
             max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
+            permitted: self.engage.permitted(),
+            altimeter: (&self.altimeter).into(),
             ..self.autopilot.to_core(
                 &self.guidance,
                 Duration::from_millis(self.failsafe.sensor_max_age_ms),

@@ -43,6 +43,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("guidance.leg_s", 1.0, 86_400.0),
     ("guidance.turn_deg", -179.0, 179.0),
     ("guidance.climb_ft", -5_000.0, 5_000.0),
+    ("altimeter.setting_hpa", 940.0, 1_060.0),
+    ("altimeter.field_elevation_ft", -1_500.0, 20_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
     ("autopilot.scale.elevator", 0.01, 100.0),
     ("autopilot.scale.aileron", 0.01, 100.0),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::FlightCommand;
+use fcc_live::{AircraftLimits, FlightCommand};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
@@ -183,7 +183,8 @@ impl Assembly {
         if let Some(request) = recording {
             observers.push(Box::new(Recording::<Autopilot>::new(request)));
         }
-        let guidance = &self.autopilot.config().guidance;
+        let autopilot = self.autopilot.config();
+        let guidance = &autopilot.guidance;
         observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
         // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
@@ -191,7 +192,10 @@ impl Assembly {
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
                 Commands::new(
-                    self.autopilot.config().envelope.allowed_airspeeds(),
+                    AircraftLimits {
+                        airspeeds_mps: autopilot.envelope.allowed_airspeeds(),
+                        has_field_elevation: autopilot.altimeter.field_elevation_m.is_some(),
+                    },
                     FlightCommand::for_the_loop,
                 ),
             )));

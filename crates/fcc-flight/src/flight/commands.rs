@@ -2,10 +2,9 @@
 //! of each in the loop's messages.
 
 use std::collections::VecDeque;
-use std::ops::RangeInclusive;
 
 use fcc_core::framework::{Controller, EventKind, EventOf, LoopCommand, State};
-use fcc_live::{FlightCommand, PendingCommand, Verdict};
+use fcc_live::{AircraftLimits, FlightCommand, InvalidCommand, PendingCommand, Verdict};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::describe_event;
 
@@ -13,8 +12,7 @@ use fcc_telemetry::describe_event;
 pub(super) struct Commands<C: Controller> {
     /// The commands to the loop for one command from outside, in order.
     for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
-    /// The airspeeds permitted by the envelope, m/s.
-    airspeeds_mps: RangeInclusive<f64>,
+    limits: AircraftLimits,
     waiting: VecDeque<Waiting<C::Command>>,
 }
 
@@ -29,14 +27,14 @@ struct Waiting<R> {
 }
 
 impl<C: Controller<Command: PartialEq>> Commands<C> {
-    /// Commands to an aircraft that may fly at these airspeeds, m/s.
+    /// Commands to an aircraft with these limits.
     pub(super) const fn new(
-        airspeeds_mps: RangeInclusive<f64>,
+        limits: AircraftLimits,
         for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
     ) -> Self {
         Self {
             for_the_loop,
-            airspeeds_mps,
+            limits,
             waiting: VecDeque::new(),
         }
     }
@@ -47,8 +45,12 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
         asked: PendingCommand,
         to: &mut CommandSender<C::Command>,
     ) -> Option<(u64, Verdict)> {
-        if let Err(outside) = asked.command.check_airspeed(&self.airspeeds_mps) {
-            return Some((asked.id, Verdict::Outside(outside)));
+        if let Err(invalid) = asked.command.check_for(&self.limits) {
+            let verdict = match invalid {
+                InvalidCommand::Outside(outside) => Verdict::Outside(outside),
+                other => Verdict::Refused(other.to_string()),
+            };
+            return Some((asked.id, verdict));
         }
         let unread: VecDeque<_> = (self.for_the_loop)(&asked.command).into();
         for command in &unread {
@@ -99,7 +101,8 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
         let tick = first.read_in.filter(|tick| *tick <= now)?;
         let waiting = self.waiting.pop_front()?;
         let done = match waiting.asked.command {
-            FlightCommand::Engage | FlightCommand::Set(_) => state == State::Engaged,
+            command if command.needs_control() => state == State::Engaged,
+            FlightCommand::Engage | FlightCommand::Set(_) => state != State::Stopped,
             FlightCommand::Disengage => matches!(state, State::Standby | State::Stopped),
             FlightCommand::Stop => state == State::Stopped,
         };
@@ -135,6 +138,9 @@ mod tests {
         airspeed_mps: None,
         heading_rad: Some(1.0),
         altitude_m: Some(900.0),
+        pressure_altitude_m: None,
+        height_m: None,
+        altimeter_setting_pa: None,
     });
 
     fn waiting(commands: &mut Commands<Autopilot>, id: u64, command: FlightCommand) {
@@ -155,7 +161,29 @@ mod tests {
     }
 
     fn commands() -> Commands<Autopilot> {
-        Commands::new(30.0..=60.0, FlightCommand::for_the_loop)
+        let limits = AircraftLimits {
+            airspeeds_mps: 30.0..=60.0,
+            has_field_elevation: false,
+        };
+        Commands::new(limits, FlightCommand::for_the_loop)
+    }
+
+    #[test]
+    fn the_altimeter_is_set_in_standby_and_a_height_needs_a_field() {
+        let mut commands = commands();
+        let setting = FlightCommand::Set(NewSetpoints {
+            altimeter_setting_pa: Some(102_000.0),
+            ..NewSetpoints::default()
+        });
+        waiting(&mut commands, 1, setting);
+        let [command] = setting.for_the_loop()[..] else {
+            panic!("one command");
+        };
+        commands.event(&event(5, EventKind::CommandReceived(command)));
+        assert_eq!(
+            commands.verdict(5, State::Standby),
+            Some((1, Verdict::CarriedOut { tick: 5 }))
+        );
     }
 
     #[test]

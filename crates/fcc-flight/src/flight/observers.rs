@@ -158,7 +158,7 @@ mod tests {
     use crate::config::Config;
     use fcc_core::flight::Autopilot;
     #[cfg(feature = "live")]
-    use fcc_live::FlightCommand;
+    use fcc_live::{AircraftLimits, FlightCommand};
 
     /// Files in a folder of the test's own, and a name of its own.
     fn config(folder: &tempfile::TempDir) -> Config {
@@ -193,7 +193,13 @@ mod tests {
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
         observer_conforms(|| {
-            let commands = Commands::new(30.0..=80.0, FlightCommand::for_the_loop);
+            let commands = Commands::new(
+                AircraftLimits {
+                    airspeeds_mps: 30.0..=80.0,
+                    has_field_elevation: false,
+                },
+                FlightCommand::for_the_loop,
+            );
             Box::new(Live::<Autopilot>::new(&config, commands))
         });
     }

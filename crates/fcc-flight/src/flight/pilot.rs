@@ -48,6 +48,10 @@ impl Controller for Pilot {
         self.autopilot.faults(tick, measurements)
     }
 
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.conditions(tick, measurements)
+    }
+
     fn must_release(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         self.autopilot.must_release(tick, measurements)
     }

@@ -9,8 +9,19 @@ use fcc_telemetry::Instance;
 #[non_exhaustive]
 pub enum InvalidCommand {
     /// It changes nothing.
-    #[error("no set point is given: give an airspeed, a heading or an altitude")]
+    #[error(
+        "no set point is given: give an airspeed, a heading, an altitude or an altimeter setting"
+    )]
     NoSetpoint,
+    /// It has several altitudes.
+    #[error("several altitudes are given: give an altitude, a pressure altitude or a height")]
+    SeveralAltitudes,
+    /// It has a height, and what heights refer to is not configured.
+    #[error(
+        "a height needs the elevation of its field: set altimeter.field_elevation_ft in the \
+         configuration, or give an altitude"
+    )]
+    NoFieldElevation,
     /// A set point is out of range, for any aircraft or for this one; in SI
     /// units.
     #[error(transparent)]
@@ -21,7 +32,7 @@ impl InvalidCommand {
     /// In the units of the command line: knots, degrees, feet.
     pub fn in_knots_degrees_feet(&self) -> String {
         match self {
-            Self::NoSetpoint => self.to_string(),
+            Self::NoSetpoint | Self::SeveralAltitudes | Self::NoFieldElevation => self.to_string(),
             Self::Outside(outside) => outside.in_knots_degrees_feet(),
         }
     }

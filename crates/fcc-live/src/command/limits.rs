@@ -3,7 +3,12 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD, M_FT, MPS_KT, number};
+#[cfg(feature = "flight")]
+use fcc_core::flight::AutopilotCommand;
+use fcc_telemetry::units::{
+    COMMANDED_ALTIMETER_SETTING_PA, COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD, M_FT, MPS_KT,
+    PA_HPA, number,
+};
 
 /// Limits for any aircraft.
 const AIRSPEED_MPS: RangeInclusive<f64> = 5.0..=340.0;
@@ -19,8 +24,14 @@ pub enum Quantity {
     Airspeed,
     /// Magnetic heading, rad.
     Heading,
-    /// Barometric altitude, m.
+    /// Altitude above mean sea level by the altimeter setting, m.
     Altitude,
+    /// Pressure altitude, m.
+    PressureAltitude,
+    /// Height above the field's elevation, m.
+    Height,
+    /// Altimeter setting, Pa.
+    AltimeterSetting,
 }
 
 impl Quantity {
@@ -29,7 +40,36 @@ impl Quantity {
         match self {
             Self::Airspeed => AIRSPEED_MPS,
             Self::Heading => COMMANDED_HEADING_RAD,
-            Self::Altitude => COMMANDED_ALTITUDE_M,
+            Self::Altitude | Self::PressureAltitude | Self::Height => COMMANDED_ALTITUDE_M,
+            Self::AltimeterSetting => COMMANDED_ALTIMETER_SETTING_PA,
+        }
+    }
+
+    pub(super) const fn is_altitude(self) -> bool {
+        matches!(self, Self::Altitude | Self::PressureAltitude | Self::Height)
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Airspeed => "airspeed",
+            Self::Heading => "heading",
+            Self::Altitude => "altitude",
+            Self::PressureAltitude => "pressure altitude",
+            Self::Height => "height",
+            Self::AltimeterSetting => "altimeter setting",
+        }
+    }
+
+    /// The command to the autopilot.
+    #[cfg(feature = "flight")]
+    pub(super) const fn command(self, value: f64) -> AutopilotCommand {
+        match self {
+            Self::Airspeed => AutopilotCommand::Airspeed(value),
+            Self::Heading => AutopilotCommand::Heading(value),
+            Self::Altitude => AutopilotCommand::Altitude(value),
+            Self::PressureAltitude => AutopilotCommand::PressureAltitude(value),
+            Self::Height => AutopilotCommand::Height(value),
+            Self::AltimeterSetting => AutopilotCommand::AltimeterSetting(value),
         }
     }
 }
@@ -65,16 +105,15 @@ impl OutsideLimits {
         match self.quantity {
             Quantity::Airspeed => self.text_in(MPS_KT, "kt"),
             Quantity::Heading => self.text_in(1.0_f64.to_degrees(), "°"),
-            Quantity::Altitude => self.text_in(M_FT, "ft"),
+            Quantity::Altitude | Quantity::PressureAltitude | Quantity::Height => {
+                self.text_in(M_FT, "ft")
+            }
+            Quantity::AltimeterSetting => self.text_in(PA_HPA, "hPa"),
         }
     }
 
     fn text_in(&self, factor: f64, unit: &str) -> String {
-        let name = match self.quantity {
-            Quantity::Airspeed => "airspeed",
-            Quantity::Heading => "heading",
-            Quantity::Altitude => "altitude",
-        };
+        let name = self.quantity.name();
         // To a hundredth: a value printed as a limit is accepted.
         let round = |number: f64| (number * factor * 100.0).round() / 100.0;
         let (least, most) = (round(self.least), round(self.most));
@@ -98,7 +137,10 @@ impl fmt::Display for OutsideLimits {
         f.write_str(&match self.quantity {
             Quantity::Airspeed => self.text_in(1.0, "m/s"),
             Quantity::Heading => self.text_in(1.0, "rad"),
-            Quantity::Altitude => self.text_in(1.0, "m"),
+            Quantity::Altitude | Quantity::PressureAltitude | Quantity::Height => {
+                self.text_in(1.0, "m")
+            }
+            Quantity::AltimeterSetting => self.text_in(1.0, "Pa"),
         })
     }
 }

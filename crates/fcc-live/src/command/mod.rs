@@ -48,15 +48,50 @@ pub enum FlightCommand {
     Set(NewSetpoints),
 }
 
-/// The set points to change; the others keep their value.
+/// The set points to change; the others keep their value. At most one altitude:
+/// above sea level, a pressure altitude or a height.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct NewSetpoints {
     /// Indicated airspeed, m/s, 5 to 340, and within the aircraft's envelope.
     pub airspeed_mps: Option<f64>,
     /// Magnetic heading, rad, -2π to 2π; turned to the shorter way.
     pub heading_rad: Option<f64>,
-    /// Barometric altitude, m, -500 to 20,000.
+    /// Altitude above mean sea level by the altimeter setting, m, -500 to
+    /// 20,000.
     pub altitude_m: Option<f64>,
+    /// Pressure altitude, m, -500 to 20,000.
+    pub pressure_altitude_m: Option<f64>,
+    /// Height above the field's elevation by the altimeter setting, m, -500 to
+    /// 20,000; the elevation has to be configured.
+    pub height_m: Option<f64>,
+    /// Altimeter setting (QNH), Pa, 94,000 to 106,000; set before an altitude is
+    /// flown by it.
+    pub altimeter_setting_pa: Option<f64>,
+}
+
+impl NewSetpoints {
+    /// What is given, by its quantity, in the order of execution.
+    fn given(&self) -> impl Iterator<Item = (Quantity, f64)> {
+        [
+            (Quantity::AltimeterSetting, self.altimeter_setting_pa),
+            (Quantity::Airspeed, self.airspeed_mps),
+            (Quantity::Heading, self.heading_rad),
+            (Quantity::Altitude, self.altitude_m),
+            (Quantity::PressureAltitude, self.pressure_altitude_m),
+            (Quantity::Height, self.height_m),
+        ]
+        .into_iter()
+        .filter_map(|(quantity, value)| Some((quantity, value?)))
+    }
+}
+
+/// What an aircraft and its configuration permit.
+#[derive(Clone, PartialEq, Debug)]
+pub struct AircraftLimits {
+    /// The airspeeds that its envelope permits, m/s.
+    pub airspeeds_mps: RangeInclusive<f64>,
+    /// Whether the elevation is configured that heights refer to.
+    pub has_field_elevation: bool,
 }
 
 impl FlightCommand {
@@ -68,34 +103,48 @@ impl FlightCommand {
         let Self::Set(set) = self else {
             return Ok(());
         };
-        let given = [
-            (Quantity::Airspeed, set.airspeed_mps),
-            (Quantity::Heading, set.heading_rad),
-            (Quantity::Altitude, set.altitude_m),
-        ];
-        let mut given = given
-            .into_iter()
-            .filter_map(|(quantity, value)| Some((quantity, value?)))
-            .peekable();
-        given.peek().ok_or(InvalidCommand::NoSetpoint)?;
-        given
+        if set.given().next().is_none() {
+            return Err(InvalidCommand::NoSetpoint);
+        }
+        if set.given().filter(|(of, _)| of.is_altitude()).count() > 1 {
+            return Err(InvalidCommand::SeveralAltitudes);
+        }
+        set.given()
             .find_map(|(quantity, value)| OutsideLimits::of(quantity, value, &quantity.range()))
             .map_or(Ok(()), |outside| Err(outside.into()))
     }
 
-    /// Checks the airspeed against an aircraft's envelope, m/s.
+    /// Checks the values against the limits of an aircraft.
     ///
     /// # Errors
-    /// The limits.
-    pub fn check_airspeed(&self, allowed_mps: &RangeInclusive<f64>) -> Result<(), OutsideLimits> {
-        let Self::Set(NewSetpoints {
-            airspeed_mps: Some(mps),
-            ..
-        }) = self
-        else {
+    /// An airspeed outside its envelope, a height without a known field.
+    pub fn check_for(&self, limits: &AircraftLimits) -> Result<(), InvalidCommand> {
+        let Self::Set(set) = self else {
             return Ok(());
         };
-        OutsideLimits::of(Quantity::Airspeed, *mps, allowed_mps).map_or(Ok(()), Err)
+        if set.height_m.is_some() && !limits.has_field_elevation {
+            return Err(InvalidCommand::NoFieldElevation);
+        }
+        let airspeeds = &limits.airspeeds_mps;
+        set.airspeed_mps
+            .and_then(|mps| OutsideLimits::of(Quantity::Airspeed, mps, airspeeds))
+            .map_or(Ok(()), |outside| Err(outside.into()))
+    }
+
+    /// Whether it can be carried out only while engaged, or by engaging: all but
+    /// an altimeter setting, which is set in every state.
+    pub const fn needs_control(&self) -> bool {
+        match self {
+            Self::Engage => true,
+            Self::Disengage | Self::Stop => false,
+            Self::Set(set) => {
+                set.airspeed_mps.is_some()
+                    || set.heading_rad.is_some()
+                    || set.altitude_m.is_some()
+                    || set.pressure_altitude_m.is_some()
+                    || set.height_m.is_some()
+            }
+        }
     }
 
     /// The loop's commands for it, in order.
@@ -105,15 +154,10 @@ impl FlightCommand {
             Self::Engage => vec![LoopCommand::Engage],
             Self::Disengage => vec![LoopCommand::Disengage],
             Self::Stop => vec![LoopCommand::Stop],
-            Self::Set(set) => [
-                set.airspeed_mps.map(AutopilotCommand::Airspeed),
-                set.heading_rad.map(AutopilotCommand::Heading),
-                set.altitude_m.map(AutopilotCommand::Altitude),
-            ]
-            .into_iter()
-            .flatten()
-            .map(LoopCommand::Controller)
-            .collect(),
+            Self::Set(set) => set
+                .given()
+                .map(|(of, value)| LoopCommand::Controller(of.command(value)))
+                .collect(),
         }
     }
 }
@@ -149,7 +193,7 @@ mod tests {
         FlightCommand::Set(NewSetpoints {
             airspeed_mps,
             heading_rad,
-            altitude_m: None,
+            ..NewSetpoints::default()
         })
     }
 
@@ -169,9 +213,64 @@ mod tests {
         }
         let command = set(Some(50.0), Some(1.0));
         assert_eq!(command.check(), Ok(()));
-        assert_eq!(command.check_airspeed(&(40.0..=60.0)), Ok(()));
-        assert!(command.check_airspeed(&(60.0..=70.0)).is_err());
-        assert_eq!(FlightCommand::Stop.check_airspeed(&(60.0..=70.0)), Ok(()));
+        let limits = |airspeeds_mps| AircraftLimits {
+            airspeeds_mps,
+            has_field_elevation: false,
+        };
+        assert_eq!(command.check_for(&limits(40.0..=60.0)), Ok(()));
+        assert!(command.check_for(&limits(60.0..=70.0)).is_err());
+        assert_eq!(FlightCommand::Stop.check_for(&limits(60.0..=70.0)), Ok(()));
+    }
+
+    /// The autopilot ignores others.
+    #[test]
+    fn the_altimeter_settings_are_those_of_the_autopilot() {
+        assert_eq!(
+            Quantity::AltimeterSetting.range(),
+            fcc_core::flight::ALTIMETER_SETTINGS_PA
+        );
+    }
+
+    #[test]
+    fn an_altitude_says_what_it_refers_to() {
+        let both = FlightCommand::Set(NewSetpoints {
+            altitude_m: Some(900.0),
+            pressure_altitude_m: Some(900.0),
+            ..NewSetpoints::default()
+        });
+        assert_eq!(both.check(), Err(InvalidCommand::SeveralAltitudes));
+        let height = FlightCommand::Set(NewSetpoints {
+            height_m: Some(300.0),
+            ..NewSetpoints::default()
+        });
+        assert_eq!(height.check(), Ok(()));
+        let mut limits = AircraftLimits {
+            airspeeds_mps: 40.0..=60.0,
+            has_field_elevation: false,
+        };
+        let words = height.check_for(&limits).unwrap_err().to_string();
+        assert!(words.contains("altimeter.field_elevation_ft"), "{words}");
+        limits.has_field_elevation = true;
+        assert_eq!(height.check_for(&limits), Ok(()));
+        let setting = |altimeter_setting_pa| {
+            FlightCommand::Set(NewSetpoints {
+                altimeter_setting_pa: Some(altimeter_setting_pa),
+                altitude_m: Some(900.0),
+                ..NewSetpoints::default()
+            })
+        };
+        let words = setting(1_013.25).check().unwrap_err();
+        assert_eq!(
+            words.in_knots_degrees_feet(),
+            "altimeter setting is 10.13 hPa: choose 940 to 1060 hPa"
+        );
+        assert_eq!(
+            setting(102_000.0).for_the_loop(),
+            [
+                LoopCommand::Controller(AutopilotCommand::AltimeterSetting(102_000.0)),
+                LoopCommand::Controller(AutopilotCommand::Altitude(900.0)),
+            ]
+        );
     }
 
     #[test]

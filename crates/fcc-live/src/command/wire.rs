@@ -21,6 +21,12 @@ pub(super) struct CommandRequest {
     pub(super) heading_rad: f64,
     /// NaN: unchanged.
     pub(super) altitude_m: f64,
+    /// NaN: unchanged.
+    pub(super) pressure_altitude_m: f64,
+    /// NaN: unchanged.
+    pub(super) height_m: f64,
+    /// NaN: unchanged.
+    pub(super) altimeter_setting_pa: f64,
 }
 
 /// An answer in shared memory.
@@ -79,6 +85,9 @@ impl From<FlightCommand> for CommandRequest {
             airspeed_mps: number(set.airspeed_mps),
             heading_rad: number(set.heading_rad),
             altitude_m: number(set.altitude_m),
+            pressure_altitude_m: number(set.pressure_altitude_m),
+            height_m: number(set.height_m),
+            altimeter_setting_pa: number(set.altimeter_setting_pa),
         }
     }
 }
@@ -105,6 +114,9 @@ impl CommandRequest {
                 airspeed_mps: given(self.airspeed_mps),
                 heading_rad: given(self.heading_rad),
                 altitude_m: given(self.altitude_m),
+                pressure_altitude_m: given(self.pressure_altitude_m),
+                height_m: given(self.height_m),
+                altimeter_setting_pa: given(self.altimeter_setting_pa),
             }),
             other => return Err(format!("there is no command with the number {other}")),
         };
@@ -180,7 +192,7 @@ mod tests {
     fn the_layouts_are_as_documented() {
         assert_eq!(
             (size_of::<CommandRequest>(), size_of::<Answer>()),
-            (32, 256)
+            (56, 256)
         );
         assert_eq!(
             [
@@ -189,8 +201,11 @@ mod tests {
                 offset_of!(CommandRequest, airspeed_mps),
                 offset_of!(CommandRequest, heading_rad),
                 offset_of!(CommandRequest, altitude_m),
+                offset_of!(CommandRequest, pressure_altitude_m),
+                offset_of!(CommandRequest, height_m),
+                offset_of!(CommandRequest, altimeter_setting_pa),
             ],
-            [0, 4, 8, 16, 24]
+            [0, 4, 8, 16, 24, 32, 40, 48]
         );
         assert_eq!(
             [
@@ -213,6 +228,8 @@ mod tests {
             FlightCommand::Stop,
             FlightCommand::Set(NewSetpoints {
                 heading_rad: Some(1.5),
+                height_m: Some(100.0),
+                altimeter_setting_pa: Some(101_000.0),
                 ..NewSetpoints::default()
             }),
         ] {
@@ -250,9 +267,25 @@ mod tests {
     proptest! {
         /// Invalid bytes in shared memory never give an invalid command.
         #[test]
-        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 3]) {
-            let [airspeed_mps, heading_rad, altitude_m] = bits.map(f64::from_bits);
-            let request = CommandRequest { version, code, airspeed_mps, heading_rad, altitude_m };
+        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 6]) {
+            let [
+                airspeed_mps,
+                heading_rad,
+                altitude_m,
+                pressure_altitude_m,
+                height_m,
+                altimeter_setting_pa,
+            ] = bits.map(f64::from_bits);
+            let request = CommandRequest {
+                version,
+                code,
+                airspeed_mps,
+                heading_rad,
+                altitude_m,
+                pressure_altitude_m,
+                height_m,
+                altimeter_setting_pa,
+            };
             if let Ok(command) = request.command() {
                 prop_assert!(command.check().is_ok());
             }

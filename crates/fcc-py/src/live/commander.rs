@@ -63,19 +63,31 @@ impl PyCommander {
 
     /// Commands other set points; those not given keep their value: indicated
     /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π),
-    /// barometric altitude (m, -500 to 20,000). Ends a pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    /// altitude (m, -500 to 20,000): above sea level by the altimeter setting, or a
+    /// pressure altitude, or a height above the configured field. Ends a pattern. An
+    /// altimeter setting (Pa, 94,000 to 106,000) alone ends none, and is also set in
+    /// standby.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
+                        pressure_altitude_m = None, height_m = None,
+                        altimeter_setting_pa = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn set(
         &self,
         py: Python<'_>,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
+        pressure_altitude_m: Option<f64>,
+        height_m: Option<f64>,
+        altimeter_setting_pa: Option<f64>,
     ) -> PyResult<u64> {
         let command = FlightCommand::Set(NewSetpoints {
             airspeed_mps,
             heading_rad,
             altitude_m,
+            pressure_altitude_m,
+            height_m,
+            altimeter_setting_pa,
         });
         command
             .check()

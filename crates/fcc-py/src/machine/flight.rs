@@ -1,9 +1,8 @@
 //! The loop of the autopilot.
 
-use std::ops::RangeInclusive;
 use std::sync::Mutex;
 
-use fcc_core::flight::{Autopilot, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotConfig, Surfaces};
 use fcc_core::framework::{LoopCommand, Switch};
 use fcc_flight::flight::about;
 use pyo3::exceptions::PyValueError;
@@ -11,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use super::Lockstep;
-use crate::autopilot::checked_commands;
+use crate::commanded::Commanded;
 use crate::config::{configuration, refused};
 use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
@@ -25,8 +24,8 @@ machine_class! {
     /// it. Its aircraft is not used: the plant is in Python.
     #[pyclass(name = "Machine", module = "fcc")]
     struct PyMachine(Autopilot) {
-        /// The airspeeds that may be commanded.
-        airspeeds_mps: RangeInclusive<f64>,
+        /// What may be commanded.
+        config: AutopilotConfig,
     }
     setpoints PySetpoints, estimate PyEstimate;
 
@@ -38,7 +37,7 @@ machine_class! {
         let period = parsed.tick.period();
         let about = about(&parsed, Some(as_given(config)?));
         Ok(Self {
-            airspeeds_mps: autopilot.envelope.allowed_airspeeds(),
+            config: autopilot,
             lockstep: Mutex::new(Lockstep::new(
                 Autopilot::new(autopilot),
                 period,
@@ -77,17 +76,30 @@ machine_class! {
         Ok(lockstep.step(sample).map(PySurfaces::from))
     }
 
-    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
-    /// pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
+    /// level by the altimeter setting, or a pressure altitude, or a height above
+    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
+                        pressure_altitude_m = None, height_m = None,
+                        altimeter_setting_pa = None))]
     fn command(
         &self,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
+        pressure_altitude_m: Option<f64>,
+        height_m: Option<f64>,
+        altimeter_setting_pa: Option<f64>,
     ) -> PyResult<()> {
-        let allowed = self.airspeeds_mps.clone();
-        for command in checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)? {
+        let given = Commanded {
+            airspeed_mps,
+            heading_rad,
+            altitude_m,
+            pressure_altitude_m,
+            height_m,
+            altimeter_setting_pa,
+        };
+        for command in given.checked(&self.config)? {
             self.lockstep().send(LoopCommand::Controller(command))?;
         }
         Ok(())

@@ -1,7 +1,7 @@
 //! What is recorded is read back bit for bit.
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, Notice, SensorFault, Stage,
     State, Time,
@@ -32,6 +32,8 @@ const RESUME: Resume = Resume {
         aileron: 1e-300,
         rudder: 0.3,
     },
+    altimeter_setting_pa: Some(102_000.0),
+    altitude_reference: AltitudeReference::Field,
 };
 
 /// Records, reads, and returns what was read from a file that must be finished.
@@ -110,6 +112,10 @@ fn every_event_is_restored() {
         EventKind::ReleasedAtOnce {
             conditions: Flags::bit(6),
         },
+        EventKind::ConditionsChanged {
+            began: Flags::from_bits(0x8100_0000),
+            ended: Flags::NONE,
+        },
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];
@@ -136,7 +142,14 @@ fn every_event_is_restored() {
         LoopCommand::Controller(AutopilotCommand::Airspeed(-0.0)),
         LoopCommand::Controller(AutopilotCommand::Heading(6.1)),
         LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
+        LoopCommand::Controller(AutopilotCommand::PressureAltitude(1_000.0)),
+        LoopCommand::Controller(AutopilotCommand::Height(-3.0)),
+        LoopCommand::Controller(AutopilotCommand::AltimeterSetting(99_999.9)),
         LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
+        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
+            altimeter_setting_pa: None,
+            ..RESUME
+        })),
         LoopCommand::Controller(AutopilotCommand::Resume(Resume {
             progress: Progress {
                 mode: Mode::Hold,

@@ -68,6 +68,10 @@ impl Controller for Stub {
         self.stage.script().notice
     }
 
+    fn conditions(&self, _: &Tick, _: &Measured) -> Flags {
+        self.stage.script().conditions
+    }
+
     fn flag_name(bit: u32) -> &'static str {
         ["nobody home", "too cold"]
             .get(bit as usize)

@@ -2,11 +2,11 @@
 
 use core::time::Duration;
 
-use super::Resume;
+use crate::flight::Altimeter;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
-use crate::schema;
+use crate::framework::Flags;
 
 /// The autopilot's configuration.
 ///
@@ -38,6 +38,10 @@ pub struct AutopilotConfig {
     /// The time that navigation needs to settle before the autopilot can
     /// engage.
     pub settling: Duration,
+    /// Conditions of [`flags`](super::flags) that are reported but do not
+    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE` and
+    /// `FLY_BY_WIRE`.
+    pub permitted: Flags,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -50,6 +54,8 @@ pub struct AutopilotConfig {
     pub airspeed: AirspeedConfig,
     /// The limits of the loops' commands.
     pub envelope: Envelope,
+    /// The altimeter; a command changes its setting.
+    pub altimeter: Altimeter,
 }
 
 impl Default for AutopilotConfig {
@@ -61,45 +67,14 @@ impl Default for AutopilotConfig {
             max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
+            permitted: Flags::NONE,
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),
             altitude: AltitudeConfig::default(),
             airspeed: AirspeedConfig::default(),
             envelope: Envelope::default(),
+            altimeter: Altimeter::default(),
         }
-    }
-}
-
-schema! {
-    /// A command to the engaged autopilot. Each but the last changes one set
-    /// point, ends a pattern and leaves the other set points unchanged.
-    ///
-    /// ```
-    /// use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
-    /// use fcc_core::framework::Controller;
-    ///
-    /// let mut autopilot = Autopilot::new(AutopilotConfig::default());
-    /// autopilot.command(&AutopilotCommand::Altitude(960.12));
-    /// // Without being engaged it ignores commands.
-    /// assert_eq!(autopilot.setpoints().altitude_m, 0.0);
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Debug)]
-    #[name("Command")]
-    #[non_exhaustive]
-    pub enum AutopilotCommand {
-        /// Indicated airspeed, m/s; limited to the envelope.
-        #[field(1)]
-        Airspeed(airspeed_mps: f64),
-        /// Magnetic heading, rad; the turn takes the shorter way from the
-        /// present heading.
-        #[field(2)]
-        Heading(heading_rad: f64),
-        /// Barometric altitude, m.
-        #[field(3)]
-        Altitude(altitude_m: f64),
-        /// Continue what was flown before a restart.
-        #[field(4)]
-        Resume(resume: Resume),
     }
 }

@@ -1,19 +1,22 @@
 //! The outputs of the failsafe.
 
 use super::{Autopilot, flags};
-use crate::flight::Surfaces;
+use crate::flight::{Measurements, Surfaces};
 use crate::framework::Time;
 
 impl Autopilot {
     /// Wings level while the attitude is known, level flight while the climb
-    /// rate is; otherwise the trims that the loops had found; trim throttle. A
-    /// silent plant keeps its throttle: it may return with another aircraft.
-    pub(super) fn safest(&mut self, now: Time) -> Surfaces {
+    /// rate is; otherwise the trims that the loops had found; trim throttle,
+    /// idle while thrust is reversed. A silent plant keeps its throttle: it may
+    /// return with another aircraft.
+    pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
         let unusable = flags::unusable(self.stale(now), self.frozen());
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
         let throttle = if self.is_silent(now) {
             self.last.throttle
+        } else if measured.other_control.value.reverse_thrust {
+            0.0
         } else {
             self.config.airspeed.trim_throttle
         };

@@ -1,10 +1,12 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
 mod capture;
+mod command;
 mod config;
 mod failsafe;
 pub mod flags;
 mod observe;
+mod other_control;
 mod plant_clock;
 mod resume;
 mod scale;
@@ -17,7 +19,8 @@ use core::hint::black_box;
 use libm::cos;
 
 use capture::Capture;
-pub use config::{AutopilotCommand, AutopilotConfig};
+pub use command::AutopilotCommand;
+pub use config::AutopilotConfig;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -26,10 +29,9 @@ use whereabouts::Whereabouts;
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
-use super::{Measurements, PlantState, Setpoints, Surfaces};
-use crate::blocks::{wrap_pi, wrap_two_pi};
+use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
+use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
-use crate::units::{FOOT_M, KNOT_MPS};
 
 /// Beyond this bank or pitch the autopilot does not engage, rad.
 const UPSET_RAD: f64 = 1.047;
@@ -81,6 +83,9 @@ pub struct Autopilot {
     guidance: ActiveMode,
     targets: Targets,
     capture: Option<Capture>,
+    altimeter: Altimeter,
+    /// What the target altitude refers to.
+    reference: AltitudeReference,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -107,6 +112,8 @@ impl Autopilot {
             guidance: ActiveMode::None,
             targets: Targets::default(),
             capture: None,
+            altimeter: config.altimeter,
+            reference: AltitudeReference::PressureLevel,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -177,7 +184,7 @@ impl Controller for Autopilot {
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        self.unsafe_with(self.stale(tick.woke), measurements)
+        (self.unsafe_with(self.stale(tick.woke), measurements) | self.not_permitted(measurements))
             .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(flags::PLANT_STALLED, self.clock.has_stopped())
@@ -197,7 +204,11 @@ impl Controller for Autopilot {
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements)
+        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(measurements)
+    }
+
+    fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
+        self.external(measurements)
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -233,14 +244,7 @@ impl Controller for Autopilot {
 
     /// In the units in which commands are given: knots, degrees, feet.
     fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match command {
-            AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {:.1} kt", mps / KNOT_MPS),
-            AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
-            AutopilotCommand::Altitude(m) => write!(f, "altitude {:.0} ft", m / FOOT_M),
-            AutopilotCommand::Resume(Resume { progress, .. }) => {
-                write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
-            }
-        }
+        write!(f, "{command}")
     }
 
     /// The mode of guidance.
@@ -259,6 +263,7 @@ impl Controller for Autopilot {
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.reference = AltitudeReference::PressureLevel;
         self.navigation.mark_altitude();
         self.capture = Some(Capture::of(estimate.altitude_m));
         self.change_mode(ModeInput::Engage);
@@ -313,6 +318,8 @@ impl Controller for Autopilot {
             airspeed_mps: self.targets.airspeed_mps,
             heading_rad: wrap_two_pi(self.targets.heading_rad),
             altitude_m: self.targets.altitude_m,
+            altitude_reference: self.reference,
+            altitude_above_reference_m: self.targets.altitude_m - self.datum_m(),
             roll_rad: lateral.roll_rad,
             climb_rate_mps: vertical.climb_rate_mps,
             pitch_rad: vertical.pitch_rad,
@@ -327,8 +334,8 @@ impl Controller for Autopilot {
         self.last
     }
 
-    fn failsafe(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
-        self.last = self.safest(tick.woke);
+    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        self.last = self.safest(tick.woke, measurements);
         self.last
     }
 
@@ -339,24 +346,7 @@ impl Controller for Autopilot {
     }
 
     fn command(&mut self, command: &AutopilotCommand) {
-        let mut targets = self.targets;
-        match *command {
-            AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
-                targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
-            }
-            AutopilotCommand::Heading(rad) if rad.is_finite() => {
-                let now_rad = self.navigation.estimate().heading_rad;
-                targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
-            }
-            AutopilotCommand::Altitude(m) if m.is_finite() => {
-                targets.altitude_m = m;
-                self.capture = None;
-            }
-            AutopilotCommand::Resume(ref resume) => return self.resume(resume),
-            _ => return,
-        }
-        self.targets = targets;
-        self.change_mode(ModeInput::SetPoint);
+        self.execute(command);
     }
 
     fn estimated(&self) -> Estimate {
@@ -368,6 +358,7 @@ impl Controller for Autopilot {
         guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
         Setpoints {
             guidance,
+            altimeter_setting_pa: self.altimeter.setting_pa,
             ..self.setpoints
         }
     }

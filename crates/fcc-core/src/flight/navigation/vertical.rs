@@ -15,7 +15,7 @@ use crate::units::GRAVITY_MPS2;
 /// Altitude and climb rate.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VerticalState {
-    /// Barometric altitude, m.
+    /// Pressure altitude, m.
     pub altitude_m: f64,
     /// Up, m/s.
     pub climb_rate_mps: f64,

@@ -160,8 +160,8 @@ fn recovered(resume: &Resume, age: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
+    use fcc_core::flight::Autopilot;
     use fcc_core::flight::guidance::{Mode, Progress};
-    use fcc_core::flight::{Autopilot, Surfaces};
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
@@ -175,7 +175,7 @@ mod tests {
                 mode: Mode::Hold,
                 ..Progress::default()
             },
-            surfaces: Surfaces::default(),
+            ..Resume::default()
         };
         let saved = Saved {
             at: BootInstant::now().unwrap(),
