@@ -10,14 +10,15 @@
 //! | `config` | configurations, by key |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
 //! | `timers` | the kernel's timers |
-//! | `recordings` | recordings as numpy arrays; list, recover, report, replay |
-//! | `live` | a running daemon, watched and given commands |
+//! | `recordings` | recordings of any plant as numpy arrays; list, recover, report, replay |
+//! | `live` | a running loop of any plant, watched and given commands |
 //! | `values`, `structured` | structs with a schema as classes and as structured arrays |
 //! | `events`, `errors`, `arguments`, `json` | events, exceptions, checks, dicts |
 //!
 //! Nothing is computed here: each call goes to the crate that the daemon uses.
 //! Without the feature `flight` only what the loop of any controller needs is
-//! compiled: `examples/pendulum` is a module of its own on it.
+//! compiled: `examples/pendulum` is a module of its own on it, with the same
+//! `Recording` and `Watcher`.
 
 #![cfg_attr(
     not(feature = "flight"),
@@ -35,7 +36,9 @@ mod blocks;
 mod callbacks;
 #[cfg(feature = "flight")]
 mod config;
-mod errors;
+#[cfg(feature = "conformance")]
+mod conformance;
+pub mod errors;
 pub mod events;
 #[cfg(feature = "flight")]
 mod fleet;
@@ -45,11 +48,10 @@ mod flight;
 mod formulas;
 mod json;
 #[cfg(feature = "live")]
-mod live;
+pub mod live;
 #[macro_use]
 pub mod machine;
-#[cfg(feature = "flight")]
-mod recordings;
+pub mod recordings;
 #[cfg(feature = "flight")]
 mod stepped;
 pub mod structured;

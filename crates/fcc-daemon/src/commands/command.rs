@@ -1,6 +1,8 @@
 //! `fccd command`: commands to a daemon on this machine.
 
-use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
+use fcc_core::flight::Autopilot;
+use fcc_live::{Command, CommandError, Commander, NarrowerLimits};
+use fcc_telemetry::units::AVIATION;
 use serde::Serialize;
 
 use super::fail;
@@ -21,12 +23,13 @@ struct Sent {
 
 /// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Exit {
-    let command = FlightCommand::from(&args.what);
-    if let Err(error) = command.check() {
-        fail(&error.in_knots_degrees_feet());
+    let command = Command::from(&args.what);
+    // The limits for any aircraft; the daemon knows those of its own.
+    if let Err(error) = command.for_the_loop::<Autopilot>(&NarrowerLimits::new()) {
+        fail(&error.text_in(AVIATION));
         return Exit::Usage;
     }
-    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
+    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(&command));
     let exit = match &result {
         Ok(_) => Exit::Success,
         Err(CommandError::Refused(_) | CommandError::InvalidCommand(_)) => Exit::Refused,
@@ -34,7 +37,7 @@ pub(super) fn command(args: &CommandArgs) -> Exit {
     };
     // In the units of the command line.
     let result = result.map_err(|error| match error {
-        CommandError::InvalidCommand(why) => format!("refused: {}", why.in_knots_degrees_feet()),
+        CommandError::InvalidCommand(why) => format!("refused: {}", why.text_in(AVIATION)),
         other => other.to_string(),
     });
     if args.json {
@@ -60,23 +63,25 @@ pub(super) fn command(args: &CommandArgs) -> Exit {
     exit
 }
 
-impl From<&CommandChoice> for FlightCommand {
+impl From<&CommandChoice> for Command {
     fn from(what: &CommandChoice) -> Self {
         match what {
             CommandChoice::Engage => Self::Engage,
             CommandChoice::Disengage => Self::Disengage,
             CommandChoice::Stop => Self::Stop,
-            CommandChoice::Set(set) => Self::Set(NewSetpoints::from(set)),
+            CommandChoice::Set(set) => set.into(),
         }
     }
 }
 
-impl From<&SetArgs> for NewSetpoints {
+impl From<&SetArgs> for Command {
     fn from(set: &SetArgs) -> Self {
-        Self {
-            airspeed_mps: set.airspeed_kt.map(|kt| kt * KNOT_MPS),
-            heading_rad: set.heading_deg.map(f64::to_radians),
-            altitude_m: set.altitude_ft.map(|ft| ft * FOOT_M),
-        }
+        let setpoints = [
+            ("airspeed_mps", set.airspeed_kt.map(|kt| kt * KNOT_MPS)),
+            ("heading_rad", set.heading_deg.map(f64::to_radians)),
+            ("altitude_m", set.altitude_ft.map(|ft| ft * FOOT_M)),
+        ];
+        let given = setpoints.into_iter();
+        Self::set(given.filter_map(|(name, value)| Some((name, value?))))
     }
 }

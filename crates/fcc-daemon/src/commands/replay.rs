@@ -35,15 +35,21 @@ struct Outcome {
 
 /// Replays a recording.
 pub(super) fn replay(args: &ReplayArgs) -> Exit {
-    let opened = Chain::open(&args.files).map_err(|error| error.to_string());
-    let opened = opened.and_then(|chain| {
-        let config = recorded_config(&chain).map_err(|error| error.to_string())?;
-        Ok((chain, config))
-    });
-    let (chain, recorded) = match opened {
-        Ok(opened) => opened,
+    let chain = match Chain::open::<Autopilot>(&args.files) {
+        Ok(chain) => chain,
         Err(error) => {
-            fail(&error);
+            fail(&error.to_string());
+            return if error.is_another_plant() {
+                Exit::Usage
+            } else {
+                Exit::NotReplayed
+            };
+        }
+    };
+    let recorded = match recorded_config(&chain) {
+        Ok(recorded) => recorded,
+        Err(error) => {
+            fail(&error.to_string());
             return Exit::NotReplayed;
         }
     };

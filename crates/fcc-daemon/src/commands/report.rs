@@ -2,7 +2,7 @@
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::guidance::TimedPatternConfig;
-use fcc_record::Recording;
+use fcc_record::{OpenError, Recording};
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 
 use super::{fail, progress};
@@ -10,10 +10,21 @@ use crate::cli::ReportArgs;
 use crate::exit::Exit;
 use crate::output;
 use fcc_flight::config::Config;
+use fcc_telemetry::FlightMessage;
 
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Exit {
-    let report = match make(args) {
+    let recording = match Recording::open_as::<FlightMessage>(&args.file) {
+        Ok(recording) => recording,
+        Err(error) => {
+            fail(&error.to_string());
+            return match error {
+                OpenError::AnotherPlant { .. } => Exit::Usage,
+                _ => Exit::Failure,
+            };
+        }
+    };
+    let report = match make(args, &recording) {
         Ok(report) => report,
         Err(message) => return fail(&message),
     };
@@ -29,11 +40,10 @@ pub(super) fn report(args: &ReportArgs) -> Exit {
     }
 }
 
-fn make(args: &ReportArgs) -> Result<FlightReport, String> {
-    let recording = Recording::open(&args.file).map_err(|error| error.to_string())?;
+fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String> {
     let bar = progress::bar(recording.bytes(), "reading");
-    let addition = FlightAddition::new(pattern(&recording));
-    let report = FlightSurvey::read(&recording, addition, args.csv.as_deref(), |read| {
+    let addition = FlightAddition::new(pattern(recording));
+    let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
     bar.finish_and_clear();

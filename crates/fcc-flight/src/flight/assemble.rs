@@ -6,20 +6,18 @@ use std::sync::Arc;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::FlightCommand;
+use fcc_live::SentCommands;
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
-#[cfg(feature = "live")]
-use super::commands::Commands;
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
 use super::plan::Pace;
-use super::recording::{Recording, RecordingRequest};
+use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
 use super::scorer::Scorer;
 use super::truth_recorder::{TruthReceiver, tap};
@@ -181,7 +179,7 @@ impl Assembly {
             observers.push(Box::new(RestartKeeper::new(request)));
         }
         if let Some(request) = recording {
-            observers.push(Box::new(Recording::<Autopilot>::new(request)));
+            observers.push(Box::new(FlightRecorder::<Autopilot>::new(request)));
         }
         let guidance = &self.autopilot.config().guidance;
         observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
@@ -190,10 +188,10 @@ impl Assembly {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
-                Commands::new(
+                SentCommands::new(vec![(
+                    "airspeed_mps",
                     self.autopilot.config().envelope.allowed_airspeeds(),
-                    FlightCommand::for_the_loop,
-                ),
+                )]),
             )));
         }
         // The last, so that it receives what the others report at their end.

@@ -3,26 +3,37 @@
 use super::super::WatchError;
 use super::OutsideLimits;
 use fcc_telemetry::Instance;
+use fcc_telemetry::units::Shown;
 
 /// Why a command is invalid.
-#[derive(thiserror::Error, Clone, Copy, PartialEq, Debug)]
+#[derive(thiserror::Error, Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum InvalidCommand {
     /// It changes nothing.
-    #[error("no set point is given: give an airspeed, a heading or an altitude")]
-    NoSetpoint,
-    /// A set point is out of range, for any aircraft or for this one; in SI
-    /// units.
+    #[error("no set point is given: choose of {0}")]
+    NoSetpoint(String),
+    /// The controller has no such set point.
+    #[error("there is no set point '{name}': choose of {known}")]
+    UnknownSetpoint {
+        /// Its name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// It changes more than a command can.
+    #[error("more than {0} set points in one command: give several commands")]
+    TooManySetpoints(usize),
+    /// A set point is out of its limits, in the unit at the end of its name.
     #[error(transparent)]
     Outside(#[from] OutsideLimits),
 }
 
 impl InvalidCommand {
-    /// In the units of the command line: knots, degrees, feet.
-    pub fn in_knots_degrees_feet(&self) -> String {
+    /// As text, in those of these units that fit.
+    pub fn text_in(&self, units: &[Shown]) -> String {
         match self {
-            Self::NoSetpoint => self.to_string(),
-            Self::Outside(outside) => outside.in_knots_degrees_feet(),
+            Self::Outside(outside) => outside.text_in(units),
+            other => other.to_string(),
         }
     }
 }
@@ -50,7 +61,7 @@ pub enum CommandError {
     /// The maximum number of programs is connected.
     #[error("too many programs give commands to fccd '{0}' at once: end one of them")]
     TooMany(Instance),
-    /// The command is invalid; in SI units.
+    /// The command is invalid.
     #[error("refused: {0}")]
     InvalidCommand(#[from] InvalidCommand),
     /// The daemon refused it.

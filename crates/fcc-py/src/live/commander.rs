@@ -1,16 +1,17 @@
-//! Commands to a running daemon.
+//! Commands to a running loop.
 
 use std::sync::{Mutex, PoisonError};
 
-use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
+use fcc_live::{Command, CommandError, Commander};
 use fcc_telemetry::Instance;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::instance;
 use crate::errors;
 
-/// Gives commands to a daemon on this machine, by its instance's name. Each call
+/// Gives commands to a daemon, or to the loop of any other plant, on this machine,
+/// by its instance's name. Each call
 /// waits until the command is carried out and returns the tick that did; the GIL
 /// is released meanwhile.
 ///
@@ -48,39 +49,30 @@ impl PyCommander {
 
     /// Take over as things are.
     fn engage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Engage)
+        self.command(py, &Command::Engage)
     }
 
     /// Give the controls back.
     fn disengage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Disengage)
+        self.command(py, &Command::Disengage)
     }
 
     /// Give the controls back and end the daemon.
     fn stop(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Stop)
+        self.command(py, &Command::Stop)
     }
 
-    /// Fly by other set points, those that are not given staying: indicated
-    /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π), barometric
-    /// altitude (m, -500 to 20,000). Ends a pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
-    fn set(
-        &self,
-        py: Python<'_>,
-        airspeed_mps: Option<f64>,
-        heading_rad: Option<f64>,
-        altitude_m: Option<f64>,
-    ) -> PyResult<u64> {
-        let command = FlightCommand::Set(NewSetpoints {
-            airspeed_mps,
-            heading_rad,
-            altitude_m,
-        });
-        command
-            .check()
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        self.command(py, command)
+    /// Other set points, by their names; those that are not given stay. Of a
+    /// flight: indicated airspeed (`airspeed_mps`, within the envelope), magnetic
+    /// heading (`heading_rad`, -2π to 2π), barometric altitude (`altitude_m`, -500
+    /// to 20,000); this ends a pattern.
+    #[pyo3(signature = (**setpoints))]
+    fn set(&self, py: Python<'_>, setpoints: Option<&Bound<'_, PyDict>>) -> PyResult<u64> {
+        let mut given = Vec::new();
+        for (name, value) in setpoints.into_iter().flatten() {
+            given.push((name.extract()?, value.extract()?));
+        }
+        self.command(py, &Command::Set(given))
     }
 
     fn __repr__(&self) -> String {
@@ -89,7 +81,7 @@ impl PyCommander {
 }
 
 impl PyCommander {
-    fn command(&self, py: Python<'_>, command: FlightCommand) -> PyResult<u64> {
+    fn command(&self, py: Python<'_>, command: &Command) -> PyResult<u64> {
         py.detach(|| {
             let mut commander = self
                 .commander

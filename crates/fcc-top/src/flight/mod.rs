@@ -9,7 +9,7 @@ use fcc_core::framework::{RecordOf, State};
 use serde_json::{Map, Value, json};
 
 use self::table::Quantity;
-use super::watched::{Part, Watched};
+use super::watched::{ScreenPart, Watched};
 
 impl Watched for Autopilot {
     const PROGRAM: &'static str = "fccd";
@@ -19,7 +19,7 @@ impl Watched for Autopilot {
         "surf.", "switch", "plant",
     ];
 
-    fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
+    fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, ScreenPart<Self>)> {
         // When engaged, the mode of guidance and its progress.
         let flown = match record {
             Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
