@@ -68,7 +68,8 @@ test-rust: $(STAMPS)/rust
 
 test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/systemd
 	cargo build --locked --release -p thermostat
-	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) $(PYTHON) -m pytest hil
+	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
+	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection

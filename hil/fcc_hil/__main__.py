@@ -8,155 +8,26 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from . import actions, simulator_options, watcher_load
 from . import commands as flights
-from . import watcher_load
-from .aircraft import AIRCRAFT
 from .daemon import DaemonError, command
-from .faults import Address, Faults
 from .fly import FlightError, Plan, fly, peer_row, print_progress, write_document
 from .pattern import TimedPattern
 from .peer import fly_peer
-from .plant import TrimError, Weather
+from .plant import TrimError
 from .plot import plot_flight
 from .process import StandInError, StandInProcess
 from .soak import SoakError
-from .standin import BEACON_GROUP, Mode, Settings
+from .standin import BEACON_GROUP
 from .table import table
 
 _LOOK_S = 0.05
-
-
-def _address(text: str) -> Address:
-    host, colon, port = text.rpartition(":")
-    if not colon or not port.isdigit() or not 0 < int(port) < 65_536:
-        raise argparse.ArgumentTypeError(f"'{text}': give HOST:PORT, as in 127.0.0.1:49001")
-    return host, int(port)
-
-
-def _rows(text: str) -> tuple[int, ...]:
-    try:
-        return tuple(int(number) for number in text.split(","))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}': give row numbers, as in 3,17,20") from None
-
-
-_ACTIONS: dict[str, Callable[[StandInProcess], None]] = {
-    "run": lambda simulator: simulator.set_mode(Mode.RUNNING),
-    "pause": lambda simulator: simulator.set_mode(Mode.PAUSED),
-    "stall": lambda simulator: simulator.set_mode(Mode.STALLED),
-    "freeze": lambda simulator: simulator.set_mode(Mode.FROZEN),
-    "restart": lambda simulator: simulator.restart_flight(),
-}
-
-
-def _appointment(text: str) -> tuple[float, str]:
-    seconds, _, action = text.partition(":")
-    try:
-        at_s = float(seconds)
-    except ValueError:
-        at_s = -1.0
-    if at_s < 0.0 or action not in (*_ACTIONS, "kill"):
-        raise argparse.ArgumentTypeError(f"'{text}': give SECONDS:ACTION, as in 30:pause")
-    return at_s, action
-
-
-def _simulator_options(parser: argparse.ArgumentParser) -> None:
-    default = Settings()
-    parser.add_argument(
-        "--aircraft",
-        default=default.aircraft,
-        choices=list(AIRCRAFT),
-        metavar="NAME",
-        help=f"one of {', '.join(AIRCRAFT)} (default %(default)s)",
-    )
-    parser.add_argument("--seed", type=int, default=default.seed, help="of every random sequence")
-    parser.add_argument("--host", default=default.host, help="address to listen on (%(default)s)")
-    parser.add_argument(
-        "--port",
-        type=int,
-        default=default.port,
-        help="UDP port to listen on, 0 for any free one (default %(default)s)",
-    )
-    parser.add_argument(
-        "--frame-rate",
-        type=float,
-        default=default.frame_rate_hz,
-        metavar="HZ",
-        help="frames a second; below 20 simulated time slows down (default %(default)s)",
-    )
-    parser.add_argument(
-        "--xplane-version",
-        type=int,
-        default=default.version,
-        metavar="N",
-        help="as X-Plane reports it: 101500, 115501, 121000 (default %(default)s)",
-    )
-    parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="initial heading")
-    parser.add_argument(
-        "--variation",
-        type=float,
-        default=0.0,
-        metavar="DEG",
-        help="magnetic variation, positive to the east",
-    )
-    air = parser.add_argument_group("air and sensors")
-    air.add_argument("--noise", action="store_true", help="noise on the sensors")
-    air.add_argument("--wind-from", type=float, default=0.0, metavar="DEG", help="true direction")
-    air.add_argument("--wind", type=float, default=0.0, metavar="KT", help="steady wind")
-    air.add_argument(
-        "--turbulence",
-        type=int,
-        default=0,
-        choices=range(8),
-        metavar="0..7",
-        help="severity after MIL-F-8785C: 0 calm, 3 light, 4 moderate",
-    )
-    network = parser.add_argument_group("network faults, in both directions")
-    for name, what in (
-        ("loss", "lost"),
-        ("duplicate", "duplicated"),
-        ("reorder", "overtaken by the next"),
-        ("truncate", "truncated"),
-    ):
-        network.add_argument(
-            f"--{name}", type=float, default=0.0, metavar="FRACTION", help=f"of datagrams {what}"
-        )
-    network.add_argument("--delay", type=float, default=0.0, metavar="MS", help="of every datagram")
-    network.add_argument("--jitter", type=float, default=0.0, metavar="MS", help="added, uniform")
-
-
-def _settings(options: argparse.Namespace) -> Settings:
-    faults = Faults(
-        loss=options.loss,
-        duplicate=options.duplicate,
-        reorder=options.reorder,
-        truncate=options.truncate,
-        delay_s=options.delay / 1e3,
-        jitter_s=options.jitter / 1e3,
-    )
-    return Settings(
-        aircraft=options.aircraft,
-        seed=options.seed,
-        host=options.host,
-        port=options.port,
-        frame_rate_hz=options.frame_rate,
-        version=options.xplane_version,
-        heading_deg=options.heading,
-        magnetic_variation_deg=options.variation,
-        weather=Weather(
-            wind_from_deg=options.wind_from,
-            wind_kt=options.wind,
-            turbulence_severity=options.turbulence,
-        ),
-        noise=options.noise,
-        inbound=faults,
-        outbound=faults,
-    )
+_KILL = actions.Action("end at once, as a crash does", lambda _, __: None)
 
 
 def _interrupt(*_: object) -> None:
@@ -166,7 +37,9 @@ def _interrupt(*_: object) -> None:
 def _fly(options: argparse.Namespace) -> int:
     # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, _interrupt)
-    plan = Plan(command(options.fccd, options.config), _settings(options), options.legs)
+    plan = Plan(
+        command(options.fccd, options.config), simulator_options.settings(options), options.legs
+    )
     flight = fly(plan, print_progress)
     peer = peer_row(plan)
     print(
@@ -202,7 +75,7 @@ def _fly(options: argparse.Namespace) -> int:
 
 def _standin(options: argparse.Namespace) -> int:
     settings = replace(
-        _settings(options),
+        simulator_options.settings(options),
         beacon=BEACON_GROUP if options.beacon else None,
         data_target=options.data_target,
         data_rows=options.data_rows,
@@ -211,7 +84,10 @@ def _standin(options: argparse.Namespace) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     with StandInProcess(settings) as simulator:
-        print(f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port}; Ctrl-C ends it")
+        print(
+            f"{settings.aircraft} flies on UDP {settings.host}:{simulator.port} and sends from "
+            f"port {simulator.reply_port}; Ctrl-C ends it"
+        )
         sys.stdout.flush()
         began_s = time.monotonic()
         todo = sorted(options.at)
@@ -223,7 +99,7 @@ def _standin(options: argparse.Namespace) -> int:
                 if action == "kill":
                     simulator.kill()
                     return 0
-                _ACTIONS[action](simulator)
+                simulator.act(action)
             if options.seconds is not None and ran_s >= options.seconds:
                 break
         status: dict[str, Any] = simulator.status()
@@ -290,27 +166,40 @@ def _parser() -> argparse.ArgumentParser:
     flies.add_argument("--legs", type=int, default=8, help="of 20 s each (default %(default)s)")
     flies.add_argument("--json", type=Path, metavar="FILE", help="write timing and score here")
     flies.add_argument("--plot", type=Path, metavar="FILE", help="write a picture here (PNG)")
-    _simulator_options(flies)
+    simulator_options.add(flies)
     flies.set_defaults(run=_fly)
 
     serves = commands.add_parser("standin", help="run the stand-in for X-Plane until Ctrl-C")
     serves.add_argument("--beacon", action="store_true", help="send the beacon by multicast")
     serves.add_argument(
-        "--data-target", type=_address, metavar="HOST:PORT", help="target of Data Output"
+        "--data-target",
+        type=simulator_options.address,
+        metavar="HOST:PORT",
+        help="target of Data Output",
     )
     serves.add_argument(
-        "--data-rows", type=_rows, default=(), metavar="N,N", help="its rows, as in 3,17,20"
+        "--data-rows",
+        type=simulator_options.rows,
+        default=(),
+        metavar="N,N",
+        help="its rows, as in 3,17,20",
     )
     serves.add_argument("--seconds", type=float, metavar="S", help="end after so many seconds")
     serves.add_argument(
         "--at",
-        type=_appointment,
+        type=simulator_options.appointment,
         action="append",
         default=[],
         metavar="S:ACTION",
-        help=f"S seconds after the start do one of {', '.join(_ACTIONS)}, kill; may be repeated",
+        help="S seconds after the start do an action; may be repeated, as in --at 30:pause "
+        "--at 40:run --at 50:freeze:1.5",
     )
-    _simulator_options(serves)
+    serves.formatter_class = argparse.RawDescriptionHelpFormatter
+    serves.epilog = "actions, for --at:\n" + "\n".join(
+        f"  {name + str(action.argument):24}{action.does}"
+        for name, action in (*actions.ACTIONS.items(), ("kill", _KILL))
+    )
+    simulator_options.add(serves)
     serves.set_defaults(run=_standin)
 
     peer = commands.add_parser("peer", help="fly JSBSim's own autopilot through the pattern")

@@ -4,6 +4,10 @@ As in X-Plane, the joystick datarefs belong to the pilot until `override_joystic
 written before is lost by the next frame. The pilot here holds the trimmed controls. DATA rows 8 and
 25 set the same datarefs and obey the same overrides. Sources differ on whether row 8 alone
 overrides X-Plane's joystick; a client that sets the override first is right in either case.
+
+The flight controls are the sum of the yoke, the autopilot's servo and the artificial stability. The
+throttle in use is the lever's until `override_throttles` is 1, and the lever's again after it.
+Names, types, sizes and which of them can be written are those of Laminar's DataRefs.txt of 12.10.
 """
 
 from __future__ import annotations
@@ -11,21 +15,69 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from .protocol import UNUSED
 from .state import Controls
+from .units import STANDARD_INHG
 
-OVERRIDE_JOYSTICK = "sim/operation/override/override_joystick"
-OVERRIDE_THROTTLES = "sim/operation/override/override_throttles"
-YOKE_PITCH = "sim/joystick/yoke_pitch_ratio"
-YOKE_ROLL = "sim/joystick/yoke_roll_ratio"
-YOKE_HEADING = "sim/joystick/yoke_heading_ratio"
+_JOYSTICK = "sim/joystick/"
+_OVERRIDE = "sim/operation/override/"
+_LEVERS = "sim/cockpit2/engine/actuators/"
+
+OVERRIDE_JOYSTICK = _OVERRIDE + "override_joystick"
+OVERRIDE_THROTTLES = _OVERRIDE + "override_throttles"
+OVERRIDE_ARTSTAB = _OVERRIDE + "override_artstab"
+OVERRIDE_AUTOPILOT = _OVERRIDE + "override_autopilot"
+YOKE_PITCH = _JOYSTICK + "yoke_pitch_ratio"
+YOKE_ROLL = _JOYSTICK + "yoke_roll_ratio"
+YOKE_HEADING = _JOYSTICK + "yoke_heading_ratio"
+SERVO_PITCH = _JOYSTICK + "servo_pitch_ratio"
+SERVO_ROLL = _JOYSTICK + "servo_roll_ratio"
+SERVO_HEADING = _JOYSTICK + "servo_heading_ratio"
+ARTSTAB_PITCH = _JOYSTICK + "artstab_pitch_ratio"
+ARTSTAB_ROLL = _JOYSTICK + "artstab_roll_ratio"
+ARTSTAB_HEADING = _JOYSTICK + "artstab_heading_ratio"
 THROTTLE_USE = "sim/flightmodel/engine/ENGN_thro_use"
+THROTTLE_LEVER = _LEVERS + "throttle_ratio"
+PROPELLER_MODE = "sim/flightmodel/engine/ENGN_propmode"
+"""0 feathered, 1 normal, 2 beta, 3 reverse."""
 GENERIC_LIGHTS = "sim/cockpit2/switches/generic_lights_switch"
 SERVOS_ON = "sim/cockpit2/autopilot/servos_on"
+"""X-Plane's own autopilot moves the controls; read-only."""
+AUTOTHROTTLE_ENABLED = "sim/cockpit2/autopilot/autothrottle_enabled"
+AUTOTHROTTLE_ON = "sim/cockpit2/autopilot/autothrottle_on"
+"""Read-only."""
+ARTIFICIAL_STABILITY_ON = "sim/cockpit2/switches/artificial_stability_on"
+YAW_DAMPER_ON = "sim/cockpit2/switches/yaw_damper_on"
+ALTIMETER_SETTING = "sim/cockpit2/gauges/actuators/barometer_setting_in_hg_pilot"
+PITOT_ICE = "sim/flightmodel/failures/pitot_ice"
+"""0 none .. 1 blocked."""
+SIM_SPEED = "sim/time/sim_speed"
+"""1 real time, 2 twice as fast; 0 stops."""
 
 YOKE = (YOKE_PITCH, YOKE_ROLL, YOKE_HEADING)
-_SIZES = {THROTTLE_USE: 8, GENERIC_LIGHTS: 64}
+_SERVO = (SERVO_PITCH, SERVO_ROLL, SERVO_HEADING)
+_ARTSTAB = (ARTSTAB_PITCH, ARTSTAB_ROLL, ARTSTAB_HEADING)
+_ENGINES = 16
+_NORMAL, _REVERSE = 1.0, 3.0
+_MORE_LIGHTS_SINCE = 111_000
+_FULL = (-1.0, 1.0)
+
+_RANGES = {
+    **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB), _FULL),
+    THROTTLE_USE: (-1.0, 1.2),
+    THROTTLE_LEVER: (0.0, 1.0),
+    PITOT_ICE: (0.0, 1.0),
+}
+_NEEDS = {
+    **dict.fromkeys(YOKE, OVERRIDE_JOYSTICK),
+    **dict.fromkeys(_SERVO, OVERRIDE_AUTOPILOT),
+    **dict.fromkeys(_ARTSTAB, OVERRIDE_ARTSTAB),
+    THROTTLE_USE: OVERRIDE_THROTTLES,
+}
+"""The override without which a control belongs to the simulator."""
+_READ_ONLY = (SERVOS_ON, AUTOTHROTTLE_ON)
 _JOYSTICK_ROW = 8
 _THROTTLE_ROW = 25
 
@@ -60,6 +112,7 @@ Element = tuple[str, int]
 """A dataref's name and the index of its element."""
 
 
+@lru_cache(maxsize=4_096)
 def split(path: str) -> Element | None:
     """Return a dataref's name and element; the first element without brackets; None if invalid."""
     match = _ELEMENT.fullmatch(path)
@@ -69,23 +122,43 @@ def split(path: str) -> Element | None:
 class Cockpit:
     """The writable datarefs and their effects."""
 
-    def __init__(self, pilot: Controls, engines: int = 1) -> None:
-        """Set the controls held by the pilot, and the number of engines."""
+    def __init__(
+        self,
+        pilot: Controls,
+        engines: int = 1,
+        version: int = 115_501,
+        altimeter_inhg: float = STANDARD_INHG,
+    ) -> None:
+        """Set the controls held by the pilot, the number of engines and X-Plane's version."""
         self.pilot = pilot
         self.engines = engines
         self.journal: list[Write] = []
         self.releases: list[Release] = []
-        self._values: dict[Element, float] = {
-            (OVERRIDE_JOYSTICK, 0): 0.0,
-            (OVERRIDE_THROTTLES, 0): 0.0,
-            (SERVOS_ON, 0): 0.0,
-            (YOKE_PITCH, 0): pilot.elevator,
-            (YOKE_ROLL, 0): pilot.aileron,
-            (YOKE_HEADING, 0): pilot.rudder,
+        values: dict[str, float] = {
+            OVERRIDE_JOYSTICK: 0.0,
+            OVERRIDE_THROTTLES: 0.0,
+            OVERRIDE_ARTSTAB: 0.0,
+            OVERRIDE_AUTOPILOT: 0.0,
+            SERVOS_ON: 0.0,
+            AUTOTHROTTLE_ENABLED: 0.0,
+            AUTOTHROTTLE_ON: 0.0,
+            ARTIFICIAL_STABILITY_ON: 0.0,
+            YAW_DAMPER_ON: 0.0,
+            ALTIMETER_SETTING: altimeter_inhg,
+            PITOT_ICE: 0.0,
+            SIM_SPEED: 1.0,
+            **dict.fromkeys((*YOKE, *_SERVO, *_ARTSTAB), 0.0),
         }
-        for name, size in _SIZES.items():
-            start = pilot.throttle if name == THROTTLE_USE else 0.0
-            self._values.update({(name, i): start for i in range(size)})
+        self._values: dict[Element, float] = {(path, 0): value for path, value in values.items()}
+        lights = 128 if version >= _MORE_LIGHTS_SINCE else 64
+        for name, size, value in (
+            (GENERIC_LIGHTS, lights, 0.0),
+            (THROTTLE_USE, _ENGINES, pilot.throttle),
+            (THROTTLE_LEVER, _ENGINES, pilot.throttle),
+            (PROPELLER_MODE, _ENGINES, _NORMAL),
+        ):
+            self._values.update({(name, i): value for i in range(size)})
+        self._return_yoke()
 
     def element(self, path: str) -> Element | None:
         """Return the writable dataref of that name, or None."""
@@ -107,26 +180,26 @@ class Cockpit:
         return value is not None and round(value) == 1
 
     def write(self, time_s: float, path: str, value: float) -> bool:
-        """Set a dataref. Return whether that had an effect."""
+        """Set a dataref as a client does. Return whether that had an effect."""
         element = self.element(path)
         if element is None:
             return False
         name = element[0]
-        took = True
-        if name in YOKE:
-            took = self.is_on(OVERRIDE_JOYSTICK)
-            value = min(1.0, max(-1.0, value))
-        elif name == THROTTLE_USE:
-            took = self.is_on(OVERRIDE_THROTTLES)
-            value = min(1.0, max(0.0, value))
+        needs = _NEEDS.get(name)
+        took = name not in _READ_ONLY and (needs is None or self.is_on(needs))
+        least, most = _RANGES.get(name, (value, value))
+        value = min(most, max(least, value))
         self.journal.append(Write(time_s, path, value, took))
-        if not took:
-            return False
-        was_on = self.is_on(path)
+        if took:
+            self._take(time_s, element, value)
+        return took
+
+    def set(self, path: str, value: float) -> None:
+        """Set a dataref as the simulator itself does: also one that a client can only read."""
+        element = self.element(path)
+        if element is None:
+            raise ValueError(f"no writable dataref '{path}'")
         self._values[element] = value
-        if name in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES) and was_on and not self.is_on(path):
-            self._release(time_s, name)
-        return True
 
     def write_row(self, time_s: float, row: int, values: Sequence[float]) -> bool:
         """Set the controls of DATA row 8 or 25; columns of -999 are unchanged."""
@@ -143,26 +216,79 @@ class Cockpit:
         ]
         return any(took)
 
+    def hold(self, pilot: Controls) -> None:
+        """Move the pilot's stick, pedals and levers; they have no effect under an override."""
+        self.pilot = pilot
+        if not self.is_on(OVERRIDE_JOYSTICK):
+            self._return_yoke()
+        for i in range(_ENGINES):
+            self._values[THROTTLE_LEVER, i] = pilot.throttle
+        self._follow_levers()
+
+    def set_reverse(self, *, on: bool) -> None:
+        """Select reverse thrust on every engine, or the normal one."""
+        for i in range(_ENGINES):
+            self._values[PROPELLER_MODE, i] = _REVERSE if on else _NORMAL
+        self._follow_levers()
+
+    def yoke(self) -> Controls:
+        """Return the deflection of the joystick, and the throttle in use."""
+        return self._sum(YOKE)
+
     def controls(self) -> Controls:
-        """Return the controls in effect."""
-        return Controls(
-            elevator=self._values[YOKE_PITCH, 0],
-            aileron=self._values[YOKE_ROLL, 0],
-            rudder=self._values[YOKE_HEADING, 0],
-            throttle=self._values[THROTTLE_USE, 0],
-        )
+        """Return the controls in effect: joystick, servo and artificial stability together."""
+        return self._sum(YOKE, _SERVO, _ARTSTAB)
+
+    def stabilised(self) -> Controls:
+        """Return joystick and artificial stability together."""
+        return self._sum(YOKE, _ARTSTAB)
 
     def throttles(self) -> list[float]:
-        """Return the throttle of each engine."""
+        """Return the throttle in use of each engine."""
         return [self._values[THROTTLE_USE, i] for i in range(self.engines)]
 
+    def clear_overrides(self) -> None:
+        """Clear every override, as loading an aircraft does: that is not a release by a client."""
+        for name, index in self._values:
+            if name.startswith(_OVERRIDE):
+                self._values[name, index] = 0.0
+        self._return_yoke()
+        self._follow_levers()
+
+    def _sum(self, *parts: tuple[str, str, str]) -> Controls:
+        pitch, roll, heading = (
+            min(1.0, max(-1.0, sum(self._values[part[axis], 0] for part in parts)))
+            for axis in range(3)
+        )
+        return Controls(pitch, roll, heading, self._values[THROTTLE_USE, 0])
+
+    def _take(self, time_s: float, element: Element, value: float) -> None:
+        name = element[0]
+        was_on = self.is_on(name)
+        self._values[element] = value
+        if name in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES) and was_on and not self.is_on(name):
+            self._release(time_s, name)
+        elif name == THROTTLE_LEVER:
+            self._follow_levers()
+        elif name == AUTOTHROTTLE_ENABLED:
+            self._values[AUTOTHROTTLE_ON, 0] = float(value > 0.0)
+
     def _release(self, time_s: float, name: str) -> None:
-        held = self.controls()
+        held = self.yoke()
         self.releases.append(Release(time_s, name, held.elevator, held.aileron, held.rudder))
         if name == OVERRIDE_JOYSTICK:
-            self._values[YOKE_PITCH, 0] = self.pilot.elevator
-            self._values[YOKE_ROLL, 0] = self.pilot.aileron
-            self._values[YOKE_HEADING, 0] = self.pilot.rudder
+            self._return_yoke()
         else:
-            for i in range(_SIZES[THROTTLE_USE]):
-                self._values[THROTTLE_USE, i] = self.pilot.throttle
+            self._follow_levers()
+
+    def _return_yoke(self) -> None:
+        self._values[YOKE_PITCH, 0] = self.pilot.elevator
+        self._values[YOKE_ROLL, 0] = self.pilot.aileron
+        self._values[YOKE_HEADING, 0] = self.pilot.rudder
+
+    def _follow_levers(self) -> None:
+        if self.is_on(OVERRIDE_THROTTLES):
+            return
+        for i in range(_ENGINES):
+            sign = -1.0 if self._values[PROPELLER_MODE, i] == _REVERSE else 1.0
+            self._values[THROTTLE_USE, i] = sign * self._values[THROTTLE_LEVER, i]

@@ -24,7 +24,7 @@ from .score import Score, score
 from .standin import Progress, Settings
 from .truth import COLUMNS, Truth
 
-ENGAGE_SWITCH = f"{GENERIC_LIGHTS}[0]"
+ENGAGE_SWITCH = f"{GENERIC_LIGHTS}[56]"
 
 _SUBSCRIBE_S = 15.0
 _STEADY_S = 2.0

@@ -21,7 +21,14 @@ import jsbsim
 from .aircraft import Aircraft, by_name
 from .settle import SettlingPilot
 from .state import Controls, State
-from .units import FT_TO_M, KT_TO_MPS, PSF_TO_PA, RANKINE_TO_KELVIN, wrap_heading_rad
+from .units import (
+    FT_TO_M,
+    KT_TO_MPS,
+    PSF_TO_PA,
+    RANKINE_TO_KELVIN,
+    SEA_LEVEL_PRESSURE_PA,
+    wrap_heading_rad,
+)
 
 STEPS_PER_SECOND = 120
 """JSBSim's own rate, Hz: three steps to a tick of a 40 Hz loop."""
@@ -30,6 +37,9 @@ STEP_S = 1.0 / STEPS_PER_SECOND
 
 _SETTLING_S = 60.0
 _SETTLING_MEAN_S = 5.0
+_STANDING_S = 5.0
+_DROP_FT = 8.0
+"""The height from which an aircraft is put on its wheels: above the tallest gear here."""
 _MILSPEC_TURBULENCE = 3.0
 _TURBULENCE_WIND_FPS = {1: 15.0, 2: 20.0, 3: 25.0, 4: 50.0, 5: 75.0, 6: 90.0, 7: 100.0}
 
@@ -67,9 +77,12 @@ class Plant:
         weather: Weather | None = None,
         latitude_deg: float = 0.0,
         longitude_deg: float = 0.0,
+        qnh_pa: float = SEA_LEVEL_PRESSURE_PA,
+        runway_elevation_ft: float | None = None,
     ) -> None:
         """Load and trim `aircraft`; it then flies straight and level, controls centred.
 
+        With the elevation of a runway it stands there, its engines idling and its brakes set.
         Raises ValueError for a name that is not in the table, and TrimError.
         """
         self.aircraft = by_name(aircraft) if isinstance(aircraft, str) else aircraft
@@ -82,16 +95,21 @@ class Plant:
         self._silence_output()
         fdm.set_dt(STEP_S)
         fdm["simulation/randomseed"] = seed
-        fdm["ic/terrain-elevation-ft"] = 0.0
+        fdm["ic/terrain-elevation-ft"] = runway_elevation_ft or 0.0
         fdm["ic/lat-geod-deg"] = latitude_deg
         fdm["ic/long-gc-deg"] = longitude_deg
-        fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft
-        fdm["ic/vc-kts"] = self.aircraft.airspeed_kt
+        self.set_qnh(qnh_pa)
+        flies = runway_elevation_ft is None
+        if flies:
+            fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft
+        else:
+            fdm["ic/h-agl-ft"] = _DROP_FT
+        fdm["ic/vc-kts"] = self.aircraft.airspeed_kt if flies else 0.0
         fdm["ic/gamma-deg"] = 0.0
         fdm["ic/psi-true-deg"] = heading_deg
-        if weather.wind_kt != 0.0:
+        if weather.wind_kt != 0.0 and flies:
             self._set_wind(weather, heading_deg)
-        if self.aircraft.retractable_gear:
+        if self.aircraft.retractable_gear and flies:
             fdm["gear/gear-cmd-norm"] = 0.0
             fdm["gear/gear-pos-norm"] = 0.0
         fdm.run_ic()
@@ -99,8 +117,10 @@ class Plant:
         self.engines: int = fdm.get_propulsion().get_num_engines()
         self._throttles = [f"fcs/throttle-cmd-norm[{i}]" for i in range(self.engines)]
         self._start_engines()
-        self.trimmed_by_jsbsim = self.aircraft.trims and self._trim()
-        if not self.trimmed_by_jsbsim:
+        self.trimmed_by_jsbsim = flies and self.aircraft.trims and self._trim()
+        if not flies:
+            self._stand()
+        elif not self.trimmed_by_jsbsim:
             self._fly_to_steady_state(heading_deg)
         self.trim = Controls(throttle=float(fdm[self._throttles[0]]))
         """The controls that hold the trimmed flight: surfaces centred, throttle as trimmed."""
@@ -119,6 +139,10 @@ class Plant:
         """The controls last written."""
         return self._controls
 
+    def set_qnh(self, pressure_pa: float) -> None:
+        """Set the pressure at sea level."""
+        self.fdm["atmosphere/P-sl-psf"] = pressure_pa / PSF_TO_PA
+
     def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
         """Command the controls; values beyond their range are clipped.
 
@@ -136,7 +160,8 @@ class Plant:
         fdm["fcs/aileron-cmd-norm"] = clipped.aileron
         fdm["fcs/rudder-cmd-norm"] = -clipped.rudder
         for index, path in enumerate(self._throttles):
-            fdm[path] = clipped.throttle if throttles is None else throttles[index]
+            throttle = clipped.throttle if throttles is None else throttles[index]
+            fdm[path] = min(1.0, max(0.0, throttle))
         self._controls = clipped
 
     def step(self, steps: int = 1) -> None:
@@ -214,6 +239,16 @@ class Plant:
         fdm["propulsion/set-running"] = -1
         for i in range(self.engines):
             fdm[f"fcs/mixture-cmd-norm[{i}]"] = 1.0
+
+    def _stand(self) -> None:
+        """Let the aircraft settle on its wheels."""
+        fdm = self.fdm
+        for brake in ("left", "right", "center"):
+            fdm[f"fcs/{brake}-brake-cmd-norm"] = 1.0
+        for path in self._throttles:
+            fdm[path] = 0.0
+        for _ in range(round(_STANDING_S * STEPS_PER_SECOND)):
+            fdm.run()
 
     def _trim(self) -> bool:
         fdm = self.fdm

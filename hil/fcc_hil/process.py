@@ -2,8 +2,8 @@
 
     with StandInProcess(Settings(port=0)) as simulator:
         simulator.port                                # fly against it
-        simulator.write("sim/cockpit2/switches/generic_lights_switch[0]", 1.0)
-        simulator.set_mode(Mode.PAUSED)
+        simulator.write("sim/cockpit2/switches/generic_lights_switch[56]", 1.0)
+        simulator.act("freeze:1.5")                   # what a person or X-Plane itself does
         truth = simulator.truth()
 
 Commands and answers go through a pipe that the stand-in polls once per frame.
@@ -21,9 +21,11 @@ from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any, cast
 
+from . import actions
 from .cockpit import Release, Write
 from .sensor_faults import SensorFault
 from .standin import Mode, Progress, Settings, StandIn
+from .state import Controls
 from .truth import Row, Truth
 
 _START_S = 30.0
@@ -74,7 +76,13 @@ class _Commands:
         return self.simulator.cockpit.releases
 
     def set_mode(self, mode: Mode) -> None:
-        self.simulator.mode = mode
+        self.simulator.enter(mode)
+
+    def act(self, action: str) -> None:
+        actions.act(self.simulator, action)
+
+    def hold(self, pilot: Controls) -> None:
+        self.simulator.cockpit.hold(pilot)
 
     def set_frame_rate(self, rate_hz: float) -> None:
         self.simulator.clock.set_rate(rate_hz)
@@ -106,7 +114,7 @@ def _serve(settings: Settings, pipe: Connection) -> None:
     except Exception as error:
         pipe.send(error)
         return
-    pipe.send(simulator.port)
+    pipe.send((simulator.port, simulator.reply_port))
     orders = _Commands(simulator, request_real_time())
 
     def each_frame() -> bool:
@@ -143,10 +151,12 @@ class StandInProcess:
         self._process.start()
         theirs.close()
         try:
-            self.port = cast(int, self._receive(_START_S))
+            ports = cast("tuple[int, int]", self._receive(_START_S))
         except StandInError:
             self.kill()
             raise
+        self.port, self.reply_port = ports
+        """The ports that it listens on and that it sends from."""
 
     def __enter__(self) -> StandInProcess:
         return self
@@ -199,8 +209,19 @@ class StandInProcess:
         """Pause, stall, freeze or run."""
         self._ask("set_mode", mode)
 
+    def act(self, action: str) -> None:
+        """Do what a person or the simulator does: `pause`, `freeze:1.5`, ... (see `actions`).
+
+        Raise StandInError for what is no action.
+        """
+        self._ask("act", action)
+
+    def hold(self, pilot: Controls) -> None:
+        """Move the pilot's stick, pedals and throttle levers."""
+        self._ask("hold", pilot)
+
     def set_frame_rate(self, rate_hz: float) -> None:
-        """Change the frame rate; below 20 a second simulated time slows down."""
+        """Change the frame rate; below 19 a second simulated time slows down."""
         self._ask("set_frame_rate", rate_hz)
 
     def restart_flight(self) -> None:

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from .datarefs import Readout
 from .protocol import UNUSED
+from .readout import Readout
 from .units import (
     CELSIUS_ZERO_K,
-    DRY_AIR_GAS_CONSTANT,
     FT_TO_M,
     INHG_TO_PA,
     KT_TO_MPS,
     SEA_LEVEL_DENSITY_KGPM3,
-    SEA_LEVEL_PRESSURE_PA,
     STANDARD_GRAVITY_MPS2,
 )
 
@@ -23,18 +21,15 @@ _MPH_PER_MPS = 3600.0 / 1609.344
 _METRES_PER_NAUTICAL_MILE = 1852.0
 
 
-def _density(r: Readout) -> float:
-    return r.state.pressure_pa / (DRY_AIR_GAS_CONSTANT * r.state.temperature_k)
-
-
 def _times(r: Readout) -> Sequence[float]:
     t = r.flight_time_s
     return (t, t, t, t, UNUSED, 12.0 + t / 3600.0, 12.0 + t / 3600.0, t / 3600.0)
 
 
 def _speeds(r: Readout) -> Sequence[float]:
-    indicated, true, ground = r.state.airspeed_mps, r.state.true_airspeed_mps, r.groundspeed_mps()
-    equivalent = true * math.sqrt(_density(r) / SEA_LEVEL_DENSITY_KGPM3)
+    indicated, true = r.indicated_airspeed_mps(), r.state.true_airspeed_mps
+    ground = r.groundspeed_mps()
+    equivalent = true * math.sqrt(r.density_kgpm3() / SEA_LEVEL_DENSITY_KGPM3)
     knots = [v / KT_TO_MPS for v in (indicated, equivalent, true, ground)]
     return (*knots, UNUSED, *(v * _MPH_PER_MPS for v in (indicated, true, ground)))
 
@@ -42,23 +37,29 @@ def _speeds(r: Readout) -> Sequence[float]:
 def _loads(r: Readout) -> Sequence[float]:
     s, g = r.state, STANDARD_GRAVITY_MPS2
     climb_fpm = -s.down_mps / FT_TO_M * 60.0
-    normal, axial, side = -s.specific_force_z_mps2, s.specific_force_x_mps2, s.specific_force_y_mps2
+    normal, side = -s.specific_force_z_mps2, s.specific_force_y_mps2
+    axial = r.axial_sign * s.specific_force_x_mps2
     return (s.mach, UNUSED, climb_fpm, UNUSED, normal / g, axial / g, side / g)
 
 
-def _weather(_: Readout) -> Sequence[float]:
-    return (SEA_LEVEL_PRESSURE_PA / INHG_TO_PA, 15.0)
+def _weather(r: Readout) -> Sequence[float]:
+    return (r.qnh_pa / INHG_TO_PA, 15.0)
 
 
 def _ambient(r: Readout) -> Sequence[float]:
     s = r.state
-    ratio = _density(r) / SEA_LEVEL_DENSITY_KGPM3
+    ratio = r.density_kgpm3() / SEA_LEVEL_DENSITY_KGPM3
     return (s.pressure_pa / INHG_TO_PA, s.temperature_k - CELSIUS_ZERO_K, UNUSED, ratio)
 
 
 def _joystick(r: Readout) -> Sequence[float]:
-    held = r.cockpit.controls()
+    held = r.cockpit.yoke()
     return (held.elevator, held.aileron, held.rudder)
+
+
+def _surfaces(r: Readout) -> Sequence[float]:
+    at = r.surfaces or r.cockpit.controls()
+    return (at.elevator, at.aileron, at.rudder)
 
 
 def _rates(r: Readout) -> Sequence[float]:
@@ -69,9 +70,7 @@ def _rates(r: Readout) -> Sequence[float]:
 
 
 def _attitude(r: Readout) -> Sequence[float]:
-    s = r.state
-    angles = (math.degrees(s.pitch_rad), math.degrees(s.roll_rad), math.degrees(s.heading_rad))
-    return (*angles, r.magnetic_heading_deg())
+    return (*r.local_attitude_deg, r.magnetic_heading_deg())
 
 
 def _air_angles(r: Readout) -> Sequence[float]:
@@ -89,16 +88,14 @@ def _place(r: Readout) -> Sequence[float]:
     s = r.state
     place = (math.degrees(s.latitude_rad), math.degrees(s.longitude_rad))
     heights = (s.elevation_m / FT_TO_M, s.height_m / FT_TO_M)
-    return (*place, *heights, float(s.on_ground), s.altitude_m / FT_TO_M)
+    return (*place, *heights, float(s.on_ground), r.indicated_altitude_ft())
 
 
 def _local(r: Readout) -> Sequence[float]:
-    s = r.state
-    x, z = r.local_x_m(), r.local_z_m()
+    x, y, z = r.local_position_m
     distance_m = math.hypot(x, z)
-    velocity = (s.east_mps, -s.down_mps, -s.north_mps)
     travelled = (distance_m / FT_TO_M, distance_m / _METRES_PER_NAUTICAL_MILE)
-    return (x, s.elevation_m, z, *velocity, *travelled)
+    return (x, y, z, *r.local_velocity_mps, *travelled)
 
 
 def _throttles(r: Readout) -> Sequence[float]:
@@ -112,7 +109,7 @@ _ROWS: dict[int, Callable[[Readout], Sequence[float]]] = {
     5: _weather,
     6: _ambient,
     8: _joystick,
-    11: _joystick,
+    11: _surfaces,
     16: _rates,
     17: _attitude,
     18: _air_angles,

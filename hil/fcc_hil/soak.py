@@ -28,12 +28,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from .cockpit import GENERIC_LIGHTS
 from .daemon import Daemon, command
+from .fly import ENGAGE_SWITCH
 from .process import StandInProcess
 from .standin import Settings
 
-_SWITCH = f"{GENERIC_LIGHTS}[0]"
 _LOOP_THREAD = "fcc-loop"
 _PRIORITY = 80
 _SUBSCRIBE_S = 15.0
@@ -197,7 +196,7 @@ def soak(plan: Soak, notify: Callable[[float], None]) -> Result:
                     look = partial(_look, daemon, *background)
                     _engage(simulator, daemon, look)
                     watched = _watch(plan, loop, look, notify)
-                    simulator.write(_SWITCH, 0.0)
+                    simulator.write(ENGAGE_SWITCH, 0.0)
                     time.sleep(1.0)
                     look()
                     exit_code = daemon.stop()
@@ -212,7 +211,6 @@ def _config(plan: Soak, port: int, recordings: Path) -> str:
     return f"""
 [x-plane]
 simulator = "127.0.0.1:{port}"
-engage_switch = "{_SWITCH}"
 [loop]
 rate_hz = {plan.rate_hz}
 [loop.early_wake]
@@ -231,7 +229,7 @@ failsafe_after = 0
 
 def _engage(simulator: StandInProcess, daemon: Daemon, look: Callable[[], None]) -> None:
     _fly(_SETTLE_S, look)
-    simulator.write(_SWITCH, 1.0)
+    simulator.write(ENGAGE_SWITCH, 1.0)
     _await(
         lambda: simulator.progress().overridden,
         daemon,

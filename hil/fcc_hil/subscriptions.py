@@ -11,9 +11,10 @@ import random
 from dataclasses import dataclass, field
 
 from .cockpit import Cockpit
-from .datarefs import Getter, Readout, getter
+from .datarefs import Getter, getter
 from .faults import Address
 from .protocol import Dialect, RequestPosition, Subscribe, rpos_reply, rref_replies
+from .readout import Readout
 
 # Slightly less than a frame, so that rounding never delays a value to the next one.
 _EPSILON_S = 1e-6

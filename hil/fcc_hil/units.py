@@ -12,6 +12,16 @@ CELSIUS_ZERO_K = 273.15
 SEA_LEVEL_PRESSURE_PA = 101_325.0
 SEA_LEVEL_DENSITY_KGPM3 = 1.225
 DRY_AIR_GAS_CONSTANT = 287.053
+STANDARD_INHG = SEA_LEVEL_PRESSURE_PA / INHG_TO_PA
+_SEA_LEVEL_TEMPERATURE_K = 288.15
+_LAPSE_KPM = 0.0065
+
+
+def pressure_altitude_m(pressure_pa: float) -> float:
+    """Return the altitude of a pressure in the standard atmosphere, below 11 km (ICAO 7488)."""
+    exponent = DRY_AIR_GAS_CONSTANT * _LAPSE_KPM / STANDARD_GRAVITY_MPS2
+    ratio = math.pow(pressure_pa / SEA_LEVEL_PRESSURE_PA, exponent)
+    return _SEA_LEVEL_TEMPERATURE_K / _LAPSE_KPM * (1.0 - ratio)
 
 
 def wrap_degrees(angle_deg: float) -> float:

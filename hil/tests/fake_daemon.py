@@ -17,7 +17,7 @@ import struct
 import time
 
 SIM = "sim/flightmodel/position/"
-SWITCH = "sim/cockpit2/switches/generic_lights_switch[0]"
+SWITCH = "sim/cockpit2/switches/generic_lights_switch[56]"
 READ = [
     SIM + "theta",
     SIM + "phi",
@@ -38,14 +38,14 @@ YOKE = ["sim/joystick/yoke_pitch_ratio", "sim/joystick/yoke_roll_ratio"]
 class Link:
     def __init__(self, port: int) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.connect(("127.0.0.1", port))
+        self.simulator = ("127.0.0.1", port)
         self.socket.setblocking(False)
         self.values: dict[str, float] = {}
 
     def subscribe(self, frequency_hz: int) -> None:
         for index, path in enumerate(READ):
             packed = struct.pack("<ii400s", frequency_hz, index, path.encode())
-            self.socket.send(b"RREF\0" + packed)
+            self.socket.sendto(b"RREF\0" + packed, self.simulator)
 
     def receive(self) -> None:
         try:
@@ -58,7 +58,8 @@ class Link:
             return
 
     def write(self, path: str, value: float) -> None:
-        self.socket.send(b"DREF\0" + struct.pack("<f500s", value, path.encode()))
+        datagram = b"DREF\0" + struct.pack("<f500s", value, path.encode())
+        self.socket.sendto(datagram, self.simulator)
 
 
 def main() -> int:

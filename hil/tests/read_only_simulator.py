@@ -24,7 +24,7 @@ class ReadOnlySimulator:
         self._daemon: tuple[str, int] | None = None
         self._outside = self._open()
         self._inside = self._open()
-        self._inside.connect(("127.0.0.1", simulator_port))
+        self._simulator = ("127.0.0.1", simulator_port)
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._forward, name="read-only-simulator")
 
@@ -63,7 +63,7 @@ class ReadOnlySimulator:
         if datagram.startswith(_WRITES):
             self.dropped += 1
         else:
-            self._inside.send(datagram)
+            self._inside.sendto(datagram, self._simulator)
 
     def _outwards(self) -> None:
         datagram = self._inside.recv(_LARGEST_DATAGRAM)

@@ -34,7 +34,7 @@ class _Link:
         self._daemon: tuple[str, int] | None = None
         self._outside = self._open()
         self._inside = self._open()
-        self._inside.connect(("127.0.0.1", simulator_port))
+        self._simulator = ("127.0.0.1", simulator_port)
         self._over = False
 
     @property
@@ -63,7 +63,9 @@ class _Link:
 
     def _obey(self) -> None:
         try:
-            self._cut, self._says = self._pipe.recv()
+            self._cut, self._says, datagram = self._pipe.recv()
+            if datagram and self._daemon is not None:
+                self._outside.sendto(datagram, self._daemon)
             self._pipe.send(None)
         except (EOFError, OSError):
             self._over = True
@@ -75,7 +77,7 @@ class _Link:
             path = datagram[_TAG_BYTES + _REQUEST.size :].partition(b"\0")[0]
             self._paths[index] = path.decode()
         if not self._cut["to"]:
-            self._inside.send(datagram)
+            self._inside.sendto(datagram, self._simulator)
 
     def _outwards(self) -> None:
         datagram = self._inside.recv(_LARGEST_DATAGRAM)
@@ -131,12 +133,16 @@ class TamperedLink:
         """Replace the values of these datarefs; nothing is cut."""
         self._command({"to": False, "from": False}, dict(values))
 
+    def send(self, datagram: bytes) -> None:
+        """Send the daemon a datagram as the simulator would, and cut and replace nothing."""
+        self._command({"to": False, "from": False}, {}, datagram)
+
     def restore(self) -> None:
         """Forward everything unchanged."""
         self.replace_values({})
 
-    def _command(self, cut: dict[str, bool], says: dict[str, float]) -> None:
-        self._pipe.send((cut, says))
+    def _command(self, cut: dict[str, bool], says: dict[str, float], send: bytes = b"") -> None:
+        self._pipe.send((cut, says, send))
         self._answer()
 
     def _answer(self) -> int:

@@ -63,7 +63,7 @@ def test_values_are_clipped_to_the_range() -> None:
         cockpit.write(0.0, path, 1.0)
     cockpit.write(0.0, YOKE_PITCH, -7.0)
     cockpit.write(0.0, THROTTLE_USE, 3.0)
-    assert cockpit.controls() == Controls(elevator=-1.0, throttle=1.0)
+    assert cockpit.controls() == Controls(elevator=-1.0, throttle=1.2)
 
 
 def test_rows_8_and_25_obey_the_overrides_and_skip_minus_999() -> None:
@@ -81,11 +81,15 @@ def test_rows_8_and_25_obey_the_overrides_and_skip_minus_999() -> None:
 
 
 def test_switches_and_unknown_datarefs() -> None:
-    cockpit = Cockpit(TRIMMED)
+    cockpit = Cockpit(TRIMMED, version=110_501)
     assert cockpit.write(0.0, f"{GENERIC_LIGHTS}[63]", 1.0)
     assert cockpit.is_on(f"{GENERIC_LIGHTS}[63]")
     assert not cockpit.is_on(f"{GENERIC_LIGHTS}[0]")
     assert cockpit.read(f"{GENERIC_LIGHTS}[64]") is None
+    # "Was dim [64] until 11.10" (DataRefs.txt).
+    since_11_10 = Cockpit(TRIMMED, version=111_000)
+    assert since_11_10.read(f"{GENERIC_LIGHTS}[127]") == 0.0
+    assert since_11_10.read(f"{GENERIC_LIGHTS}[128]") is None
     assert cockpit.read("sim/no/such") is None
     assert cockpit.read(f"{GENERIC_LIGHTS}[0") is None
     assert not cockpit.write(0.0, "sim/flightmodel/position/theta", 1.0)

@@ -258,5 +258,5 @@ def test_run_refuses_what_check_refuses(fccd: Path, tmp_path: Path) -> None:
     file.write_text("[x-plane]\nengines = 9\n")
     ended = run([fccd, "run", "--config", file, "--json"])
     assert ended.returncode == 2
-    assert ended.stdout == ""
     assert f"{file}:2: x-plane.engines" in ended.stderr
+    assert json.loads(ended.stdout) == {"error": ended.stderr.strip()}

@@ -127,7 +127,7 @@ def test_fly_as_json(fccd: Path) -> None:
     assert set(leg) == LEG
     assert report["flight"]["worst"] == leg
     assert leg["heading_settle_s"] is not None
-    assert report["ending"] == "stop requested"
+    assert report["ending"] == "the time to fly is over"
 
 
 def test_fly_prints_a_status_each_second_unless_quiet(fccd: Path) -> None:

@@ -20,8 +20,17 @@ FAILSAFE = 3
 PANICKED = 6
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
-def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signal.Signals) -> None:
+@pytest.mark.parametrize(
+    ("number", "by"),
+    [
+        (signal.SIGTERM, "SIGTERM"),
+        (signal.SIGINT, "Ctrl-C (SIGINT)"),
+        (signal.SIGHUP, "the end of its terminal (SIGHUP)"),
+    ],
+)
+def test_a_signal_centres_and_releases(
+    fccd: Path, tmp_path: Path, number: signal.Signals, by: str
+) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
         told_ns = time.monotonic_ns()
@@ -32,7 +41,7 @@ def test_a_signal_centres_and_releases(fccd: Path, tmp_path: Path, number: signa
     assert ending.report["timing"]["rate_hz"] == 40.0
     assert ending.report["timing"]["ticks"] > 0
     assert ending.report["flight"] is None, "a hold has no legs to score"
-    assert ending.report["ending"] == "interrupted by a signal"
+    assert ending.report["ending"] == f"interrupted by {by}"
     assert ending.report["released"] is True
     assert ending.report["failsafes"] == 0
     assert "Accept incoming connections" not in ending.log

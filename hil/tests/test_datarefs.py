@@ -8,9 +8,11 @@ from dataclasses import replace
 import pytest
 
 from fcc_hil.cockpit import GENERIC_LIGHTS, OVERRIDE_JOYSTICK, YOKE_PITCH, Cockpit
-from fcc_hil.datarefs import Readout, getter, readable
+from fcc_hil.datarefs import getter, readable
+from fcc_hil.local_axes import LocalAxes
 from fcc_hil.plant import Plant
 from fcc_hil.protocol import Dialect
+from fcc_hil.readout import Readout
 from fcc_hil.rows import row_values
 from fcc_hil.state import Controls, State
 
@@ -40,8 +42,7 @@ def readout(state: State, version: int = 121_000, variation_deg: float = 0.0) ->
         flight_time_s=12.5,
         paused=False,
         frame_period_s=0.02,
-        origin_latitude_rad=0.0,
-        origin_longitude_rad=0.0,
+        axes=LocalAxes(),
         magnetic_variation_deg=variation_deg,
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import socket
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -130,12 +129,10 @@ def one_of_two(fccd: Path, scratch: Path) -> Flown:
 def a_bouncing_switch(fccd: Path, scratch: Path) -> Flown:
     """Let the engage switch bounce, and then be noisy; with it, datagrams are invalid."""
     scratch.mkdir()
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
-        other.bind(("127.0.0.1", 0))
-        port = other.getsockname()[1]
     with (
-        socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other,
-        flight(fccd, scratch, x_plane=f"local_port = {port}") as (simulator, daemon),
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(fccd, scratch, write_config(scratch, link.port)) as daemon,
     ):
         engage(simulator, daemon)
         for n in range(40):
@@ -144,7 +141,7 @@ def a_bouncing_switch(fccd: Path, scratch: Path) -> Flown:
         daemon.wait_for("standby -> engaged")
         for n in range(40):
             simulator.write(ENGAGE_SWITCH, 0.49 + n % 2 * 0.02)
-            other.sendto(b"RREF,cut", ("127.0.0.1", port))
+            link.send(b"RREF,cut")
             time.sleep(0.1)
         ending = daemon.end(signal.SIGTERM)
     return Flown.of(ending, scratch / "recordings")

@@ -265,9 +265,7 @@ def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str)
     assert_flown_again(fccd, flights[name])
 
 
-def test_a_loop_that_hangs_gives_x_plane_its_controls_back(
-    faulty_fccd: Path, tmp_path: Path
-) -> None:
+def test_the_controls_of_a_loop_that_hangs_are_released(faulty_fccd: Path, tmp_path: Path) -> None:
     environment = {"FCCD_HANG_AT_S": "1"}
     with flight(faulty_fccd, tmp_path, others=QUICK_WATCHDOG, environment=environment) as (
         simulator,

@@ -162,6 +162,18 @@ def test_position_reply() -> None:
     assert floats == pytest.approx((700.0, 1.0, 270.0, -3.0, 10.0, 0.5, -50.0, 0.1, 0.2, 0.3))
 
 
+def test_position_reply_byte_by_byte() -> None:
+    # Longitude, latitude, elevation as doubles; height, pitch, heading, roll, velocities and rates
+    # as floats, packed: the order of X-Plane's "Exchanging Data with X-Plane".
+    numbers = (1.0, 2.0, -1.0, 0.5, 1.0, 2.0, -1.0, 0.5, 1.0, 2.0, -1.0, 0.5, 1.0)
+    doubles = {1.0: "000000000000f03f", 2.0: "0000000000000040", -1.0: "000000000000f0bf"}
+    floats = {1.0: "0000803f", 2.0: "00000040", -1.0: "000080bf", 0.5: "0000003f"}
+    layout = [doubles[n] for n in numbers[:3]] + [floats[n] for n in numbers[3:]]
+    reply = rpos_reply(Position(*numbers))
+    assert reply[:4] == b"RPOS"
+    assert reply[5:].hex() == "".join(layout)
+
+
 def test_beacon() -> None:
     assert beacon(XPLANE_11, 49_000, "cessna") == (
         b"BECN\0"  # header

@@ -150,7 +150,7 @@ def test_headings_are_compared_the_short_way_round() -> None:
         flight.stays(heading, within=5, at=180, to=9)
 
 
-def test_never_is_never() -> None:
+def test_a_heading_that_never_settles_has_no_time() -> None:
     flight = _flight(roll_deg=lambda t: -5.0 * t, throttle=lambda _: 0.5)
     flight.flies(to=7)
     flight.never(abs(bank) > 35.1)

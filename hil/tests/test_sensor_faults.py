@@ -68,7 +68,7 @@ def test_not_a_number(level: State) -> None:
     assert math.isnan(said[1])
 
 
-def test_everything_is_everything(level: State) -> None:
+def test_a_share_of_1_affects_every_sample(level: State) -> None:
     sensors = FaultySensors()
     Faults(lambda: 0.0, sensors.set_faults).loss("everything", after=1)
     assert sensors.read(0.0, level) == (level, frozenset())

@@ -128,7 +128,7 @@ def test_the_daemon_takes_each_configuration(aircraft: str, fccd: Path, tmp_path
     assert checked.returncode == 0, checked.stderr
 
 
-def test_a_value_is_set_and_the_rest_is_left() -> None:
+def test_a_value_is_set_and_the_others_are_unchanged() -> None:
     text = "# why\n[guidance]\nmode = 'hold' # so\n[autopilot.scale]\npace = 0.5\n"
     changed = with_values(text, {"autopilot.scale.pace": 0.75, "autopilot.heading.lead_s": 0.3})
     assert "# why" in changed

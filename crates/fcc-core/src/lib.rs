@@ -11,6 +11,7 @@
 //! |---|---|
 //! | [`framework`] | ticks, readings, sensors, actuators, controllers, the loop's states: any plant |
 //! | [`blocks`] | PID, filters, limiters: any plant |
+//! | [`units`] | feet, knots and gravity in SI |
 //! | [`flight`] | measurements, navigation, guidance, control of an aircraft (feature `flight`) |
 //!
 //! Internally everything is in SI units and radians; feet, knots and degrees
@@ -26,3 +27,4 @@ pub mod blocks;
 #[cfg(feature = "flight")]
 pub mod flight;
 pub mod framework;
+pub mod units;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
 use fcc_telemetry::Instance;
@@ -64,6 +64,28 @@ pub enum Action {
     },
 }
 
+impl Action {
+    /// Whether the result is to be JSON.
+    pub fn json(&self) -> bool {
+        match self {
+            Self::Fly(args) => args.json,
+            Self::Run(args) => args.json,
+            Self::List(args) => args.json,
+            Self::Recover(args) => args.json,
+            Self::Timing(args) => args.json,
+            Self::Replay(args) => args.json,
+            #[cfg(feature = "live")]
+            Self::Top(args) => args.json,
+            #[cfg(feature = "live")]
+            Self::Command(args) => args.json,
+            Self::Check(args) => args.json,
+            Self::Doctor(args) => args.json,
+            Self::Report(args) => args.json,
+            Self::ReleaseHelper | Self::Completions { .. } | Self::Man { .. } => false,
+        }
+    }
+}
+
 /// `fccd fly`.
 #[derive(Args, Debug)]
 pub struct FlyArgs {
@@ -71,7 +93,8 @@ pub struct FlyArgs {
     /// config/built-in.toml]
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// How long to fly engaged; standby does not count [default: the hold and 8 legs]
+    /// How long to fly from the first engagement on; standby after it counts
+    /// [default: the hold and 8 legs]
     #[arg(long, value_name = "S", value_parser = positive_seconds, allow_negative_numbers = true)]
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
@@ -176,9 +199,9 @@ pub struct TimingArgs {
     pub cpu: Option<CpuChoice>,
     /// Wake a margin before each deadline and spin until it; auto: if a
     /// real-time priority is granted
-    #[arg(long, value_name = "auto|on|off", value_enum, default_value_t = EarlyWakeArg::Auto,
+    #[arg(long, value_name = "auto|on|off", value_parser = early_wake(), default_value = "auto",
           default_missing_value = "on", num_args = 0..=1)]
-    pub early_wake: EarlyWakeArg,
+    pub early_wake: EarlyWakeChoice,
     /// The longest margin
     #[arg(long, value_name = "US", value_parser = margin_us,
           allow_negative_numbers = true)]
@@ -190,27 +213,6 @@ pub struct TimingArgs {
     /// Print the result as JSON
     #[arg(long)]
     pub json: bool,
-}
-
-/// Whether `fccd timing` wakes early.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
-pub enum EarlyWakeArg {
-    /// If the kernel grants a real-time priority.
-    Auto,
-    /// Always.
-    On,
-    /// Never.
-    Off,
-}
-
-impl From<EarlyWakeArg> for EarlyWakeChoice {
-    fn from(argument: EarlyWakeArg) -> Self {
-        match argument {
-            EarlyWakeArg::Auto => Self::Auto,
-            EarlyWakeArg::On => Self::On,
-            EarlyWakeArg::Off => Self::Off,
-        }
-    }
 }
 
 /// `fccd replay`.
@@ -280,9 +282,21 @@ pub struct SetArgs {
     /// Magnetic heading, -360 to 360; turns the shorter way
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub heading_deg: Option<f64>,
-    /// Barometric altitude
+    /// Altitude above sea level by the altimeter setting
     #[arg(long, value_name = "FT", allow_negative_numbers = true)]
     pub altitude_ft: Option<f64>,
+    /// Pressure altitude: flight level 55 is 5500
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub pressure_altitude_ft: Option<f64>,
+    /// Height above the configured field elevation
+    #[arg(long, value_name = "FT", allow_negative_numbers = true)]
+    pub height_ft: Option<f64>,
+    /// Altimeter setting (QNH), 940 to 1060; also in standby
+    #[arg(long, value_name = "HPA")]
+    pub altimeter_hpa: Option<f64>,
+    /// The same in inches of mercury, 27.76 to 31.3
+    #[arg(long, value_name = "INHG", conflicts_with = "altimeter_hpa")]
+    pub altimeter_inhg: Option<f64>,
     /// Indicated airspeed
     #[arg(long, value_name = "KT", allow_negative_numbers = true)]
     pub airspeed_kt: Option<f64>,
@@ -338,6 +352,14 @@ fn gusts() -> impl TypedValueParser<Value = GustsChoice> {
             .into_iter()
             .find_map(|(name, choice)| (name == given).then_some(choice))
             .ok_or("unknown strength")
+    })
+}
+
+fn early_wake() -> impl TypedValueParser<Value = EarlyWakeChoice> {
+    PossibleValuesParser::new(["auto", "on", "off"]).map(|given| match given.as_str() {
+        "on" => EarlyWakeChoice::On,
+        "off" => EarlyWakeChoice::Off,
+        _ => EarlyWakeChoice::Auto,
     })
 }
 

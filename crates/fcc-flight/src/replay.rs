@@ -2,6 +2,8 @@
 //! How it is replayed and compared is in [`fcc_replay`].
 
 use fcc_core::flight::Autopilot;
+use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
+use fcc_record::About;
 use fcc_replay::{Chain, Replay};
 use fcc_timer::TimerError;
 
@@ -18,6 +20,16 @@ pub struct RecordedConfigError(#[from] ConfigError);
 /// When this version cannot read it.
 pub fn recorded_config(chain: &Chain) -> Result<Config, RecordedConfigError> {
     Ok(Config::parse(&chain.about().config, &chain.config_name())?)
+}
+
+/// The pattern in a recorded configuration; one of another version may be
+/// invalid, and then there is no pattern.
+pub fn recorded_pattern(about: &About) -> Option<TimedPatternConfig> {
+    let config = Config::parse_autopilot(&about.config, "the recording").ok()?;
+    match config.guidance {
+        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
+        GuidanceConfig::Hold => None,
+    }
 }
 
 /// A replay of a flight by this configuration.

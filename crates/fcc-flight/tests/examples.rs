@@ -24,6 +24,7 @@ fn say_the_choices(config: &mut Config) {
     config.realtime.cpu = Some(CpuChoice::Number(3));
     config.realtime.cpu_dma_latency_us = Some(0);
     config.restart.state_file = Some("recordings/fccd.flight".into());
+    config.altimeter.field_elevation_ft = Some(723.0);
     config.budget = BudgetSection {
         tick_us: Some(25_000),
         sensors_us: Some(5_000),

@@ -39,8 +39,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    COMMANDS_VERSION, Command, CommandError, Commanded, CommandedSetpoint, Commander,
-    InvalidCommand, NarrowerLimits, OutsideLimits, PendingCommand, SentCommands, Verdict,
+    COMMANDS_VERSION, Command, CommandError, Commandable, CommandableSetpoint, Commander,
+    InvalidCommand, OutsideLimits, PendingCommand, PlantLimits, SentCommands, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};

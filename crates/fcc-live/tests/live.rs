@@ -183,7 +183,7 @@ fn a_daemon_with_another_layout_is_refused_with_a_reason() {
 }
 
 #[test]
-fn a_name_is_taken_once() {
+fn a_name_can_be_used_by_one_daemon() {
     let instance = instance("taken");
     let _first = started(&instance);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! The built-in aircraft, stepped by a caller.
+//! The built-in aircraft, one call per tick.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -100,13 +100,13 @@ impl PyAircraft {
         self.inner().simulation.truth.get().into()
     }
 
-    /// The position of its engage switch, by the configuration's script.
+    /// The position of its engage switch, as configured.
     #[getter]
     fn switch(&self) -> bool {
         self.inner().measured.engage_switch.value == Switch::On
     }
 
-    /// The position of its controls: what was commanded last, or the trim.
+    /// The positions of its controls: the last commanded ones, or the trim.
     #[getter]
     fn controls(&self) -> PySurfaces {
         let inner = self.inner();

@@ -1,5 +1,5 @@
-//! Arguments checked: every refusal names the argument, what it was and what
-//! it may be.
+//! Checks of arguments: every error names the argument, its value and what is
+//! permitted.
 
 use fcc_telemetry::units;
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::values::{Values, names};
 
-/// The longest step, s: past it, nothing is a control loop any more.
+/// The longest step of a control loop, s.
 const MAX_STEP_S: f64 = 1.0;
 
 /// A time step in s: above 0, at most 1.
@@ -21,7 +21,7 @@ pub(crate) fn step_s(dt: f64) -> PyResult<f64> {
     )))
 }
 
-/// A number that is one.
+/// A finite number.
 pub(crate) fn finite(name: &str, value: f64) -> PyResult<f64> {
     if value.is_finite() {
         return Ok(value);
@@ -42,13 +42,13 @@ pub(crate) fn within(name: &str, value: f64, least: f64, most: f64) -> PyResult<
     )))
 }
 
-/// Anything that numpy makes an array of numbers of; its shape and its values,
-/// row by row.
+/// Anything that numpy converts to an array of numbers: its shape and its
+/// values, row by row.
 pub(crate) fn numbers(name: &str, from: &Bound<'_, PyAny>) -> PyResult<(Vec<usize>, Vec<f64>)> {
     let py = from.py();
     let numpy = py.import("numpy")?;
     let refused = |why: &dyn std::fmt::Display| {
-        PyTypeError::new_err(format!("{name} is no array of numbers: {why}"))
+        PyTypeError::new_err(format!("{name} is not an array of numbers: {why}"))
     };
     let array = numpy
         .call_method1("asarray", (from,))
@@ -90,8 +90,8 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Calls something with some rows at a time, which takes a fraction of a
-    /// second: without the GIL, and then looks for a key for interruption.
+    /// Calls a function for each row, without the GIL. After each piece of rows,
+    /// which takes a fraction of a second, it checks for Ctrl-C.
     pub(crate) fn in_pieces(
         &self,
         py: Python<'_>,
@@ -129,7 +129,7 @@ pub(crate) fn vector<const N: usize>(name: &str, from: &Bound<'_, PyAny>) -> PyR
     Ok(vector)
 }
 
-/// A shape as Python writes it.
+/// A shape as Python prints it.
 pub(crate) fn shape_words(shape: &[usize]) -> String {
     match shape {
         [one] => format!("({one},)"),

@@ -1,16 +1,15 @@
-//! The autopilot, stepped by hand.
+//! The autopilot, one call per tick.
 
-use std::ops::RangeInclusive;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use fcc_core::flight::{Autopilot, AutopilotCommand, Surfaces};
+use fcc_core::flight::{Autopilot, Surfaces};
 use fcc_core::framework::Controller;
-use fcc_telemetry::units::{COMMANDED_ALTITUDE_M, COMMANDED_HEADING_RAD};
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
-use crate::arguments::{Rows, finite, rows, step_s, within};
+use crate::arguments::{Rows, rows, step_s};
+use crate::commanded::Commanded;
 use crate::config::autopilot_config;
 use crate::errors;
 use crate::machine::conditions;
@@ -19,12 +18,12 @@ use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, as_row, checked, from_row, names,
 };
 
-/// The autopilot, stepped by hand: `observe` while the pilot flies,
-/// `engage` once, then `step` for each tick; `observe_series` and `fly` do the
+/// The autopilot, one call per tick: `observe` while the pilot flies,
+/// `engage` once, then `step` in each tick; `observe_series` and `fly` do the
 /// same for a recorded series of measurements.
 ///
 /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
-/// it; its sections `[guidance]`, `[autopilot]` and `[failsafe]` matter here.
+/// it; only `[guidance]`, `[autopilot]` and `[failsafe]` are used.
 #[pyclass(name = "Autopilot", module = "fcc", frozen)]
 pub(crate) struct PyAutopilot {
     stepped: Mutex<Stepped>,
@@ -48,15 +47,15 @@ impl PyAutopilot {
         })
     }
 
-    /// Takes measurements `dt` seconds after the last without controlling, so
-    /// that the filters settle.
+    /// Processes measurements `dt` seconds after the previous ones without
+    /// controlling, so that the filters settle.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<()> {
         self.stepped(py).observe(measurements, step_s(dt)?);
         Ok(())
     }
 
-    /// Takes a series of measurements without controlling: an array of shape
+    /// Processes a series of measurements without controlling: an array of shape
     /// (n, m), the columns being `fcc.MEASUREMENTS`, the rows `dt` s apart.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe_series(
@@ -71,11 +70,11 @@ impl PyAutopilot {
         series.in_pieces(py, |row| stepped.observe(&from_row(row), dt_s))
     }
 
-    /// Engages, `dt` seconds after the last measurements: the present state
+    /// Engages, `dt` seconds after the previous measurements: the present state
     /// becomes the set points. `throttle`, `elevator`, `aileron` and `rudder`
-    /// are the present position of the controls.
+    /// are the present positions of the controls.
     ///
-    /// Raises `EngageError` with the engage inhibits if there are any.
+    /// Raises `EngageError` with the engage inhibits, if there are any.
     #[pyo3(signature = (measurements, dt = 0.025, *, throttle,
                         elevator = 0.0, aileron = 0.0, rudder = 0.0))]
     fn engage(
@@ -99,7 +98,7 @@ impl PyAutopilot {
             .map_err(|words| errors::ENGAGE.with(words))
     }
 
-    /// One tick, `dt` seconds after the last: the surfaces to set.
+    /// One tick, `dt` seconds after the previous one; returns the surfaces.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step(&self, py: Python<'_>, measurements: &PyMeasurements, dt: f64) -> PyResult<PySurfaces> {
         let mut stepped = self.stepped(py);
@@ -107,8 +106,7 @@ impl PyAutopilot {
         Ok(stepped.step(measurements, step_s(dt)?).into())
     }
 
-    /// One tick for each row of a series, as `step` does: what the autopilot
-    /// would have set. `measurements` is an array of shape (n, m), the columns
+    /// One tick for each row of a series, as by `step`. `measurements` is an array of shape (n, m), the columns
     /// being `fcc.MEASUREMENTS`, the rows `dt` s apart; the result is of shape
     /// (n, 4), the columns being `fcc.SURFACES`.
     #[pyo3(signature = (measurements, dt = 0.025))]
@@ -130,8 +128,8 @@ impl PyAutopilot {
         matrix::<PySurfaces>(py, &flown)
     }
 
-    /// One tick of failsafe, `dt` seconds after the last: the safest surfaces
-    /// that what is left of the measurements allows.
+    /// One tick of failsafe, `dt` seconds after the previous one; returns the
+    /// safest surfaces that the remaining measurements allow.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn failsafe(
         &self,
@@ -149,20 +147,37 @@ impl PyAutopilot {
         self.stepped(py).disengage();
     }
 
-    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
-    /// pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
+    /// level by the altimeter setting, or a pressure altitude, or a height above
+    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none,
+    /// and is also set without being engaged.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
+                        pressure_altitude_m = None, height_m = None,
+                        altimeter_setting_pa = None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn command(
         &self,
         py: Python<'_>,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
+        pressure_altitude_m: Option<f64>,
+        height_m: Option<f64>,
+        altimeter_setting_pa: Option<f64>,
     ) -> PyResult<()> {
+        let given = Commanded {
+            airspeed_mps,
+            heading_rad,
+            altitude_m,
+            pressure_altitude_m,
+            height_m,
+            altimeter_setting_pa,
+        };
         let mut stepped = self.stepped(py);
-        stepped.must_be_engaged()?;
-        let allowed = stepped.autopilot.config().envelope.allowed_airspeeds();
-        let commands = checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)?;
+        if given.is_more_than_a_setting() {
+            stepped.must_be_engaged()?;
+        }
+        let commands = given.checked(stepped.autopilot.config())?;
         stepped.command(commands);
         Ok(())
     }
@@ -185,13 +200,13 @@ impl PyAutopilot {
         self.stepped(py).autopilot.estimated().into()
     }
 
-    /// The engage inhibits, in words; empty if it may engage.
+    /// The engage inhibits, as text; empty if it may engage.
     #[getter]
     fn engage_inhibits(&self, py: Python<'_>) -> Vec<&'static str> {
         conditions::<Autopilot>(self.stepped(py).engage_inhibits())
     }
 
-    /// The faults that make it unsafe to stay engaged, in words.
+    /// The faults that make it unsafe to stay engaged, as text.
     #[getter]
     fn faults(&self, py: Python<'_>) -> Vec<&'static str> {
         conditions::<Autopilot>(self.stepped(py).faults())
@@ -218,49 +233,4 @@ pub(crate) fn matrix<'py, V: Values>(
     let width = names::<V>().count();
     let rows = numbers.len() / width.max(1);
     numbers.to_pyarray(py).reshape([rows, width])
-}
-
-/// Commands for the controller: airspeed in m/s, as the envelope allows;
-/// heading in rad, -4π to 4π; altitude in m, -500 to 20,000.
-pub(crate) fn checked_commands(
-    airspeed_mps: Option<f64>,
-    heading_rad: Option<f64>,
-    altitude_m: Option<f64>,
-    airspeeds_mps: &RangeInclusive<f64>,
-) -> PyResult<Vec<AutopilotCommand>> {
-    // The limits as the message gives them: they are whole in knots.
-    let [least, most] =
-        [airspeeds_mps.start(), airspeeds_mps.end()].map(|mps| (mps * 100.0).round() / 100.0);
-    let given = [
-        (
-            "airspeed_mps",
-            airspeed_mps,
-            least..=most,
-            AutopilotCommand::Airspeed as fn(f64) -> _,
-        ),
-        (
-            "heading_rad",
-            heading_rad,
-            // The sum of two headings, too.
-            2.0 * COMMANDED_HEADING_RAD.start()..=2.0 * COMMANDED_HEADING_RAD.end(),
-            AutopilotCommand::Heading,
-        ),
-        (
-            "altitude_m",
-            altitude_m,
-            COMMANDED_ALTITUDE_M,
-            AutopilotCommand::Altitude,
-        ),
-    ];
-    let given = given
-        .into_iter()
-        .filter_map(|(name, value, range, command)| {
-            let (value, least, most) = (value?, *range.start(), *range.end());
-            Some(
-                finite(name, value)
-                    .and_then(|value| within(name, value, least, most))
-                    .map(command),
-            )
-        });
-    given.collect()
 }

@@ -2,6 +2,7 @@
 //! time.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Controller as _, Sensor, SensorFault, Tick};
@@ -68,6 +69,10 @@ impl CallbackSensor {
     }
 }
 
+#[deny(
+    clippy::missing_trait_methods,
+    reason = "a method that is not passed on would have its default"
+)]
 impl Sensor<Measurements> for CallbackSensor {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         self.sensor.sample(tick, into)?;
@@ -93,6 +98,14 @@ impl Sensor<Measurements> for CallbackSensor {
                 Err(SensorFault::Malformed)
             }
         }
+    }
+
+    fn fallback_after(&self) -> Duration {
+        self.sensor.fallback_after()
+    }
+
+    fn warm_up(&self, tick: &Tick) {
+        self.sensor.warm_up(tick);
     }
 
     fn name(&self) -> &'static str {

@@ -11,7 +11,7 @@ use toml::Value;
 
 use crate::errors;
 
-/// What a text is called in messages.
+/// The name of a text in messages.
 const NAME: &str = "config";
 
 /// A configuration as `fccd` reads it, with the default of every key not given.
@@ -76,7 +76,7 @@ impl PyConfig {
         for (key, value) in values {
             let key: String = key
                 .extract()
-                .map_err(|_| PyTypeError::new_err(format!("the key {key} is no text")))?;
+                .map_err(|_| PyTypeError::new_err(format!("the key {key} is not a text")))?;
             let value = from_python(&key, &value)?;
             changes.push((key, value));
         }
@@ -178,7 +178,9 @@ fn from_python(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     }
     if let Ok(whole) = value.cast::<PyInt>() {
         return whole.extract().map(Value::Integer).map_err(|_| {
-            PyValueError::new_err(format!("{key} is {whole}: no configuration holds so much"))
+            PyValueError::new_err(format!(
+                "{key} is {whole}: the largest number of a configuration is 2^63 - 1"
+            ))
         });
     }
     if let Ok(number) = value.cast::<PyFloat>() {
@@ -196,7 +198,7 @@ fn from_python(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
         }
         return Ok(Value::Table(table));
     }
-    // What numpy and others call a number.
+    // Numbers of numpy and others.
     if let Ok(number) = value.extract::<f64>() {
         return Ok(Value::Float(number));
     }

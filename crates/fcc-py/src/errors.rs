@@ -1,8 +1,8 @@
-//! Exceptions: one base, one subclass for each part, with the daemon's messages.
+//! Exceptions: one base, and a subclass for each part, with the daemon's
+//! messages.
 //!
-//! Those that a built-in exception names as well are of that kind too: a bad
-//! configuration is a `ValueError`, an autopilot that is not engaged a
-//! `RuntimeError`.
+//! Some are also subclasses of a built-in exception: a bad configuration is a
+//! `ValueError`, an autopilot that is not engaged a `RuntimeError`.
 
 use std::fmt::Display;
 
@@ -21,7 +21,7 @@ pub(crate) struct Exception {
     class: PyOnceLock<Py<PyType>>,
 }
 
-/// Which built-in exception it is as well.
+/// The built-in exception of which it is also a subclass.
 enum Also {
     Exception,
     ValueError,

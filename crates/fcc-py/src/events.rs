@@ -1,12 +1,12 @@
-//! Something that happened once.
+//! Events.
 
 use fcc_core::framework::{Controller, Event, EventKind, EventOf, Time};
 use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
 
-/// Something that happened once: the number of its tick, when that tick woke
-/// in s and in ns on the loop's clock (0 and None before the first), what kind
-/// of thing it was, and in words.
+/// An event: the number of its tick, the time of that tick in s and in ns on
+/// the loop's clock (0 and None before the first tick), its kind, and a
+/// description.
 #[pyclass(name = "Event", module = "fcc", frozen, get_all)]
 #[derive(Clone)]
 pub struct PyEvent {
@@ -32,7 +32,7 @@ impl PyEvent {
 }
 
 impl PyEvent {
-    /// An event, its sensors and actuators called by their names.
+    /// An event, described with the names of its sensors and actuators.
     pub(crate) fn of<C: Controller>(
         event: &EventOf<C>,
         sensors: &[String],
@@ -53,7 +53,7 @@ impl PyEvent {
     }
 }
 
-/// An instant in s on the loop's clock; 0 for never.
+/// A time in s on the loop's clock; 0 for never.
 pub fn seconds(time: Time) -> f64 {
     time.as_nanos().max(0) as f64 * 1e-9
 }

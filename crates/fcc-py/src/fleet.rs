@@ -1,4 +1,4 @@
-//! Many autopilots stepped together, for searches over gains and scenarios.
+//! Many autopilots in one call, for searches over gains and scenarios.
 
 use fcc_core::framework::Controller;
 use numpy::{PyArray2, PyArrayMethods, ToPyArray};
@@ -12,7 +12,7 @@ use crate::errors;
 use crate::stepped::Stepped;
 use crate::values::{PySetpoints, PySurfaces, Values as _, as_row, checked, from_row};
 
-/// Many autopilots, each with its own configuration, stepped together: row i
+/// Many autopilots, each with its own configuration, in one call per tick: row i
 /// of an array belongs to autopilot i.
 ///
 /// `configs` is a sequence of `Config` or of texts as for `Autopilot`.
@@ -41,8 +41,8 @@ impl PyFleet {
         self.autopilots.len()
     }
 
-    /// Takes measurements, an array of shape (n, m) with the columns
-    /// `fcc.MEASUREMENTS`, `dt` s after the last, without controlling.
+    /// Processes measurements, an array of shape (n, m) with the columns
+    /// `fcc.MEASUREMENTS`, `dt` s after the previous ones, without controlling.
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn observe(
         &mut self,
@@ -60,9 +60,9 @@ impl PyFleet {
     }
 
     /// Engages all, or none. `surfaces`, of shape (n, 4) with the columns
-    /// `fcc.SURFACES`, is the present position of the controls.
+    /// `fcc.SURFACES`, contains the present positions of the controls.
     ///
-    /// Raises `EngageError` if something blocks one of them, with what.
+    /// Raises `EngageError` with the engage inhibits of the first that has any.
     #[pyo3(signature = (measurements, surfaces, dt = 0.025))]
     fn engage(
         &mut self,
@@ -85,8 +85,8 @@ impl PyFleet {
         Ok(())
     }
 
-    /// One tick of all, `dt` s after the last: from measurements of shape
-    /// (n, m) to surfaces of shape (n, 4).
+    /// One tick of all, `dt` s after the previous one: measurements of shape
+    /// (n, m); returns surfaces of shape (n, 4).
     #[pyo3(signature = (measurements, dt = 0.025))]
     fn step<'py>(
         &mut self,
@@ -110,9 +110,10 @@ impl PyFleet {
     /// rad, altitude in m, roll in rad, climb rate in m/s, pitch in rad.
     #[getter]
     fn setpoints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        // Guidance's mode and progress are nested, and come after these.
+        // Guidance's mode and progress are nested, and come after these, before
+        // the altimeter.
         let leaves = PySetpoints::attributes().leaves.iter();
-        let own = leaves.filter(|(_, leaf)| !leaf.column.path.contains('.'));
+        let own = leaves.take_while(|(_, leaf)| !leaf.column.path.contains('.'));
         let width = own.count();
         let mut numbers = Vec::new();
         for (n, autopilot) in self.autopilots.iter().enumerate() {

@@ -5,7 +5,6 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_core::flight::Autopilot;
-use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::framework::State;
 use fcc_flight::config::{Aircraft, Config};
 use fcc_flight::flight::{
@@ -26,10 +25,6 @@ use crate::events::PyEvent;
 use crate::json;
 use crate::structured::Rows;
 
-/// The legs of a flight by default.
-const DEFAULT_LEGS: f64 = 8.0;
-/// The duration of a flight without a pattern by default, s.
-const DEFAULT_HOLD_S: f64 = 60.0;
 /// The longest flight, s: a week.
 const LONGEST_S: f64 = 604_800.0;
 /// Ticks whose records and truths are kept at most: 3.5 GB of them.
@@ -42,12 +37,12 @@ const POLLS_PER_LOOK: u64 = 256;
 const NOT_REAL_TIME: &CStr =
     c"a sensor or controller in Python is in the loop: it is not real time, and for experiments only";
 
-/// A flight that is over.
+/// A finished flight.
 ///
 /// `records` and `truth` are structured arrays with a row for each tick
 /// (dtypes `fcc.RECORD` and `fcc.TRUTH_RECORD`), empty if they were not to be kept;
-/// `events` is what happened; `score` the flight's score by the truth, None
-/// without a whole leg of a pattern; `timing` how well the loop kept time.
+/// `events` are its events; `score` the flight's score by the truth, None
+/// without a whole leg of a pattern; `timing` the loop's timing statistics.
 #[pyclass(name = "Flight", module = "fcc", frozen)]
 pub(crate) struct PyFlight {
     #[pyo3(get)]
@@ -160,7 +155,7 @@ pub(crate) fn fly(
     };
     let seconds = match seconds {
         Some(seconds) => within("seconds", seconds, 0.1, LONGEST_S)?,
-        None => default_seconds(&config),
+        None => config.guidance.default_length_s(),
     };
     let ticks = ((section.engage_at_s + seconds) * config.tick.rate_hz).ceil() as u64;
     if keep && ticks > MOST_KEPT {
@@ -202,13 +197,6 @@ pub(crate) fn fly(
     };
     let (outcome, log, took) = py.detach(move || conduct(assembly, config, plan, log, &raised))?;
     PyFlight::new(py, outcome, log, took, period_s)
-}
-
-fn default_seconds(config: &Config) -> f64 {
-    match config.autopilot_config().guidance {
-        GuidanceConfig::Hold => DEFAULT_HOLD_S,
-        GuidanceConfig::TimedPattern(pattern) => pattern.hold_s + DEFAULT_LEGS * pattern.leg_s,
-    }
 }
 
 /// Flies to the end, without Python but for its callbacks.

@@ -1,7 +1,7 @@
-//! Formulas: standard atmosphere, orientation, angles. Each is the core's own.
+//! Formulas of the core: standard atmosphere, orientation, angles.
 //!
-//! Those of one or two numbers take a number and give a `float`, or take an
-//! array and give one of its shape. As in numpy, an array of no dimensions is a
+//! Those of one or two numbers return a `float` for a number, and an array of
+//! the same shape for an array. As in numpy, an array without dimensions is a
 //! number.
 
 use fcc_core::blocks;
@@ -13,12 +13,12 @@ use pyo3::prelude::*;
 
 use crate::arguments::{finite, numbers, shape_words, vector, within};
 
-/// The highest altitude that a formula takes, m; above 11,000 m the air is
-/// held at the tropopause's.
+/// The highest altitude that a formula accepts, m; above 11,000 m the values
+/// are those of the tropopause.
 const HIGHEST_M: f64 = 20_000.0;
 /// Below the Dead Sea.
 const LOWEST_M: f64 = -500.0;
-/// What a barometer may show, Pa.
+/// Pressures that a formula accepts, Pa.
 const PRESSURE_PA: (f64, f64) = (1_000.0, 120_000.0);
 
 /// A formula of one number, for a number or an array.
@@ -90,20 +90,20 @@ pub(crate) fn true_airspeed_mps<'py>(
     })
 }
 
-/// The same angle in -π..π, rad.
+/// The angle wrapped to -π..π, rad.
 #[pyfunction]
 pub(crate) fn wrap_pi<'py>(angle_rad: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each("angle_rad", angle_rad, finite, blocks::wrap_pi)
 }
 
-/// The same angle in 0..2π, rad.
+/// The angle wrapped to 0..2π, rad.
 #[pyfunction]
 pub(crate) fn wrap_two_pi<'py>(angle_rad: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     each("angle_rad", angle_rad, finite, blocks::wrap_two_pi)
 }
 
-/// The quaternion [w, x, y, z], which turns body axes (forward, right, down)
-/// to earth axes (north, east, down), of roll, pitch and heading in rad.
+/// The quaternion [w, x, y, z] from body axes (forward, right, down) to earth
+/// axes (north, east, down), for roll, pitch and heading in rad.
 #[pyfunction]
 pub(crate) fn quaternion_from_euler(
     py: Python<'_>,
@@ -119,8 +119,7 @@ pub(crate) fn quaternion_from_euler(
     Ok(quaternion.to_pyarray(py))
 }
 
-/// Roll, pitch and heading in rad of a quaternion [w, x, y, z], which need not
-/// be of unit length.
+/// Roll, pitch and heading in rad of a quaternion [w, x, y, z] of any length.
 #[pyfunction]
 pub(crate) fn euler_from_quaternion(quaternion: &Bound<'_, PyAny>) -> PyResult<(f64, f64, f64)> {
     let angles = orientation::euler_from_quaternion(self::quaternion(quaternion)?);
@@ -149,7 +148,7 @@ pub(crate) fn earth_to_body<'py>(
     turned(vector, |v| orientation::earth_to_body(quaternion, v))
 }
 
-/// A quaternion of some length.
+/// A quaternion that is not of length 0.
 fn quaternion(given: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
     let quaternion: [f64; 4] = vector("quaternion", given)?;
     let length = quaternion
@@ -159,7 +158,7 @@ fn quaternion(given: &Bound<'_, PyAny>) -> PyResult<[f64; 4]> {
         .sqrt();
     if !(1e-6..1e6).contains(&length) {
         return Err(PyValueError::new_err(format!(
-            "quaternion has the length {length}: no orientation has that"
+            "quaternion has the length {length}: it must be between 1e-6 and 1e6"
         )));
     }
     Ok(quaternion)

@@ -1,10 +1,10 @@
 //! The Python module `fcc`: what the flight control computer computes and
 //! records, for tests and experiments.
 //!
-//! | module | what Python gets |
+//! | module | content |
 //! |---|---|
-//! | `autopilot`, `fleet` | the autopilot stepped by hand; many of them together |
-//! | `machine` | the daemon's loop, one call a tick, around a plant in Python: for the autopilot, and for any controller whose types have a schema |
+//! | `autopilot`, `fleet` | the autopilot, one call per tick; many of them in one call |
+//! | `machine` | the daemon's loop, one call per tick, for a plant in Python: for the autopilot, and for any controller whose types have a schema |
 //! | `flight`, `callbacks` | a whole flight of the built-in aircraft in one call, with sensors or a controller in Python |
 //! | `aircraft` | the built-in aircraft alone |
 //! | `config` | configurations, by key |
@@ -15,7 +15,8 @@
 //! | `values`, `structured` | structs with a schema as classes and as structured arrays |
 //! | `events`, `errors`, `arguments`, `json` | events, exceptions, checks, dicts |
 //!
-//! Nothing is computed here: each call goes to the crate that the daemon uses.
+//! Nothing is computed here: each call is passed on to the crate that the daemon
+//! uses.
 //! Without the feature `flight` only what the loop of any controller needs is
 //! compiled: `examples/pendulum` is a module of its own on it, with the same
 //! `Recording` and `Watcher`.
@@ -34,6 +35,8 @@ mod autopilot;
 mod blocks;
 #[cfg(feature = "flight")]
 mod callbacks;
+#[cfg(feature = "flight")]
+mod commanded;
 #[cfg(feature = "flight")]
 mod config;
 #[cfg(feature = "conformance")]

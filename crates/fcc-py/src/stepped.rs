@@ -1,4 +1,4 @@
-//! An autopilot whose ticks are a caller's calls.
+//! An autopilot that makes one tick per call.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::errors;
 use crate::machine::conditions;
 use crate::values::{PyMeasurements, Shape, Values as _, with_plant};
 
-/// An autopilot, and the time that its caller has passed.
+/// An autopilot, and its time.
 #[derive(Clone)]
 pub(crate) struct Stepped {
     pub(crate) autopilot: Autopilot,
@@ -31,12 +31,12 @@ impl Stepped {
         }
     }
 
-    /// Takes measurements without controlling.
+    /// Processes measurements without controlling.
     pub(crate) fn observe(&mut self, measured: &PyMeasurements, dt_s: f64) {
         self.take(measured, dt_s, Surfaces::default());
     }
 
-    /// Engages with the controls in this position.
+    /// Engages with the controls at these positions.
     pub(crate) fn engage(
         &mut self,
         measured: &PyMeasurements,

@@ -1,4 +1,4 @@
-//! The kernel's timers, and how well they keep time.
+//! The kernel's timers, and their timing statistics.
 
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
@@ -11,9 +11,8 @@ use pyo3::prelude::*;
 use crate::arguments::within;
 use crate::errors;
 
-/// One deadline that was served: its number (from 1), when it was due and when
-/// the thread woke in ns on `CLOCK_MONOTONIC`, how many deadlines passed
-/// unserved before it.
+/// One deadline: its number (from 1), when it was due and when the thread woke,
+/// in ns on `CLOCK_MONOTONIC`, and how many deadlines were missed before it.
 #[pyclass(name = "Expiry", module = "fcc", frozen, get_all)]
 pub(crate) struct PyExpiry {
     number: u64,
@@ -51,9 +50,9 @@ impl From<Expiry> for PyExpiry {
     }
 }
 
-/// How well a timer kept time: periods in ms, lateness in µs, the share of
-/// periods within 2 % of the nominal one 0..1. Figures of periods are NaN
-/// before the second tick, those of lateness before the first.
+/// Timing statistics: periods in ms, lateness in µs, the share (0..1) of periods
+/// within 2 % of the nominal one. The values of periods are NaN before the
+/// second tick, those of lateness before the first.
 #[pyclass(name = "TimingSummary", module = "fcc", frozen, get_all)]
 pub(crate) struct PyTimingSummary {
     rate_hz: f64,
@@ -111,11 +110,11 @@ impl From<TimingSummary> for PyTimingSummary {
 
 /// A periodic timer of the kernel, `"timerfd"`, `"posix"` or `"nanosleep"`:
 /// absolute deadlines on `CLOCK_MONOTONIC`, `period_s` (10 µs to 1 h) apart,
-/// whose phase never moves. The GIL is released while it waits; a key for
-/// interruption ends the wait within 0.1 s.
+/// whose phase is constant. The GIL is released while it waits; Ctrl-C ends the
+/// wait within 0.1 s.
 ///
-/// Iterating starts the timer if need be, and gives an `Expiry` for each
-/// deadline, without an end.
+/// Iterating starts the timer if it was not started, and gives an `Expiry` for
+/// each deadline, without an end.
 #[pyclass(name = "Timer", module = "fcc")]
 pub(crate) struct PyTimer {
     timer: Mutex<Started>,
@@ -130,8 +129,8 @@ struct Started {
     next_ns: Option<i64>,
 }
 
-/// A key for interruption is looked for this often. Shorter waits are left to
-/// the timer itself, which is precise.
+/// The interval of checks for Ctrl-C. Shorter waits are done by the timer
+/// itself, which is precise.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 impl PyTimer {
@@ -172,8 +171,8 @@ impl PyTimer {
         })
     }
 
-    /// Sets the deadlines going, from now, on the thread that will wait;
-    /// calling it again begins anew, the statistics too.
+    /// Starts the deadlines now, on the thread that will wait. Calling it again
+    /// restarts them and resets the statistics.
     fn start(&self) -> PyResult<()> {
         let mut timer = self.timer()?;
         timer
@@ -185,8 +184,8 @@ impl PyTimer {
         Ok(())
     }
 
-    /// Waits for the next deadline; never returns before it. Deadlines that
-    /// passed unserved are counted, and the latest of them is served at once.
+    /// Waits for the next deadline; never returns before it. Missed deadlines are
+    /// counted, and for the latest of them it returns at once.
     fn wait(&self, py: Python<'_>) -> PyResult<PyExpiry> {
         let mut guard = self.timer()?;
         let timer = &mut *guard;
@@ -219,12 +218,12 @@ impl PyTimer {
         self.wait(py)
     }
 
-    /// How well it kept time since it was started.
+    /// The statistics since it was started.
     fn summary(&self) -> PyTimingSummary {
         self.stats().summary().into()
     }
 
-    /// Which timer of the kernel it is.
+    /// The kernel's timer: timerfd, posix or nanosleep.
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()

@@ -45,6 +45,7 @@ mod foxglove;
 mod framing;
 mod items;
 mod list;
+mod listed;
 mod lost;
 mod name;
 mod outlet;
@@ -74,7 +75,7 @@ pub use disk::{Disk, DiskFile, FileSystem, create_output, is_being_written, read
 pub use end::End;
 pub use items::{Item, Items, Messages, RecordedMessage};
 pub use list::{Entry, Wholeness, entry, files, glance};
-pub use name::serialize as serialize_path;
+pub use listed::Listed;
 pub use reader::{OpenError, Recording, Verified};
 pub use recorded::{Recorded, Views};
 #[cfg(feature = "flight")]

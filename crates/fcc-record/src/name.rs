@@ -42,7 +42,7 @@ pub(super) fn is_recording(path: &Path) -> bool {
 ///
 /// # Errors
 /// The serializer's.
-pub fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
+pub(super) fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(&path.display())
 }
 

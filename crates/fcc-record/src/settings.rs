@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 /// Where and how a recorder writes.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct RecorderSettings {
@@ -74,7 +76,8 @@ pub enum RecordingPace {
 ///
 /// "None" is the cost of encoding alone. The default is zstd: it costs little
 /// and saves a fifth of the disk.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Compression {
     /// Not at all.
     None,

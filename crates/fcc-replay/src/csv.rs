@@ -6,7 +6,7 @@ use fcc_core::framework::Record;
 use fcc_core::framework::schema::Schema;
 use fcc_telemetry::Telemetry;
 
-use crate::outputs::RecordValues;
+use crate::outputs::TickPair;
 use crate::quantity::Quantity;
 
 /// Writes a line per tick: time, tick, both states, and every quantity as
@@ -14,9 +14,7 @@ use crate::quantity::Quantity;
 pub struct Csv<W: Write> {
     out: W,
     quantities: Vec<Quantity>,
-    began_ns: Option<i64>,
-    recorded: RecordValues,
-    other: RecordValues,
+    tick: TickPair,
 }
 
 impl<W: Write> Csv<W> {
@@ -39,9 +37,7 @@ impl<W: Write> Csv<W> {
         Ok(Self {
             out,
             quantities,
-            began_ns: None,
-            recorded: RecordValues::default(),
-            other: RecordValues::default(),
+            tick: TickPair::default(),
         })
     }
 
@@ -54,20 +50,20 @@ impl<W: Write> Csv<W> {
         recorded: &Record<M, E, S, O>,
         other: &Record<M, E, S, O>,
     ) -> io::Result<()> {
-        let at_ns = recorded.tick.scheduled.as_nanos();
-        let began_ns = *self.began_ns.get_or_insert(at_ns);
+        let since_ns = self.tick.take(recorded, other);
         write!(
             self.out,
             "{},{},{},{}",
-            at_ns.saturating_sub(began_ns) as f64 * 1e-9,
+            since_ns as f64 * 1e-9,
             recorded.tick.number,
             recorded.state,
             other.state
         )?;
-        self.recorded.take(recorded);
-        self.other.take(other);
         for quantity in &self.quantities {
-            for (sent, values) in [(recorded.sent, &self.recorded), (other.sent, &self.other)] {
+            for (sent, values) in [
+                (recorded.sent, &self.tick.recorded),
+                (other.sent, &self.tick.other),
+            ] {
                 if sent {
                     write!(self.out, ",{}", quantity.of(values))?;
                 } else {

@@ -7,7 +7,7 @@ use fcc_core::framework::schema::Schema;
 use fcc_telemetry::Telemetry;
 use serde::Serialize;
 
-use crate::outputs::RecordValues;
+use crate::outputs::TickPair;
 use crate::profile::Profile;
 use crate::quantity::Quantity;
 
@@ -29,11 +29,7 @@ pub struct Deviation {
     #[serde(skip)]
     compares: Vec<Quantity>,
     #[serde(skip)]
-    began_ns: Option<i64>,
-    #[serde(skip)]
-    recorded: RecordValues,
-    #[serde(skip)]
-    other: RecordValues,
+    tick: TickPair,
 }
 
 /// The deviation of one quantity.
@@ -78,9 +74,7 @@ impl Deviation {
             only_other: 0,
             quantities: quantities.collect(),
             compares,
-            began_ns: None,
-            recorded: RecordValues::default(),
-            other: RecordValues::default(),
+            tick: TickPair::default(),
         }
     }
 
@@ -90,18 +84,14 @@ impl Deviation {
         recorded: &Record<M, E, S, O>,
         other: &Record<M, E, S, O>,
     ) {
-        let at_ns = recorded.tick.scheduled.as_nanos();
-        let began_ns = *self.began_ns.get_or_insert(at_ns);
-        let at_s = at_ns.saturating_sub(began_ns) as f64 * 1e-9;
+        let at_s = self.tick.take(recorded, other) as f64 * 1e-9;
         let both = recorded.sent && other.sent;
         self.compared += u64::from(both);
         self.only_recorded += u64::from(recorded.sent && !other.sent);
         self.only_other += u64::from(!recorded.sent && other.sent);
-        self.recorded.take(recorded);
-        self.other.take(other);
         for (quantity, deviation) in self.compares.iter().zip(&mut self.quantities) {
             if both {
-                let difference = quantity.difference(&self.recorded, &self.other);
+                let difference = quantity.difference(&self.tick);
                 deviation.take(difference, at_s, self.compared);
             } else {
                 deviation.profile.push(0.0);

@@ -7,7 +7,7 @@ use fcc_core::framework::{Controller, Record};
 use fcc_telemetry::schema::Column;
 use serde::Serialize;
 
-use crate::outputs::{RecordValues, distance, outputs, text_of};
+use crate::outputs::{TickPair, distance, outputs, text_of};
 
 /// Whether a replay gives the same outputs, bit for bit.
 #[derive(Clone, Debug, Serialize)]
@@ -21,15 +21,11 @@ pub struct Identity {
     /// The outputs that differ, each once.
     pub fields: Vec<FieldDifference>,
     #[serde(skip)]
-    began_ns: Option<i64>,
-    #[serde(skip)]
     compared: Vec<(usize, Column)>,
     #[serde(skip)]
     flag_name: fn(u32) -> &'static str,
     #[serde(skip)]
-    recorded: RecordValues,
-    #[serde(skip)]
-    again: RecordValues,
+    tick: TickPair,
 }
 
 /// One output of one tick that differs.
@@ -73,11 +69,9 @@ impl Identity {
             differing: 0,
             first: None,
             fields: Vec::new(),
-            began_ns: None,
             compared: outputs::<C>(),
             flag_name: C::flag_name,
-            recorded: RecordValues::default(),
-            again: RecordValues::default(),
+            tick: TickPair::default(),
         }
     }
 
@@ -87,12 +81,10 @@ impl Identity {
         recorded: &Record<M, E, S, O>,
         again: &Record<M, E, S, O>,
     ) {
-        let at_ns = recorded.tick.scheduled.as_nanos();
-        let began_ns = *self.began_ns.get_or_insert(at_ns);
-        self.recorded.take(recorded);
-        self.again.take(again);
+        let since_ns = self.tick.take(recorded, again);
+        let (was, is) = (self.tick.recorded.as_slice(), self.tick.other.as_slice());
         for (index, output) in &self.compared {
-            let (Some(was), Some(is)) = (self.recorded.get(*index), self.again.get(*index)) else {
+            let (Some(&was), Some(&is)) = (was.get(*index), is.get(*index)) else {
                 continue;
             };
             if was.bits() == is.bits() {
@@ -102,7 +94,7 @@ impl Identity {
             if self.first.is_none() {
                 self.first = Some(Difference {
                     tick: recorded.tick.number,
-                    time_ms: at_ns.saturating_sub(began_ns) / 1_000_000,
+                    time_ms: since_ns / 1_000_000,
                     field: output.path.clone(),
                     recorded: text_of(output.kind, was, self.flag_name),
                     again: text_of(output.kind, is, self.flag_name),

@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Value};
-use fcc_core::framework::{Controller, Flags, RecordOf};
-use fcc_telemetry::schema::{Column, columns};
+use fcc_core::framework::schema::{Kind, Schema, Value};
+use fcc_core::framework::{Controller, Flags, Record, RecordOf};
+use fcc_telemetry::schema::{Column, Leaves, columns};
 
 /// The values of a record that the loop computes, causes before effects, so
 /// that the first difference is the closest to the cause. The other values are
@@ -36,25 +36,25 @@ pub(super) fn columns_of<C: Controller>(part: &str) -> Vec<(usize, Column)> {
     all.filter(|(_, column)| is_in(&column.path)).collect()
 }
 
-/// The values of a record, in order; its memory is used again.
+/// One tick in two runs: the values of both records. Its memory is used again.
 #[derive(Clone, Debug, Default)]
-pub(super) struct RecordValues(Vec<Value>);
-
-impl RecordValues {
-    /// Replaces the values by those of another record.
-    pub(super) fn take(&mut self, record: &impl Schema) {
-        self.0.clear();
-        record.visit(self);
-    }
-
-    pub(super) fn get(&self, index: usize) -> Option<Value> {
-        self.0.get(index).copied()
-    }
+pub(super) struct TickPair {
+    began_ns: Option<i64>,
+    pub(super) recorded: Leaves,
+    pub(super) other: Leaves,
 }
 
-impl Sink for RecordValues {
-    fn value(&mut self, _: &'static Field, value: Value) {
-        self.0.push(value);
+impl TickPair {
+    /// Takes the next tick; the time since the first, ns.
+    pub(super) fn take<M: Schema, E: Schema, S: Schema, O: Schema>(
+        &mut self,
+        recorded: &Record<M, E, S, O>,
+        other: &Record<M, E, S, O>,
+    ) -> i64 {
+        self.recorded.take(recorded);
+        self.other.take(other);
+        let at_ns = recorded.tick.scheduled.as_nanos();
+        at_ns.saturating_sub(*self.began_ns.get_or_insert(at_ns))
     }
 }
 

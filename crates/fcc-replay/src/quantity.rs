@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use fcc_core::blocks::wrap_pi;
 use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::Column;
+use fcc_telemetry::schema::{Column, Leaves};
 use fcc_telemetry::units::Shown;
 
-use crate::outputs::{RecordValues, columns_of};
+use crate::outputs::{TickPair, columns_of};
 
 /// An output or a set point of a controller.
 #[derive(Clone, Debug)]
@@ -51,13 +51,13 @@ impl Quantity {
     }
 
     /// Its value in a record, in [`unit`](Self::unit)s.
-    pub(crate) fn of(&self, record: &RecordValues) -> f64 {
+    pub(crate) fn of(&self, record: &Leaves) -> f64 {
         self.number(record) * self.scale
     }
 
     /// The other value less the recorded one.
-    pub(crate) fn difference(&self, recorded: &RecordValues, other: &RecordValues) -> f64 {
-        let difference = self.number(other) - self.number(recorded);
+    pub(crate) fn difference(&self, tick: &TickPair) -> f64 {
+        let difference = self.number(&tick.other) - self.number(&tick.recorded);
         let difference = if self.wraps {
             wrap_pi(difference)
         } else {
@@ -66,8 +66,8 @@ impl Quantity {
         difference * self.scale
     }
 
-    fn number(&self, record: &RecordValues) -> f64 {
-        match record.get(self.index) {
+    fn number(&self, record: &Leaves) -> f64 {
+        match record.as_slice().get(self.index).copied() {
             Some(Value::Number(number)) => number,
             Some(Value::Bool(truth)) => f64::from(u8::from(truth)),
             Some(Value::Count(count)) => count as f64,

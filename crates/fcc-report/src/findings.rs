@@ -71,7 +71,7 @@ fn gaps(report: &RunReport) -> Vec<String> {
     }
     if continuity.lost == 0 {
         sentences.push(format!(
-            "Every tick that was served from {} to {} is in the file.",
+            "Every tick from {} to {} is in the file.",
             continuity.first_tick, continuity.last_tick
         ));
     } else {
@@ -112,8 +112,9 @@ fn timing(report: &RunReport) -> Option<String> {
     }
     let timing = &timing.table;
     let missed = match timing.missed {
-        0 => "No deadline passed unserved".to_owned(),
-        missed => format!("{} passed unserved", plural(missed, "deadline")),
+        0 => "No deadline was missed".to_owned(),
+        1 => "1 deadline was missed".to_owned(),
+        missed => format!("{missed} deadlines were missed"),
     };
     timing
         .period_ms

@@ -1,7 +1,7 @@
 // Zooms plots: the wheel with Ctrl at the pointer, a drag to move, a double click
-// to see all again. Plots over time are zoomed in time, all together, and show
-// lines in detail then (page.css); the others as pictures. Fingers zoom the page
-// as they always do.
+// to show all again. Plots over time are zoomed in time, all together: they show
+// finer lines then (page.css), and their vertical axes fit the visible part. The
+// others are enlarged like pictures. Fingers zoom the page as usual.
 const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
 const onDrag = (svg, move) => svg.addEventListener("pointermove", (event) => {
   if (event.pointerType === "mouse" && event.buttons === 1) {
@@ -17,6 +17,121 @@ const onWheel = (svg, zoom) => svg.addEventListener("wheel", (event) => {
   zoom(Math.exp(event.deltaY * 0.002), across, (event.clientY - box.top) / box.height);
 }, { passive: false });
 
+// 1, 2 or 5 times a power of ten, at least as large.
+const niceStep = (least) => {
+  const decade = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].map((n) => n * decade).find((step) => step >= least * (1 - 1e-9));
+};
+const decimalsOf = (step) => Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+const multiples = (from, to, step) => {
+  const found = [];
+  for (let n = Math.ceil(from / step - 1e-9); n <= to / step + 1e-9; n++) found.push(n * step);
+  return found;
+};
+
+// The panels of a plot: the lines, and the axis of their values.
+function panelsOf(svg) {
+  const axes = svg.querySelectorAll(".values");
+  return [...svg.querySelectorAll(".curves")].map((curves, n) => {
+    const { kind, from, to, least, per } = axes[n].dataset;
+    const [top, height] = ["y", "height"].map((name) => +curves.getAttribute(name));
+    const marks = [...axes[n].children];
+    return { curves, axis: axes[n], marks, kind, from: +from, to: +to, least: +least, per: +per, top, height };
+  });
+}
+// The points of a line: a path of absolute starts and relative moves.
+const pointsOf = (path) => {
+  const scale = path.classList.contains("detail") ? 0.1 : 1;
+  const points = [];
+  let x = 0, y = 0;
+  for (const [, letter, list] of path.getAttribute("d").matchAll(/([Mhl])([^Mhl]*)/g)) {
+    const numbers = list.match(/-?\d+/g).map((number) => number * scale);
+    if (letter === "M") {
+      [x, y] = numbers;
+      points.push([], [x, y]);
+    } else if (letter === "h") {
+      x += numbers[0];
+      points.push([x, y]);
+    } else {
+      for (let n = 0; n < numbers.length; n += 2) {
+        x += numbers[n];
+        y += numbers[n + 1];
+        points.push([x, y]);
+      }
+    }
+  }
+  return points;
+};
+// The least and the largest y of the lines between two x.
+const extentOf = (panel, begin, end) => {
+  panel.lines ??= [...panel.curves.querySelectorAll("path:not(.overview)")].map(pointsOf);
+  let least = Infinity, most = -Infinity;
+  const take = (y) => {
+    least = Math.min(least, y);
+    most = Math.max(most, y);
+  };
+  for (const points of panel.lines) {
+    for (let n = 0; n < points.length; n++) {
+      const [x, y] = points[n];
+      if (x >= begin && x <= end) take(y);
+      const [lastX, lastY] = points[n - 1] ?? [];
+      for (const edge of [begin, end]) {
+        if (lastX < edge && x > edge) take(lastY + (edge - lastX) / (x - lastX) * (y - lastY));
+      }
+    }
+  }
+  return [least, most];
+};
+// Fits the axes of values to the visible lines.
+const fitValues = ({ panels, left, span }, from, shown) => {
+  const all = shown === 1;
+  const fitted = panels.filter((panel) => panel.kind);
+  const extents = all ? [] : fitted.map((panel) => {
+    const valueAt = (y) => panel.to - y / panel.height * (panel.to - panel.from);
+    const [top, bottom] = extentOf(panel, from * span, (from + shown) * span);
+    return top <= bottom ? [valueAt(bottom), valueAt(top)] : [panel.from, panel.to];
+  });
+  fitted.forEach((panel, n) => {
+    if (all) {
+      panel.curves.setAttribute("viewBox", `0 0 ${span} ${panel.height}`);
+      panel.axis.replaceChildren(...panel.marks);
+      return;
+    }
+    const together = extents.filter((_, other) =>
+      other === n || (panel.kind === "together" && fitted[other].kind === "together"));
+    const low = Math.min(...together.map(([low]) => low));
+    const high = Math.max(...together.map(([, high]) => high));
+    const reach = Math.max(high - low, panel.least) * 0.56;
+    const [least, most] = [(low + high) / 2 - reach, (low + high) / 2 + reach];
+    const perUnit = panel.height / (panel.to - panel.from);
+    panel.curves.setAttribute("viewBox", [
+      from * span, (panel.to - most) * perUnit, shown * span, (most - least) * perUnit].join(" "));
+    drawValues(panel, left, span, least, most);
+  });
+};
+const drawValues = (panel, left, span, least, most) => {
+  const [grid, tick, label] = panel.marks;
+  if (!label) return;
+  const count = Math.max(2, panel.height / 320);
+  const wanted = (most - least) / panel.per / count;
+  const isCompass = panel.kind === "compass";
+  const step = isCompass && wanted > 1
+    ? [2, 5, 10, 30, 45, 90, 180].find((step) => step >= wanted) ?? 180 : niceStep(wanted);
+  const text = (value) => isCompass
+    ? (((value % 360) + 360) % 360).toFixed(decimalsOf(step)).padStart(3, "0")
+    : value.toFixed(decimalsOf(step)).replace(/^-(?=0*\.?0*$)/, "").replace("-", "\u2212");
+  const marks = multiples(least / panel.per, most / panel.per, step).flatMap((value) => {
+    const y = panel.top + (most - value * panel.per) / (most - least) * panel.height;
+    const [ownGrid, ownTick, ownLabel] = [grid, tick, label].map((mark) => mark.cloneNode());
+    ownGrid.setAttribute("points", `${left},${y} ${left + span},${y}`);
+    ownTick.setAttribute("points", `${left - 30},${y} ${left},${y}`);
+    ownLabel.setAttribute("y", y);
+    ownLabel.textContent = text(value);
+    return [ownGrid, ownTick, ownLabel];
+  });
+  panel.axis.replaceChildren(...marks);
+};
+
 const plots = [...document.querySelectorAll(".plot > svg[data-end]")].map((svg) => ({
   svg,
   left: +svg.dataset.left,
@@ -24,23 +139,20 @@ const plots = [...document.querySelectorAll(".plot > svg[data-end]")].map((svg) 
   end: svg.dataset.end / svg.dataset.unit,
   whole: svg.viewBox.baseVal.width,
   times: svg.querySelector(".times"),
+  panels: panelsOf(svg),
 }));
 // The part of the time that is shown, of 1.
 let from = 0, shown = 1;
 const ticks = (end) => {
-  const least = shown * end / 12;
-  const decade = 10 ** Math.floor(Math.log10(least));
-  const step = [1, 2, 5, 10].map((n) => n * decade).find((step) => step >= least * (1 - 1e-9));
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  const found = [];
-  const first = Math.ceil(from * end / step - 1e-9), last = (from + shown) * end / step + 1e-9;
-  for (let n = first; n <= last; n++) found.push([n * step / end, (n * step).toFixed(decimals)]);
-  return found;
+  const step = niceStep(shown * end / 12);
+  const places = multiples(from * end, (from + shown) * end, step);
+  return places.map((at) => [at / end, at.toFixed(decimalsOf(step))]);
 };
 const showTime = (newFrom, newShown) => {
   shown = clamp(newShown, 1 / 400, 1);
   from = clamp(newFrom, 0, 1 - shown);
-  for (const { svg, left, span, end, times } of plots) {
+  for (const plot of plots) {
+    const { svg, left, span, end, times } = plot;
     const x = (share) => left + (share - from) / shown * span;
     const marks = ticks(end);
     svg.classList.toggle("zoomed", shown < 1);
@@ -50,6 +162,7 @@ const showTime = (newFrom, newShown) => {
       part.querySelector(".grid")?.setAttribute(
         "d", marks.map(([share]) => `M${share * span} 0v${height}`).join(""));
     }
+    fitValues(plot, from, shown);
     const word = times.firstElementChild;
     times.replaceChildren(...marks.map(([share, text]) => {
       const shownWord = word.cloneNode();

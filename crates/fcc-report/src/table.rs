@@ -68,7 +68,8 @@ pub fn timing_table(reports: &[TimingReport]) -> String {
 
 /// The same without the text below it.
 pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
-    let name = |report: &TimingReport| format!("{} Hz {}", report.rate_hz, report.timer);
+    let name =
+        |report: &TimingReport| format!("{} Hz {}", report.rate_hz, timer_name(&report.timer));
     let header: Vec<String> = reports.iter().map(name).collect();
     let mut header: Vec<&str> = header.iter().map(String::as_str).collect();
     header.insert(0, "");
@@ -134,6 +135,14 @@ pub(crate) fn timing_columns(reports: &[TimingReport]) -> Table {
         });
     }
     table
+}
+
+/// The timer for users: in lockstep there is none.
+pub(crate) fn timer_name(timer: &str) -> &str {
+    match timer {
+        "manual" => "lockstep",
+        other => other,
+    }
 }
 
 /// Shown in a table for a value that was not measured.

@@ -9,7 +9,7 @@ use super::durations::NamedPercentiles;
 use super::origin::FileEnd;
 use super::report::{Report, RunReport, Timing};
 use crate::reported::Addition;
-use crate::table::{figure, table, timing_table};
+use crate::table::{figure, table, timer_name, timing_table};
 
 /// At most this many events are shown: the first ones, and the last ones.
 const FIRST_EVENTS: usize = 14;
@@ -90,7 +90,7 @@ impl RunReport {
             (_, false) => ", memory not locked",
         };
         let loop_of = self.timing.as_ref().map_or_else(String::new, |timing| {
-            format!("{} Hz {}", timing.table.rate_hz, origin.timer)
+            format!("{} Hz {}", timing.table.rate_hz, timer_name(&origin.timer))
         });
         let end = match &self.end {
             FileEnd::Finished(reason) => reason.clone(),

@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_far_away_costs_nothing() {
+    fn a_time_far_away_takes_no_memory() {
         let mut trace = Trace::default();
         trace.push(0.0, Some(1.0));
         trace.push(1e15, Some(2.0));

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::{Actuator, Controller, Sensor, SwitchOff};
+use fcc_core::framework::{Actuator, AfterRelease, Controller, Sensor};
 use fcc_timer::{RealtimeRequest, Timer};
 
 use crate::overruns::Budget;
@@ -23,7 +23,7 @@ pub struct Parts<C: Controller> {
 #[derive(Clone, Debug)]
 pub struct LoopConfig {
     /// What switching off the engage switch means.
-    pub switch_off: SwitchOff,
+    pub switch_off: AfterRelease,
     /// A reading of the engage switch older than this is no reading. 1 s by
     /// default.
     pub switch_max_age: Duration,
@@ -31,7 +31,7 @@ pub struct LoopConfig {
     /// default; zero releases at once.
     pub failsafe_hold: Duration,
     /// What comes when failsafe is over.
-    pub after_failsafe: AfterFailsafe,
+    pub after_failsafe: AfterRelease,
     /// How long ticks may take. A period, and no budget for single stages, by
     /// default.
     pub budget: Budget,
@@ -52,10 +52,10 @@ pub struct LoopConfig {
 impl Default for LoopConfig {
     fn default() -> Self {
         Self {
-            switch_off: SwitchOff::Standby,
+            switch_off: AfterRelease::Standby,
             switch_max_age: Duration::from_secs(1),
             failsafe_hold: Duration::from_secs(10),
-            after_failsafe: AfterFailsafe::Standby,
+            after_failsafe: AfterRelease::Standby,
             budget: Budget::default(),
             commands_capacity: 64,
             messages_capacity: 4_096,
@@ -63,14 +63,4 @@ impl Default for LoopConfig {
             realtime: RealtimeRequest::default(),
         }
     }
-}
-
-/// What comes when failsafe is over and the actuators are released.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum AfterFailsafe {
-    /// Stay in standby, ready to engage again.
-    #[default]
-    Standby,
-    /// End the loop.
-    Stop,
 }

@@ -1,9 +1,8 @@
 //! The loop's state transitions: their causes and their effects.
 
-use fcc_core::framework::{Cause, Controller, EventKind, Flags, Input, State, Tick};
+use fcc_core::framework::{AfterRelease, Cause, Controller, EventKind, Flags, Input, State, Tick};
 
 use crate::commands::StateRequest;
-use crate::config::AfterFailsafe;
 use crate::machine::{Machine, ReleaseReport};
 use crate::report::Ending;
 use crate::switch::SwitchEdge;
@@ -81,8 +80,8 @@ impl<C: Controller> Machine<C> {
     /// Leaves failsafe: its time is over, or there are no safe outputs to send.
     pub(crate) fn end_failsafe(&mut self, tick: &Tick) {
         match self.after_failsafe {
-            AfterFailsafe::Standby => self.apply_input(Input::FailsafeEnded, tick),
-            AfterFailsafe::Stop => self.stop_for(Ending::FailsafeEnded, tick),
+            AfterRelease::Standby => self.apply_input(Input::FailsafeEnded, tick),
+            AfterRelease::Stop => self.stop_for(Ending::FailsafeEnded, tick),
         }
     }
 

@@ -119,7 +119,7 @@ pub use fcc_core::framework::{
     StageTimes,
 };
 
-pub use config::{AfterFailsafe, LoopConfig, Parts};
+pub use config::{LoopConfig, Parts};
 pub use heartbeat::{Heartbeat, HeartbeatReading};
 pub use link::{CommandSender, CommandsFull, Link, MessageReceiver, StopHandle};
 pub use machine::Machine;

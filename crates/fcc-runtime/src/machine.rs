@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Cause, Controller, EventKind, LoopCommand, Record, RecordOf, StageTimes, State, SwitchOff,
+    AfterRelease, Cause, Controller, EventKind, LoopCommand, Record, RecordOf, StageTimes, State,
     Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
@@ -11,7 +11,7 @@ use rtrb::{Consumer, RingBuffer};
 
 use crate::actuators::Actuators;
 use crate::commands;
-use crate::config::{AfterFailsafe, LoopConfig, Parts};
+use crate::config::{LoopConfig, Parts};
 use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
@@ -35,9 +35,9 @@ pub struct Machine<C: Controller> {
     pub(crate) controller: C,
     pub(crate) actuators: Actuators<C::Outputs>,
 
-    pub(crate) switch_off: SwitchOff,
+    pub(crate) switch_off: AfterRelease,
     pub(crate) failsafe_hold: Duration,
-    pub(crate) after_failsafe: AfterFailsafe,
+    pub(crate) after_failsafe: AfterRelease,
 
     pub(crate) commands: Consumer<LoopCommand<C::Command>>,
     pub(crate) telemetry: TelemetryProducer<C>,

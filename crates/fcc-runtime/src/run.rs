@@ -11,7 +11,7 @@ use crate::config::{LoopConfig, Parts};
 use crate::link::{Link, StopHandle};
 use crate::machine::Machine;
 use crate::panics;
-use crate::report::{Ending, LoopReport};
+use crate::report::LoopReport;
 
 /// The name of a loop's own thread, as `top -H` and panic messages show it.
 pub const THREAD_NAME: &str = "fcc-loop";
@@ -43,16 +43,6 @@ impl<C: Controller> Loop<C> {
             stop: link.stop.clone(),
         };
         Ok((this, link))
-    }
-
-    /// Runs in this thread until the loop stops or its timer ends. Makes no
-    /// real-time requests for it.
-    pub fn run_here(mut self) -> LoopReport {
-        panics::keep_quiet();
-        if let Err(error) = self.machine.start() {
-            self.machine.stop_with(Ending::TimerFailed(error));
-        }
-        run(self.machine)
     }
 
     /// Runs in a thread of its own. Returns when the kernel has granted or denied

@@ -5,8 +5,8 @@ mod bench;
 
 use bench::{Bench, EventKind, RELEASED, TimerEnd, change};
 use fcc_core::framework::State::{Engaged, Standby, Stopped};
-use fcc_core::framework::{ActuatorFault, Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, Ending, LoopCommand, LoopConfig, LoopReport};
+use fcc_core::framework::{ActuatorFault, AfterRelease, Cause, Flags, Switch};
+use fcc_runtime::{Ending, LoopCommand, LoopConfig, LoopReport};
 
 fn engaged() -> Bench {
     Bench::engaged(&LoopConfig::default())
@@ -56,7 +56,7 @@ fn the_stop_flag_as_a_signal_handler_sets_it() {
 #[test]
 fn the_switch() {
     let mut bench = Bench::with(&LoopConfig {
-        switch_off: SwitchOff::Stop,
+        switch_off: AfterRelease::Stop,
         ..LoopConfig::default()
     });
     for position in [Switch::Off, Switch::On, Switch::Off] {
@@ -68,7 +68,7 @@ fn the_switch() {
 #[test]
 fn the_end_of_failsafe() {
     let mut bench = Bench::engaged(&LoopConfig {
-        after_failsafe: AfterFailsafe::Stop,
+        after_failsafe: AfterRelease::Stop,
         failsafe_hold: bench::PERIOD,
         ..LoopConfig::default()
     });
@@ -223,7 +223,7 @@ fn a_panic_in_a_release() {
 }
 
 #[test]
-fn a_release_that_fails_is_asked_for_again_until_it_works() {
+fn a_failed_release_is_repeated_until_it_succeeds() {
     let mut bench = engaged();
     bench.command(LoopCommand::Disengage);
     let fault = ActuatorFault::Io { errno: 101 };

@@ -373,7 +373,7 @@ fn faults_are_reported_when_they_change_and_counted_each_time() {
 }
 
 #[test]
-fn events_read_as_words() {
+fn events_are_described_as_text() {
     let words = |kind: EventKind| kind.description::<bench::Stub>().to_string();
     let engage_inhibits = Flags::bit(0) | Flags::bit(1);
     assert_eq!(

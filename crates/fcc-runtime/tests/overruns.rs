@@ -172,7 +172,7 @@ fn a_stage_has_a_budget_of_its_own() {
 }
 
 #[test]
-fn never_is_never_and_the_default_is_half_a_second() {
+fn zero_means_never_and_the_default_is_half_a_second() {
     let mut bench = Bench::engaged(&after(0));
     for number in 2..1_000 {
         assert_eq!(tick(&mut bench, number, 500), Engaged);

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use bench::{Bench, EventKind, PERIOD, RELEASED, change};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
-use fcc_core::framework::{Cause, Flags, Switch, SwitchOff};
-use fcc_runtime::{AfterFailsafe, LoopCommand, LoopConfig};
+use fcc_core::framework::{AfterRelease, Cause, Flags, Switch};
+use fcc_runtime::{LoopCommand, LoopConfig};
 
 const LOST: Flags = Flags::bit(1);
 const SENSORS_LOST: Cause = Cause::Faults(LOST);
@@ -40,7 +40,7 @@ fn standby_reads_and_writes_nothing() {
 }
 
 #[test]
-fn a_tick_goes_in_one_direction() {
+fn the_parts_of_a_tick_are_called_in_order() {
     let mut bench = Bench::new();
     bench.command(LoopCommand::Controller(7));
     bench.command(LoopCommand::Engage);
@@ -161,7 +161,7 @@ fn a_switch_that_is_off_does_not_undo_a_command() {
 #[test]
 fn switching_off_stops_if_configured() {
     let mut bench = Bench::with(&LoopConfig {
-        switch_off: SwitchOff::Stop,
+        switch_off: AfterRelease::Stop,
         ..config()
     });
     bench.tick(|s| s.switch = Some(Switch::Off));
@@ -271,7 +271,7 @@ fn failsafe_can_be_left_by_every_command() {
 #[test]
 fn after_failsafe_the_loop_stops_if_configured() {
     let mut bench = Bench::engaged(&LoopConfig {
-        after_failsafe: AfterFailsafe::Stop,
+        after_failsafe: AfterRelease::Stop,
         ..config()
     });
     bench.tick(|s| s.faults = LOST);
@@ -297,7 +297,7 @@ fn invalid_outputs_are_never_sent() {
 }
 
 #[test]
-fn when_failsafe_has_nothing_valid_either_control_is_given_back() {
+fn invalid_outputs_in_failsafe_release_control() {
     let mut bench = Bench::engaged(&config());
     let state = bench.tick(|s| {
         s.output = f64::NAN;

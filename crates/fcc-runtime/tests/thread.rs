@@ -123,25 +123,6 @@ fn a_required_request_that_is_denied_starts_nothing() {
     }
 }
 
-#[test]
-fn in_this_thread_it_runs_until_the_timer_ends() {
-    let stage = Stage::default();
-    let (this, mut link) = Loop::new(parts(&stage), &LoopConfig::default()).unwrap();
-    link.commands.send(LoopCommand::Engage).unwrap();
-    let ender = stage.clone();
-    let end = thread::spawn(move || {
-        while ender.log().applied.is_empty() {
-            thread::sleep(PERIOD);
-        }
-        ender.set(|s| s.timer = Some(bench::TimerEnd::Ended));
-    });
-    let report = this.run_here();
-    end.join().unwrap();
-    assert!(matches!(report.ending, Ending::TimerEnded));
-    assert!(report.granted.is_none());
-    assert_eq!(stage.log().held, [false, false]);
-}
-
 /// A sensor that allocates memory in one tick, as none should.
 struct Greedy {
     tick: u64,

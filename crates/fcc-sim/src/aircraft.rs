@@ -183,11 +183,6 @@ impl Aircraft {
         self.state = state;
     }
 
-    /// The present motion of the air.
-    pub fn air_motion(&self) -> &AirMotion {
-        &self.motion
-    }
-
     /// The present deflections of the control surfaces and the throttle.
     pub fn deflections(&self) -> Deflections {
         deflections(

@@ -4,10 +4,8 @@
 //! converted by hand can no longer be compared with its source, so constants of
 //! the aircraft are written as in the source, times one of these.
 
-/// One international foot, m.
-pub const FOOT_M: f64 = 0.3048;
-/// One knot, m/s.
-pub const KNOT_MPS: f64 = 1852.0 / 3600.0;
+pub use fcc_core::units::{FOOT_M, GRAVITY_MPS2 as STANDARD_GRAVITY_MPS2, KNOT_MPS};
+
 /// One avoirdupois pound, kg.
 pub const POUND_KG: f64 = 0.453_592_37;
 /// One pound-force, N.
@@ -18,5 +16,3 @@ pub const SLUG_FT2_KGM2: f64 = POUND_FORCE_N * FOOT_M;
 pub const FOOT_POUND_NM: f64 = POUND_FORCE_N * FOOT_M;
 /// One degree, rad.
 pub const DEGREE_RAD: f64 = core::f64::consts::PI / 180.0;
-/// Standard gravity, m/s² (ISO 80000-3).
-pub const STANDARD_GRAVITY_MPS2: f64 = 9.806_65;

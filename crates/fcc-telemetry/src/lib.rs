@@ -8,11 +8,14 @@
 //! All of it runs outside the loop's thread.
 
 #[cfg(feature = "flight")]
+mod altitude;
+#[cfg(feature = "flight")]
 mod flight;
 mod instance;
 mod message;
 #[cfg(feature = "flight")]
 mod pattern_scorer;
+mod quantity;
 pub mod schema;
 #[cfg(feature = "flight")]
 mod score;
@@ -20,12 +23,15 @@ mod telemetry;
 mod timing;
 pub mod units;
 
+#[cfg(feature = "flight")]
+pub use altitude::ShownAltitude;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]
 pub use message::{FlightEvent, FlightMessage, FlightRecord};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
+pub use quantity::RecordedQuantity;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
 pub use telemetry::Telemetry;

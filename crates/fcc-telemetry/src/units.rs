@@ -3,22 +3,28 @@
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
 
+use fcc_core::units::FOOT_M;
+pub use fcc_core::units::GRAVITY_MPS2 as G_MPS2;
+
 use crate::schema::Column;
 
 /// Feet per metre.
-pub const M_FT: f64 = 1.0 / 0.304_8;
+pub const M_FT: f64 = 1.0 / FOOT_M;
 
 /// Knots per metre per second.
 pub const MPS_KT: f64 = 3_600.0 / 1_852.0;
-
-/// Standard gravity, m/s².
-pub const G_MPS2: f64 = 9.806_65;
 
 /// Headings that may be commanded, rad.
 pub const COMMANDED_HEADING_RAD: RangeInclusive<f64> = -TAU..=TAU;
 
 /// Altitudes that may be commanded, m.
 pub const COMMANDED_ALTITUDE_M: RangeInclusive<f64> = -500.0..=20_000.0;
+
+/// Altimeter settings that may be commanded, Pa.
+pub const COMMANDED_ALTIMETER_SETTING_PA: RangeInclusive<f64> = 94_000.0..=106_000.0;
+
+/// Hectopascals per pascal.
+pub const PA_HPA: f64 = 0.01;
 
 /// A number as a message gives it; a very large or small one without hundreds of zeros.
 pub fn number(value: f64) -> String {
@@ -61,6 +67,7 @@ pub const AVIATION: &[Shown] = &[
     shown("_rad", "°", RAD_DEG),
     shown("_radps", "°/s", RAD_DEG),
     shown("_radps2", "°/s²", RAD_DEG),
+    shown("_pa", "hPa", PA_HPA),
 ];
 
 impl Shown {

@@ -97,7 +97,7 @@ fn strictly_a_refusal_is_an_error_with_all_details() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_to_everybody() {
+fn an_impossible_request_is_denied_to_every_user() {
     let refused = |request: RealtimeRequest| {
         let granted = thread::spawn(move || request.apply().unwrap())
             .join()

@@ -104,7 +104,7 @@ fn the_best_cpu_is_chosen_with_a_reason() {
 
 /// The kernel's own word: what the device reads as, little while it is held.
 #[test]
-fn cpus_are_kept_from_deep_sleep_as_long_as_the_grants_live() {
+fn cpus_stay_awake_until_the_grants_are_dropped() {
     let device = "/dev/cpu_dma_latency";
     let request = RealtimeRequest {
         cpu_dma_latency_us: Some(12),

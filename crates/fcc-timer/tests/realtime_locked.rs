@@ -6,7 +6,7 @@ use std::fs;
 use fcc_timer::RealtimeRequest;
 
 #[test]
-fn locked_memory_is_there_when_reported() {
+fn memory_reported_as_locked_is_resident() {
     let request = RealtimeRequest {
         lock_memory: true,
         ..RealtimeRequest::default()

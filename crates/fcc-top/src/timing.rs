@@ -34,7 +34,7 @@ fn lines<C: Telemetry>(status: &Status, picture: &Picture<C>) -> Vec<Line<'stati
     };
     let record = picture.record.as_ref();
     let lost = record.map_or(0, |record| record.records_dropped);
-    let faults = count("faults", record.map_or(0, |record| record.page_faults));
+    let faults = page_faults(record.map_or(0, |record| record.page_faults));
     let early = match record.map_or(0, |record| record.early_wake_ns) {
         0 => ["early ".dim(), "off".into()],
         early_ns => figure("early", early_ns),
@@ -63,15 +63,23 @@ fn lines<C: Telemetry>(status: &Status, picture: &Picture<C>) -> Vec<Line<'stati
 
 /// A count that should be 0.
 fn count(name: &'static str, number: u64) -> [Span<'static>; 2] {
-    let text = format!("{number:<8}");
     [
         format!("{name:<6} ").dim(),
-        if number == 0 {
-            text.green()
-        } else {
-            text.red().bold()
-        },
+        graded(format!("{number:<8}"), number),
     ]
+}
+
+/// The name takes the room of a large count.
+fn page_faults(number: u64) -> [Span<'static>; 2] {
+    ["page faults ".dim(), graded(format!("{number:<3}"), number)]
+}
+
+fn graded(text: String, number: u64) -> Span<'static> {
+    if number == 0 {
+        text.green()
+    } else {
+        text.red().bold()
+    }
 }
 
 /// Times in three figures: `850 ns`, `12.3 µs`, `1.20 ms`.

@@ -1,10 +1,10 @@
 //! The values of a record: measured, desired, commanded.
 
-use fcc_core::framework::schema::{Kind, Value, unit};
+use fcc_core::framework::schema::{Value, unit};
 use fcc_core::framework::{RecordOf, State};
-use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Column, Leaves, columns};
+use fcc_telemetry::schema::Leaves;
 use fcc_telemetry::units::{SI, Shown};
+use fcc_telemetry::{RecordedQuantity, Telemetry};
 use ratatui::Frame;
 use ratatui::layout::Rect;
 use ratatui::style::Stylize;
@@ -74,53 +74,32 @@ impl Row {
     }
 }
 
-/// The measured values, each with the estimate and the set point of its name,
-/// then values without a measurement, and the outputs.
+/// The quantities of a record; the estimate is preferred to the measurement.
 fn rows<C: Telemetry>(record: &RecordOf<C>) -> Vec<Row> {
     let mut leaves = Leaves::default();
     leaves.take(record);
     let values = leaves.as_slice();
-    let columns = columns::<RecordOf<C>>();
-    let is_never = |column: &Column| {
-        let taken = column.reading.as_ref().map(|path| format!("{path}.taken"));
-        let mut all = columns.iter().zip(values);
-        all.any(|(other, value)| Some(&other.path) == taken.as_ref() && value.is_never())
+    let number = |place: Option<usize>, is_known: bool| match values.get(place?) {
+        Some(Value::Number(number)) => Some(*number).filter(|n| is_known && n.is_finite()),
+        _ => None,
     };
-    let mut rows: Vec<Row> = Vec::new();
-    for (column, value) in columns.iter().zip(values) {
-        let (Value::Number(number), Kind::Number) = (value, column.kind) else {
-            continue;
-        };
-        let part = column.path.split('.').next().unwrap_or_default();
-        let is_output = part == "outputs";
-        let known = match part {
-            "measurements" => !is_never(column),
-            "setpoints" => record.state == State::Engaged,
-            "outputs" => record.sent,
-            "estimate" => true,
-            _ => continue,
-        };
-        let number = Some(*number).filter(|number| known && number.is_finite());
-        let same = rows
-            .iter_mut()
-            .find(|row| row.field == column.field && row.is_output == is_output);
-        match (part, same) {
-            ("setpoints", Some(row)) => row.desired = number,
-            // Of two measurements of one name, the first.
-            ("measurements", Some(_)) => {}
-            (_, Some(row)) => row.actual = number,
-            (_, None) => {
-                let is_desired = part == "setpoints";
-                rows.push(Row {
-                    field: column.field,
-                    quantity: unit::of(column.field).quantity.replace('_', " "),
-                    shown: Shown::of(column, SI),
-                    actual: number.filter(|_| !is_desired),
-                    desired: number.filter(|_| is_desired),
-                    is_output,
-                });
-            }
+    let row = |of: RecordedQuantity| {
+        let taken = of.taken.and_then(|place| values.get(place));
+        let measured = number(of.measured, !taken.is_some_and(|taken| taken.is_never()));
+        let is_output = of.commanded.is_some();
+        Row {
+            field: of.column.field,
+            quantity: unit::of(of.column.field).quantity.replace('_', " "),
+            shown: Shown::of(&of.column, SI),
+            actual: match of.estimated {
+                _ if is_output => number(of.commanded, record.sent),
+                None => measured,
+                estimated => number(estimated, true),
+            },
+            desired: number(of.desired, record.state == State::Engaged),
+            is_output,
         }
-    }
-    rows
+    };
+    let all = RecordedQuantity::all::<RecordOf<C>>();
+    all.into_iter().map(row).collect()
 }

@@ -17,6 +17,7 @@ use crate::port::{Errno, Port};
 use crate::protocol::PathError;
 use crate::protocol::dref::WRITE_BYTES;
 use crate::sensor::send;
+use crate::traffic::WritePace;
 use crate::udp_port::UdpPort;
 
 /// While control is held, the overrides are set again at this interval, in case
@@ -27,7 +28,8 @@ const ASSERT_EVERY: Duration = Duration::from_secs(1);
 /// them, and releases them.
 ///
 /// The first [`apply`](Actuator::apply) after a release sets the overrides,
-/// then writes. [`release`](Actuator::release) centres the surfaces and
+/// then writes, in every tick unless X-Plane cannot take so much in one frame
+/// (in a loop above 100 Hz). [`release`](Actuator::release) centres the surfaces and
 /// releases the overrides, three times; dropping does the same. A sensor that
 /// is still being sampled checks that the release took effect.
 #[derive(Debug)]
@@ -46,6 +48,7 @@ struct HeldControl {
     simulator: SocketAddr,
     /// When the overrides were last set.
     asserted: Time,
+    pace: WritePace,
     confirmation: Confirmation,
 }
 
@@ -83,6 +86,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
                 none.insert(HeldControl {
                     simulator,
                     asserted: Time::NEVER,
+                    pace: WritePace::begin(),
                     confirmation: Confirmation::begin(now),
                 })
             }
@@ -100,9 +104,11 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             held.asserted = now;
             sent = self.controls.take(write);
         }
-        sent = sent.and(self.controls.set(outputs, write));
-
-        held.confirmation.wrote(now, yoke_ratios(outputs));
+        let messages = self.controls.messages();
+        if held.pace.take(now, messages, link.frame_period_s()) {
+            sent = sent.and(self.controls.set(outputs, write));
+            held.confirmation.wrote(now, yoke_ratios(outputs));
+        }
         let unconfirmed = held.confirmation.is_overdue(now, link);
         link.set_unconfirmed(unconfirmed);
         match sent {

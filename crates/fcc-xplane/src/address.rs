@@ -9,6 +9,14 @@ use std::net::{IpAddr, SocketAddr, ToSocketAddrs};
 /// The port on which X-Plane listens.
 pub const XPLANE_PORT: u16 = 49_000;
 
+/// The port from which X-Plane sends, unless it was changed there.
+pub(crate) const XPLANE_REPLY_PORT: u16 = 49_001;
+
+/// The port that is received on here unless another is configured, for a rule
+/// of a firewall. Not one of those known to be used by X-Plane or by programs
+/// for it: 49000 to 49010 and 49707.
+pub const USUAL_LOCAL_PORT: u16 = 49_071;
+
 /// Where X-Plane is. As text: `beacon`, an IP address or a host name, the last
 /// two with a port if it is not 49000.
 ///

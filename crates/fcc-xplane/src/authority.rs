@@ -1,7 +1,7 @@
 //! Who has control of X-Plane, seen from outside the loop.
 
 use core::fmt;
-use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -10,9 +10,12 @@ use fcc_core::framework::{ActuatorFault, ControlAuthority, PlantId, Released};
 use crate::config::XPlaneConfig;
 use crate::link::Control;
 use crate::missing::Missing;
+use crate::no_answer::{InWords, Why};
 use crate::open::{OpenError, XPlane};
+use crate::silence::Silence;
 use crate::simulator::SimulatorState;
 use crate::status::{Trouble, XPlaneStatus};
+use crate::udp_port::is_of_this_machine;
 
 /// Prefix of the name of an X-Plane plant; its address follows.
 const NAME: &str = "X-Plane at ";
@@ -20,6 +23,9 @@ const NAME: &str = "X-Plane at ";
 /// A problem is reported only after it has lasted this long: right after the
 /// start X-Plane has not yet had time to answer.
 const REPORT_AFTER: Duration = Duration::from_secs(1);
+/// That nothing at all arrives is reported after this long: a beacon comes about
+/// every second.
+const REPORT_NOTHING_AFTER: Duration = Duration::from_millis(2_500);
 
 /// Monitors who has control of X-Plane, and releases it over a separate socket.
 #[derive(Debug)]
@@ -85,7 +91,7 @@ impl ControlAuthority for XPlaneAuthority {
         if let Some(text) = self
             .status
             .as_ref()
-            .and_then(|status| reported.change(status))
+            .and_then(|status| reported.change(status, &self.config))
         {
             report(format_args!("{text}"));
         }
@@ -98,14 +104,19 @@ impl ControlAuthority for XPlaneAuthority {
         is_cancelled: &mut dyn FnMut() -> bool,
     ) -> Result<Released, ActuatorFault> {
         let simulator = address(plant).ok_or(ActuatorFault::NotConnected)?;
-        XPlane::release_unless_cancelled(&self.config, simulator, within, is_cancelled).map_err(
-            |error| match error {
+        // Of the one that is flown; a helper learns it from the first answer.
+        let reply_port = self
+            .status
+            .as_ref()
+            .filter(|status| status.simulator() == Some(simulator))
+            .and_then(XPlaneStatus::reply_port);
+        XPlane::release_expecting(&self.config, simulator, reply_port, within, is_cancelled)
+            .map_err(|error| match error {
                 OpenError::Bind { source, .. } => ActuatorFault::Io {
                     errno: source.raw_os_error().unwrap_or(0),
                 },
                 _ => ActuatorFault::NotConnected,
-            },
-        )
+            })
     }
 
     fn by_hand(&self) -> &'static str {
@@ -121,16 +132,14 @@ fn address(plant: &PlantId) -> Option<SocketAddr> {
     plant.as_str().strip_prefix(NAME)?.parse().ok()
 }
 
-/// The kernel binds a socket only to addresses of this machine.
-fn is_of_this_machine(mut address: SocketAddr) -> bool {
-    address.set_port(0);
-    UdpSocket::bind(address).is_ok()
-}
-
 /// What was reported last.
 #[derive(Debug)]
 struct Reported {
     trouble: Option<(Trouble, Instant)>,
+    /// Since X-Plane is silent.
+    silence: Option<Silence>,
+    /// What was reported about this silence.
+    causes: Vec<Why>,
     last: LastReport,
     pace: SimulatorState,
     missing: Vec<Missing>,
@@ -147,6 +156,8 @@ impl Default for Reported {
     fn default() -> Self {
         Self {
             trouble: None,
+            silence: None,
+            causes: Vec::new(),
             last: LastReport::Nothing,
             pace: SimulatorState::Running,
             missing: Vec::new(),
@@ -156,12 +167,17 @@ impl Default for Reported {
 
 impl Reported {
     /// A description of what has changed; none if there is nothing to report.
-    fn change(&mut self, status: &XPlaneStatus) -> Option<String> {
+    fn change(&mut self, status: &XPlaneStatus, config: &XPlaneConfig) -> Option<String> {
         let now = status.trouble();
         if self.trouble.map(|(trouble, _)| trouble) != now {
             self.trouble = now.map(|trouble| (trouble, Instant::now()));
+            self.silence = None;
+            self.causes.clear();
         }
         match self.trouble {
+            Some((Trouble::Silent(simulator), since)) => {
+                self.cause_of_silence(status, config, simulator, since)
+            }
             Some((trouble, since)) => {
                 let worth =
                     since.elapsed() >= REPORT_AFTER && self.last != LastReport::Trouble(trouble);
@@ -177,6 +193,36 @@ impl Reported {
         }
     }
 
+    /// Why X-Plane is silent: each cause once.
+    fn cause_of_silence(
+        &mut self,
+        status: &XPlaneStatus,
+        config: &XPlaneConfig,
+        simulator: SocketAddr,
+        since: Instant,
+    ) -> Option<String> {
+        let silence = self
+            .silence
+            .get_or_insert_with(|| Silence::begin(config, status, simulator));
+        let why = silence.look(status);
+        let after = match why {
+            Why::NothingArrives => REPORT_NOTHING_AFTER,
+            _ => REPORT_AFTER,
+        };
+        if since.elapsed() < after || self.causes.contains(&why) {
+            return None;
+        }
+        self.causes.push(why);
+        self.last = LastReport::Trouble(Trouble::Silent(simulator));
+        let local_port = status.local_port();
+        let words = InWords {
+            simulator,
+            local_port,
+            why,
+        };
+        Some(words.to_string())
+    }
+
     /// Called while nothing is wrong: a description if something was wrong
     /// before, or at the first contact.
     fn recovery(&mut self, status: &XPlaneStatus) -> Option<String> {
@@ -187,10 +233,16 @@ impl Reported {
             // now.
             LastReport::Trouble(Trouble::Unconfirmed(_)) => (status.control() == Control::Held)
                 .then(|| format!("the controls written to X-Plane at {simulator} take effect")),
-            LastReport::Nothing => Some(format!(
-                "X-Plane at {simulator} answers; the engage switch is {}",
-                status.engage_switch()
-            )),
+            LastReport::Nothing => {
+                let ports = status.reply_port().zip(status.local_port());
+                let ports = ports.map_or_else(String::new, |(reply_port, local_port)| {
+                    format!(", from its UDP port {reply_port} to {local_port} here")
+                });
+                let engage_switch = status.engage_switch();
+                Some(format!(
+                    "X-Plane at {simulator} answers{ports}; the engage switch is {engage_switch}"
+                ))
+            }
             LastReport::Trouble(_) => Some(format!("X-Plane at {simulator} answers")),
         }
     }

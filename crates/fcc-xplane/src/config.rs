@@ -3,7 +3,8 @@
 use core::time::Duration;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 
-use crate::address::{Simulator, XPLANE_PORT};
+use crate::address::{Simulator, XPLANE_PORT, XPLANE_REPLY_PORT};
+use crate::engage_switch;
 use crate::protocol::{PathError, beacon, check_path, rref};
 
 /// How X-Plane is reached, and what is read and written.
@@ -22,24 +23,34 @@ use crate::protocol::{PathError, beacon, check_path, rref};
 pub struct XPlaneConfig {
     /// Where X-Plane is. Default: 127.0.0.1:49000.
     pub simulator: Simulator,
-    /// The UDP port to receive on, 0 for any that is free. Default: 0, since
-    /// RREF replies go to the port that sent the request. Rows of Data Output
-    /// go to the port that is set in X-Plane, so [`Input::Data`] needs one.
+    /// The UDP port to receive on. Default: 0 for
+    /// [`USUAL_LOCAL_PORT`](crate::USUAL_LOCAL_PORT), or
+    /// another that is free if a program has it, or if X-Plane is on this
+    /// machine, where no firewall needs a rule. RREF replies go to the port that
+    /// sent the request. Rows of Data Output go to the port that is set in
+    /// X-Plane, so [`Input::Data`] needs one.
     pub local_port: u16,
+    /// The port from which X-Plane is expected to answer, 0 if that is not
+    /// known. While it is silent, a datagram without effect is sent there each
+    /// second, so that a firewall on this side lets the replies in; afterwards
+    /// the port that answers is known. Default: 49001, X-Plane's own.
+    pub reply_port: u16,
     /// How measurements are received. Default: [`Input::Rref`].
     pub input: Input,
     /// How control surfaces are written. Default: [`Output::Dref`].
     pub output: Output,
     /// The rate at which X-Plane is asked to send each dataref, Hz, 1..=1000;
-    /// it sends at most once per frame. Default: 100, so that a value is no
-    /// older than one frame.
+    /// it sends at most once per frame. Above this number of frames a second,
+    /// values of one frame are missing in others. Default: 250, more than most
+    /// computers draw.
     pub rate_hz: u16,
     /// The number of engines whose throttle is written, 1..=8. Default: 1.
     pub engines: u8,
     /// The dataref of the engage switch: on from 0.75 upwards, off below 0.25,
     /// unchanged in between. Default:
-    /// `sim/cockpit2/switches/generic_lights_switch[0]`, which nothing else in
-    /// X-Plane reads.
+    /// `sim/cockpit2/switches/generic_lights_switch[56]`, which no aircraft is
+    /// known to use, and which the command `sim/lights/generic_57_light_tog`
+    /// switches.
     pub engage_switch: String,
     /// A dataref without a value for this long is requested again, 100 ms to 1
     /// h. Default: 5 s.
@@ -48,7 +59,7 @@ pub struct XPlaneConfig {
     /// to 1 min. Default: 500 ms.
     pub silent_after: Duration,
     /// The most datagrams read in one tick, 1..=1000; the rest are discarded,
-    /// so that no reading is older than a period. Default: 64, over ten times
+    /// so that no reading is older than a period. Default: 128, over ten times
     /// the usual number, so that a flood of datagrams cannot delay a tick.
     pub datagrams_per_tick: u16,
     /// Where a loop has several sources of a quantity, another source is
@@ -64,14 +75,15 @@ impl Default for XPlaneConfig {
         Self {
             simulator: Simulator::At((Ipv4Addr::LOCALHOST, XPLANE_PORT).into()),
             local_port: 0,
+            reply_port: XPLANE_REPLY_PORT,
             input: Input::Rref,
             output: Output::Dref,
-            rate_hz: 100,
+            rate_hz: 250,
             engines: 1,
-            engage_switch: "sim/cockpit2/switches/generic_lights_switch[0]".to_owned(),
+            engage_switch: engage_switch::DEFAULT.to_owned(),
             resubscribe: Duration::from_secs(5),
             silent_after: Duration::from_millis(500),
-            datagrams_per_tick: 64,
+            datagrams_per_tick: 128,
             fallback_after: fcc_core::framework::FALLBACK_AFTER,
             beacon: beacon::GROUP,
         }
@@ -157,6 +169,17 @@ pub enum XPlaneConfigError {
         /// What is wrong with it.
         source: PathError,
     },
+    /// The engage switch is a generic light that no version has.
+    #[error(
+        "engage_switch \"{path}\": X-Plane has generic lights 0 to {}: choose one that no aircraft \
+         uses, such as {}",
+        engage_switch::MOST - 1,
+        engage_switch::DEFAULT
+    )]
+    NoSuchLight {
+        /// Its value.
+        path: String,
+    },
     /// An address to which no datagram can be sent.
     #[error("simulator {0}: give the IP address and port of one machine, such as 127.0.0.1:49000")]
     Simulator(SocketAddr),
@@ -215,6 +238,13 @@ impl XPlaneConfig {
                 source,
             }
         })?;
+        if engage_switch::generic_light(&self.engage_switch)
+            .is_some_and(|light| light >= engage_switch::MOST)
+        {
+            return Err(XPlaneConfigError::NoSuchLight {
+                path: self.engage_switch.clone(),
+            });
+        }
         if let Simulator::At(at) = self.simulator {
             check_address(at)?;
             if at.ip().is_loopback() && at.port() == self.local_port {
@@ -279,6 +309,8 @@ mod tests {
                 "a".repeat(400)
             )
         );
+        let beyond = "sim/cockpit2/switches/generic_lights_switch[128]";
+        assert!(error_text(|c| c.engage_switch = beyond.into()).contains("lights 0 to 127"));
         assert!(error_text(|c| c.engage_switch.clear()).contains("is empty"));
         assert!(error_text(|c| c.engage_switch = "sim/größe".into()).contains("no dataref has"));
         assert!(error_text(|c| c.engage_switch = "sim/a\0b".into()).contains("no dataref has"));

@@ -140,6 +140,14 @@ impl Controls {
         self.deflect(Deflections::of(surfaces), &mut send)
     }
 
+    /// The number of datagrams that [`set`](Self::set) sends.
+    pub(crate) fn messages(&self) -> usize {
+        match &self.encoding {
+            Encoding::Dref { writes } => writes.len(),
+            Encoding::Data { .. } => 1,
+        }
+    }
+
     /// Encodes into a buffer on the stack what [`set`](Self::set) would write.
     pub(crate) fn warm_up(&self, surfaces: &Surfaces, mut send: impl FnMut(&[u8])) {
         let Encoding::Dref { writes } = &self.encoding else {

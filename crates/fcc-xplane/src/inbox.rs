@@ -2,12 +2,10 @@
 //!
 //! The datagrams of a tick are read one after the other, then the measurements
 //! they completed are published. A measurement of several quantities (such as
-//! pitch and roll) is published when all of them are new since it was last
-//! published, and has the age of the oldest. X-Plane sends all values of a
-//! frame in one datagram, so they belong to one instant. If it spreads them
-//! over several datagrams, because subscriptions began in different frames, a
-//! measurement is still completed, from values at most one sending period
-//! apart.
+//! pitch and roll) is that of the last datagram that had all of them, so they
+//! belong to one instant: X-Plane sends the values of a frame in one datagram.
+//! While no datagram has all of them, it is made of the latest of each and has
+//! the age of the oldest (`values`).
 //!
 //! A datagram with an earlier flight time than the last one was overtaken and
 //! is dropped as a whole. For one without a flight time (RPOS; rows sent one by
@@ -20,6 +18,7 @@ use fcc_core::flight::{
 use fcc_core::framework::{Reading, Switch, Time};
 
 use crate::config::DataRows;
+use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{SharedState, count};
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
@@ -81,24 +80,25 @@ impl Inbox {
         self.clock.last_received()
     }
 
-    /// Reads a datagram of the simulator.
+    /// Reads a datagram of the simulator; returns whether anything in it was
+    /// requested.
     pub(crate) fn accept(
         &mut self,
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         match Kind::of(datagram) {
             Some(Kind::Rref) => self.accept_values(datagram, now, link),
             Some(Kind::Rpos) => self.accept_position(datagram, now),
             Some(Kind::Data) => match self.rows {
                 Some(rows) => self.accept_rows(rows, datagram, now, link),
                 // Data Output that the user sends for another program.
-                None => Ok(()),
+                None => Ok(false),
             },
             Some(Kind::Beacon) | None => {
                 count(&link.counters.unknown);
-                Ok(())
+                Ok(false)
             }
         }
     }
@@ -108,9 +108,12 @@ impl Inbox {
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         let with_rows = self.rows.is_some();
         let pairs = rref::parse(datagram)?.filter_map(|(index, value)| {
+            if index == NONEXISTENT_INDEX {
+                link.set_answers_anything();
+            }
             let quantity = Quantity::from_index(index)?;
             // Left over from a run with RREF input: now only rows are read.
             let elsewhere = with_rows && quantity.comes_in_rows();
@@ -121,17 +124,23 @@ impl Inbox {
             .find(|(quantity, _)| *quantity == Quantity::FlightTime)
             .and_then(|(quantity, value)| quantity.validate(value));
         if self.is_late(now, time_s, link) {
-            return Ok(());
+            return Ok(false);
         }
         let mut report = SimulatorReport {
             time_s,
             ..SimulatorReport::default()
         };
+        let mut is_requested = false;
+        self.values.begin_frame();
         for (quantity, raw) in pairs {
+            is_requested = true;
             self.take(quantity, raw, now, &mut report, link);
         }
-        self.clock.receive(now, report);
-        Ok(())
+        self.values.end_frame();
+        if is_requested {
+            self.clock.receive(now, report);
+        }
+        Ok(is_requested)
     }
 
     fn accept_rows(
@@ -140,16 +149,17 @@ impl Inbox {
         datagram: &[u8],
         now: Time,
         link: &SharedState,
-    ) -> Result<(), Malformed> {
+    ) -> Result<bool, Malformed> {
         let rows = data::parse(datagram)?;
         let time_s = rows.clone().find_map(|row| rows::flight_time(&row));
         if self.is_late(now, time_s, link) {
-            return Ok(());
+            return Ok(false);
         }
         let mut report = SimulatorReport {
             time_s,
             ..SimulatorReport::default()
         };
+        self.values.begin_frame();
         for row in rows {
             rows::quantities(layout, &row, |quantity, raw| {
                 self.take(quantity, raw, now, &mut report, link);
@@ -158,11 +168,12 @@ impl Inbox {
                 self.position = Reading::new(position, now);
             }
         }
+        self.values.end_frame();
         self.clock.receive(now, report);
-        Ok(())
+        Ok(true)
     }
 
-    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<(), Malformed> {
+    fn accept_position(&mut self, datagram: &[u8], now: Time) -> Result<bool, Malformed> {
         let reply = rpos::parse(datagram)?;
         if self.rows.is_none() {
             let position = Position {
@@ -173,7 +184,7 @@ impl Inbox {
             self.position = Reading::new(position, now);
         }
         self.clock.receive(now, SimulatorReport::default());
-        Ok(())
+        Ok(self.rows.is_none())
     }
 
     fn is_late(&self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
@@ -200,7 +211,10 @@ impl Inbox {
         link.show(quantity, value, now);
         match quantity {
             Quantity::Paused => report.paused = Some(value >= 0.5),
-            Quantity::FramePeriod => report.frame_period_s = Some(value),
+            Quantity::FramePeriod => {
+                report.frame_period_s = Some(value);
+                link.set_frame_period_s(value);
+            }
             Quantity::OnGround => link.set_on_ground(value >= 0.5),
             Quantity::Version => link.set_version(value as u32),
             _ => {}
@@ -218,26 +232,17 @@ impl Inbox {
         self.publish_attitude(into);
         self.publish_motion(into);
         let values = &mut self.values;
-        if let Some(([airspeed], taken)) = values.whole(Group::Airspeed, [Quantity::Airspeed]) {
+        if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
             into.airspeed_mps = Reading::new(airspeed, taken);
         }
-        if let Some(([altitude], taken)) = values.whole(Group::Altitude, [Quantity::Altitude]) {
+        if let Some(([altitude], taken)) = values.whole(Group::Altitude) {
             into.altitude_m = Reading::new(altitude, taken);
         }
-        if let Some(([angle], taken)) =
-            values.whole(Group::AngleOfAttack, [Quantity::AngleOfAttack])
-        {
+        if let Some(([angle], taken)) = values.whole(Group::AngleOfAttack) {
             into.angle_of_attack_rad = Reading::new(angle, taken);
         }
-        if let Some(([throttle, elevator, aileron, rudder], taken)) = values.whole(
-            Group::Surfaces,
-            [
-                Quantity::Throttle,
-                Quantity::YokePitch,
-                Quantity::YokeRoll,
-                Quantity::YokeHeading,
-            ],
-        ) {
+        if let Some(([throttle, elevator, aileron, rudder], taken)) = values.whole(Group::Surfaces)
+        {
             let surfaces = Surfaces {
                 throttle,
                 elevator,
@@ -246,7 +251,7 @@ impl Inbox {
             };
             into.surfaces = Reading::new(surfaces, taken);
         }
-        if let Some(([switch], taken)) = values.whole(Group::Switch, [Quantity::EngageSwitch]) {
+        if let Some(([switch], taken)) = values.whole(Group::Switch) {
             self.switch = match switch {
                 on if on >= SWITCH_ON => Switch::On,
                 off if off < SWITCH_OFF => Switch::Off,
@@ -259,23 +264,17 @@ impl Inbox {
 
     fn publish_attitude(&mut self, into: &mut Measurements) {
         let values = &mut self.values;
-        if let Some(([pitch_rad, roll_rad], taken)) =
-            values.whole(Group::Attitude, [Quantity::Pitch, Quantity::Roll])
-        {
+        if let Some(([pitch_rad, roll_rad], taken)) = values.whole(Group::Attitude) {
             let attitude = Attitude {
                 pitch_rad,
                 roll_rad,
             };
             into.attitude = Reading::new(attitude, taken);
         }
-        if let Some(([heading], taken)) = values.whole(Group::Heading, [Quantity::MagneticHeading])
-        {
+        if let Some(([heading], taken)) = values.whole(Group::Heading) {
             into.heading_rad = Reading::new(round(heading), taken);
         }
-        if let Some(([roll_radps, pitch_radps, yaw_radps], taken)) = values.whole(
-            Group::Rates,
-            [Quantity::RollRate, Quantity::PitchRate, Quantity::YawRate],
-        ) {
+        if let Some(([roll_radps, pitch_radps, yaw_radps], taken)) = values.whole(Group::Rates) {
             let rates = BodyRates {
                 roll_radps,
                 pitch_radps,
@@ -287,17 +286,9 @@ impl Inbox {
 
     fn publish_motion(&mut self, into: &mut Measurements) {
         let values = &mut self.values;
-        if let Some(([east, up, south, heading, pitch, roll], taken)) = values.whole(
-            Group::Acceleration,
-            [
-                Quantity::AccelerationEast,
-                Quantity::AccelerationUp,
-                Quantity::AccelerationSouth,
-                Quantity::TrueHeading,
-                Quantity::Pitch,
-                Quantity::Roll,
-            ],
-        ) {
+        if let Some(([east, up, south, heading, pitch, roll], taken)) =
+            values.whole(Group::Acceleration)
+        {
             // Accelerations that are repeated bit for bit belong to the instant
             // at which they first arrived. Combined with the present attitude
             // they would give a force that belongs to no instant, and a frozen
@@ -309,14 +300,7 @@ impl Inbox {
             }
             into.specific_force = Reading::new(self.force, taken);
         }
-        if let Some(([normal, axial, side], taken)) = values.whole(
-            Group::Loads,
-            [
-                Quantity::LoadNormal,
-                Quantity::LoadAxial,
-                Quantity::LoadSide,
-            ],
-        ) {
+        if let Some(([normal, axial, side], taken)) = values.whole(Group::Loads) {
             let force = SpecificForce {
                 x_mps2: axial,
                 y_mps2: side,
@@ -324,14 +308,7 @@ impl Inbox {
             };
             into.specific_force = Reading::new(force, taken);
         }
-        if let Some(([east, up, south], taken)) = values.whole(
-            Group::Velocity,
-            [
-                Quantity::VelocityEast,
-                Quantity::VelocityUp,
-                Quantity::VelocitySouth,
-            ],
-        ) {
+        if let Some(([east, up, south], taken)) = values.whole(Group::Velocity) {
             let velocity = Velocity {
                 north_mps: -south,
                 east_mps: east,

@@ -27,9 +27,13 @@
 //! | `quantity`, `rows`, `units`, `specific_force` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
+//! | `reply_port` | from which port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
+//! | `traffic` | how much is sent to X-Plane |
+//! | `engage_switch` | the dataref that engages |
 //! | `controls`, `confirmation`, `release_monitor`, `release` | writing, confirmation that it takes effect, release |
 //! | `authority`, `status` | who has control, and the state of the connection, seen from outside the loop |
+//! | `silence`, `no_answer` | why X-Plane does not answer |
 //! | `address`, `port`, `discovery` | where it is, sockets, the beacon |
 //!
 //! # Faults that are handled
@@ -37,8 +41,8 @@
 //! Datagrams may be lost, duplicated, reordered, truncated or forged, and
 //! X-Plane may be paused, slowed, restarted or killed. Truncated and corrupted
 //! datagrams are left out and counted; duplicates change nothing; overtaken
-//! ones are dropped by the flight time in them; those from another IP address
-//! are dropped; and at most a configured number is read in a tick. The flight
+//! ones are dropped by the flight time in them; those from another IP address,
+//! or from another port than the one that has answered, are dropped; and at most a configured number is read in a tick. The flight
 //! time is an f32: after 36 hours of one flight it counts in steps of 16 ms.
 //!
 //! In a tick nothing allocates, locks, logs or panics, and the only system
@@ -52,27 +56,32 @@ mod config;
 mod confirmation;
 mod controls;
 mod discovery;
+mod engage_switch;
 mod inbox;
 mod link;
 mod missing;
+mod no_answer;
 mod open;
 mod port;
 pub mod protocol;
 mod quantity;
 mod release;
 mod release_monitor;
+mod reply_port;
 mod rows;
 mod sensor;
+mod silence;
 mod simulator;
 mod specific_force;
 mod status;
 mod subscriptions;
+mod traffic;
 mod udp_port;
 mod units;
 mod values;
 
 pub use actuator::XPlaneActuator;
-pub use address::{AddressError, HostName, Simulator, XPLANE_PORT};
+pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
 pub use authority::XPlaneAuthority;
 pub use config::{DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError};
 pub use discovery::{DiscoverError, Found, discover};

@@ -5,7 +5,9 @@
 //! are for readers in other threads, and allow the two to run in separate
 //! threads.
 
-use core::sync::atomic::{AtomicBool, AtomicI64, AtomicU8, AtomicU32, AtomicU64, Ordering};
+use core::sync::atomic::{
+    AtomicBool, AtomicI64, AtomicU8, AtomicU16, AtomicU32, AtomicU64, Ordering,
+};
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 
 use fcc_core::framework::Time;
@@ -90,12 +92,19 @@ pub(crate) struct SharedState {
     /// The address at which control may be taken, packed likewise, or
     /// [`ANYWHERE`].
     allowed: AtomicU64,
+    /// The simulator's port that answered last, 0 while unknown.
+    reply_port: AtomicU16,
+    /// The port that is received on here, 0 while unknown.
+    local_port: AtomicU16,
     state: AtomicU8,
     control: AtomicU8,
     unconfirmed: AtomicBool,
+    answers_anything: AtomicBool,
     version: AtomicU32,
     /// A [`ValueSet`].
     missing: AtomicU64,
+    /// An f32, s.
+    frame_period: AtomicU32,
     /// 0 not known, 1 in the air, 2 on the ground.
     ground: AtomicU8,
     read_back: [Readback; READ_BACK.len()],
@@ -108,11 +117,15 @@ impl SharedState {
             configured: simulator,
             simulator: AtomicU64::new(simulator.map_or(NOWHERE, |_| CONFIGURED)),
             allowed: AtomicU64::new(ANYWHERE),
+            reply_port: AtomicU16::new(0),
+            local_port: AtomicU16::new(0),
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
+            answers_anything: AtomicBool::new(false),
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
+            frame_period: AtomicU32::new(0),
             ground: AtomicU8::new(0),
             read_back: [const { Readback::never() }; READ_BACK.len()],
             counters: Counters::default(),
@@ -150,6 +163,22 @@ impl SharedState {
     pub(crate) fn allow(&self, simulator: Option<SocketAddr>) {
         let allowed = simulator.map_or(NOWHERE, |simulator| self.pack(simulator));
         self.allowed.store(allowed, Ordering::Release);
+    }
+
+    pub(crate) fn reply_port(&self) -> Option<u16> {
+        known_port(&self.reply_port)
+    }
+
+    pub(crate) fn set_reply_port(&self, port: u16) {
+        self.reply_port.store(port, Ordering::Relaxed);
+    }
+
+    pub(crate) fn local_port(&self) -> Option<u16> {
+        known_port(&self.local_port)
+    }
+
+    pub(crate) fn set_local_port(&self, port: u16) {
+        self.local_port.store(port, Ordering::Relaxed);
     }
 
     pub(crate) fn state(&self) -> SimulatorState {
@@ -191,6 +220,15 @@ impl SharedState {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
     }
 
+    /// Whether the simulator answers requests for datarefs that it does not have.
+    pub(crate) fn answers_anything(&self) -> bool {
+        self.answers_anything.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_answers_anything(&self) {
+        self.answers_anything.store(true, Ordering::Relaxed);
+    }
+
     pub(crate) fn missing(&self) -> ValueSet {
         ValueSet::from_bits(self.missing.load(Ordering::Relaxed))
     }
@@ -208,6 +246,16 @@ impl SharedState {
 
     pub(crate) fn set_version(&self, version: u32) {
         self.version.store(version, Ordering::Relaxed);
+    }
+
+    /// The simulator's last frame period, s; 0 until it is known.
+    pub(crate) fn frame_period_s(&self) -> f64 {
+        f32::from_bits(self.frame_period.load(Ordering::Relaxed)).into()
+    }
+
+    pub(crate) fn set_frame_period_s(&self, frame_period_s: f64) {
+        let bits = (frame_period_s as f32).to_bits();
+        self.frame_period.store(bits, Ordering::Relaxed);
     }
 
     pub(crate) fn on_ground(&self) -> Option<bool> {
@@ -241,6 +289,13 @@ impl SharedState {
         let at = Time::from_nanos(slot.at.load(Ordering::Acquire));
         let value = f32::from_bits(slot.bits.load(Ordering::Relaxed));
         (!at.is_never()).then_some((value, at))
+    }
+}
+
+fn known_port(port: &AtomicU16) -> Option<u16> {
+    match port.load(Ordering::Relaxed) {
+        0 => None,
+        port => Some(port),
     }
 }
 

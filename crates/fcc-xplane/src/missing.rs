@@ -4,7 +4,9 @@
 //! does it report that a row of Data Output is switched off: a mistyped path, a
 //! plugin that is not loaded and an old version all result in silence. (A
 //! version that answers such a request with 0 cannot be distinguished from a
-//! switch that is off, so the switch's path is logged at the first contact.)
+//! switch that is off, so the switch's path is logged at the first contact. That
+//! a version answers so is known by its answer to a request for a dataref that
+//! does not exist; that it lacks a generic light, by the light's number.)
 
 use core::fmt;
 use core::time::Duration;
@@ -12,6 +14,7 @@ use core::time::Duration;
 use fcc_core::framework::Time;
 
 use crate::config::DataRows;
+use crate::engage_switch;
 use crate::quantity::Quantity;
 use crate::rows::row_of;
 
@@ -36,6 +39,18 @@ impl ValueSet {
 
     pub(crate) const fn bits(self) -> u64 {
         self.0
+    }
+
+    /// Whether values are missing that every version has and no row: then no
+    /// request is answered.
+    pub(crate) fn has_no_answer(self) -> bool {
+        [
+            Quantity::Paused,
+            Quantity::OverrideJoystick,
+            Quantity::OverrideThrottles,
+        ]
+        .into_iter()
+        .all(|quantity| self.holds(Expected::Value(quantity).bit()))
     }
 
     const fn holds(self, bit: u64) -> bool {
@@ -123,6 +138,16 @@ impl MissingValues {
 pub enum Missing {
     /// The dataref of [`engage_switch`](crate::XPlaneConfig::engage_switch).
     EngageSwitch(String),
+    /// The same, of a generic light that this version does not have.
+    GenericLight {
+        /// The path.
+        path: String,
+        /// The number of generic lights that it has.
+        lights: u32,
+    },
+    /// The same, of a version that answers requests for datarefs that it does
+    /// not have: whether it has this one is not known.
+    MaybeEngageSwitch(String),
     /// Another dataref.
     Dataref(String),
     /// A row of Data Output.
@@ -158,7 +183,11 @@ impl Missing {
     /// A short name of the value.
     pub fn what(&self) -> String {
         match self {
-            Self::EngageSwitch(path) => format!("x-plane.engage_switch \"{path}\""),
+            Self::EngageSwitch(path)
+            | Self::GenericLight { path, .. }
+            | Self::MaybeEngageSwitch(path) => {
+                format!("x-plane.engage_switch \"{path}\"")
+            }
             Self::Dataref(path) => format!("the dataref {path}"),
             Self::Row(row) => format!("row {row} of Data Output"),
             Self::Position => "the position (RPOS)".to_owned(),
@@ -168,8 +197,27 @@ impl Missing {
 
 impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Self::GenericLight { path, lights } = self {
+            return write!(
+                f,
+                "x-plane.engage_switch \"{path}\" does not exist in this version of X-Plane, so it \
+                 cannot be used to engage: it has generic lights 0 to {}. Choose one that no \
+                 aircraft uses, such as {}.",
+                lights.saturating_sub(1),
+                engage_switch::DEFAULT
+            );
+        }
+        if let Self::MaybeEngageSwitch(path) = self {
+            return write!(
+                f,
+                "x-plane.engage_switch \"{path}\" may not exist: this version of X-Plane answers \
+                 requests for datarefs that it does not have, too. If it does not engage, check \
+                 its spelling, and that the plugin or aircraft that provides it is loaded."
+            );
+        }
         write!(f, "X-Plane does not send {}", self.what())?;
         f.write_str(match self {
+            Self::GenericLight { .. } | Self::MaybeEngageSwitch(_) => "",
             Self::EngageSwitch(_) => {
                 ", so it cannot be used to engage. Check its spelling (X-Plane's own datarefs are \
                  listed in its Resources/plugins/DataRefs.txt), and that the plugin or aircraft \

@@ -5,7 +5,7 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::sync::Arc;
 
 use crate::actuator::XPlaneActuator;
-use crate::address::{HostName, Simulator};
+use crate::address::{HostName, Simulator, USUAL_LOCAL_PORT};
 use crate::config::{XPlaneConfig, XPlaneConfigError, check_address};
 use crate::link::SharedState;
 use crate::port::Port;
@@ -29,7 +29,7 @@ pub enum OpenError {
     Path(#[from] PathError),
     /// The local port cannot be bound.
     #[error(
-        "cannot receive on UDP port {port}: {source}; choose another local_port, 0 for any that \
+        "cannot receive on UDP port {port}: {source}; choose another local_port, 0 for one that \
          is free (a second program for X-Plane on this machine may have taken it)"
     )]
     Bind {
@@ -74,7 +74,10 @@ impl XPlane {
         let simulator = locate(&config.simulator)?;
         // Beacons are sent over IPv4, so the simulator has an IPv4 address.
         let peer = simulator.map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |at| at.ip());
-        let port = bind(config.local_port, peer)?;
+        let port = bind(&local_ports(config.local_port, peer), |port| {
+            UdpPort::bind(port, peer)
+        })?;
+        let local_port = port.local_port().unwrap_or(0);
         let beacons = match config.simulator {
             Simulator::At(_) | Simulator::Named(_) => None,
             Simulator::Beacon => {
@@ -83,7 +86,9 @@ impl XPlane {
                 Some(listen.map_err(|source| OpenError::Beacon { group, source })?)
             }
         };
-        Self::join(config, simulator, port, beacons)
+        let (sensor, actuator) = Self::join(config, simulator, port, beacons)?;
+        sensor.set_local_port(local_port);
+        Ok((sensor, actuator))
     }
 
     /// The same over the caller's own [`Port`]: for tests, and for networks
@@ -114,8 +119,33 @@ impl XPlane {
     }
 }
 
-fn bind(port: u16, peer: IpAddr) -> Result<UdpPort, OpenError> {
-    UdpPort::bind(port, peer).map_err(|source| OpenError::Bind { port, source })
+/// The local ports to try, in this order; 0 stands for any that is free. No
+/// firewall is between programs of one machine, so there any will do, and those
+/// of several daemons differ.
+pub(crate) fn local_ports(configured: u16, peer: IpAddr) -> Vec<u16> {
+    match configured {
+        0 if peer.is_loopback() => vec![0],
+        0 => vec![USUAL_LOCAL_PORT, 0],
+        port => vec![port],
+    }
+}
+
+/// Binds to the first of these ports that no other program has.
+pub(crate) fn bind<S>(ports: &[u16], bind: impl Fn(u16) -> io::Result<S>) -> Result<S, OpenError> {
+    let mut taken = OpenError::Bind {
+        port: 0,
+        source: io::ErrorKind::AddrInUse.into(),
+    };
+    for port in ports.iter().copied() {
+        match bind(port) {
+            Ok(socket) => return Ok(socket),
+            Err(source) if source.kind() == io::ErrorKind::AddrInUse => {
+                taken = OpenError::Bind { port, source };
+            }
+            Err(source) => return Err(OpenError::Bind { port, source }),
+        }
+    }
+    Err(taken)
 }
 
 /// Where datagrams are sent; `None` if it is known only from a beacon. A
@@ -137,6 +167,25 @@ fn locate(simulator: &Simulator) -> Result<Option<SocketAddr>, OpenError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_usual_port_is_used_unless_it_is_taken_or_the_simulator_is_here() {
+        let (here, there) = ([127, 0, 0, 1].into(), [192, 0, 2, 1].into());
+        assert_eq!(local_ports(0, here), [0]);
+        assert_eq!(local_ports(0, there), [USUAL_LOCAL_PORT, 0]);
+        assert_eq!(local_ports(5_000, there), [5_000]);
+        let taken = |number: u16| {
+            move |port: u16| match port {
+                port if port == number => Err(io::Error::from(io::ErrorKind::AddrInUse)),
+                port => Ok(port),
+            }
+        };
+        let ports = local_ports(0, there);
+        assert_eq!(bind(&ports, taken(0)).unwrap(), USUAL_LOCAL_PORT);
+        assert_eq!(bind(&ports, taken(USUAL_LOCAL_PORT)).unwrap(), 0);
+        let message = bind(&[5_000], taken(5_000)).unwrap_err().to_string();
+        assert!(message.contains("UDP port 5000"), "{message}");
+    }
 
     #[test]
     fn a_name_is_looked_up_and_ipv4_comes_first() {

@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn every_path_fits_a_request() {
         for quantity in Quantity::all() {
-            if let Some(path) = quantity.path("sim/cockpit2/switches/generic_lights_switch[0]") {
+            if let Some(path) = quantity.path(crate::engage_switch::DEFAULT) {
                 crate::protocol::check_path(&path, crate::protocol::rref::PATH_BYTES).unwrap();
             }
         }

@@ -9,8 +9,7 @@ use fcc_core::framework::Released;
 
 use crate::config::XPlaneConfig;
 use crate::controls::Controls;
-use crate::open::{OpenError, XPlane};
-use crate::port::Errno;
+use crate::open::{OpenError, XPlane, bind, local_ports};
 use crate::protocol::rref;
 use crate::quantity::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES};
 use crate::udp_port::any_address;
@@ -21,6 +20,9 @@ const AGAIN_AFTER: Duration = Duration::from_millis(250);
 const LISTEN_FOR: Duration = Duration::from_millis(20);
 /// After this many refusals in a row the simulator counts as unreachable.
 const REFUSALS: u32 = 4;
+/// If no answer comes from the expected port for this long, one from another
+/// port is accepted: X-Plane was started again.
+const OTHER_PORT_AFTER: Duration = Duration::from_millis(500);
 /// The rate at which the readback is requested, Hz.
 const READ_BACK_HZ: u16 = 20;
 /// The indices of the readback, distinct from those of a sensor's
@@ -57,44 +59,149 @@ impl XPlane {
         is_cancelled: impl FnMut() -> bool,
     ) -> Result<Released, OpenError> {
         config.validate()?;
-        let socket = connect(simulator).map_err(|source| OpenError::Bind { port: 0, source })?;
+        Self::release_expecting(config, simulator, None, timeout, is_cancelled)
+    }
+
+    /// The same; only answers from `reply_port` are accepted, if it is known,
+    /// unless none comes from there.
+    pub(crate) fn release_expecting(
+        config: &XPlaneConfig,
+        simulator: SocketAddr,
+        reply_port: Option<u16>,
+        timeout: Duration,
+        is_cancelled: impl FnMut() -> bool,
+    ) -> Result<Released, OpenError> {
+        let mut conversation = Conversation::open(config, simulator, reply_port)?;
         let mut controls = Controls::new(config)?;
+        let outcome = retry_until_released(&mut conversation, &mut controls, timeout, is_cancelled);
+        conversation.end();
+        Ok(outcome)
+    }
+}
+
+/// Two sockets: X-Plane answers from another port than the one that it listens
+/// on, so a connected socket receives no answer; and only a connected one
+/// learns that no program listens there.
+struct Conversation {
+    simulator: SocketAddr,
+    /// Connected: for the writes.
+    writes: UdpSocket,
+    /// For the requests and their answers.
+    answers: UdpSocket,
+    requests: [[u8; rref::REQUEST_BYTES]; 2],
+    /// A request without effect, to the port that is expected to answer: it
+    /// lets the answers through a firewall on this side.
+    opening: Option<SocketAddr>,
+    /// The port that answers.
+    reply_port: Option<u16>,
+    began: Instant,
+    has_answered: bool,
+}
+
+impl Conversation {
+    fn open(
+        config: &XPlaneConfig,
+        simulator: SocketAddr,
+        reply_port: Option<u16>,
+    ) -> Result<Self, OpenError> {
+        let ip = simulator.ip();
+        let mut ports = local_ports(config.local_port, ip);
+        // The daemon itself may still have its own.
+        ports.push(0);
+        let answers = bind(&ports, |port| UdpSocket::bind((any_address(ip), port)))?;
+        let refused = |source| OpenError::Bind { port: 0, source };
+        answers
+            .set_read_timeout(Some(LISTEN_FOR))
+            .map_err(refused)?;
+        let writes = UdpSocket::bind((any_address(ip), 0)).map_err(refused)?;
+        writes.connect(simulator).map_err(refused)?;
         let mut requests = [[0; rref::REQUEST_BYTES]; 2];
         let paths = [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES];
         for ((request, index), path) in requests.iter_mut().zip(INDICES).zip(paths) {
             rref::request(request, READ_BACK_HZ, index, path)?;
         }
-        let outcome =
-            retry_until_released(&socket, &mut controls, &requests, timeout, is_cancelled);
-        for request in &mut requests {
-            rref::set_frequency(request, 0);
-            let _ = socket.send(request);
+        let expected = reply_port.unwrap_or(config.reply_port);
+        let opens = expected != 0 && expected != simulator.port() && !ip.is_loopback();
+        Ok(Self {
+            simulator,
+            writes,
+            answers,
+            requests,
+            opening: opens.then(|| SocketAddr::new(ip, expected)),
+            reply_port,
+            began: Instant::now(),
+            has_answered: false,
+        })
+    }
+
+    /// Sends the release and the requests; whether a program listens there, as
+    /// far as is known.
+    fn send_release(&self, controls: &mut Controls) -> bool {
+        let mut refused = false;
+        let _ = controls.release(|bytes| {
+            let sent = self.writes.send(bytes);
+            sent.map(drop).map_err(|error| {
+                refused |= error.kind() == ErrorKind::ConnectionRefused;
+                error.raw_os_error().unwrap_or(0)
+            })
+        });
+        if let (Some(to), Some(request)) = (self.opening, self.requests.first()) {
+            let mut without_effect = *request;
+            rref::set_frequency(&mut without_effect, 0);
+            let _ = self.answers.send_to(&without_effect, to);
         }
-        Ok(outcome)
+        for request in &self.requests {
+            let _ = self.answers.send_to(request, self.simulator);
+        }
+        !refused
+    }
+
+    /// Receives a datagram, or waits for a moment; returns whether it was an
+    /// answer.
+    fn receive(&mut self, readback: &mut [Option<bool>; 2]) -> bool {
+        let mut datagram = [0; 2_048];
+        let Ok((length, from)) = self.answers.recv_from(&mut datagram) else {
+            return false;
+        };
+        let is_expected = self.reply_port.is_none_or(|port| port == from.port())
+            || (!self.has_answered && self.began.elapsed() > OTHER_PORT_AFTER);
+        let is_answer = from.ip() == self.simulator.ip()
+            && is_expected
+            && read_back(datagram.get(..length).unwrap_or_default(), readback);
+        if is_answer {
+            self.reply_port = Some(from.port());
+            self.has_answered = true;
+        }
+        is_answer
+    }
+
+    /// Whether the machine there reported that no program listens.
+    fn is_refused(&self) -> bool {
+        let error = self.writes.take_error().ok().flatten();
+        error.is_some_and(|error| error.kind() == ErrorKind::ConnectionRefused)
+    }
+
+    fn end(mut self) {
+        for request in &mut self.requests {
+            rref::set_frequency(request, 0);
+            let _ = self.answers.send_to(request, self.simulator);
+        }
     }
 }
 
-fn connect(simulator: SocketAddr) -> std::io::Result<UdpSocket> {
-    let socket = UdpSocket::bind((any_address(simulator.ip()), 0))?;
-    // Connected, so that the system reports a closed port.
-    socket.connect(simulator)?;
-    socket.set_read_timeout(Some(LISTEN_FOR))?;
-    Ok(socket)
-}
-
 fn retry_until_released(
-    socket: &UdpSocket,
+    conversation: &mut Conversation,
     controls: &mut Controls,
-    requests: &[[u8; rref::REQUEST_BYTES]; 2],
     timeout: Duration,
     mut is_cancelled: impl FnMut() -> bool,
 ) -> Released {
     let begun = Instant::now();
     let mut sent: Option<Instant> = None;
     let mut refusals = 0;
-    // The readback of each override since the release was last sent.
+    // Whether a refusal was counted since the release was last sent.
+    let mut refused = false;
+    // The readback of each override since then.
     let mut readback: [Option<bool>; 2] = [None; 2];
-    let mut datagram = [0; 2_048];
     while begun.elapsed() < timeout {
         if is_cancelled() {
             return Released::Cancelled;
@@ -102,18 +209,15 @@ fn retry_until_released(
         if sent.is_none_or(|at| at.elapsed() >= AGAIN_AFTER) {
             sent = Some(Instant::now());
             readback = [None; 2];
-            let _ = controls.release(|bytes| send(socket, bytes));
-            for request in requests {
-                let _ = socket.send(request);
-            }
+            refused = !conversation.send_release(controls);
+            refusals += u32::from(refused);
         }
-        match socket.recv(&mut datagram) {
-            Ok(length) => {
-                refusals = 0;
-                read_back(datagram.get(..length).unwrap_or_default(), &mut readback);
-            }
-            Err(error) if error.kind() == ErrorKind::ConnectionRefused => refusals += 1,
-            Err(_) => {}
+        if conversation.receive(&mut readback) {
+            refusals = 0;
+        }
+        if !refused && conversation.is_refused() {
+            refused = true;
+            refusals += 1;
         }
         if readback == [Some(false); 2] {
             return Released::Confirmed;
@@ -126,23 +230,19 @@ fn retry_until_released(
 }
 
 /// Stores the readback in a reply; values sent before the requests have other
-/// indices and are ignored.
-fn read_back(datagram: &[u8], readback: &mut [Option<bool>; 2]) {
+/// indices and are ignored. Returns whether there is one.
+fn read_back(datagram: &[u8], readback: &mut [Option<bool>; 2]) -> bool {
+    let mut found = false;
     let Ok(pairs) = rref::parse(datagram) else {
-        return;
+        return found;
     };
     for (index, value) in pairs {
         for (slot, of) in readback.iter_mut().zip(INDICES) {
             if index == of && value.is_finite() {
                 *slot = Some(value >= 0.5);
+                found = true;
             }
         }
     }
-}
-
-fn send(socket: &UdpSocket, bytes: &[u8]) -> Result<(), Errno> {
-    socket
-        .send(bytes)
-        .map(|_| ())
-        .map_err(|error| error.raw_os_error().unwrap_or(0))
+    found
 }

@@ -16,6 +16,7 @@ use crate::link::{Control, SharedState, count};
 use crate::port::{Errno, Port};
 use crate::protocol::{Kind, PathError, beacon};
 use crate::release_monitor::ReleaseMonitor;
+use crate::reply_port::ReplyPorts;
 use crate::simulator::SimulatorState;
 use crate::status::XPlaneStatus;
 use crate::subscriptions::Subscriptions;
@@ -36,8 +37,8 @@ const BEACONS_PER_TICK: usize = 4;
 /// configured; the rest are discarded) and to send (a few requests), none of
 /// which waits. Readings are stamped with the time of the tick in which they
 /// arrived. Only datagrams from
-/// the simulator's IP address are accepted, from any of its ports, since
-/// replies need not come from the port on which X-Plane listens.
+/// the simulator's IP address are accepted, from the first of its ports that
+/// answers: X-Plane does not answer from the port on which it listens.
 #[derive(Debug)]
 pub struct XPlaneSensor<P: Port = UdpPort> {
     port: Arc<P>,
@@ -45,7 +46,11 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     beacons: Option<P>,
     link: Arc<SharedState>,
     inbox: Inbox,
+    reply_ports: ReplyPorts,
     subscriptions: Subscriptions,
+    /// The port from which X-Plane is expected to answer; 0 if that is not
+    /// known.
+    expected_reply_port: u16,
     engage_switch: Arc<str>,
     rows: Option<DataRows>,
     release_monitor: ReleaseMonitor,
@@ -76,7 +81,9 @@ impl<P: Port> XPlaneSensor<P> {
             beacons,
             link,
             inbox: Inbox::new(rows, config.silent_after),
+            reply_ports: ReplyPorts::default(),
             subscriptions: Subscriptions::new(config)?,
+            expected_reply_port: config.reply_port,
             engage_switch: config.engage_switch.as_str().into(),
             rows,
             release_monitor: ReleaseMonitor::new(Controls::new(config)?),
@@ -95,6 +102,10 @@ impl<P: Port> XPlaneSensor<P> {
     pub fn status(&self) -> XPlaneStatus {
         let engage_switch = Arc::clone(&self.engage_switch);
         XPlaneStatus::new(Arc::clone(&self.link), engage_switch, self.rows)
+    }
+
+    pub(crate) fn set_local_port(&self, port: u16) {
+        self.link.set_local_port(port);
     }
 
     /// Reads beacons: connects to the first simulator that computes a flight,
@@ -141,11 +152,26 @@ impl<P: Port> XPlaneSensor<P> {
             }
             count(&self.link.counters.received);
             let datagram = self.buffer.get(..length).unwrap_or_default();
-            if self.inbox.accept(datagram, now, &self.link).is_err() {
-                count(&self.link.counters.malformed);
-                outcome = Err(SensorFault::Malformed);
+            let kind = Kind::of(datagram);
+            let port = from.port();
+            if kind.is_some_and(|kind| !self.reply_ports.accepts(kind, port, now)) {
+                count(&self.link.counters.foreign);
+                continue;
             }
-            if let Some(Kind::Rref | Kind::Data) = Kind::of(datagram) {
+            match self.inbox.accept(datagram, now, &self.link) {
+                Ok(true) => {
+                    if let Some(kind) = kind {
+                        self.reply_ports.hold(kind, port, now);
+                        self.link.set_reply_port(port);
+                    }
+                }
+                Ok(false) => {}
+                Err(_) => {
+                    count(&self.link.counters.malformed);
+                    outcome = Err(SensorFault::Malformed);
+                }
+            }
+            if let Some(Kind::Rref | Kind::Data) = kind {
                 mem::swap(&mut self.buffer, &mut self.last_values);
                 self.last_values_bytes = length;
             }
@@ -167,10 +193,27 @@ impl<P: Port> XPlaneSensor<P> {
 
     fn send_requests(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
         let (port, link) = (&self.port, &self.link);
-        self.subscriptions.send_due(now, &self.inbox, |request| {
+        let outcome = self.subscriptions.send_due(now, &self.inbox, |request| {
             count(&link.counters.requests);
             send(port.as_ref(), link, request, simulator)
-        })
+        });
+        if self.subscriptions.restarted(now)
+            && let Some(reply_port) = self.reply_address(simulator)
+        {
+            // Without it a firewall may drop every reply, and with it nothing
+            // is certain: no failure.
+            let _ = port.send(self.subscriptions.without_effect(), reply_port);
+        }
+        outcome
+    }
+
+    /// Where a datagram is sent so that a firewall or an address translation on
+    /// this side, which lets in only what comes from an address that was written
+    /// to, lets the replies in. None on this machine: nothing is in between.
+    fn reply_address(&self, simulator: SocketAddr) -> Option<SocketAddr> {
+        let port = self.link.reply_port().unwrap_or(self.expected_reply_port);
+        let is_needed = port != 0 && port != simulator.port() && !simulator.ip().is_loopback();
+        is_needed.then(|| SocketAddr::new(simulator.ip(), port))
     }
 
     fn poll_release_monitor(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {

@@ -6,8 +6,10 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use crate::config::DataRows;
+use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
 use crate::missing::Missing;
+use crate::no_answer::{InWords, Why};
 use crate::simulator::SimulatorState;
 
 /// The status of the connection to X-Plane, readable from any thread without a
@@ -27,7 +29,8 @@ pub struct Counts {
     pub received: u64,
     /// Datagrams beyond the number that a tick reads, dropped.
     pub discarded: u64,
-    /// Datagrams from elsewhere, dropped.
+    /// Datagrams from elsewhere, or from another port than the one that
+    /// answers, dropped.
     pub foreign: u64,
     /// Datagrams with a wrong length or field, dropped.
     pub malformed: u64,
@@ -63,6 +66,17 @@ impl XPlaneStatus {
     /// Where the simulator is; `None` until a beacon has arrived.
     pub fn simulator(&self) -> Option<SocketAddr> {
         self.link.simulator()
+    }
+
+    /// The port from which it answers; `None` until it has.
+    pub fn reply_port(&self) -> Option<u16> {
+        self.link.reply_port()
+    }
+
+    /// The UDP port that is received on here; `None` over another
+    /// [`Port`](crate::Port) than a socket.
+    pub fn local_port(&self) -> Option<u16> {
+        self.link.local_port()
     }
 
     /// From now on control is taken only where it is [allowed](Self::allow):
@@ -137,7 +151,20 @@ impl XPlaneStatus {
     /// Requested values that do not arrive while others do: for 4 to 6 s if a
     /// value never arrived, and longer if it did.
     pub fn missing(&self) -> Vec<Missing> {
-        Missing::of(self.link.missing(), &self.engage_switch, self.rows)
+        let mut missing = Missing::of(self.link.missing(), &self.engage_switch, self.rows);
+        let lights = self
+            .version()
+            .and_then(|version| lights_if_beyond(&self.engage_switch, version));
+        if let Some(lights) = lights {
+            let path = self.engage_switch().to_owned();
+            missing.retain(|what| !matches!(what, Missing::EngageSwitch(_)));
+            missing.push(Missing::GenericLight { path, lights });
+        }
+        if self.link.answers_anything() {
+            let path = self.engage_switch().to_owned();
+            missing.push(Missing::MaybeEngageSwitch(path));
+        }
+        missing
     }
 
     /// What is wrong with the connection now; `None` while nothing is.
@@ -145,6 +172,9 @@ impl XPlaneStatus {
         match self.simulator() {
             None => Some(Trouble::NoBeacon),
             Some(at) if self.state() == SimulatorState::Silent => Some(Trouble::Silent(at)),
+            Some(at) if self.rows.is_some() && self.link.missing().has_no_answer() => {
+                Some(Trouble::Unanswered(at))
+            }
             Some(at) if self.is_unconfirmed() => Some(Trouble::Unconfirmed(at)),
             Some(_) => None,
         }
@@ -158,6 +188,8 @@ pub enum Trouble {
     NoBeacon,
     /// The simulator does not answer.
     Silent(SocketAddr),
+    /// The simulator sends rows of Data Output, but answers no request.
+    Unanswered(SocketAddr),
     /// The simulator sends, but what is written to it has no effect.
     Unconfirmed(SocketAddr),
 }
@@ -169,11 +201,17 @@ impl fmt::Display for Trouble {
                 "No X-Plane has announced itself on this network. Start X-Plane, or set its \
                  address instead of looking for its beacon: some networks do not carry multicast.",
             ),
-            Self::Silent(at) => write!(
+            Self::Silent(simulator) => InWords {
+                simulator: *simulator,
+                local_port: None,
+                why: Why::NothingArrives,
+            }
+            .fmt(f),
+            Self::Unanswered(at) => write!(
                 f,
-                "X-Plane at {at} does not answer. Check that it runs there and has a flight \
-                 loaded; in X-Plane 12 that Settings > Network > Accept incoming connections is \
-                 on; and that no firewall on its machine blocks UDP port {}.",
+                "X-Plane at {at} sends Data Output, but answers no request: X-Plane does not hear \
+                 this program. There, in X-Plane 12 switch on Settings > Network > Accept incoming \
+                 connections, and let UDP port {} through the firewall of its machine.",
                 at.port()
             ),
             Self::Unconfirmed(at) => write!(

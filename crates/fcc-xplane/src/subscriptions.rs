@@ -8,8 +8,9 @@
 //! single request was lost, and then (it may not have it) every
 //! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe).
 //!
-//! X-Plane accepts about 100 requests and then needs a pause of 100 ms. There
-//! are fewer than that in total, and they are spread over several ticks.
+//! Requests are sent in portions (`traffic`), so that X-Plane takes them all.
+//! Each value is requested at a rate above X-Plane's usual ones, so that every
+//! frame has all of them.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -17,29 +18,31 @@ use core::time::Duration;
 use fcc_core::framework::Time;
 
 use crate::config::{Input, XPlaneConfig};
+use crate::engage_switch::{self, NONEXISTENT_DATAREF, NONEXISTENT_INDEX};
 use crate::inbox::Inbox;
 use crate::missing::{Expected, MissingValues, ValueSet};
 use crate::port::Errno;
 use crate::protocol::{PathError, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows::row_of;
-
-/// The most requests in one tick: 8 every 25 ms are 32 in 100 ms.
-pub(crate) const REQUESTS_PER_TICK: usize = 8;
-/// The number of requests that X-Plane accepts without a pause.
-const REQUESTS_AT_ONCE: usize = 100;
-const _: () = assert!(Quantity::COUNT < REQUESTS_AT_ONCE);
+use crate::traffic::{REQUESTS_PER_PORTION, RequestPace};
 
 /// A lost request is repeated after this long, this many times; all of them
 /// when the simulator has been silent for this long.
 const LOST_AFTER: Duration = Duration::from_secs(1);
 const LOST_TIMES: u8 = 5;
 
+/// For [`Subscriptions::without_effect`]: no subscription has this index.
+const UNUSED_INDEX: i32 = 9_003;
+const ANY_DATAREF: &str = "sim/time/paused";
+
 /// The position is for navigation, which does not need it every frame.
 const POSITION_RATE_HZ: u16 = 20;
 
 #[derive(Debug)]
 enum Request {
+    /// A dataref that does not exist: whether X-Plane answers nevertheless.
+    Nonexistent(Box<[u8; rref::REQUEST_BYTES]>),
     Value(Quantity, Box<[u8; rref::REQUEST_BYTES]>),
     Position([u8; rpos::REQUEST_BYTES], usize),
 }
@@ -47,15 +50,17 @@ enum Request {
 impl Request {
     fn datagram(&self) -> &[u8] {
         match self {
-            Self::Value(_, request) => request.as_slice(),
+            Self::Nonexistent(request) | Self::Value(_, request) => request.as_slice(),
             Self::Position(request, length) => request.get(..*length).unwrap_or_default(),
         }
     }
 
-    const fn expected(&self) -> Expected {
+    /// None if no answer is expected.
+    const fn expected(&self) -> Option<Expected> {
         match self {
-            Self::Value(quantity, _) => Expected::Value(*quantity),
-            Self::Position(..) => Expected::Position,
+            Self::Nonexistent(_) => None,
+            Self::Value(quantity, _) => Some(Expected::Value(*quantity)),
+            Self::Position(..) => Some(Expected::Position),
         }
     }
 }
@@ -84,6 +89,8 @@ pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
     restarted: Time,
+    without_effect: Box<[u8; rref::REQUEST_BYTES]>,
+    pace: RequestPace,
     missing_values: MissingValues,
 }
 
@@ -111,11 +118,20 @@ impl Subscriptions {
         if rows.is_none() {
             list.push(Subscription::to(position_request(POSITION_RATE_HZ)));
         }
-        expected.extend(list.iter().map(|asked| asked.request.expected()));
+        let mut without_effect = Box::new([0; rref::REQUEST_BYTES]);
+        rref::request(&mut without_effect, 0, UNUSED_INDEX, ANY_DATAREF)?;
+        if engage_switch::generic_light(&config.engage_switch).is_none() {
+            let mut request = Box::new([0; rref::REQUEST_BYTES]);
+            rref::request(&mut request, 1, NONEXISTENT_INDEX, NONEXISTENT_DATAREF)?;
+            list.push(Subscription::to(Request::Nonexistent(request)));
+        }
+        expected.extend(list.iter().filter_map(|asked| asked.request.expected()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,
             restarted: Time::NEVER,
+            without_effect,
+            pace: RequestPace::begin(),
             missing_values: MissingValues::new(expected, config.resubscribe),
         })
     }
@@ -148,8 +164,18 @@ impl Subscriptions {
         }
     }
 
-    /// Sends the requests that are due, at most [`REQUESTS_PER_TICK`]. A
-    /// request that could not be sent counts as sent and lost.
+    /// Whether everything was requested again in this tick.
+    pub(crate) fn restarted(&self, now: Time) -> bool {
+        self.restarted == now
+    }
+
+    /// A request that ends a subscription which does not exist.
+    pub(crate) fn without_effect(&self) -> &[u8] {
+        self.without_effect.as_slice()
+    }
+
+    /// Sends the requests that are due, at most a portion. A request that could
+    /// not be sent counts as sent and lost.
     pub(crate) fn send_due(
         &mut self,
         now: Time,
@@ -161,12 +187,16 @@ impl Subscriptions {
             self.restart(now);
         }
         let mut outcome = Ok(());
-        let mut budget = REQUESTS_PER_TICK;
+        if !self.pace.is_due(now) {
+            return outcome;
+        }
+        let mut budget = REQUESTS_PER_PORTION;
         for subscription in &mut self.list {
             if budget == 0 {
                 break;
             }
-            let arrived_at = arrived(inbox, subscription.request.expected());
+            let expected = subscription.request.expected();
+            let arrived_at = expected.map_or(Time::NEVER, |expected| arrived(inbox, expected));
             let answered = arrived_at > self.restarted && now.since(arrived_at) < resubscribe;
             if answered && !subscription.anew {
                 subscription.unanswered = 0;
@@ -174,8 +204,10 @@ impl Subscriptions {
             }
             let wait = if subscription.unanswered <= LOST_TIMES {
                 resubscribe.min(LOST_AFTER)
-            } else {
+            } else if expected.is_some() {
                 resubscribe
+            } else {
+                Duration::MAX
             };
             if subscription.anew || now.since(subscription.asked) >= wait {
                 subscription.anew = false;
@@ -185,6 +217,9 @@ impl Subscriptions {
                 budget -= 1;
             }
         }
+        if budget < REQUESTS_PER_PORTION {
+            self.pace.sent(now);
+        }
         outcome
     }
 
@@ -192,7 +227,7 @@ impl Subscriptions {
     pub(crate) fn end(&mut self, mut send: impl FnMut(&[u8])) {
         for subscription in &mut self.list {
             match &mut subscription.request {
-                Request::Value(_, request) => {
+                Request::Nonexistent(request) | Request::Value(_, request) => {
                     rref::set_frequency(request, 0);
                     send(request.as_slice());
                 }

@@ -126,6 +126,12 @@ pub(crate) const fn any_address(peer: IpAddr) -> IpAddr {
     }
 }
 
+/// The kernel binds a socket only to addresses of this machine.
+pub(crate) fn is_of_this_machine(mut address: SocketAddr) -> bool {
+    address.set_port(0);
+    UdpSocket::bind(address).is_ok()
+}
+
 fn errno(error: &io::Error) -> Errno {
     error.raw_os_error().unwrap_or(0)
 }

@@ -9,7 +9,7 @@ use fcc_core::flight::PlantState;
 use fcc_core::framework::SensorFault;
 use fcc_xplane::{DataRows, Input, Missing, RowsVersion, SimulatorState};
 use support::bench::Bench;
-use support::{FLIGHT_TIME, P, PAUSED, free_port};
+use support::{FLIGHT_TIME, P, PAUSED, SWITCH, free_port};
 
 #[test]
 fn requests_are_spread_over_ticks() {
@@ -81,6 +81,30 @@ fn a_dataref_that_x_plane_does_not_have_is_named_with_its_key() {
     bench.simulator.set(mistyped, 0.0);
     for _ in 0..41 {
         bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.missing(), []);
+}
+
+/// Whether it has the switch is not known then; a generic light is known.
+#[test]
+fn a_version_that_answers_for_every_dataref_is_recognised() {
+    let other = "sim/a/switch";
+    for (switch, is_certain) in [(other, false), (SWITCH, true)] {
+        let mut bench = Bench::with(|config| config.engage_switch = switch.into());
+        for _ in 0..40 {
+            let _ = bench.watch();
+            for path in bench.simulator.subscribed.values() {
+                bench.simulator.values.entry(path.clone()).or_insert(0.0);
+            }
+        }
+        let maybe = Missing::MaybeEngageSwitch(switch.into());
+        assert_eq!(bench.status.missing().contains(&maybe), !is_certain);
+    }
+    // One that answers only for what it has.
+    let mut bench = Bench::with(|config| config.engage_switch = other.into());
+    bench.simulator.set(other, 0.0);
+    for _ in 0..40 {
+        let _ = bench.watch();
     }
     assert_eq!(bench.status.missing(), []);
 }

@@ -134,21 +134,6 @@ fn a_foreign_sender_is_counted_and_ignored() {
 }
 
 #[test]
-fn another_port_of_the_simulator_is_the_simulator() {
-    let mut bench = Bench::new();
-    bench.settle();
-    bench.simulator.listen();
-    bench.simulator.set(&format!("{P}indicated_airspeed"), 50.0);
-    let other_port = UdpSocket::bind("127.0.0.1:0").unwrap();
-    let client = bench.simulator.client.unwrap();
-    other_port
-        .send_to(&bench.simulator.frame(), client)
-        .unwrap();
-    bench.sample().unwrap();
-    close(bench.measurements.airspeed_mps.value, 92.6 / 3.6);
-}
-
-#[test]
 fn a_tick_reads_as_many_datagrams_as_configured_and_leaves_none() {
     let mut bench = Bench::with(|config| config.datagrams_per_tick = 5);
     bench.settle();
@@ -237,7 +222,7 @@ fn rows_of_data_output_give_all_measurements() {
         datagram.extend(column.to_le_bytes());
     }
     let to = SocketAddrV4::new([127, 0, 0, 1].into(), free);
-    bench.simulator.socket.send_to(&datagram, to).unwrap();
+    bench.simulator.sender.send_to(&datagram, to).unwrap();
     bench.sample().unwrap();
     close(
         bench.measurements.attitude.value.roll_rad.to_degrees(),

@@ -75,13 +75,13 @@ fcc::machine_class! {
 
     /// One tick: what the motor is to do, or None while the loop does not hold it.
     #[pyo3(signature = (measured = None))]
-    fn step(&mut self, measured: Option<&PyMeasured>) -> Option<PyMotor> {
+    fn step(&self, measured: Option<&PyMeasured>) -> Option<PyMotor> {
         let sample = measured.map(|measured| measured.sample(|_| false));
         self.lockstep().step(sample).map(PyMotor::from)
     }
 
     /// Commands another angle, rad.
-    fn command(&mut self, angle_rad: f64) -> PyResult<()> {
+    fn command(&self, angle_rad: f64) -> PyResult<()> {
         self.lockstep().send(LoopCommand::Controller(angle_rad))
     }
 }

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use fcc_live::{
-    Commanded, CommandedSetpoint, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands,
-    Text,
+    Commandable, CommandableSetpoint, Info, PublisherOf, RecorderState, RecorderStatus,
+    SentCommands, Text,
 };
 use fcc_record::Recording;
 use fcc_report::{Report, Reported, Survey, Terms};
@@ -29,11 +29,13 @@ impl Watched for Thermostat {
     const PROGRAM: &'static str = "thermostat";
 }
 
-impl Commanded for Thermostat {
-    const SETPOINTS: &'static [CommandedSetpoint<f64>] = &[CommandedSetpoint {
+impl Commandable for Thermostat {
+    const SETPOINTS: &'static [CommandableSetpoint<f64>] = &[CommandableSetpoint {
         name: "room_c",
         limits: 5.0..=30.0,
         command: |wanted_c| wanted_c,
+        needs_control: false,
+        alternatives: None,
     }];
 }
 

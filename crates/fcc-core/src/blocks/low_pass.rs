@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_no_change() {
+    fn a_step_of_no_duration_changes_nothing() {
         let mut filter = LowPass::new(0.3);
         filter.reset(2.0);
         assert_eq!(filter.step(100.0, 0.0), 2.0);

@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_no_change() {
+    fn a_step_of_no_duration_changes_nothing() {
         let mut pid = pi(AntiWindup::Clamping);
         pid.engage(0.1, 0.0, 0.0, 0.0, 1.0);
         let before = pid.integral();

@@ -5,16 +5,10 @@
 
 use libm::{pow, sqrt};
 
-/// Standard gravity, m/s².
-///
-/// ```
-/// use fcc_core::flight::atmosphere::GRAVITY_MPS2;
-/// // ISO 80000-3.
-/// assert_eq!(GRAVITY_MPS2, 9.806_65);
-/// ```
-pub const GRAVITY_MPS2: f64 = 9.806_65;
+use crate::units::GRAVITY_MPS2;
 
-const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
+/// The pressure at sea level, Pa: 1,013.25 hPa, 29.92126 inHg.
+pub const SEA_LEVEL_PRESSURE_PA: f64 = 101_325.0;
 const SEA_LEVEL_TEMPERATURE_K: f64 = 288.15;
 const LAPSE_RATE_K_PER_M: f64 = -0.006_5;
 const GAS_CONSTANT_J_PER_KG_K: f64 = 287.053;

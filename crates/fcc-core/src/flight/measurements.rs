@@ -44,7 +44,8 @@ schema! {
         /// Indicated airspeed in m/s.
         #[field(5)]
         pub airspeed_mps: Reading<f64>,
-        /// Barometric altitude in m above the standard pressure level.
+        /// Pressure altitude in m: barometric, above the pressure level of
+        /// 1,013.25 hPa, whatever altimeter settings are.
         #[field(6)]
         pub altitude_m: Reading<f64>,
         /// Angle of attack in rad, positive when the air comes from below the nose.

@@ -8,6 +8,7 @@
 //! | [`guidance`] | set points |
 //! | [`control`] | surfaces and throttle |
 
+mod altimeter;
 pub mod atmosphere;
 mod autopilot;
 pub mod control;
@@ -18,6 +19,7 @@ pub mod orientation;
 mod setpoints;
 mod surfaces;
 
+pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{Autopilot, AutopilotCommand, AutopilotConfig, Resume, Scale, flags};
 pub use measurements::{
     Attitude, BodyRates, Measurements, Plant, PlantState, Position, SpecificForce, Velocity,

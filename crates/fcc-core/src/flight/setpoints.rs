@@ -2,6 +2,7 @@
 
 use core::f64::consts::TAU;
 
+use super::AltitudeReference;
 use super::guidance::Progress;
 use crate::schema;
 
@@ -28,7 +29,7 @@ schema! {
         /// Magnetic heading, rad.
         #[field(2, range = 0.0..=TAU)]
         pub heading_rad: f64,
-        /// Barometric altitude, m.
+        /// Pressure altitude, m, whatever the set point refers to.
         #[field(3)]
         pub altitude_m: f64,
         /// Bank commanded by the heading loop, rad, right wing down.
@@ -43,5 +44,14 @@ schema! {
         /// Guidance's mode and its progress; its captured heading is 0..2π.
         #[field(7, column = "guidance_*")]
         pub guidance: Progress,
+        /// The altimeter setting (QNH), Pa; in every state.
+        #[field(8)]
+        pub altimeter_setting_pa: f64,
+        /// What the altitude refers to.
+        #[field(9)]
+        pub altitude_reference: AltitudeReference,
+        /// The altitude above what it refers to, m.
+        #[field(10)]
+        pub altitude_above_reference_m: f64,
     }
 }

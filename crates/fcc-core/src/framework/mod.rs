@@ -42,7 +42,7 @@ pub use record::{Record, RecordOf, StageTimes};
 pub use sensor::{FALLBACK_AFTER, Sensor, SensorFault};
 pub use sources::{Preference, Preferred, Readings, SourceChange, Sources};
 pub use stage::Stage;
-pub use state::{Cause, Input, State, SwitchOff};
+pub use state::{AfterRelease, Cause, Input, State};
 pub use state_code::StateCode;
 pub use tick::Tick;
 pub use time::Time;

@@ -20,9 +20,9 @@ use super::Flags;
 /// `Engage` is input only when no engage inhibit is active.
 ///
 /// ```
-/// use fcc_core::framework::{Cause, Input, State, SwitchOff};
+/// use fcc_core::framework::{AfterRelease, Cause, Input, State};
 ///
-/// let failsafe = State::Engaged.after(Input::Fault(Cause::Overrun), SwitchOff::Standby);
+/// let failsafe = State::Engaged.after(Input::Fault(Cause::Overrun), AfterRelease::Standby);
 /// assert_eq!(failsafe, State::Failsafe(Cause::Overrun));
 /// assert!(failsafe.holds_control());
 /// ```
@@ -62,9 +62,9 @@ pub enum Cause {
 /// What can change the loop's state.
 ///
 /// ```
-/// use fcc_core::framework::{Input, State, SwitchOff};
+/// use fcc_core::framework::{AfterRelease, Input, State};
 ///
-/// let engaged = State::Standby.after(Input::Engage, SwitchOff::Standby);
+/// let engaged = State::Standby.after(Input::Engage, AfterRelease::Standby);
 /// assert_eq!(engaged, State::Engaged);
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -83,17 +83,18 @@ pub enum Input {
     Stop,
 }
 
-/// The effect of switching off the engage switch.
+/// What follows when control was released by the engage switch, or at the end of
+/// failsafe.
 ///
 /// ```
-/// use fcc_core::framework::{Input, State, SwitchOff};
+/// use fcc_core::framework::{AfterRelease, Input, State};
 ///
 /// // As in the thesis: switched off, the loop ends.
-/// let off = State::Engaged.after(Input::SwitchedOff, SwitchOff::Stop);
+/// let off = State::Engaged.after(Input::SwitchedOff, AfterRelease::Stop);
 /// assert_eq!(off, State::Stopped);
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum SwitchOff {
+pub enum AfterRelease {
     /// Back to standby, ready to engage again.
     #[default]
     Standby,
@@ -104,15 +105,15 @@ pub enum SwitchOff {
 impl State {
     /// The state after an input, by the transition table.
     #[must_use]
-    pub const fn after(self, input: Input, switch_off: SwitchOff) -> Self {
+    pub const fn after(self, input: Input, switch_off: AfterRelease) -> Self {
         match (self, input) {
             (Self::Stopped, _) | (_, Input::Stop) => Self::Stopped,
             (Self::Standby | Self::Failsafe(_), Input::Engage) => Self::Engaged,
             (Self::Engaged | Self::Failsafe(_), Input::Disengage)
             | (Self::Failsafe(_), Input::FailsafeEnded) => Self::Standby,
             (Self::Engaged | Self::Failsafe(_), Input::SwitchedOff) => match switch_off {
-                SwitchOff::Standby => Self::Standby,
-                SwitchOff::Stop => Self::Stopped,
+                AfterRelease::Standby => Self::Standby,
+                AfterRelease::Stop => Self::Stopped,
             },
             (Self::Engaged, Input::Fault(cause)) => Self::Failsafe(cause),
             (state, _) => state,
@@ -172,7 +173,7 @@ mod tests {
         for (state, expected) in rows {
             for (input, after) in INPUTS.into_iter().zip(expected) {
                 assert_eq!(
-                    state.after(input, SwitchOff::Standby),
+                    state.after(input, AfterRelease::Standby),
                     after,
                     "{state:?} on {input:?}"
                 );
@@ -184,12 +185,12 @@ mod tests {
     fn switching_off_stops_if_configured() {
         for state in [State::Engaged, FAILSAFE] {
             assert_eq!(
-                state.after(Input::SwitchedOff, SwitchOff::Stop),
+                state.after(Input::SwitchedOff, AfterRelease::Stop),
                 State::Stopped
             );
         }
         assert_eq!(
-            State::Standby.after(Input::SwitchedOff, SwitchOff::Stop),
+            State::Standby.after(Input::SwitchedOff, AfterRelease::Stop),
             State::Standby
         );
     }

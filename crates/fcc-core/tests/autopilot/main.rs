@@ -2,6 +2,7 @@
 #![cfg(test)]
 #![cfg(feature = "flight")]
 
+mod altimeter;
 mod cockpit;
 mod faults;
 mod flying;

@@ -24,6 +24,7 @@ fn a_pattern_is_continued_where_it_was() {
             ..Progress::default()
         },
         surfaces: STANDING,
+        ..Resume::default()
     };
     cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
     let aims_at = |cockpit: &mut Cockpit, heading_deg: f64, altitude_ft: f64| {
@@ -62,6 +63,7 @@ fn hold_is_continued_with_the_last_surfaces() {
             ..Progress::default()
         },
         surfaces: flew,
+        ..Resume::default()
     };
     cockpit.autopilot.command(&AutopilotCommand::Resume(resume));
     let first = cockpit.step();
@@ -91,6 +93,7 @@ fn an_invalid_progress_is_not_resumed() {
             ..Progress::default()
         },
         surfaces: STANDING,
+        ..Resume::default()
     };
     let mut no_altitude = sane;
     no_altitude.progress.captured.altitude_m = f64::NAN;

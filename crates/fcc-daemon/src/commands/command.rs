@@ -1,15 +1,15 @@
 //! `fccd command`: commands to a daemon on this machine.
 
 use fcc_core::flight::Autopilot;
-use fcc_live::{Command, CommandError, Commander, NarrowerLimits};
+use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
+use fcc_live::{Command, CommandError, Commander, PlantLimits};
 use fcc_telemetry::units::AVIATION;
 use serde::Serialize;
 
-use super::fail;
+use super::failure::Failure;
 use crate::cli::{CommandArgs, CommandChoice, SetArgs};
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::config::{FOOT_M, KNOT_MPS};
 
 #[derive(Serialize)]
 struct Sent {
@@ -22,13 +22,12 @@ struct Sent {
 }
 
 /// Sends a command and prints the result.
-pub(super) fn command(args: &CommandArgs) -> Exit {
+pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     let command = Command::from(&args.what);
-    // The limits for any aircraft; the daemon knows those of its own.
-    if let Err(error) = command.for_the_loop::<Autopilot>(&NarrowerLimits::new()) {
-        fail(&error.text_in(AVIATION));
-        return Exit::Usage;
-    }
+    // By the limits for any aircraft; the daemon knows those of its own.
+    command
+        .for_the_loop::<Autopilot>(&PlantLimits::new())
+        .map_err(|error| Failure::of(Exit::Usage, error.text_in(AVIATION)))?;
     let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(&command));
     let exit = match &result {
         Ok(_) => Exit::Success,
@@ -53,14 +52,12 @@ pub(super) fn command(args: &CommandArgs) -> Exit {
             Ok(tick) => {
                 output::result(format!("carried out in tick {tick}"), exit);
             }
-            Err(text) => {
-                fail(&text);
-            }
+            Err(text) => return Err(Failure::of(exit, text)),
         }
     }
     // A command that was carried out is a success, even if the result cannot be
     // printed.
-    exit
+    Ok(exit)
 }
 
 impl From<&CommandChoice> for Command {
@@ -76,10 +73,20 @@ impl From<&CommandChoice> for Command {
 
 impl From<&SetArgs> for Command {
     fn from(set: &SetArgs) -> Self {
+        let altimeter_setting_pa = set
+            .altimeter_hpa
+            .map(|hpa| hpa * HECTOPASCAL_PA)
+            .or_else(|| set.altimeter_inhg.map(|inhg| inhg * INHG_PA));
         let setpoints = [
             ("airspeed_mps", set.airspeed_kt.map(|kt| kt * KNOT_MPS)),
             ("heading_rad", set.heading_deg.map(f64::to_radians)),
             ("altitude_m", set.altitude_ft.map(|ft| ft * FOOT_M)),
+            (
+                "pressure_altitude_m",
+                set.pressure_altitude_ft.map(|ft| ft * FOOT_M),
+            ),
+            ("height_m", set.height_ft.map(|ft| ft * FOOT_M)),
+            ("altimeter_setting_pa", altimeter_setting_pa),
         ];
         let given = setpoints.into_iter();
         Self::set(given.filter_map(|(name, value)| Some((name, value?))))

@@ -6,31 +6,21 @@ use std::sync::atomic::AtomicBool;
 use fcc_runtime::SpawnError;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use super::{fail, outcome};
+use super::failure::Failure;
+use super::outcome;
 use crate::cli::{FlyArgs, RecordingArgs};
 use crate::exit::Exit;
 use crate::observers::{Announcer, Service, StatusLine, aircraft};
 use crate::output;
 use crate::process::{Process, tolerate};
-use fcc_flight::config::{BuiltInSection, Config, GuidanceSection};
+use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::{
     FlyError, Length, Outcome, Pace, Plan, RecordingRequest, assemble, fly as fly_assembly,
 };
 
-/// Legs flown by default.
-const DEFAULT_LEGS: f64 = 8.0;
-/// Duration of a flight without a pattern by default, s.
-const DEFAULT_HOLD_S: f64 = 60.0;
-
 /// Flies the built-in aircraft.
-pub(super) fn fly(args: &FlyArgs) -> Exit {
-    let (mut config, as_given) = match configuration(args) {
-        Ok(configured) => configured,
-        Err(message) => {
-            output::message(message);
-            return Exit::Usage;
-        }
-    };
+pub(super) fn fly(args: &FlyArgs) -> Result<Exit, Failure> {
+    let (mut config, as_given) = configuration(args)?;
     direct(&mut config, &args.recording);
     let plan = Plan {
         pace: if args.lockstep {
@@ -38,10 +28,10 @@ pub(super) fn fly(args: &FlyArgs) -> Exit {
         } else {
             Pace::RealTime
         },
-        length: Length::Engaged(args.seconds.unwrap_or(match config.guidance {
-            GuidanceSection::Hold => DEFAULT_HOLD_S,
-            GuidanceSection::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
-        })),
+        length: Length::Engaged(
+            args.seconds
+                .unwrap_or_else(|| config.guidance.default_length_s()),
+        ),
     };
     conduct(&config, as_given, plan, args.quiet, args.json)
 }
@@ -53,22 +43,16 @@ pub(super) fn conduct(
     plan: Plan,
     quiet: bool,
     json: bool,
-) -> Exit {
-    if let Err(error) = tolerate() {
-        fail(&format!("signals cannot be caught: {error}"));
-        return Exit::Failure;
-    }
-    let mut assembly = match assemble(config) {
-        Ok(assembly) => assembly,
-        Err(error) => {
-            fail(&error.to_string());
-            return if error.is_taken() {
-                Exit::Taken
-            } else {
-                Exit::Failure
-            };
-        }
-    };
+) -> Result<Exit, Failure> {
+    tolerate().map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
+    let mut assembly = assemble(config).map_err(|error| {
+        let exit = if error.is_taken() {
+            Exit::Taken
+        } else {
+            Exit::Failure
+        };
+        Failure::of(exit, error)
+    })?;
     let recording = RecordingRequest::of(config, as_given);
     let mut observers = assembly.observers(config, plan.pace, recording);
     observers.push(Box::new(Announcer::default()));
@@ -86,18 +70,15 @@ pub(super) fn conduct(
         &mut Process::new(config),
     );
     drop(printer);
-    match flown {
-        Ok(outcome) => report(&outcome, json),
-        Err(error) => {
-            let exit = match error {
-                FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeDenied,
-                FlyError::Taken(_) => Exit::Taken,
-                _ => Exit::Failure,
-            };
-            fail(&error.to_string());
-            exit
-        }
-    }
+    let outcome = flown.map_err(|error| {
+        let exit = match error {
+            FlyError::Spawn(SpawnError::Realtime(_)) => Exit::RealtimeDenied,
+            FlyError::Taken(_) => Exit::Taken,
+            _ => Exit::Failure,
+        };
+        Failure::of(exit, error)
+    })?;
+    Ok(report(&outcome, json))
 }
 
 fn report(outcome: &Outcome, json: bool) -> Exit {
@@ -126,11 +107,12 @@ pub(super) fn direct(config: &mut Config, args: &RecordingArgs) {
 }
 
 /// The configuration, and the text of its file, if there is one.
-fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
+fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), Failure> {
     let (mut config, as_given) = match &args.config {
-        Some(path) => Config::load_with_text(path)
-            .map(|(config, text)| (config, Some(text)))
-            .map_err(|error| error.to_string())?,
+        Some(path) => {
+            let (config, text) = Config::load_with_text(path)?;
+            (config, Some(text))
+        }
         None => (
             Config {
                 built_in: Some(BuiltInSection::default()),
@@ -140,11 +122,10 @@ fn configuration(args: &FlyArgs) -> Result<(Config, Option<String>), String> {
         ),
     };
     let Some(built_in) = &mut config.built_in else {
-        return Err(
+        return Err(Failure::usage(
             "fccd fly is for the built-in aircraft: give a file with a [built-in] section, \
-             or use fccd run for another"
-                .to_owned(),
-        );
+             or use fccd run for another",
+        ));
     };
     if let Some(instance) = &args.instance {
         config.telemetry.instance = instance.clone();

@@ -1,67 +1,50 @@
 //! `fccd list [DIR]`.
 
-use fcc_record::Entry;
+use fcc_record::{Entry, Listed};
 use fcc_report::recordings_table;
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::ListArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Lists the recordings in a folder, and says which files cannot be read.
-pub(super) fn list(args: &ListArgs) -> Exit {
-    let files = match fcc_record::files(&args.folder) {
-        Ok(files) => files,
-        Err(error) => {
-            return fail(&format!(
-                "{}: cannot be listed: {error}. Give the folder that flights were recorded to",
-                args.folder.display()
-            ));
-        }
-    };
+pub(super) fn list(args: &ListArgs) -> Result<Exit, Failure> {
+    let folder = args.folder.display();
+    let files = fcc_record::files(&args.folder).map_err(|error| {
+        Failure::new(format_args!(
+            "{folder}: cannot be listed: {error}. Give the folder that flights were recorded to"
+        ))
+    })?;
     let bytes = |path: &std::path::PathBuf| path.metadata().map_or(0, |metadata| metadata.len());
     let bar = progress::bar(files.iter().map(bytes).sum(), "reading");
-    let mut entries: Vec<Entry> = Vec::new();
-    let mut refused = Vec::new();
-    for path in &files {
-        let entry = if args.quick {
-            fcc_record::glance(path)
-        } else {
-            fcc_record::entry(path)
-        };
-        match entry {
-            Ok(entry) => entries.push(entry),
-            Err(error) => refused.push(error),
-        }
-        bar.inc(bytes(path));
+    let mut listed = Vec::new();
+    for path in files {
+        let bytes = bytes(&path);
+        listed.push(Listed::of(path, args.quick));
+        bar.inc(bytes);
     }
     bar.finish_and_clear();
-    for error in &refused {
-        output::message(error.to_string().replace('\n', "\\n"));
+    let errors: Vec<String> = listed.iter().flat_map(Listed::errors).collect();
+    for error in &errors {
+        output::message(error.replace('\n', "\\n"));
     }
-    let is_damaged = |entry: &Entry| !entry.damages.is_empty();
-    let exit = if entries.iter().any(is_damaged) || !refused.is_empty() {
-        Exit::Incomplete
-    } else {
+    let exit = if errors.is_empty() {
         Exit::Success
+    } else {
+        Exit::Incomplete
     };
     if args.json {
-        return output::json(&entries, exit);
+        return Ok(output::json(&listed, exit));
     }
-    for entry in &entries {
-        for damage in &entry.damages {
-            output::message(format!("{}: is {damage}", entry.path.display()));
-        }
-    }
+    let are_some = !listed.is_empty();
+    let entries: Vec<Entry> = listed.into_iter().filter_map(Listed::entry).collect();
     let text = if entries.is_empty() {
-        let readable = if refused.is_empty() {
-            ""
-        } else {
-            " that can be read"
-        };
-        format!("{}: no recordings{readable}", args.folder.display())
+        let readable = if are_some { " that can be read" } else { "" };
+        format!("{folder}: no recordings{readable}")
     } else {
         recordings_table(&entries)
     };
-    output::result(text, exit)
+    Ok(output::result(text, exit))
 }

@@ -5,6 +5,7 @@ mod check;
 #[cfg(feature = "live")]
 mod command;
 mod doctor;
+mod failure;
 mod fly;
 mod list;
 mod outcome;
@@ -25,6 +26,8 @@ use std::path::Path;
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
 
+use failure::Failure;
+
 use crate::cli::{Action, Cli};
 use crate::exit::Exit;
 use crate::output;
@@ -32,40 +35,48 @@ use crate::output;
 /// Runs the command of the command line.
 pub fn run() -> Exit {
     match Cli::try_parse() {
-        Ok(cli) => carry_out(cli.command),
+        Ok(cli) => {
+            let json = cli.command.json();
+            carry_out(cli.command).unwrap_or_else(|failure| failure.print(json))
+        }
         // Only an error in the command line concerns the terminal.
         Err(error) if error.use_stderr() => {
+            let json = std::env::args_os().any(|argument| argument == "--json");
+            let message = error.render();
+            if json {
+                return Failure::usage(message).print(json);
+            }
             let _ = error.print();
             Exit::Usage
         }
         Err(help) => match help.print() {
             Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-                fail(&format!("the help could not be printed: {error}"))
+                Failure::new(format_args!("the help could not be printed: {error}")).print(false)
             }
             _ => Exit::Success,
         },
     }
 }
 
-fn carry_out(command: Action) -> Exit {
-    match command {
-        Action::Fly(args) => fly::fly(&args),
-        Action::Run(args) => run::run(&args),
-        Action::List(args) => list::list(&args),
-        Action::Recover(args) => recover::recover(&args),
-        Action::Timing(args) => timing::timing(&args),
-        Action::Replay(args) => replay::replay(&args),
+fn carry_out(command: Action) -> Result<Exit, Failure> {
+    Ok(match command {
+        Action::Fly(args) => fly::fly(&args)?,
+        Action::Run(args) => run::run(&args)?,
+        Action::List(args) => list::list(&args)?,
+        Action::Recover(args) => recover::recover(&args)?,
+        Action::Timing(args) => timing::timing(&args)?,
+        Action::Replay(args) => replay::replay(&args)?,
         #[cfg(feature = "live")]
-        Action::Command(args) => command::command(&args),
+        Action::Command(args) => command::command(&args)?,
         #[cfg(feature = "live")]
-        Action::Top(args) => top::top(&args),
+        Action::Top(args) => top::top(&args)?,
         Action::Check(args) => check::check(&args),
-        Action::Doctor(args) => doctor::doctor(&args),
-        Action::Report(args) => report::report(&args),
-        Action::ReleaseHelper => release_helper::release_helper(),
+        Action::Doctor(args) => doctor::doctor(&args)?,
+        Action::Report(args) => report::report(&args)?,
+        Action::ReleaseHelper => release_helper::release_helper()?,
         Action::Completions { shell } => completions(shell),
-        Action::Man { folder } => man(&folder),
-    }
+        Action::Man { folder } => man(&folder)?,
+    })
 }
 
 fn completions(shell: Shell) -> Exit {
@@ -76,17 +87,9 @@ fn completions(shell: Shell) -> Exit {
 }
 
 /// Writes manual pages for the program and each command.
-fn man(folder: &Path) -> Exit {
-    let written =
-        fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
-    match written {
-        Ok(()) => Exit::Success,
-        Err(error) => fail(&format!("{}: {error}", folder.display())),
-    }
-}
-
-/// Prints an error.
-fn fail(message: &str) -> Exit {
-    output::message(format!("fccd: {message}"));
-    Exit::Failure
+fn man(folder: &Path) -> Result<Exit, Failure> {
+    fs::create_dir_all(folder)
+        .and_then(|()| clap_mangen::generate_to(Cli::command(), folder))
+        .map_err(|error| Failure::new(format_args!("{}: {error}", folder.display())))?;
+    Ok(Exit::Success)
 }

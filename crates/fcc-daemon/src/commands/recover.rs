@@ -4,30 +4,29 @@ use std::fs;
 
 use fcc_record::Recovered;
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::RecoverArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Recovers a recording that is unfinished or damaged.
-pub(super) fn recover(args: &RecoverArgs) -> Exit {
+pub(super) fn recover(args: &RecoverArgs) -> Result<Exit, Failure> {
     let bytes = fs::metadata(&args.file).map_or(0, |metadata| metadata.len());
     let bar = progress::bar(bytes, "recovering");
     let recovered = fcc_record::recover(&args.file, |read| bar.set_position(read));
     bar.finish_and_clear();
-    let recovered = match recovered {
-        Err(error) => return fail(&error.to_string()),
-        Ok(recovered) => recovered,
-    };
+    let recovered = recovered.map_err(Failure::new)?;
     let exit = if recovered.damages.is_empty() {
         Exit::Success
     } else {
         Exit::Incomplete
     };
-    if args.json {
-        return output::json(&recovered, exit);
-    }
-    output::result(description(&recovered), exit)
+    Ok(if args.json {
+        output::json(&recovered, exit)
+    } else {
+        output::result(description(&recovered), exit)
+    })
 }
 
 fn description(recovered: &Recovered) -> String {

@@ -11,7 +11,8 @@ use fcc_record::create_output;
 use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::ReplayArgs;
 use crate::exit::Exit;
 use crate::output;
@@ -34,36 +35,20 @@ struct Outcome {
 }
 
 /// Replays a recording.
-pub(super) fn replay(args: &ReplayArgs) -> Exit {
-    let chain = match Chain::open::<Autopilot>(&args.files) {
-        Ok(chain) => chain,
-        Err(error) => {
-            fail(&error.to_string());
-            return if error.is_another_plant() {
-                Exit::Usage
-            } else {
-                Exit::NotReplayed
-            };
-        }
-    };
-    let recorded = match recorded_config(&chain) {
-        Ok(recorded) => recorded,
-        Err(error) => {
-            fail(&error.to_string());
-            return Exit::NotReplayed;
-        }
-    };
-    let other = match args.config.as_deref().map(Config::load).transpose() {
-        Ok(other) => other,
-        Err(error) => {
-            output::message(error);
-            return Exit::Usage;
-        }
-    };
-    match run(&chain, &recorded, other, args) {
-        Ok(outcome) => outcome.print(args.json),
-        Err(message) => fail(&message),
-    }
+pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
+    let chain = Chain::open::<Autopilot>(&args.files).map_err(|error| {
+        let exit = if error.is_another_plant() {
+            Exit::Usage
+        } else {
+            Exit::NotReplayed
+        };
+        Failure::of(exit, error)
+    })?;
+    let recorded =
+        recorded_config(&chain).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
+    let other = args.config.as_deref().map(Config::load).transpose()?;
+    let outcome = run(&chain, &recorded, other, args).map_err(Failure::new)?;
+    Ok(outcome.print(args.json))
 }
 
 /// Replays with the recorded configuration or another, and compares.

@@ -1,48 +1,41 @@
 //! `fccd report FILE`: a report on a recording.
 
-use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::guidance::TimedPatternConfig;
+use fcc_flight::replay::recorded_pattern;
 use fcc_record::{OpenError, Recording};
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
+use fcc_telemetry::FlightMessage;
 
-use super::{fail, progress};
+use super::failure::Failure;
+use super::progress;
 use crate::cli::ReportArgs;
 use crate::exit::Exit;
 use crate::output;
-use fcc_flight::config::Config;
-use fcc_telemetry::FlightMessage;
 
 /// Reads a recording and reports on it.
-pub(super) fn report(args: &ReportArgs) -> Exit {
-    let recording = match Recording::open_as::<FlightMessage>(&args.file) {
-        Ok(recording) => recording,
-        Err(error) => {
-            fail(&error.to_string());
-            return match error {
-                OpenError::AnotherPlant { .. } => Exit::Usage,
-                _ => Exit::Failure,
-            };
-        }
-    };
-    let report = match make(args, &recording) {
-        Ok(report) => report,
-        Err(message) => return fail(&message),
-    };
+pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
+    let recording = Recording::open_as::<FlightMessage>(&args.file).map_err(|error| {
+        let exit = match error {
+            OpenError::AnotherPlant { .. } => Exit::Usage,
+            _ => Exit::Failure,
+        };
+        Failure::of(exit, error)
+    })?;
+    let report = make(args, &recording).map_err(Failure::new)?;
     let exit = if report.is_complete() || fcc_record::is_being_written(&args.file) {
         Exit::Success
     } else {
         Exit::Incomplete
     };
-    if args.json {
+    Ok(if args.json {
         output::json(&report, exit)
     } else {
         output::result(report.to_text(), exit)
-    }
+    })
 }
 
 fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String> {
     let bar = progress::bar(recording.bytes(), "reading");
-    let addition = FlightAddition::new(pattern(recording));
+    let addition = FlightAddition::new(recorded_pattern(recording.about()));
     let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
@@ -54,14 +47,4 @@ fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String
         report.write_page(page, &args.file)?;
     }
     Ok(report)
-}
-
-/// The pattern in the recorded configuration; a configuration of another
-/// version may be invalid, and then nothing is scored.
-fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
-    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.guidance {
-        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-        GuidanceConfig::Hold => None,
-    }
 }

@@ -1,29 +1,22 @@
 //! `fccd run`: flies the aircraft of a configuration until stopped.
 
+use super::failure::Failure;
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::exit::Exit;
-use crate::output;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Length, Pace, Plan};
 
 /// Flies a configuration until stopped.
-pub(super) fn run(args: &RunArgs) -> Exit {
-    match Config::load_with_text(&args.config) {
-        Ok((mut config, text)) => {
-            direct(&mut config, &args.recording);
-            if let Some(instance) = &args.instance {
-                config.telemetry.instance = instance.clone();
-            }
-            let plan = Plan {
-                pace: Pace::RealTime,
-                length: Length::Open,
-            };
-            conduct(&config, Some(text), plan, args.quiet, args.json)
-        }
-        Err(error) => {
-            output::message(error);
-            Exit::Usage
-        }
+pub(super) fn run(args: &RunArgs) -> Result<Exit, Failure> {
+    let (mut config, text) = Config::load_with_text(&args.config)?;
+    direct(&mut config, &args.recording);
+    if let Some(instance) = &args.instance {
+        config.telemetry.instance = instance.clone();
     }
+    let plan = Plan {
+        pace: Pace::RealTime,
+        length: Length::Open,
+    };
+    conduct(&config, Some(text), plan, args.quiet, args.json)
 }

@@ -10,7 +10,7 @@ use fcc_report::timing_table;
 use fcc_telemetry::TimingReport;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::fail;
+use super::failure::Failure;
 use crate::cli::TimingArgs;
 use crate::exit::Exit;
 use crate::output;
@@ -19,18 +19,16 @@ use fcc_flight::config::{BuiltInSection, Config, EarlyWakeSection, GuidanceSecti
 use fcc_flight::flight::{Length, Pace, Plan, assemble, fly};
 
 /// Measures at each rate.
-pub(super) fn timing(args: &TimingArgs) -> Exit {
-    let mut reports = Vec::new();
-    for rate_hz in &args.rates {
-        match measure(args, *rate_hz) {
-            Ok(report) => reports.push(report),
-            Err(message) => return fail(&message),
-        }
-    }
-    if args.json {
-        return output::json(&reports, Exit::Success);
-    }
-    output::result(timing_table(&reports), Exit::Success)
+pub(super) fn timing(args: &TimingArgs) -> Result<Exit, Failure> {
+    let measured = args.rates.iter().map(|rate_hz| measure(args, *rate_hz));
+    let reports = measured
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(Failure::new)?;
+    Ok(if args.json {
+        output::json(&reports, Exit::Success)
+    } else {
+        output::result(timing_table(&reports), Exit::Success)
+    })
 }
 
 fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
@@ -65,7 +63,7 @@ fn measure(args: &TimingArgs, rate_hz: f64) -> Result<TimingReport, String> {
     progress.stop();
     let outcome = outcome?;
     if outcome.interrupted {
-        return Err("interrupted by a signal: nothing is reported".to_owned());
+        return Err(format!("{}: nothing is reported", outcome.ending));
     }
     Ok(outcome.timing)
 }
@@ -74,7 +72,7 @@ fn early_wake(args: &TimingArgs) -> EarlyWakeSection {
     let usual = EarlyWakeSection::default();
     let max_us = args.max_margin.unwrap_or(usual.max_us);
     EarlyWakeSection {
-        enabled: args.early_wake.into(),
+        enabled: args.early_wake,
         min_us: usual.min_us.min(max_us),
         max_us,
         cpu_cap_percent: args.cpu_cap.unwrap_or(usual.cpu_cap_percent),

@@ -3,21 +3,18 @@
 use fcc_core::flight::Autopilot;
 use fcc_live::Watcher;
 
-use super::fail;
+use super::failure::Failure;
 use crate::cli::TopArgs;
 use crate::exit::Exit;
 use crate::output;
 
 /// Watches a daemon.
-pub(super) fn top(args: &TopArgs) -> Exit {
+pub(super) fn top(args: &TopArgs) -> Result<Exit, Failure> {
     if args.json {
-        return match Watcher::open(&args.instance).and_then(fcc_top::snapshot) {
-            Ok(snapshot) => output::json(&snapshot, Exit::Success),
-            Err(error) => fail(&error.to_string()),
-        };
+        let snapshot = Watcher::open(&args.instance).and_then(fcc_top::snapshot);
+        let snapshot = snapshot.map_err(Failure::new)?;
+        return Ok(output::json(&snapshot, Exit::Success));
     }
-    match fcc_top::top::<Autopilot>(&args.instance) {
-        Ok(()) => Exit::Success,
-        Err(error) => fail(&error.to_string()),
-    }
+    fcc_top::top::<Autopilot>(&args.instance).map_err(Failure::new)?;
+    Ok(Exit::Success)
 }

@@ -28,6 +28,7 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
         (Grade::Lacks, "Lacking"),
         (Grade::CouldBeBetter, "Could be better"),
         (Grade::Ok, "To make use of it"),
+        (Grade::NotKnown, "Not known"),
     ] {
         let mut todo = findings
             .iter()
@@ -49,7 +50,7 @@ pub(super) fn text(diagnosis: &Diagnosis) -> String {
     }
     let _ = write!(
         text,
-        "\n{} ok, {} could be better, {} lacking, {} not known",
+        "\n✓ {} ok, ~ {} could be better, ✗ {} lacking, ? {} not known on this machine",
         diagnosis.count(Grade::Ok),
         diagnosis.count(Grade::CouldBeBetter),
         diagnosis.count(Grade::Lacks),

@@ -1,8 +1,8 @@
 //! The aircraft in a status line.
 
 use fcc_core::framework::State;
-use fcc_telemetry::FlightRecord;
 use fcc_telemetry::units::{M_FT, MPS_KT};
+use fcc_telemetry::{FlightRecord, ShownAltitude};
 
 /// Attitude, altitude and airspeed, and while engaged what is commanded; none
 /// before they are measured.
@@ -12,7 +12,12 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
         return None;
     }
     let heading = compass(measured.heading_rad.value);
-    let altitude = measured.altitude_m.value * M_FT;
+    let shown = ShownAltitude::of(record);
+    let name = shown.name;
+    let altitude = (measured.altitude_m.value - shown.datum_m) * M_FT;
+    let by = shown
+        .setting_hpa
+        .map_or_else(String::new, |hpa| format!(" by {hpa:.1} hPa"));
     let airspeed = measured.airspeed_mps.value * MPS_KT;
     // Plus zero, because a rounded -0 looks like an error.
     let bank = measured.attitude.value.roll_rad.to_degrees().round() + 0.0;
@@ -20,17 +25,17 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     Some(if record.state == State::Engaged {
         format!(
             "{}  heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
-             altitude {altitude:5.0} → {:5.0} ft  airspeed {airspeed:5.1} → {:5.1} kt  \
+             {name} {altitude:5.0} → {:5.0} ft{by}  airspeed {airspeed:5.1} → {:5.1} kt  \
              throttle {:3.0} %",
             desired.guidance,
             compass(desired.heading_rad),
-            desired.altitude_m * M_FT,
+            (desired.altitude_m - shown.datum_m) * M_FT,
             desired.airspeed_mps * MPS_KT,
             record.outputs.throttle * 100.0,
         )
     } else {
         format!(
-            "heading {heading:3.0}°  bank {bank:3.0}°  altitude {altitude:5.0} ft  \
+            "heading {heading:3.0}°  bank {bank:3.0}°  {name} {altitude:5.0} ft{by}  \
              airspeed {airspeed:5.1} kt"
         )
     })

@@ -25,7 +25,9 @@ impl<C: Controller> Observer<C> for Announcer {
 
     fn report(&mut self, report: &Report, at: &FlightTime) {
         match report {
-            Report::Remark(text) | Report::Mention(text) => announce(text, at),
+            Report::Remark(text) => announce(text, at),
+            // It is not of a tick: in lockstep the loop is ahead of it.
+            Report::Mention(text) => output::message(format!("{:10}  {text}", "")),
             Report::Recording(_) => {}
         }
     }

@@ -147,8 +147,8 @@ impl Host for Process<'_> {
         }
     }
 
-    fn was_interrupted(&self) -> bool {
-        self.caught.interrupted.load(Ordering::Relaxed)
+    fn interrupted_by(&self) -> Option<&'static str> {
+        self.caught.interrupted_by()
     }
 }
 

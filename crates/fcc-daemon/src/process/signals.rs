@@ -4,7 +4,7 @@
 use std::fs;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fcc_runtime::StopHandle;
 use nix::sys::signal::{SigSet, Signal};
@@ -32,10 +32,25 @@ pub(crate) fn tolerate() -> io::Result<()> {
 /// What the signals have done.
 #[derive(Default)]
 pub(super) struct Caught {
-    /// It was a signal that ended the flight.
-    pub(super) interrupted: Arc<AtomicBool>,
+    /// The number of the signal that ended the flight, 0 for none.
+    ended_by: Arc<AtomicUsize>,
     /// Ctrl-Z was pressed, and had no effect.
     pub(super) suspended: Arc<AtomicBool>,
+}
+
+impl Caught {
+    /// The signal that ended the flight, as text for users.
+    pub(super) fn interrupted_by(&self) -> Option<&'static str> {
+        let number = self.ended_by.load(Ordering::Relaxed);
+        ENDING
+            .into_iter()
+            .find(|signal| *signal as usize == number)
+            .map(|signal| match signal {
+                Signal::SIGINT => "Ctrl-C (SIGINT)",
+                Signal::SIGHUP => "the end of its terminal (SIGHUP)",
+                other => other.as_str(),
+            })
+    }
 }
 
 /// The signals set the loop's stop flag, which is safe in a signal handler; the
@@ -44,9 +59,9 @@ pub(super) fn stop_by(stop: &StopHandle) -> io::Result<Caught> {
     let caught = Caught::default();
     signal_hook::flag::register(Signal::SIGTSTP as i32, Arc::clone(&caught.suspended))?;
     for signal in ENDING.into_iter().filter(|signal| !is_ignored(*signal)) {
-        for flag in [stop.flag(), Arc::clone(&caught.interrupted)] {
-            signal_hook::flag::register(signal as i32, flag)?;
-        }
+        let (signal, number) = (signal as i32, signal as usize);
+        signal_hook::flag::register_usize(signal, Arc::clone(&caught.ended_by), number)?;
+        signal_hook::flag::register(signal, stop.flag())?;
     }
     Ok(caught)
 }

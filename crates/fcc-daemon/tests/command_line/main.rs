@@ -1,7 +1,6 @@
 //! The program as a shell uses it: what it prints, what happens when printing
 //! fails, and how it ends.
 #![cfg(test)]
-#![cfg(test)]
 
 mod damaged;
 mod output;

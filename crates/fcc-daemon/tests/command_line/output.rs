@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io;
 use std::process::Stdio;
 
+use serde_json::Value;
+
 use super::{fccd, fly};
 
 /// A device on which every write fails: no space left.
@@ -130,6 +132,54 @@ fn control_characters_in_names_are_escaped() {
             "{said}"
         );
     }
+}
+
+/// As the README says: the key `error`, the text of standard error, and the exit
+/// codes of `fccd --help`.
+#[test]
+fn every_command_reports_an_error_as_json() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("wrong.toml"), "[lop]\n").unwrap();
+    let instance = format!("json-{}", std::process::id());
+    for (words, exit) in [
+        (&["fly", "--config", "wrong.toml"][..], 2),
+        (&["fly", "--seconds", "-1"], 2),
+        (&["run", "--config", "wrong.toml"], 2),
+        (&["run"], 2),
+        (&["list", "none"], 1),
+        (&["recover", "none.mcap"], 1),
+        (&["timing", "--rate", "0"], 2),
+        (&["replay", "none.mcap"], 8),
+        (&["top", "--instance", &instance], 1),
+        (&["command", "engage", "--instance", &instance], 1),
+        (&["command", "set", "--altitude-ft", "1e6"], 2),
+        (&["doctor", "--config", "wrong.toml"], 2),
+        (&["report", "none.mcap"], 1),
+    ] {
+        let ended = fccd(folder.path(), words).arg("--json").output().unwrap();
+        assert_eq!(ended.status.code(), Some(exit), "{words:?}");
+        let printed: Value = serde_json::from_slice(&ended.stdout).unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        // A refused command's object has the same keys as one carried out.
+        let error = printed.get("error").or(printed.get("why"));
+        let error = error.and_then(Value::as_str).unwrap();
+        assert!(said.is_empty() || said.contains(error), "{said}{error}");
+    }
+}
+
+#[test]
+fn a_list_as_json_contains_files_that_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    fly(folder.path());
+    let recordings = folder.path().join("recordings");
+    std::fs::write(recordings.join("0.mcap"), "no recording").unwrap();
+    let ended = fccd(folder.path(), &["list", "--json"]).output().unwrap();
+    assert_eq!(ended.status.code(), Some(13));
+    let listed: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    assert_eq!(listed[0]["path"], "recordings/0.mcap");
+    let error = listed[0]["error"].as_str().unwrap();
+    assert!(error.contains("not a recording of fccd"), "{error}");
+    assert_eq!(listed[1]["file"], "whole");
 }
 
 /// A name need not be UTF-8.

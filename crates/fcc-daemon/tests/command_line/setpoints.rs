@@ -24,7 +24,26 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
             "fccd: refused: airspeed is 300 kt: choose 73 to 127 kt".to_owned()
         )
     );
+    assert_eq!(
+        command(&["--height-ft", "1000"]),
+        (
+            Some(11),
+            "fccd: refused: a height needs the elevation of its field: set \
+             altimeter.field_elevation_ft in the configuration, or give an altitude"
+                .to_owned()
+        )
+    );
+    let carried_out = command(&["--altimeter-inhg", "30.2", "--altitude-ft", "3200"]);
+    assert_eq!(carried_out, (Some(0), String::new()));
     for (words, said) in [
+        (
+            ["--altimeter-inhg", "1013"],
+            "fccd: altimeter setting is 34304.12 hPa: choose 940 to 1060 hPa",
+        ),
+        (
+            ["--pressure-altitude-ft", "1e6"],
+            "fccd: pressure altitude is 1000000 ft: choose -1640.42 to 65616.8 ft",
+        ),
         (
             ["--heading-deg", "400"],
             "fccd: heading is 400°: choose -360 to 360°",

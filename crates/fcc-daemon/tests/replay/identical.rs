@@ -32,16 +32,22 @@ fn every_kind_of_command() {
         AutopilotCommand::Altitude(1_000.0),
         AutopilotCommand::Airspeed(55.0),
         AutopilotCommand::Heading(f64::NAN),
+        AutopilotCommand::AltimeterSetting(102_000.0),
+        AutopilotCommand::Height(500.0),
+        AutopilotCommand::PressureAltitude(900.0),
     ];
     let mut commands = vec![
         // Several in a tick, one to the loop among them.
         (400, LoopCommand::Controller(targets[0])),
         (400, LoopCommand::Controller(targets[1])),
+        (600, LoopCommand::Controller(targets[4])),
+        (700, LoopCommand::Controller(targets[6])),
         (800, LoopCommand::Disengage),
         (800, LoopCommand::Controller(targets[2])),
         (900, LoopCommand::Engage),
         (900, LoopCommand::Controller(targets[0])),
         (1_000, LoopCommand::Controller(targets[3])),
+        (1_000, LoopCommand::Controller(targets[5])),
         // Refused: control is released in the same tick.
         (1_100, LoopCommand::Disengage),
         (1_100, LoopCommand::Engage),

@@ -41,7 +41,7 @@ fn a_file_becomes_tables_a_page_and_json() {
         "stop requested",
         "40 Hz thesis",
         "32.593 ms",
-        "Every tick that was served from 1 to 1800 is in the file.",
+        "Every tick from 1 to 1800 is in the file.",
         REMARK,
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");

@@ -6,10 +6,10 @@ use fcc_core::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, Headin
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::navigation::NavigationConfig;
 use fcc_core::flight::{AutopilotConfig, Scale};
+use fcc_core::units::{FOOT_M, GRAVITY_MPS2, KNOT_MPS};
 use serde::{Deserialize, Serialize};
 
 use super::GuidanceSection;
-use super::units::{FOOT_PER_MINUTE_MPS, KNOT_MPS};
 
 /// `[autopilot]`: gains and limits. Omitted keys have the values for a Cessna
 /// 172.
@@ -125,8 +125,8 @@ macro_rules! section {
 
 /// One degree in rad.
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
-/// Standard gravity, m/s².
-const G_MPS2: f64 = 9.806_65;
+/// One foot a minute in m/s.
+const FOOT_PER_MINUTE_MPS: f64 = FOOT_M / 60.0;
 /// The core's unit.
 const SI: f64 = 1.0;
 
@@ -212,9 +212,9 @@ section! {
         /// Rudder per aileron.
         rudder_per_aileron => rudder_per_aileron * SI,
         /// Rudder per g of side force.
-        rudder_per_side_g => side_force_gain * (1.0 / G_MPS2),
+        rudder_per_side_g => side_force_gain * (1.0 / GRAVITY_MPS2),
         /// Rudder per g of side force and second.
-        rudder_per_side_g_s => side_force_integral_gain * (1.0 / G_MPS2),
+        rudder_per_side_g_s => side_force_integral_gain * (1.0 / GRAVITY_MPS2),
         /// Rudder per yaw rate in excess of the turn's.
         yaw_damping => yaw_damping * SI,
     }
@@ -226,9 +226,9 @@ section! {
         /// Climb rate per altitude error.
         altitude_gain_per_s => altitude_gain_per_s * SI,
         /// Planned vertical deceleration of the altitude capture.
-        capture_g => capture_mps2 * G_MPS2,
+        capture_g => capture_mps2 * GRAVITY_MPS2,
         /// Largest rate of change of the commanded climb rate.
-        climb_acceleration_g => climb_acceleration_mps2 * G_MPS2,
+        climb_acceleration_g => climb_acceleration_mps2 * GRAVITY_MPS2,
         /// Path angle per climb-rate error over airspeed.
         climb_rate_gain => climb_rate_gain * SI,
         /// The same, integrated.
@@ -258,7 +258,7 @@ section! {
         /// The same, integrated.
         airspeed_integral_gain_per_s2 => airspeed_integral_gain_per_s2 * SI,
         /// Throttle that accelerates the aircraft by 1 g.
-        throttle_per_g => throttle_per_mps2 * (1.0 / G_MPS2),
+        throttle_per_g => throttle_per_mps2 * (1.0 / GRAVITY_MPS2),
         /// Induced drag over weight at 1 g.
         induced_drag_ratio => induced_drag_ratio * SI,
         /// Largest throttle rate.

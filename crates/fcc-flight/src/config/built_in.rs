@@ -1,9 +1,8 @@
 //! `[built-in]`: the aircraft is the built-in one.
 
+use fcc_core::units::{FOOT_M, KNOT_MPS};
 use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, Wind};
 use serde::{Deserialize, Serialize};
-
-use super::units::{FOOT_M, KNOT_MPS};
 
 /// `[built-in]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]

@@ -89,6 +89,10 @@ impl Entry for SensorEntry {
             _ => reader.table(keys, 1).map(Self::Simulator),
         }
     }
+
+    fn unread() -> Option<Self> {
+        Some(Self::XPlane(Box::default()))
+    }
 }
 
 impl Entry for ActuatorEntry {
@@ -182,18 +186,18 @@ mod tests {
         assert!(own.starts_with("test:3: x-plane.local_port: simulator 127.0.0.1:49557 is the"));
     }
 
-    /// 100 frames a second in 1 tick a second, and 40.
+    /// 250 frames a second in 1 tick a second, and 40.
     #[test]
     fn a_tick_reads_all_datagrams_that_arrive_in_a_period() {
         let few = message("[x-plane]\n[loop]\nrate_hz = 1\n");
         assert!(
-            few.starts_with("test:1: x-plane.datagrams_per_tick: is 64: choose at least 600 ="),
+            few.starts_with("test:1: x-plane.datagrams_per_tick: is 128: choose at least 1000 ="),
             "{few}"
         );
         let one = "[built-in]\n[[sensor]]\nkind = \"x-plane\"\ndatagrams_per_tick = ";
-        let few = message(&format!("{one}14\n"));
-        assert!(few.contains("test:4: sensor[0].datagrams_per_tick: is 14: choose at least 15 ="));
-        kinds(&format!("{one}15\n"));
+        let few = message(&format!("{one}24\n"));
+        assert!(few.contains("test:4: sensor[0].datagrams_per_tick: is 24: choose at least 25 ="));
+        kinds(&format!("{one}25\n"));
     }
 
     #[test]
@@ -207,12 +211,57 @@ mod tests {
             "test:5: sensor[0].rate: there is no such key, did you mean `rate_hz`: choose",
             "test:6: sensor[0].silent_after_ms: is 1: choose 50 to 60000",
             "test:8: sensor[1].kind: is \"x-plan\", did you mean \"x-plane\": choose",
-            "test:10: actuator[0].kind: is no text: choose a text in quotes",
+            "test:10: actuator[0].kind: is a number: choose a text in quotes",
         ];
         assert_eq!(lines.len(), expected.len(), "{all}");
         for (line, begins) in lines.iter().zip(expected) {
             assert!(line.starts_with(begins), "{line}");
         }
+    }
+
+    #[test]
+    fn an_entry_that_cannot_be_read_hides_no_other() {
+        let text = "[[sensor]]\nkind = \"x-plan\"\nrate_hz = 0\n[[sensor]]\nkind = \"x-plane\"\n\
+                    rate_hz = 0\nrat = 1\n[guidance]\nmode = \"loop\"\nhold_s = -1\nleg = 5\n";
+        let all = message(text);
+        let lines: Vec<Vec<&str>> = all
+            .lines()
+            .map(|line| line.split(": ").take(2).collect())
+            .collect();
+        let expected = [
+            ["test:2", "sensor[0].kind"],
+            ["test:6", "sensor[1].rate_hz"],
+            ["test:7", "sensor[1].rat"],
+            ["test:9", "guidance.mode"],
+            ["test:10", "guidance.hold_s"],
+            ["test:11", "guidance.leg"],
+        ];
+        assert_eq!(lines, expected.map(Vec::from), "{all}");
+        let section = message("[built-in]\n[lop]\n");
+        assert!(section.contains("`sensor` or `actuator`"), "{section}");
+        let list = message("sensor = 5\n[built-in]\n");
+        assert!(
+            list.contains("sensor: is a number: choose a list"),
+            "{list}"
+        );
+    }
+
+    /// 250 ms by default.
+    #[test]
+    fn a_fallback_that_comes_too_late_is_reported() {
+        let two = "[x-plane]\nengage_switch = \"sim/mine\"\n[[sensor]]\nkind = \"x-plane\"\n\
+                   fallback_after_ms = ";
+        let remarks = |text: &str| Config::parse(text, "test").unwrap().remarks(text);
+        assert_eq!(remarks(&format!("{two}200\n")), [""; 0]);
+        let [late] = &remarks(&format!("{two}250\n"))[..] else {
+            panic!("one remark");
+        };
+        assert!(
+            late.starts_with("sensor[0].fallback_after_ms is 250"),
+            "{late}"
+        );
+        let alone = "[x-plane]\nengage_switch = \"sim/mine\"\nfallback_after_ms = 300\n";
+        assert_eq!(remarks(alone), [""; 0]);
     }
 
     #[test]
@@ -224,8 +273,9 @@ mod tests {
         let assembly = crate::flight::assemble(&config).unwrap();
         let parts = (assembly.sensors.len(), assembly.actuators.len());
         assert_eq!(parts, (1, 0));
+        let unmoved = message("[[sensor]]\nkind = \"x-plane\"\n");
+        assert!(unmoved.contains("add actuator = []"), "{unmoved}");
         for lacking in [
-            "[[sensor]]\nkind = \"x-plane\"\n",
             "actuator = []\n",
             "actuator = []\n[[sensor]]\nkind = \"simulator\"\n",
         ] {

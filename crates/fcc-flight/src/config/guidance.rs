@@ -1,9 +1,8 @@
 //! `[guidance]`: the mode after engaging.
 
 use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
+use fcc_core::units::FOOT_M;
 use serde::{Deserialize, Serialize};
-
-use super::units::FOOT_M;
 
 const HOLD_S: f64 = 20.0;
 const LEG_S: f64 = 20.0;
@@ -65,6 +64,21 @@ impl TryFrom<Keys> for GuidanceSection {
                 turn_deg: keys.turn_deg.unwrap_or(TURN_DEG),
                 climb_ft: keys.climb_ft.unwrap_or(CLIMB_FT),
             }),
+        }
+    }
+}
+
+/// Legs flown by default.
+const DEFAULT_LEGS: f64 = 8.0;
+/// Duration of a flight without a pattern by default, s.
+const DEFAULT_HOLD_S: f64 = 60.0;
+
+impl GuidanceSection {
+    /// How long an aircraft is flown by default, s from engaging on.
+    pub fn default_length_s(&self) -> f64 {
+        match self {
+            Self::Hold => DEFAULT_HOLD_S,
+            Self::TimedPattern { hold_s, leg_s, .. } => hold_s + DEFAULT_LEGS * leg_s,
         }
     }
 }

@@ -5,6 +5,7 @@
 //! conversion to the core's. Optional keys have defaults; a value out of its
 //! range is refused with line, key and range.
 
+mod altimeter;
 mod as_text;
 mod autopilot;
 mod budget;
@@ -23,7 +24,6 @@ mod restart;
 mod runtime;
 mod similar;
 mod telemetry;
-mod units;
 mod values;
 mod wording;
 mod x_plane;
@@ -36,6 +36,7 @@ use fcc_runtime::{Budget, LoopConfig};
 use fcc_timer::RealtimeRequest;
 use serde::{Deserialize, Serialize};
 
+pub use altimeter::AltimeterSection;
 pub use autopilot::AutopilotSection;
 pub use budget::{BudgetSection, WatchdogSection};
 pub use built_in::{BuiltInSection, GustsChoice};
@@ -44,13 +45,12 @@ pub use devices::{ActuatorEntry, NoKeys, SensorEntry};
 pub use early_wake::EarlyWakeChoice;
 pub use error::{ConfigError, Problem};
 pub use guidance::GuidanceSection;
-pub use recording::{CompressionChoice, RecordingSection};
+pub use recording::RecordingSection;
 pub use restart::{RestartMode, RestartSection};
 pub use runtime::{
     EarlyWakeSection, EngageSection, FailsafeSection, LoopSection, RealtimeSection, Then,
 };
 pub use telemetry::TelemetrySection;
-pub use units::{FOOT_M, KNOT_MPS};
 pub use x_plane::XPlaneSection;
 
 /// A whole configuration file.
@@ -78,6 +78,8 @@ pub struct Config {
     pub telemetry: TelemetrySection,
     /// The mode after engaging.
     pub guidance: GuidanceSection,
+    /// The altimeter setting.
+    pub altimeter: AltimeterSection,
     /// Gains and limits.
     pub autopilot: AutopilotSection,
     /// The aircraft is X-Plane's.
@@ -87,10 +89,16 @@ pub struct Config {
     #[serde(rename = "built-in", skip_serializing_if = "Option::is_none")]
     pub built_in: Option<BuiltInSection>,
     /// Sensors in addition to the simulator's, the most preferred first.
-    #[serde(skip_serializing_if = "Vec::is_empty", skip_deserializing)]
+    #[serde(
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "read::apart"
+    )]
     pub sensor: Vec<SensorEntry>,
     /// The actuators; the simulator's without a list.
-    #[serde(skip_serializing_if = "Option::is_none", skip_deserializing)]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "read::apart"
+    )]
     pub actuator: Option<Vec<ActuatorEntry>>,
 }
 
@@ -102,14 +110,8 @@ fn checked(read: read::Read<'_>, file: &str) -> Result<Config, ConfigError> {
         mut problems,
         places,
     } = read;
-    // A section that could not be read may be reported as missing; report each
-    // line once.
-    let unread: Vec<_> = problems.iter().map(|problem| problem.line).collect();
-    let more = ranges::check(&config, &places);
-    problems.extend(more.into_iter().filter(|problem| match problem.line {
-        None => unread.is_empty(),
-        line => !unread.contains(&line),
-    }));
+    let more = ranges::check(&config, &places, &problems);
+    problems.extend(more);
     problems.sort_by_key(|problem| problem.line);
     if problems.is_empty() {
         return Ok(config);
@@ -210,6 +212,22 @@ impl Config {
         if self.actuators().is_empty() {
             remarks.push(NO_ACTUATOR.to_owned());
         }
+        let sensors: Vec<_> = self.sensors().enumerate().collect();
+        let most = self.failsafe.sensor_max_age_ms;
+        // After the last there is no other to fall back to.
+        for (at, sensor) in sensors.iter().rev().skip(1).rev() {
+            let (key, section) = match sensor {
+                SensorEntry::Simulator(_) => ("x-plane".to_owned(), self.x_plane.as_ref()),
+                SensorEntry::XPlane(section) => (format!("sensor[{at}]"), Some(section.as_ref())),
+            };
+            if let Some(section) = section.filter(|section| section.fallback_after_ms >= most) {
+                remarks.push(format!(
+                    "{key}.fallback_after_ms is {}, failsafe.sensor_max_age_ms is {most}: if this \
+                     sensor is lost, failsafe comes before the next sensor is used; choose less",
+                    section.fallback_after_ms
+                ));
+            }
+        }
         remarks
     }
 
@@ -217,6 +235,7 @@ impl Config {
     pub fn autopilot_config(&self) -> AutopilotConfig {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
+            altimeter: (&self.altimeter).into(),
             ..self.autopilot.to_core(
                 &self.guidance,
                 Duration::from_millis(self.failsafe.sensor_max_age_ms),

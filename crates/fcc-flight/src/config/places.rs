@@ -19,16 +19,37 @@ impl<'a> Places<'a> {
 
     /// Whether the text contains a key.
     pub(super) fn has(&self, key: &str) -> bool {
-        let (sections, name) = key.rsplit_once('.').unwrap_or(("", key));
-        let sections = sections.split('.').filter(|section| !section.is_empty());
-        let mut table = self.table.get_ref();
-        for section in sections {
-            match table.get(section).map(|value| value.get_ref().as_table()) {
-                Some(Some(inner)) => table = inner,
-                _ => return false,
-            }
+        self.value(key).is_some()
+    }
+
+    /// The value of a key as it is given, valid or not.
+    pub(super) fn value(&self, key: &str) -> Option<&DeValue<'a>> {
+        let mut table = Some(self.table.get_ref());
+        let mut found = None;
+        for part in key.split('.') {
+            let (name, index) = indexed(part);
+            let value = table?.get(name)?.get_ref();
+            let value = match index {
+                Some(index) => value.as_array()?.get(index)?.get_ref(),
+                None => value,
+            };
+            table = value.as_table();
+            found = Some(value);
         }
-        table.contains_key(name)
+        found
+    }
+
+    /// The number of a key; none if it is not given, or no number.
+    pub(super) fn number(&self, key: &str) -> Option<f64> {
+        match self.value(key)? {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            DeValue::Integer(integer) => {
+                let integer = i128::from_str_radix(integer.as_str(), integer.radix());
+                integer.ok().map(|integer| integer as f64)
+            }
+            _ => None,
+        }
     }
 
     /// The line of a key or, if it is not in the text, of its section.

@@ -5,9 +5,10 @@
 
 use fcc_telemetry::units::number;
 use fcc_xplane::{XPlaneConfig, XPlaneConfigError};
+use toml::de::DeValue;
 
 use super::places::Places;
-use super::{Config, Problem, XPlaneSection, relations};
+use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
@@ -41,6 +42,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("guidance.leg_s", 1.0, 86_400.0),
     ("guidance.turn_deg", -179.0, 179.0),
     ("guidance.climb_ft", -5_000.0, 5_000.0),
+    ("altimeter.setting_hpa", 940.0, 1_060.0),
+    ("altimeter.field_elevation_ft", -1_500.0, 20_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
     ("autopilot.scale.elevator", 0.01, 100.0),
     ("autopilot.scale.aileron", 0.01, 100.0),
@@ -105,6 +108,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.airspeed.max_throttle_rate_per_s", 0.01, 100.0),
     ("autopilot.airspeed.trim_throttle", 0.0, 1.0),
     ("x-plane.local_port", 0.0, 65_535.0),
+    ("x-plane.reply_port", 0.0, 65_535.0),
     ("x-plane.data_version", 9.0, 12.0),
     ("x-plane.magnetic_heading_column", 2.0, 7.0),
     ("x-plane.rate_hz", 1.0, 1_000.0),
@@ -136,90 +140,108 @@ pub(super) fn in_words((least, most): (f64, f64)) -> String {
     format!("{} to {}", number(least), number(most))
 }
 
-/// All errors in the values of a configuration, in the order of the text.
-pub(super) fn check(config: &Config, places: &Places<'_>) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    let mut report = |key: &str, message: String| {
-        problems.push(Problem {
-            line: places.nearest_line(key),
-            key: Some(key.to_owned()),
-            message,
-        });
+/// All errors in the values of a configuration other than those of the reader.
+pub(super) fn check(config: &Config, places: &Places<'_>, unread: &[Problem]) -> Vec<Problem> {
+    let mut problems = out_of_range(places);
+    problems.retain(|problem| {
+        let is_same = |other: &Problem| (other.line, &other.key) == (problem.line, &problem.key);
+        !unread.iter().any(is_same)
+    });
+    // A section that could not be read may be reported as missing: a line that
+    // was reported is not reported again.
+    let is_read = |line: Option<usize>| match line {
+        None => unread.is_empty(),
+        line => !unread.iter().any(|problem| problem.line == line),
     };
-    if let Ok(values) = toml::Value::try_from(config) {
-        for (key, least, most) in RANGES {
-            for (key, value) in numbers_at(&values, key) {
-                if !(*least..=*most).contains(&value) {
-                    let (value, range) = (number(value), in_words((*least, *most)));
-                    report(&key, format!("is {value}: choose {range}"));
-                }
-            }
-        }
-    } else {
-        // TOML has no integers above i64.
-        let range = range_of("built-in.seed").map_or_else(String::new, in_words);
-        report("built-in.seed", format!("is too large: choose {range}"));
-    }
-    relations::check(config, &mut report);
+    let mut others = Vec::new();
+    relations::check(config, &mut |key: &str, message: String| {
+        others.push(problem_at(places, key, message));
+    });
     for (at, section) in config.x_planes() {
-        x_plane(&at, section, &mut problems, places);
+        others.extend(x_plane(&at, section, &problems, places));
     }
-    let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
-    if !has_simulator && !config.is_without_simulator() {
-        problems.push(Problem {
-            line: None,
-            key: None,
-            message: "has neither [x-plane] nor [built-in]: add the section of the aircraft that \
-                      is to be flown, or list sensors and actuators that need none"
-                .to_owned(),
-        });
-    }
-    problems.sort_by_key(|problem| problem.line);
+    others.extend(without_aircraft(config));
+    problems.extend(others.into_iter().filter(|problem| is_read(problem.line)));
     problems
 }
 
-/// Errors found by the adapter itself, other than those of ranges.
-fn x_plane(at: &str, section: &XPlaneSection, problems: &mut Vec<Problem>, places: &Places<'_>) {
-    let Err(error) = XPlaneConfig::from(section).validate() else {
-        return;
-    };
-    let key = match error {
-        XPlaneConfigError::EngageSwitch { .. } => format!("{at}.engage_switch"),
-        XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
-        XPlaneConfigError::LocalPort | XPlaneConfigError::OwnPort(_) => format!("{at}.local_port"),
-        _ if problems.iter().any(|problem| problem.is_in(at)) => return,
-        _ => at.to_owned(),
-    };
-    problems.push(Problem {
-        line: places.nearest_line(&key),
-        key: Some(key),
-        message: error.to_string(),
-    });
+fn problem_at(places: &Places<'_>, key: &str, message: String) -> Problem {
+    Problem {
+        line: places.nearest_line(key),
+        key: Some(key.to_owned()),
+        message,
+    }
 }
 
-/// The numbers of a key: of `x-plane` also those in the entries of that kind.
-fn numbers_at(values: &toml::Value, key: &str) -> Vec<(String, f64)> {
-    let mut found = Vec::new();
-    found.extend(number_at(values, key).map(|value| (key.to_owned(), value)));
-    let (kind, name) = key.split_once('.').unwrap_or((key, ""));
-    let entries = values.get("sensor").and_then(toml::Value::as_array);
-    for (at, entry) in entries.into_iter().flatten().enumerate() {
-        if entry.get("kind").and_then(toml::Value::as_str) == Some(kind)
-            && let Some(value) = number_at(entry, name)
-        {
-            found.push((format!("sensor[{at}].{name}"), value));
+/// The numbers of a text that are out of their range. Read from the text itself:
+/// an error in a section or an entry hides no number in it.
+fn out_of_range(places: &Places<'_>) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (key, least, most) in RANGES {
+        for key in places_of(places, key) {
+            let value = places.number(&key);
+            if let Some(value) = value.filter(|value| !(*least..=*most).contains(value)) {
+                let message = format!("is {}: choose {}", number(value), in_words((*least, *most)));
+                problems.push(problem_at(places, &key, message));
+            }
         }
     }
-    found
+    problems
 }
 
-fn number_at(values: &toml::Value, key: &str) -> Option<f64> {
-    let value = key
-        .split('.')
-        .try_fold(values, |value, part| value.get(part))?;
-    value
-        .as_float()
-        .or_else(|| value.as_integer().map(|integer| integer as f64))
+/// A configuration without an aircraft, and without lists that stand alone.
+fn without_aircraft(config: &Config) -> Option<Problem> {
+    let has_simulator = config.x_plane.is_some() || config.built_in.is_some();
+    if has_simulator || config.is_without_simulator() {
+        return None;
+    }
+    let moves_nothing = !config.sensor.is_empty()
+        && config.actuator.is_none()
+        && !config.sensor.iter().any(SensorEntry::is_simulator);
+    let message = if moves_nothing {
+        "has sensors and no actuator: add actuator = [] above all sections if nothing is to be \
+         moved, or the section of the simulator that is to be flown, [x-plane] or [built-in]"
+    } else {
+        "has neither [x-plane] nor [built-in]: add the section of the aircraft that is to be \
+         flown, or list sensors and actuators that need none"
+    };
+    Some(Problem {
+        line: None,
+        key: None,
+        message: message.to_owned(),
+    })
+}
+
+/// Errors found by the adapter itself, other than those of ranges.
+fn x_plane(
+    at: &str,
+    section: &XPlaneSection,
+    problems: &[Problem],
+    places: &Places<'_>,
+) -> Option<Problem> {
+    let error = XPlaneConfig::from(section).validate().err()?;
+    let key = match error {
+        XPlaneConfigError::EngageSwitch { .. } | XPlaneConfigError::NoSuchLight { .. } => {
+            format!("{at}.engage_switch")
+        }
+        XPlaneConfigError::Simulator(_) => format!("{at}.simulator"),
+        XPlaneConfigError::LocalPort | XPlaneConfigError::OwnPort(_) => format!("{at}.local_port"),
+        _ if problems.iter().any(|problem| problem.is_in(at)) => return None,
+        _ => at.to_owned(),
+    };
+    Some(problem_at(places, &key, error.to_string()))
+}
+
+/// A key, and of `x-plane` also that of each sensor of that kind.
+fn places_of(places: &Places<'_>, key: &str) -> Vec<String> {
+    let (kind, name) = key.split_once('.').unwrap_or((key, ""));
+    let entries = places.value("sensor").and_then(DeValue::as_array);
+    let of_kind = (0..entries.map_or(0, |entries| entries.len())).filter(|at| {
+        let given = places.value(&format!("sensor[{at}].kind"));
+        given.and_then(DeValue::as_str) == Some(kind)
+    });
+    let keys = of_kind.map(|at| format!("sensor[{at}].{name}"));
+    std::iter::once(key.to_owned()).chain(keys).collect()
 }
 
 #[cfg(test)]
@@ -227,8 +249,9 @@ mod tests {
     use super::*;
     use crate::config::{BudgetSection, BuiltInSection, CpuChoice};
 
-    fn check(config: &Config, text: &str) -> Vec<Problem> {
-        super::check(config, &super::super::read::read(text).places)
+    fn check(config: &Config) -> Vec<Problem> {
+        let text = config.to_toml().unwrap();
+        super::check(config, &super::super::read::read(&text).places, &[])
     }
 
     /// A new key without a range would accept any value.
@@ -281,7 +304,7 @@ mod tests {
             ..Config::default()
         };
         config.realtime.priority = 99;
-        let [problem] = &check(&config, "")[..] else {
+        let [problem] = &check(&config)[..] else {
             panic!("one problem");
         };
         assert!(
@@ -290,7 +313,7 @@ mod tests {
             problem.message
         );
         config.watchdog.enabled = false;
-        assert_eq!(check(&config, ""), Vec::new());
+        assert_eq!(check(&config), Vec::new());
     }
 
     #[test]
@@ -299,6 +322,6 @@ mod tests {
             built_in: Some(BuiltInSection::default()),
             ..Config::default()
         };
-        assert_eq!(check(&config, ""), Vec::new());
+        assert_eq!(check(&config), Vec::new());
     }
 }

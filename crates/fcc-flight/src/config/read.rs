@@ -65,6 +65,30 @@ pub(super) trait Entry: Sized {
 
     /// Reads the keys of one of the kinds; none if that is impossible.
     fn read<'t>(kind: &str, keys: Spanned<DeTable<'t>>, reader: &mut Reader<'t>) -> Option<Self>;
+
+    /// What stands for an entry that could not be read, so that the following
+    /// ones keep their numbers; none if it is left out.
+    fn unread() -> Option<Self> {
+        None
+    }
+}
+
+/// Reads nothing: the list was taken out of the table before, and read apart.
+#[expect(clippy::unnecessary_wraps, reason = "serde requires it")]
+pub(super) fn apart<'de, T: Default, D: serde::Deserializer<'de>>(_: D) -> Result<T, D::Error> {
+    Ok(T::default())
+}
+
+/// A value's type, as the reader's own errors name it.
+fn found(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "sequence",
+        DeValue::Table(_) => "map",
+    }
 }
 
 /// A table of a configuration, which one type is read from.
@@ -112,27 +136,31 @@ impl<'t> Reader<'t> {
     fn list<T: Entry>(&mut self, table: &mut Spanned<DeTable<'t>>, name: &str) -> Option<Vec<T>> {
         let list = table.get_mut().remove(name)?;
         let line = Some(line_of(self.text, &list.span()));
-        let DeValue::Array(entries) = list.into_inner() else {
-            let message = "invalid type: no list, expected a sequence";
-            self.report(line, name.to_owned(), &Error::custom(message));
-            return None;
+        let entries = match list.into_inner() {
+            DeValue::Array(entries) => entries,
+            other => {
+                self.wrong_type(line, name, &other, "a sequence");
+                return None;
+            }
         };
         let entries = entries.into_iter().enumerate();
         let read: Vec<Option<T>> = entries
             .map(|(at, entry)| self.entry(entry, &format!("{name}[{at}]")))
             .collect();
-        // Up to one that has no kind, so that an entry's number is the text's.
-        Some(read.into_iter().map_while(|entry| entry).collect())
+        let read = read.into_iter();
+        Some(read.filter_map(|entry| entry.or_else(T::unread)).collect())
     }
 
     /// Reads an entry of a list: its kind, and the other keys as that kind's.
     fn entry<T: Entry>(&mut self, entry: Spanned<DeValue<'t>>, key: &str) -> Option<T> {
         let span = entry.span();
         let line = Some(line_of(self.text, &span));
-        let DeValue::Table(mut keys) = entry.into_inner() else {
-            let message = "invalid type: a value, expected struct entry";
-            self.report(line, key.to_owned(), &Error::custom(message));
-            return None;
+        let mut keys = match entry.into_inner() {
+            DeValue::Table(keys) => keys,
+            other => {
+                self.wrong_type(line, key, &other, "struct entry");
+                return None;
+            }
         };
         let Some(kind) = keys.remove("kind") else {
             self.report(line, key.to_owned(), &Error::missing_field("kind"));
@@ -141,8 +169,7 @@ impl<'t> Reader<'t> {
         let line = Some(line_of(self.text, &kind.span()));
         let kind_key = format!("{key}.kind");
         let Some(kind) = kind.get_ref().as_str() else {
-            let message = "invalid type: no text, expected a string";
-            self.report(line, kind_key, &Error::custom(message));
+            self.wrong_type(line, &kind_key, kind.get_ref(), "a string");
             return None;
         };
         if !T::KINDS.contains(&kind) {
@@ -150,6 +177,12 @@ impl<'t> Reader<'t> {
             return None;
         }
         T::read(kind, Spanned::new(span, keys), self)
+    }
+
+    fn wrong_type(&mut self, line: Option<usize>, key: &str, value: &DeValue<'_>, wanted: &str) {
+        let found = found(value);
+        let message = format_args!("invalid type: {found}, expected {wanted}");
+        self.report(line, key.to_owned(), &Error::custom(message));
     }
 
     fn report(&mut self, line: Option<usize>, key: String, error: &Error) {

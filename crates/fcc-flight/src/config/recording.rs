@@ -23,20 +23,7 @@ pub struct RecordingSection {
     /// file takes at most a quarter of it; 0 to delete none.
     pub keep_total_mb: u64,
     /// How they are compressed.
-    pub compression: CompressionChoice,
-}
-
-/// How recordings are compressed.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CompressionChoice {
-    /// Not at all.
-    None,
-    /// Fast.
-    Lz4,
-    /// Small.
-    #[default]
-    Zstd,
+    pub compression: Compression,
 }
 
 impl Default for RecordingSection {
@@ -47,7 +34,7 @@ impl Default for RecordingSection {
             max_file_mb: 1_000,
             max_file_minutes: 0,
             keep_total_mb: 0,
-            compression: CompressionChoice::default(),
+            compression: Compression::default(),
         }
     }
 }
@@ -60,11 +47,7 @@ impl From<&RecordingSection> for RecorderSettings {
             max_file_age: limit(section.max_file_minutes)
                 .map(|minutes| Duration::from_secs(minutes * 60)),
             keep_total_bytes: limit(section.keep_total_mb).map(|mb| mb * 1_000_000),
-            compression: match section.compression {
-                CompressionChoice::None => Compression::None,
-                CompressionChoice::Lz4 => Compression::Lz4,
-                CompressionChoice::Zstd => Compression::Zstd,
-            },
+            compression: section.compression,
             ..Self::new(&section.folder)
         }
     }

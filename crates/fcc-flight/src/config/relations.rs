@@ -45,9 +45,9 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     lists(config, report);
 }
 
-/// X-Plane may send the values of one frame in three datagrams, since their
-/// subscriptions begin in different frames.
-const DATAGRAMS_PER_FRAME: f64 = 3.0;
+/// X-Plane sends the values of a frame in one datagram, and the position in
+/// another.
+const DATAGRAMS_PER_FRAME: f64 = 2.0;
 
 /// Of the connections to an X-Plane.
 fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {

@@ -3,8 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::SwitchOff;
-use fcc_runtime::AfterFailsafe;
+use fcc_core::framework::AfterRelease;
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
@@ -173,16 +172,7 @@ pub enum Then {
     Stop,
 }
 
-impl From<Then> for SwitchOff {
-    fn from(then: Then) -> Self {
-        match then {
-            Then::Standby => Self::Standby,
-            Then::Stop => Self::Stop,
-        }
-    }
-}
-
-impl From<Then> for AfterFailsafe {
+impl From<Then> for AfterRelease {
     fn from(then: Then) -> Self {
         match then {
             Then::Standby => Self::Standby,

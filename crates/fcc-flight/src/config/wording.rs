@@ -154,7 +154,7 @@ mod tests {
             ),
             (
                 "seed = 9300000000000000000\n",
-                "f:2: built-in.seed: is too large: choose 0 to 9e18",
+                "f:2: built-in.seed: is 9.3e18: choose 0 to 9e18",
             ),
             (
                 "seed = 99999999999999999999\n",

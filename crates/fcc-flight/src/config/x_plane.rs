@@ -12,8 +12,10 @@ pub struct XPlaneSection {
     /// `beacon`, or an address or host name, with a port if it is not 49000.
     #[serde(with = "super::as_text")]
     pub simulator: Simulator,
-    /// UDP port to receive on; 0 for any that is free.
+    /// UDP port to receive on; 0 for 49071, or another that is free.
     pub local_port: u16,
+    /// The port from which X-Plane is expected to answer; 0 if it is not known.
+    pub reply_port: u16,
     /// How measurements are received.
     pub input: InputChoice,
     /// The version that sends the rows, for `input = "data"`.
@@ -67,6 +69,7 @@ impl Default for XPlaneSection {
         Self {
             simulator: core.simulator,
             local_port: core.local_port,
+            reply_port: core.reply_port,
             input: InputChoice::Rref,
             data_version: 12,
             magnetic_heading_column: 3,
@@ -87,6 +90,7 @@ impl From<&XPlaneSection> for XPlaneConfig {
         Self {
             simulator: section.simulator.clone(),
             local_port: section.local_port,
+            reply_port: section.reply_port,
             input: match section.input {
                 InputChoice::Rref => Input::Rref,
                 InputChoice::Data => Input::Data(DataRows {

@@ -3,10 +3,12 @@
 use std::io::ErrorKind;
 use std::sync::Arc;
 
+#[cfg(feature = "live")]
+use fcc_core::flight::AutopilotConfig;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::SentCommands;
+use fcc_live::{PlantLimits, SentCommands};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
@@ -181,23 +183,37 @@ impl Assembly {
         if let Some(request) = recording {
             observers.push(Box::new(FlightRecorder::<Autopilot>::new(request)));
         }
-        let guidance = &self.autopilot.config().guidance;
+        let autopilot = self.autopilot.config();
+        let guidance = &autopilot.guidance;
         observers.push(Box::new(Scorer::new(guidance, self.truth.take())));
         // In lockstep there is no real time for live telemetry.
         if cfg!(feature = "live") && config.telemetry.enabled && pace == Pace::RealTime {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
-                SentCommands::new(vec![(
-                    "airspeed_mps",
-                    self.autopilot.config().envelope.allowed_airspeeds(),
-                )]),
+                SentCommands::new(limits(autopilot)),
             )));
         }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
     }
+}
+
+/// What an aircraft permits of the set points of other programs.
+#[cfg(feature = "live")]
+fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
+    let mut limits = vec![("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds()))];
+    if autopilot.altimeter.field_elevation_m.is_none() {
+        limits.push((
+            "height_m",
+            Err(
+                "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
+                 the configuration, or give an altitude",
+            ),
+        ));
+    }
+    limits
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{ControlAuthority, PlantId, State};
-use fcc_runtime::{Link, Loop, LoopReport, Machine, Parts, SpawnError};
+use fcc_runtime::{Ending, Link, Loop, LoopReport, Machine, Parts, SpawnError};
 use fcc_timer::{ManualTimer, RealtimeGranted, Timer, TimerError};
 
 use super::assemble::Assembly;
@@ -121,10 +121,11 @@ pub fn fly(
         }
     };
     let report = await_release(report, authority.as_ref(), &mut observers, host);
-    let refused =
-        observers.monitor.was_refused() && !matches!(plan.length, Length::Open | Length::Ticks(_));
     let released = report.released;
     let mut outcome = Outcome::new(timer_name, plan.pace, &report);
+    if matches!(report.ending, Ending::StopFlag) {
+        outcome.explain(host.interrupted_by(), observers.monitor.over(plan.length));
+    }
     // The controls have been released; writing to the disk may take time now.
     let ending = outcome.ending.clone();
     observers.end(&ending, &mut outcome);
@@ -132,7 +133,6 @@ pub fn fly(
     if released {
         refuse_if_taken(host)?;
     }
-    outcome.explain(host.was_interrupted(), refused);
     Ok(outcome)
 }
 
@@ -258,7 +258,7 @@ fn await_release(
 ) -> LoopReport {
     // After a hang the watchdog has released the controls, but the loop might
     // still take them again, so the host keeps its release helper.
-    if matches!(report.ending, fcc_runtime::Ending::Hung) {
+    if matches!(report.ending, Ending::Hung) {
         host.end(false);
         return report;
     }

@@ -36,7 +36,7 @@ impl Follower<'_> {
     pub(super) fn drain(&mut self) {
         while let Some(message) = self.link.messages.receive() {
             self.take(&message);
-            if self.observers.monitor.is_over(self.length) {
+            if self.observers.monitor.over(self.length).is_some() {
                 self.link.stop.stop();
             }
         }

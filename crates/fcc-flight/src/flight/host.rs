@@ -59,9 +59,9 @@ pub trait Host {
     /// The flight is over; whether the release of the controls is confirmed.
     fn end(&mut self, _released: bool) {}
 
-    /// Whether the flight was ended from outside.
-    fn was_interrupted(&self) -> bool {
-        false
+    /// What ended the flight from outside, as text for users.
+    fn interrupted_by(&self) -> Option<&'static str> {
+        None
     }
 }
 

@@ -2,7 +2,7 @@
 
 use fcc_core::framework::{EventOf, RecordOf};
 use fcc_live::{
-    Commanded, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands, Text,
+    Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands, Text,
 };
 use fcc_record as recording;
 use fcc_telemetry::Instance;
@@ -18,7 +18,7 @@ const MOST_WAITING: usize = 2_048;
 
 /// Publishes the run of a loop and receives commands; without effect if that is
 /// not possible.
-pub(super) struct Live<C: Commanded> {
+pub(super) struct Live<C: Commandable> {
     instance: Instance,
     takes_commands: bool,
     /// The most records that wait to be published.
@@ -27,7 +27,7 @@ pub(super) struct Live<C: Commanded> {
     commands: SentCommands<C>,
 }
 
-impl<C: Commanded> Live<C> {
+impl<C: Commandable> Live<C> {
     pub(super) fn new(config: &Config, commands: SentCommands<C>) -> Self {
         Self {
             instance: config.telemetry.instance.clone(),
@@ -39,7 +39,7 @@ impl<C: Commanded> Live<C> {
     }
 }
 
-impl<C: Commanded> Observer<C> for Live<C> {
+impl<C: Commandable> Observer<C> for Live<C> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {

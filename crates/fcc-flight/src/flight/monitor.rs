@@ -5,11 +5,24 @@ use fcc_core::framework::{EventKind, Message, State};
 use super::observer::FlightTime;
 use super::plan::Length;
 
+/// Why a flight is over.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Over {
+    /// Its time has passed.
+    Time,
+    /// The loop entered failsafe.
+    Failsafe,
+    /// Engaging was refused.
+    Refused,
+}
+
 /// Determines the flight's time from the loop's messages.
 #[derive(Default)]
 pub(super) struct Monitor {
     start_ns: Option<i64>,
     at: FlightTime,
+    /// Of the first engagement, s.
+    engaged_at_s: Option<f64>,
     failed: bool,
     refused: bool,
 }
@@ -21,13 +34,15 @@ impl Monitor {
             Message::Tick(record) => {
                 let woke_ns = record.tick.woke.as_nanos();
                 let time_s = self.seconds(record.tick.scheduled.as_nanos());
+                let is_engaged = record.state == State::Engaged;
                 let since = self.at.engaged_at_s.unwrap_or(time_s);
                 self.at = FlightTime {
                     time_s,
                     tick: record.tick.number,
                     woke_ns,
-                    engaged_at_s: (record.state == State::Engaged).then_some(since),
+                    engaged_at_s: is_engaged.then_some(since),
                 };
+                self.engaged_at_s = self.engaged_at_s.or(self.at.engaged_at_s);
                 self.at
             }
             Message::Event(event) => {
@@ -54,27 +69,27 @@ impl Monitor {
         self.at
     }
 
-    /// Whether a flight of this length is over: its time has passed, or it
+    /// Why a flight of this length is over, if it is: its time has passed, or it
     /// cannot be flown.
-    pub(super) fn is_over(&self, length: Length) -> bool {
+    pub(super) fn over(&self, length: Length) -> Option<Over> {
         // Tolerance for the sum of ticks at a whole second.
         const ROUNDING_S: f64 = 1e-6;
         let time_s = self.at.time_s;
         let time_is_up = match length {
-            Length::Open => return false,
-            Length::Ticks(ticks) => return self.at.tick >= ticks,
+            Length::Open => return None,
+            Length::Ticks(ticks) => return (self.at.tick >= ticks).then_some(Over::Time),
             Length::Engaged(seconds) => self
-                .at
                 .engaged_at_s
                 .is_some_and(|at_s| time_s - at_s >= seconds - ROUNDING_S),
             Length::Whole(seconds) => time_s >= seconds - ROUNDING_S,
         };
-        time_is_up || self.failed || self.refused
-    }
-
-    /// Whether engaging was refused.
-    pub(super) const fn was_refused(&self) -> bool {
-        self.refused
+        if self.refused {
+            Some(Over::Refused)
+        } else if self.failed {
+            Some(Over::Failsafe)
+        } else {
+            time_is_up.then_some(Over::Time)
+        }
     }
 
     /// Seconds since the loop's first message; an event before the first tick
@@ -85,5 +100,38 @@ impl Monitor {
         }
         let start = *self.start_ns.get_or_insert(nanos);
         (nanos - start) as f64 * 1e-9
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fcc_core::framework::{Record, Tick, Time};
+
+    use super::*;
+
+    #[test]
+    fn a_flight_is_over_its_length_after_the_first_engagement() {
+        let mut monitor = Monitor::default();
+        let mut over_at = None;
+        for number in 0..10_u64 {
+            let at = Time::from_nanos(number as i64 * 1_000_000_000);
+            let tick = Tick {
+                number,
+                scheduled: at,
+                woke: at,
+                ..Tick::default()
+            };
+            // Engaged from 2 s to 4 s, then disengaged.
+            let state = match number {
+                2..4 => State::Engaged,
+                _ => State::Standby,
+            };
+            let record: Record<f64, (), f64, f64> = Record::new(tick, state);
+            monitor.take(&Message::<f64, (), f64, f64, f64>::Tick(record));
+            if over_at.is_none() && monitor.over(Length::Engaged(5.0)).is_some() {
+                over_at = Some(number);
+            }
+        }
+        assert_eq!(over_at, Some(7));
     }
 }

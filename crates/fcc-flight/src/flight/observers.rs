@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn every_observer_keeps_what_the_trait_promises() {
+    fn every_observer_of_a_flight_conforms() {
         let folder = tempfile::tempdir().unwrap();
         let config = config(&folder);
         observer_conforms(|| Box::new(EventLog::default()));
@@ -193,7 +193,7 @@ mod tests {
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
         observer_conforms(|| {
-            let commands = SentCommands::new(vec![("airspeed_mps", 30.0..=80.0)]);
+            let commands = SentCommands::new(vec![("airspeed_mps", Ok(30.0..=80.0))]);
             Box::new(Live::<Autopilot>::new(&config, commands))
         });
     }

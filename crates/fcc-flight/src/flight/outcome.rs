@@ -5,6 +5,7 @@ use fcc_telemetry::{FlightScore, Realtime, ScoredBy, TimingReport};
 use fcc_timer::RealtimeGranted;
 use serde::Serialize;
 
+use super::monitor::Over;
 use super::plan::Pace;
 
 /// The scheduling of a loop without a thread of its own.
@@ -133,20 +134,21 @@ impl Outcome {
         }
     }
 
-    /// Gives a more specific reason for the end of a flight than the loop does.
-    pub(super) fn explain(&mut self, interrupted: bool, refused: bool) {
-        self.interrupted = interrupted;
-        if interrupted {
-            "interrupted by a signal".clone_into(&mut self.ending);
-        } else if refused {
-            "engaging was refused; see the last event".clone_into(&mut self.ending);
-            if matches!(
-                self.conclusion,
-                Conclusion::Completed | Conclusion::NotRecorded
-            ) {
-                self.conclusion = Conclusion::Failed;
+    /// Says who stopped a loop that was stopped from outside.
+    pub(super) fn explain(&mut self, interrupted_by: Option<&str>, over: Option<Over>) {
+        self.interrupted = interrupted_by.is_some();
+        self.ending = match (interrupted_by, over) {
+            (Some(by), _) => format!("interrupted by {by}"),
+            (None, Some(Over::Time)) => "the time to fly is over".to_owned(),
+            (None, Some(Over::Failsafe)) => "entered failsafe".to_owned(),
+            (None, Some(Over::Refused)) => {
+                if self.conclusion == Conclusion::Completed {
+                    self.conclusion = Conclusion::Failed;
+                }
+                "engaging was refused; see the last event".to_owned()
             }
-        }
+            (None, None) => return,
+        };
     }
 }
 

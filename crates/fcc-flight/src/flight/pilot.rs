@@ -25,6 +25,10 @@ impl Pilot {
     }
 }
 
+#[deny(
+    clippy::missing_trait_methods,
+    reason = "a method that is not passed on would have its default"
+)]
 impl Controller for Pilot {
     type Measurements = Measurements;
     type Estimate = Estimate;

@@ -15,7 +15,7 @@ pub enum Pace {
 pub enum Length {
     /// When it is stopped.
     Open,
-    /// This many seconds after engaging.
+    /// This many seconds after the first engagement, standby after it included.
     Engaged(f64),
     /// This many seconds after the first tick.
     Whole(f64),

@@ -1,5 +1,7 @@
 //! The truth of the built-in aircraft, tick by tick, for scoring.
 
+use std::time::Duration;
+
 use fcc_core::flight::Measurements;
 use fcc_core::framework::{Sensor, SensorFault, Tick};
 use fcc_sim::{SimSensor, Truth};
@@ -29,6 +31,10 @@ pub(super) fn tap(sensor: SimSensor, capacity: usize) -> (TruthRecorder, TruthRe
     )
 }
 
+#[deny(
+    clippy::missing_trait_methods,
+    reason = "a method that is not passed on would have its default"
+)]
 impl Sensor<Measurements> for TruthRecorder {
     fn sample(&mut self, tick: &Tick, into: &mut Measurements) -> Result<(), SensorFault> {
         let sampled = self.sensor.sample(tick, into);
@@ -36,6 +42,14 @@ impl Sensor<Measurements> for TruthRecorder {
             .truth
             .push((tick.number, self.sensor.aircraft().truth()));
         sampled
+    }
+
+    fn fallback_after(&self) -> Duration {
+        self.sensor.fallback_after()
+    }
+
+    fn warm_up(&self, tick: &Tick) {
+        self.sensor.warm_up(tick);
     }
 
     fn name(&self) -> &'static str {

@@ -12,7 +12,7 @@
 //! owner alone.
 
 mod command_server;
-mod commanded;
+mod commandable;
 mod commander;
 mod error;
 mod outside_limits;
@@ -20,7 +20,7 @@ mod sent_commands;
 mod wire;
 
 pub(super) use command_server::{CommandServer, Ends, Rings};
-pub use commanded::{Commanded, CommandedSetpoint, NarrowerLimits};
+pub use commandable::{Commandable, CommandableSetpoint, PlantLimits};
 pub use commander::Commander;
 pub use error::{CommandError, InvalidCommand};
 pub use outside_limits::OutsideLimits;
@@ -41,7 +41,7 @@ pub enum Command {
     Disengage,
     /// Release the controls and end the program.
     Stop,
-    /// Change these set points, by the names of [`Commanded::SETPOINTS`]; the
+    /// Change these set points, by the names of [`Commandable::SETPOINTS`]; the
     /// others keep their value. Ends an aircraft's pattern.
     Set(Vec<(String, f64)>),
 }

@@ -38,9 +38,9 @@ impl OutsideLimits {
 
     /// As text, in those of these units that fit.
     pub fn text_in(&self, units: &[Shown]) -> String {
-        let named = unit::of(&self.name);
+        let own = unit::of(&self.name).unit;
         let shown = units.iter().find(|unit| self.name.ends_with(unit.end));
-        let (unit, factor) = shown.map_or((named.unit, 1.0), |shown| (shown.unit, shown.scale));
+        let (unit, factor) = shown.map_or((own, 1.0), |shown| (shown.unit, shown.scale));
         // To a hundredth: a value printed as a limit is accepted.
         let round = |number: f64| (number * factor * 100.0).round() / 100.0;
         let (least, most) = (round(self.least), round(self.most));
@@ -56,9 +56,14 @@ impl OutsideLimits {
         } else {
             " "
         };
-        let quantity = named.quantity.replace('_', " ");
+        let quantity = quantity(&self.name);
         format!("{quantity} is {value}{space}{unit}: choose {least} to {most}{space}{unit}")
     }
+}
+
+/// What a set point is, by its name: `pressure altitude`.
+pub(super) fn quantity(name: &str) -> String {
+    unit::of(name).quantity.replace('_', " ")
 }
 
 impl std::error::Error for OutsideLimits {}

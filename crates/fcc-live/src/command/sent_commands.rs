@@ -6,12 +6,12 @@ use std::collections::VecDeque;
 use fcc_core::framework::{EventKind, EventOf, LoopCommand, State};
 use fcc_telemetry::describe_event;
 
-use super::{Command, Commanded, InvalidCommand, NarrowerLimits, PendingCommand, Verdict};
+use super::{Command, Commandable, InvalidCommand, PendingCommand, PlantLimits, Verdict};
 
 /// Commands that were sent and whose outcome is not known yet, oldest first.
 #[derive(Debug)]
-pub struct SentCommands<C: Commanded> {
-    limits: NarrowerLimits,
+pub struct SentCommands<C: Commandable> {
+    limits: PlantLimits,
     waiting: VecDeque<Waiting<C::Command>>,
 }
 
@@ -26,9 +26,9 @@ struct Waiting<R> {
     refusal: Option<String>,
 }
 
-impl<C: Commanded> SentCommands<C> {
+impl<C: Commandable> SentCommands<C> {
     /// None yet, for a plant with these limits.
-    pub const fn new(limits: NarrowerLimits) -> Self {
+    pub const fn new(limits: PlantLimits) -> Self {
         Self {
             limits,
             waiting: VecDeque::new(),
@@ -98,8 +98,9 @@ impl<C: Commanded> SentCommands<C> {
         let first = self.waiting.front()?;
         let tick = first.read_in.filter(|tick| *tick <= now)?;
         let waiting = self.waiting.pop_front()?;
-        let done = match waiting.asked.command {
-            Command::Engage | Command::Set(_) => state == State::Engaged,
+        let done = match &waiting.asked.command {
+            command if command.needs_control::<C>() => state == State::Engaged,
+            Command::Engage | Command::Set(_) => state != State::Stopped,
             Command::Disengage => matches!(state, State::Standby | State::Stopped),
             Command::Stop => state == State::Stopped,
         };
@@ -148,7 +149,20 @@ mod tests {
     }
 
     fn commands() -> SentCommands<Autopilot> {
-        SentCommands::new(vec![("airspeed_mps", 30.0..=60.0)])
+        SentCommands::new(vec![("airspeed_mps", Ok(30.0..=60.0))])
+    }
+
+    #[test]
+    fn the_altimeter_is_set_in_standby() {
+        let mut commands = commands();
+        let setting = Command::set([("altimeter_setting_pa", 102_000.0)]);
+        waiting(&mut commands, 1, setting);
+        let command = LoopCommand::Controller(AutopilotCommand::AltimeterSetting(102_000.0));
+        commands.event(&event(5, EventKind::CommandReceived(command)));
+        assert_eq!(
+            commands.verdict(5, State::Standby),
+            Some((1, Verdict::CarriedOut { tick: 5 }))
+        );
     }
 
     #[test]

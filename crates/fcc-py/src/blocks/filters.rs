@@ -1,11 +1,11 @@
-//! Filters, limiters, profiles.
+//! Filters, a rate limiter, the square-root profile.
 
 use fcc_core::blocks::{Complementary, HighPass, LowPass, RateLimit, SquareRootProfile};
 use numpy::{PyArray1, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::{passed_s, positive, tau_s};
+use super::{not_negative, passed_s, positive};
 use crate::arguments::{finite, numbers, shape_words};
 
 /// A series of inputs, each finite.
@@ -23,50 +23,58 @@ fn inputs(from: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     Ok(values)
 }
 
-/// Runs a block over a series; the outputs.
-fn run<'py>(
-    py: Python<'py>,
-    from: &Bound<'py, PyAny>,
-    dt: f64,
-    mut step: impl FnMut(f64, f64) -> f64 + Send,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (inputs, dt_s) = (inputs(from)?, passed_s(dt)?);
-    let outputs: Vec<f64> = py.detach(|| inputs.iter().map(|input| step(*input, dt_s)).collect());
-    Ok(outputs.to_pyarray(py))
+/// Declares a class around a block that gives an output for each input.
+macro_rules! filter_class {
+    (
+        $(#[$meta:meta])*
+        struct $name:ident($block:ident), new($new:ident: $check:ident), reset($reset:ident);
+        $($methods:tt)*
+    ) => {
+        $(#[$meta])*
+        pub(crate) struct $name($block);
+
+        #[pymethods]
+        impl $name {
+            #[new]
+            fn new($new: f64) -> PyResult<Self> {
+                Ok(Self($block::new($check(stringify!($new), $new)?)))
+            }
+
+            /// Takes an input held for `dt` s; returns the output.
+            fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
+                Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
+            }
+
+            /// Takes a series of inputs, each held for `dt` s; returns the
+            /// outputs.
+            fn run<'py>(
+                &mut self,
+                py: Python<'py>,
+                inputs: &Bound<'py, PyAny>,
+                dt: f64,
+            ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+                let (inputs, dt_s) = (self::inputs(inputs)?, passed_s(dt)?);
+                let outputs: Vec<f64> =
+                    py.detach(|| inputs.iter().map(|input| self.0.step(*input, dt_s)).collect());
+                Ok(outputs.to_pyarray(py))
+            }
+
+            /// Resets to a steady output; a high pass, to a steady input.
+            fn reset(&mut self, $reset: f64) -> PyResult<()> {
+                self.0.reset(finite(stringify!($reset), $reset)?);
+                Ok(())
+            }
+
+            $($methods)*
+        }
+    };
 }
 
-/// First-order low pass of a time constant in s (0 for none): it begins at its
-/// first input.
-#[pyclass(name = "LowPass", module = "fcc")]
-pub(crate) struct PyLowPass(LowPass);
-
-#[pymethods]
-impl PyLowPass {
-    #[new]
-    fn new(tau_s: f64) -> PyResult<Self> {
-        Ok(Self(LowPass::new(self::tau_s(tau_s)?)))
-    }
-
-    /// Takes an input held for `dt` s; the output.
-    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
-    }
-
-    /// Takes a series of inputs, each held for `dt` s; the outputs.
-    fn run<'py>(
-        &mut self,
-        py: Python<'py>,
-        inputs: &Bound<'py, PyAny>,
-        dt: f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        run(py, inputs, dt, |input, dt_s| self.0.step(input, dt_s))
-    }
-
-    /// Sets the output.
-    fn reset(&mut self, output: f64) -> PyResult<()> {
-        self.0.reset(finite("output", output)?);
-        Ok(())
-    }
+filter_class! {
+    /// First-order low pass with a time constant in s (0 for none); its initial
+    /// output is its first input.
+    #[pyclass(name = "LowPass", module = "fcc")]
+    struct PyLowPass(LowPass), new(tau_s: not_negative), reset(output);
 
     /// The output, 0 before any input.
     #[getter]
@@ -75,75 +83,21 @@ impl PyLowPass {
     }
 }
 
-/// First-order high pass of a time constant in s: the input less its
-/// low-passed self.
-#[pyclass(name = "HighPass", module = "fcc")]
-pub(crate) struct PyHighPass(HighPass);
-
-#[pymethods]
-impl PyHighPass {
-    #[new]
-    fn new(tau_s: f64) -> PyResult<Self> {
-        Ok(Self(HighPass::new(self::tau_s(tau_s)?)))
-    }
-
-    /// Takes an input held for `dt` s; the output.
-    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
-    }
-
-    /// Takes a series of inputs, each held for `dt` s; the outputs.
-    fn run<'py>(
-        &mut self,
-        py: Python<'py>,
-        inputs: &Bound<'py, PyAny>,
-        dt: f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        run(py, inputs, dt, |input, dt_s| self.0.step(input, dt_s))
-    }
-
-    /// Sets what is taken for the constant part of the input.
-    fn reset(&mut self, constant: f64) -> PyResult<()> {
-        self.0.reset(finite("constant", constant)?);
-        Ok(())
-    }
+filter_class! {
+    /// First-order high pass with a time constant in s: the input minus its low
+    /// pass.
+    #[pyclass(name = "HighPass", module = "fcc")]
+    struct PyHighPass(HighPass), new(tau_s: not_negative), reset(constant);
 }
 
-/// Limits how fast a signal may move, in units per second: it begins at its
-/// first input.
-#[pyclass(name = "RateLimit", module = "fcc")]
-pub(crate) struct PyRateLimit(RateLimit);
-
-#[pymethods]
-impl PyRateLimit {
-    #[new]
-    fn new(rate_per_s: f64) -> PyResult<Self> {
-        Ok(Self(RateLimit::new(positive("rate_per_s", rate_per_s)?)))
-    }
-
-    /// Moves towards an input for `dt` s; the output.
-    fn step(&mut self, value: f64, dt: f64) -> PyResult<f64> {
-        Ok(self.0.step(finite("value", value)?, passed_s(dt)?))
-    }
-
-    /// Moves towards a series of inputs, each for `dt` s; the outputs.
-    fn run<'py>(
-        &mut self,
-        py: Python<'py>,
-        inputs: &Bound<'py, PyAny>,
-        dt: f64,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        run(py, inputs, dt, |input, dt_s| self.0.step(input, dt_s))
-    }
-
-    /// Sets the output.
-    fn reset(&mut self, output: f64) -> PyResult<()> {
-        self.0.reset(finite("output", output)?);
-        Ok(())
-    }
+filter_class! {
+    /// Limits the rate of change of a signal, in units per second; its initial
+    /// output is its first input.
+    #[pyclass(name = "RateLimit", module = "fcc")]
+    struct PyRateLimit(RateLimit), new(rate_per_s: positive), reset(output);
 }
 
-/// First-order complementary filter: integrates a rate, and leans towards a
+/// First-order complementary filter: integrates a rate, and is corrected by a
 /// measurement with a time constant in s.
 #[pyclass(name = "Complementary", module = "fcc")]
 pub(crate) struct PyComplementary(Complementary);
@@ -152,7 +106,7 @@ pub(crate) struct PyComplementary(Complementary);
 impl PyComplementary {
     #[new]
     fn new(tau_s: f64) -> PyResult<Self> {
-        Ok(Self(Complementary::new(self::tau_s(tau_s)?)))
+        Ok(Self(Complementary::new(not_negative("tau_s", tau_s)?)))
     }
 
     /// Integrates a rate (units per second) for `dt` s.
@@ -161,7 +115,7 @@ impl PyComplementary {
         Ok(())
     }
 
-    /// Leans towards a measurement that comes `dt` s after the one before.
+    /// Corrects by a measurement taken `dt` s after the previous one.
     fn correct(&mut self, measurement: f64, dt: f64) -> PyResult<()> {
         self.0
             .correct(finite("measurement", measurement)?, passed_s(dt)?);
@@ -181,9 +135,9 @@ impl PyComplementary {
     }
 }
 
-/// How fast to close an error so that braking at a constant deceleration ends
-/// at nought: proportional near the target (`gain_per_s`, 1/s), a square root
-/// further out (`deceleration`, units/s²).
+/// The closing speed for an error from which a constant deceleration reaches
+/// the target: proportional to the error near the target (`gain_per_s`, 1/s),
+/// to its square root further away (`deceleration`, units/s²).
 #[pyclass(name = "SquareRootProfile", module = "fcc", frozen)]
 pub(crate) struct PySquareRootProfile(SquareRootProfile);
 

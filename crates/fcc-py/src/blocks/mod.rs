@@ -1,4 +1,4 @@
-//! Control blocks: the core's own, one step a call or a series at once.
+//! The core's control blocks, one step per call or a series at once.
 
 mod filters;
 mod pid;
@@ -13,21 +13,16 @@ use pyo3::prelude::*;
 
 /// A time since the last step, s: 0 or more.
 fn passed_s(dt: f64) -> PyResult<f64> {
-    if dt >= 0.0 && dt.is_finite() {
-        return Ok(dt);
-    }
-    Err(PyValueError::new_err(format!(
-        "dt is {dt} s: it must be 0 or more"
-    )))
+    not_negative("dt", dt)
 }
 
-/// A time constant, s: 0 or more.
-fn tau_s(tau: f64) -> PyResult<f64> {
-    if tau >= 0.0 && tau.is_finite() {
-        return Ok(tau);
+/// A time in s: 0 or more.
+fn not_negative(name: &str, seconds: f64) -> PyResult<f64> {
+    if seconds >= 0.0 && seconds.is_finite() {
+        return Ok(seconds);
     }
     Err(PyValueError::new_err(format!(
-        "tau_s is {tau} s: it must be 0 or more"
+        "{name} is {seconds} s: it must be 0 or more"
     )))
 }
 

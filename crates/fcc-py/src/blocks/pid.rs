@@ -4,16 +4,16 @@ use fcc_core::blocks::{AntiWindup, Pid, PidConfig};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::{passed_s, positive, tau_s};
+use super::{not_negative, passed_s, positive};
 use crate::arguments::finite;
 
-/// PID controller with derivative on measurement, anti-windup, limits on output
-/// and its rate, feed-forward, and take-over without a bump.
+/// PID controller with derivative on measurement, anti-windup, limits of the
+/// output and its rate, feed-forward, and bumpless engagement.
 ///
 /// `kp` is output per error, `ki` output per error and second, `kd` output per
 /// error per second; `derivative_tau_s` is the time constant of the
-/// derivative's low pass. The integral is held in a limit, or is drawn
-/// back with the time constant `tracking_tau_s` if one is given (Åström and
+/// derivative's low pass. In a limit the integral is held, or, if
+/// `tracking_tau_s` is given, reduced with that time constant (Åström and
 /// Hägglund 1995, section 3.5).
 #[pyclass(name = "Pid", module = "fcc")]
 pub(crate) struct PyPid(Pid);
@@ -53,7 +53,7 @@ impl PyPid {
             kp: finite("kp", kp)?,
             ki: finite("ki", ki)?,
             kd: finite("kd", kd)?,
-            derivative_tau_s: tau_s(derivative_tau_s)?,
+            derivative_tau_s: not_negative("derivative_tau_s", derivative_tau_s)?,
             output_min,
             output_max,
             output_rate_per_s,
@@ -66,7 +66,7 @@ impl PyPid {
         })))
     }
 
-    /// One step, `dt` s after the last; the output. `feed_forward` is in units
+    /// One step, `dt` s after the previous one; returns the output. `feed_forward` is in units
     /// of the output, `gain_scale` multiplies all gains.
     #[pyo3(signature = (setpoint, measurement, dt, *, feed_forward = 0.0, gain_scale = 1.0))]
     fn step(
@@ -86,8 +86,8 @@ impl PyPid {
         ))
     }
 
-    /// Takes over at a present output: the next step with the same arguments
-    /// yields it again.
+    /// Engages at the present output: the next step with the same arguments
+    /// returns that output.
     #[pyo3(signature = (output, setpoint, measurement, *, feed_forward = 0.0, gain_scale = 1.0))]
     fn engage(
         &mut self,

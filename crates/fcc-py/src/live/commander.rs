@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use super::instance;
 use crate::errors;
 
-/// Gives commands to a daemon, or to the loop of any other plant, on this machine,
+/// Sends commands to a daemon, or to the loop of any other plant, on this machine,
 /// by its instance's name. Each call
 /// waits until the command is carried out and returns the tick that did; the GIL
 /// is released meanwhile.
@@ -47,25 +47,27 @@ impl PyCommander {
         })
     }
 
-    /// Take over as things are.
+    /// Engages: the present state becomes the set points.
     fn engage(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, &Command::Engage)
     }
 
-    /// Give the controls back.
+    /// Disengages: releases the controls.
     fn disengage(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, &Command::Disengage)
     }
 
-    /// Give the controls back and end the daemon.
+    /// Releases the controls and ends the program.
     fn stop(&self, py: Python<'_>) -> PyResult<u64> {
         self.command(py, &Command::Stop)
     }
 
-    /// Other set points, by their names; those that are not given stay. Of a
-    /// flight: indicated airspeed (`airspeed_mps`, within the envelope), magnetic
-    /// heading (`heading_rad`, -2π to 2π), barometric altitude (`altitude_m`, -500
-    /// to 20,000); this ends a pattern.
+    /// Commands other set points, by their names; those not given keep their
+    /// value. Of a flight: indicated airspeed (`airspeed_mps`, within the envelope),
+    /// magnetic heading (`heading_rad`, -2π to 2π), and, -500 to 20,000, `altitude_m`
+    /// (above sea level by the altimeter setting), `pressure_altitude_m` or `height_m`
+    /// (above the configured field). Ends a pattern. `altimeter_setting_pa` (94,000 to
+    /// 106,000) alone ends none, and is also set in standby.
     #[pyo3(signature = (**setpoints))]
     fn set(&self, py: Python<'_>, setpoints: Option<&Bound<'_, PyDict>>) -> PyResult<u64> {
         let mut given = Vec::new();

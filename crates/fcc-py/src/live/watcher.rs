@@ -28,7 +28,8 @@ const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 ///
 /// Raises `TelemetryError` if there is no such daemon, if it is of another
 /// version, and when it has ended. Iterating gives each record as it comes, as
-/// a row (of a flight: of `fcc.RECORD`), until the daemon ends, which is raised.
+/// a row (of a flight: of `fcc.RECORD`), and raises `TelemetryError` when the
+/// daemon ends.
 #[pyclass(name = "Watcher", module = "fcc")]
 pub(crate) struct PyWatcher {
     watcher: Mutex<RowWatcher>,
@@ -56,8 +57,7 @@ impl PyWatcher {
         })
     }
 
-    /// The newest record, as a row; those before it are passed
-    /// over. Waits up to `timeout_s` (0 to 3,600) for one that was not given
+    /// The newest record, as a row; older ones are skipped. Waits up to `timeout_s` (0 to 3,600) for one that was not given
     /// yet, and gives None if none comes.
     #[pyo3(signature = (timeout_s = 1.0))]
     fn latest<'py>(&self, py: Python<'py>, timeout_s: f64) -> PyResult<Option<Bound<'py, PyAny>>> {
@@ -68,8 +68,8 @@ impl PyWatcher {
         found.map(|words| self.row(py, words)).transpose()
     }
 
-    /// All records that came since they were last asked for, oldest first, as
-    /// a structured array. 1,024 wait, then the oldest make room.
+    /// All records since the last call, oldest first, as a structured array. Of
+    /// more than 1,024 the oldest are dropped.
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::new();
         let read = py.detach(|| {
@@ -81,7 +81,7 @@ impl PyWatcher {
         array(py, rows, self.dtype.bind(py))
     }
 
-    /// All events that came since they were last asked for, oldest first.
+    /// All events since the last call, oldest first.
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEvent>> {
         let mut events = Vec::new();
         let read = py.detach(|| {
@@ -112,7 +112,7 @@ impl PyWatcher {
         columns(py, self.watcher().columns())
     }
 
-    /// Who publishes, as a dict.
+    /// The daemon, as a dict: program, process, loop.
     #[getter]
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         info_dict(py, self.watcher().info())

@@ -1,9 +1,8 @@
 //! The loop of the autopilot.
 
-use std::ops::RangeInclusive;
 use std::sync::Mutex;
 
-use fcc_core::flight::{Autopilot, Surfaces};
+use fcc_core::flight::{Autopilot, AutopilotConfig, Surfaces};
 use fcc_core::framework::{LoopCommand, Switch};
 use fcc_flight::flight::about;
 use pyo3::exceptions::PyValueError;
@@ -11,24 +10,22 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use super::Lockstep;
-use crate::autopilot::checked_commands;
+use crate::commanded::Commanded;
 use crate::config::{configuration, refused};
 use crate::values::{
     PyEstimate, PyMeasurements, PySetpoints, PySurfaces, Values, checked, with_plant,
 };
 
 machine_class! {
-    /// The loop that `fccd` runs, one call a tick, on a clock that does not move
-    /// between calls.
+    /// The loop that `fccd` runs, one call per tick, on a clock that advances only
+    /// in calls.
     ///
     /// `config` is a `Config`, or the text of a configuration file as `fccd` reads
     /// it. Its aircraft is not used: the plant is in Python.
     #[pyclass(name = "Machine", module = "fcc")]
     struct PyMachine(Autopilot) {
-        /// The airspeeds that may be commanded.
-        airspeeds_mps: RangeInclusive<f64>,
-        /// When the next tick is due, s.
-        next_s: f64,
+        /// What may be commanded.
+        config: AutopilotConfig,
     }
     setpoints PySetpoints, estimate PyEstimate;
 
@@ -40,30 +37,29 @@ machine_class! {
         let period = parsed.tick.period();
         let about = about(&parsed, Some(as_given(config)?));
         Ok(Self {
-            airspeeds_mps: autopilot.envelope.allowed_airspeeds(),
+            config: autopilot,
             lockstep: Mutex::new(Lockstep::new(
                 Autopilot::new(autopilot),
                 period,
                 &parsed.loop_config(),
                 about,
             )?),
-            next_s: period.as_secs_f64(),
         })
     }
 
-    /// One tick: gives the surfaces to set, or `None` if the loop sends none,
-    /// because it does not hold the controls.
+    /// One tick; returns the surfaces, or `None` if the loop sends none because
+    /// it does not hold the controls.
     ///
     /// `measurements` are those of the sensors; `None` if nothing arrives.
     /// `missing` names the readings that do not arrive in this tick: attitude,
     /// heading, `body_rates`, `specific_force`, airspeed, altitude. `readback`
-    /// is the readback of the controls: throttle 0..1, elevator, aileron and
+    /// contains the readback of the controls: throttle 0..1, elevator, aileron and
     /// rudder -1..1, as `Surfaces` or as four numbers; `None` if the aircraft
     /// has none. `switch` is the engage switch; `None` if there is none.
     #[pyo3(signature = (measurements = None, *, missing = Vec::new(), readback = None,
                         switch = None))]
     fn step(
-        &mut self,
+        &self,
         measurements: Option<&PyMeasurements>,
         missing: Vec<String>,
         readback: Option<&Bound<'_, PyAny>>,
@@ -72,25 +68,38 @@ machine_class! {
         let missing = known_readings(missing)?;
         let readback = readback.map(surfaces).transpose()?;
         let switch = switch.map(|on| if on { Switch::On } else { Switch::Off });
+        let mut lockstep = self.lockstep();
         let sample = measurements.map(|measurements| {
             let sample = measurements.sample(|name| missing.iter().any(|missing| missing == name));
-            with_plant(&sample, self.next_s, readback, switch)
+            with_plant(&sample, lockstep.next_s(), readback, switch)
         });
-        self.next_s += self.lockstep().period_s();
-        Ok(self.lockstep().step(sample).map(PySurfaces::from))
+        Ok(lockstep.step(sample).map(PySurfaces::from))
     }
 
-    /// Commands another airspeed (m/s), heading (rad) or altitude (m); ends a
-    /// pattern.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None))]
+    /// Commands another airspeed (m/s), heading (rad) or altitude (m): above sea
+    /// level by the altimeter setting, or a pressure altitude, or a height above
+    /// the configured field; ends a pattern. An altimeter setting (Pa) ends none.
+    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
+                        pressure_altitude_m = None, height_m = None,
+                        altimeter_setting_pa = None))]
     fn command(
-        &mut self,
+        &self,
         airspeed_mps: Option<f64>,
         heading_rad: Option<f64>,
         altitude_m: Option<f64>,
+        pressure_altitude_m: Option<f64>,
+        height_m: Option<f64>,
+        altimeter_setting_pa: Option<f64>,
     ) -> PyResult<()> {
-        let allowed = self.airspeeds_mps.clone();
-        for command in checked_commands(airspeed_mps, heading_rad, altitude_m, &allowed)? {
+        let given = Commanded {
+            airspeed_mps,
+            heading_rad,
+            altitude_m,
+            pressure_altitude_m,
+            height_m,
+            altimeter_setting_pa,
+        };
+        for command in given.checked(&self.config)? {
             self.lockstep().send(LoopCommand::Controller(command))?;
         }
         Ok(())

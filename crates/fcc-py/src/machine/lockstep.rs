@@ -1,4 +1,4 @@
-//! The loop of any controller, one call a tick.
+//! The loop of any controller, one call per tick.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::errors;
 use crate::events::PyEvent;
 use crate::structured::Rows;
 
-/// The loop of a controller on a clock that moves by one period a tick, with
+/// The loop of a controller on a clock that advances by one period per tick, with
 /// every record and event kept: 20 kB a second for an aircraft at 40 Hz.
 pub struct Lockstep<C: Recorded> {
     machine: Machine<C>,
@@ -26,6 +26,8 @@ pub struct Lockstep<C: Recorded> {
     samples: Producer<C::Measurements>,
     held: Arc<AtomicBool>,
     period_s: f64,
+    /// When the next tick is due, s.
+    next_s: f64,
     messages: Vec<MessageOf<C>>,
     /// How many messages were searched for events.
     searched: usize,
@@ -63,6 +65,7 @@ impl<C: Recorded> Lockstep<C> {
             samples,
             held,
             period_s: period.as_secs_f64(),
+            next_s: period.as_secs_f64(),
             messages: Vec::new(),
             searched: 0,
             about: About {
@@ -78,14 +81,16 @@ impl<C: Recorded> Lockstep<C> {
         })
     }
 
-    /// One tick; the outputs, if the loop sends any. Readings of the sample that
-    /// are never taken are missing, and without a sample the sensor is silent.
+    /// One tick; returns the outputs, if the loop sends any. Readings of the
+    /// sample that were never taken are missing; without a sample the sensor is
+    /// silent.
     pub fn step(&mut self, sample: Option<C::Measurements>) -> Option<C::Outputs> {
         if let Some(sample) = sample {
             // Full only once the loop has ended and reads no more.
             let _ = self.samples.push(sample);
         }
         self.machine.step();
+        self.next_s += self.period_s;
         while let Some(message) = self.link.messages.receive() {
             self.messages.push(message);
         }
@@ -93,7 +98,7 @@ impl<C: Recorded> Lockstep<C> {
         record.sent.then_some(record.outputs)
     }
 
-    /// Gives a command, which the next tick executes.
+    /// Sends a command, which the next tick executes.
     ///
     /// # Errors
     /// When the loop has stopped, or too many commands wait.
@@ -130,7 +135,8 @@ impl<C: Recorded> Lockstep<C> {
         records.collect()
     }
 
-    /// Writes all of it into a folder, as the daemon records; the files.
+    /// Writes all of it into a folder, as the daemon records, and returns the
+    /// files.
     ///
     /// # Errors
     /// When the folder cannot be written to.
@@ -175,13 +181,18 @@ impl<C: Recorded> Lockstep<C> {
         self.machine.controller().estimated()
     }
 
+    /// When the next tick is due, s on a clock that begins at 0.
+    pub const fn next_s(&self) -> f64 {
+        self.next_s
+    }
+
     /// Time from a tick to the next, s.
     pub const fn period_s(&self) -> f64 {
         self.period_s
     }
 }
 
-/// Conditions of a controller in words.
+/// Conditions of a controller as text.
 pub fn conditions<C: Controller>(flags: Flags) -> Vec<&'static str> {
     flags.iter().map(C::flag_name).collect()
 }

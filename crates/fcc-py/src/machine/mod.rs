@@ -1,5 +1,5 @@
-//! The daemon's loop, one call a tick: its states, its failsafe and its
-//! recording, around a plant in Python.
+//! The daemon's loop with states, failsafe and recording, one call per tick,
+//! for a plant in Python.
 
 #[macro_use]
 mod class;

@@ -31,7 +31,7 @@ impl<M: Schema> QueuedSensor<M> {
 impl<M: Schema> Sensor<M> for QueuedSensor<M> {
     fn sample(&mut self, tick: &Tick, into: &mut M) -> Result<(), SensorFault> {
         let sample = self.samples.pop().map_err(|_| SensorFault::Silent)?;
-        // A reading that is missing stays as it is, and grows old.
+        // A missing reading keeps its value and its time.
         self.shape.copy(&sample, into, Some(tick.woke));
         Ok(())
     }

@@ -1,29 +1,19 @@
-//! What the daemon's commands do with recordings of any plant: list, recover.
+//! The daemon's commands for recordings of any plant: list, recover.
 
 #![expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
 
 use std::path::PathBuf;
 
+use fcc_record::Listed;
 use pyo3::prelude::*;
-use serde::Serialize;
 
 use crate::errors;
 use crate::json;
 
-/// The recordings in a folder, oldest first, each as a dict. What is no
-/// recording has the keys `path` and `error` alone.
+/// The recordings in a folder, oldest first, each as a dict. A file that cannot
+/// be read has only the keys `path` and `error`.
 #[pyfunction]
 pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-    #[derive(Serialize)]
-    #[serde(untagged)]
-    enum Listed {
-        Entry(fcc_record::Entry),
-        Not {
-            #[serde(serialize_with = "fcc_record::serialize_path")]
-            path: PathBuf,
-            error: String,
-        },
-    }
     let listed = py.detach(|| -> Result<Vec<Listed>, String> {
         let files = fcc_record::files(&folder).map_err(|error| {
             format!(
@@ -31,20 +21,14 @@ pub(crate) fn list_recordings(py: Python<'_>, folder: PathBuf) -> PyResult<Bound
                 folder.display()
             )
         })?;
-        let entry = |path: PathBuf| match fcc_record::entry(&path) {
-            Ok(entry) => Listed::Entry(entry),
-            Err(error) => Listed::Not {
-                path,
-                error: error.to_string(),
-            },
-        };
-        Ok(files.into_iter().map(entry).collect())
+        let listed = files.into_iter().map(|file| Listed::of(file, false));
+        Ok(listed.collect())
     });
     json::to_python(py, &listed.map_err(|words| errors::RECORDING.with(words))?)
 }
 
-/// Makes a whole recording of one that was cut off or damaged, in its place; a
-/// whole one is left alone. What came of it is a dict.
+/// Replaces a recording that was cut off or damaged by a whole one; a whole one
+/// is unchanged. Returns the result as a dict.
 #[pyfunction]
 pub(crate) fn recover(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
     let recovered = py

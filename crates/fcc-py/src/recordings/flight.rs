@@ -1,12 +1,10 @@
-//! What the daemon's commands do with recordings of flights: report, replay.
+//! The daemon's commands for recordings of flights: report, replay.
 
 #![expect(clippy::needless_pass_by_value, reason = "pyo3 passes paths by value")]
 
 use std::path::PathBuf;
 
-use fcc_core::flight::guidance::{GuidanceConfig, TimedPatternConfig};
-use fcc_flight::config::Config;
-use fcc_flight::replay::{recorded_config, replay as replay_of};
+use fcc_flight::replay::{recorded_config, recorded_pattern, replay as replay_of};
 use fcc_record::Recording;
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
 use pyo3::prelude::*;
@@ -29,7 +27,7 @@ pub(crate) fn report(
 ) -> PyResult<Bound<'_, PyAny>> {
     let made = py.detach(|| -> Result<FlightReport, String> {
         let recording = Recording::open(&path).map_err(|error| error.to_string())?;
-        let addition = FlightAddition::new(pattern(&recording));
+        let addition = FlightAddition::new(recorded_pattern(recording.about()));
         let report = FlightSurvey::read(&recording, addition, csv.as_deref(), |_| {})?;
         if let Some(folder) = &svg {
             report.write_svgs(folder, &path)?;
@@ -42,20 +40,9 @@ pub(crate) fn report(
     json::to_python(py, &made.map_err(|words| errors::RECORDING.with(words))?)
 }
 
-/// The pattern that was to be flown; a configuration of another version may
-/// not be understood, and then nothing is scored.
-fn pattern(recording: &Recording) -> Option<TimedPatternConfig> {
-    let config = Config::parse_autopilot(&recording.about().config, "the recording").ok()?;
-    match config.guidance {
-        GuidanceConfig::TimedPattern(pattern) => Some(pattern),
-        GuidanceConfig::Hold => None,
-    }
-}
-
-/// Flies a recording again through the very code that flew it, as
-/// `fccd replay` does: a dict with `identical`, and where it is not. With
-/// another `config` the dict says where that one would have commanded
-/// otherwise. `paths` is a file, or the parts of a recording, oldest first.
+/// Replays a recording with the code that flew it, as `fccd replay` does;
+/// returns a dict with `identical`, and the differences. With another `config`
+/// the dict contains the deviation of its commands. `paths` is a file, or the parts of a recording, oldest first.
 #[pyfunction]
 #[pyo3(signature = (paths, config = None))]
 pub(crate) fn replay<'py>(

@@ -4,7 +4,7 @@ use fcc_telemetry::schema::RecordDescription;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A table of records; what was never measured is NaN.
+/// A table of records; values that were never measured are NaN.
 pub(super) fn of<'py>(
     records: &Bound<'py, PyAny>,
     described: &RecordDescription,

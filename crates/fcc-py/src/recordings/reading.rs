@@ -17,17 +17,17 @@ use crate::events::PyEvent;
 use crate::json;
 use crate::structured::{array, columns, dtype_of};
 
-/// Rows that are asked room for at most before they are there: an hour at
-/// 40 Hz. A larger count in a file is not trusted.
+/// The largest capacity that is allocated in advance: an hour at 40 Hz. A larger
+/// count in a file is not trusted.
 const ROOM: u64 = 144_000;
 
-/// A recording of any plant, whole or cut off: what is known of the run, its
+/// A recording of any plant, whole or cut off: facts about the run, its
 /// records as a structured array, its events. The columns are those that the
 /// file describes.
 ///
 /// Opening reads its two ends; the first use of `records`, `events` or `cut`
-/// reads all of it, and the GIL is released meanwhile. Raises `RecordingError`
-/// where a file cannot be read or is something else.
+/// reads all of it, with the GIL released. Raises `RecordingError` if a file
+/// cannot be read or is not a recording.
 #[pyclass(name = "Recording", module = "fcc", frozen)]
 pub(crate) struct PyRecording {
     recording: Recording,
@@ -42,7 +42,7 @@ struct Contents {
     damages: Vec<Damage>,
 }
 
-/// What is in a file.
+/// The contents of a file.
 struct Read {
     rows: Vec<u64>,
     events: Vec<PyEvent>,
@@ -87,7 +87,7 @@ impl PyRecording {
         columns(py, &self.described)
     }
 
-    /// What happened, oldest first.
+    /// The events, oldest first.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEvent>> {
         Ok(self.contents(py)?.events.clone())
@@ -100,14 +100,14 @@ impl PyRecording {
         Ok(self.contents(py)?.cut.clone())
     }
 
-    /// What is damaged inside, each as a dict: bytes, why, which ticks are
-    /// missing. Empty for a whole one.
+    /// The damage inside, each as a dict: bytes, reason, missing ticks. Empty for
+    /// a whole one.
     #[getter]
     fn damages<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         json::to_python(py, &self.contents(py)?.damages)
     }
 
-    /// What is known of the flight: program, machine, loop, sensors.
+    /// Facts about the flight: program, machine, loop, sensors.
     #[getter]
     fn about<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         about(py, self.recording.about())
@@ -124,8 +124,8 @@ impl PyRecording {
             .map_err(|error| refused(&error))
     }
 
-    /// The account at the end of the file, or counted from what is there of a
-    /// cut one.
+    /// The statistics at the end of the file; of one that is cut off, those of its
+    /// contents.
     fn account<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let end = py
             .detach(|| self.recording.account())
@@ -133,27 +133,27 @@ impl PyRecording {
         account(py, &end)
     }
 
-    /// Whether the file ends as it should; if not, see `recover`. Whether it is
-    /// damaged before its end, `damages` says.
+    /// Whether the file is finished; if not, see `recover`. For damage before its
+    /// end see `damages`.
     #[getter]
     fn is_whole(&self) -> bool {
         self.recording.is_whole()
     }
 
-    /// Where the file is.
+    /// The path of the file.
     #[getter]
     fn path(&self) -> PathBuf {
         self.recording.path().to_owned()
     }
 
-    /// How long the file is.
+    /// The size of the file.
     #[getter]
     fn bytes(&self) -> u64 {
         self.recording.bytes()
     }
 
     /// All records as a `pandas.DataFrame`, the index being seconds since the
-    /// first record; what was never measured is NaN. Needs pandas.
+    /// first record; values that were never measured are NaN. Needs pandas.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         frame::of(
             self.contents(py)?.records.bind(py).as_any(),

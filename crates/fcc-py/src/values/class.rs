@@ -21,27 +21,28 @@ pub trait Values: PyClass + Copy + Into<Self::Of> + From<Self::Of> {
     /// Whether attributes can be set.
     const SETTABLE: bool = false;
 
-    /// Its attributes, worked out once.
+    /// Its attributes, determined once.
     fn attributes() -> &'static Attributes;
 
-    /// Gives an object other values.
+    /// Replaces the values of an object.
     fn assign(_: &Bound<'_, Self>, _: Self::Of) {}
 
-    /// The struct before any value is given: readings are NaN, which is what
-    /// was not measured, and other values the default.
+    /// The struct before any value is set: readings are NaN, which means not
+    /// measured, and other values have their defaults.
     fn blank() -> Self::Of {
         Self::attributes().shape.blank(Self::WITHOUT)
     }
 
-    /// The object of a struct as a loop has it: NaN for what was never measured.
+    /// The object of a struct of the loop: NaN for values that were never
+    /// measured.
     fn from_core(core: &Self::Of) -> Self {
         let mut of = Self::blank();
         Self::attributes().shape.copy(core, &mut of, None);
         of.into()
     }
 
-    /// The measurements of one tick, before their time is known: what is not
-    /// measured, or is `missing`, is never taken.
+    /// The measurements of one tick, before their time is known: a reading that is
+    /// not measured, or `missing`, has no time.
     fn sample(&self, missing: impl Fn(&str) -> bool) -> Self::Of {
         let mut sample = (*self).into();
         Self::attributes().shape.forget(&mut sample, missing);
@@ -265,7 +266,7 @@ pub fn are_equal<V: Values>(one: V, other: V) -> bool {
     leaves.all(|(index, _)| one.as_slice().get(*index) == other.as_slice().get(*index))
 }
 
-/// An object as Python writes it.
+/// An object as Python prints it.
 ///
 /// # Errors
 /// Those of Python.
@@ -317,7 +318,7 @@ fn from_python(column: &Column, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     })
 }
 
-/// The name of a variant as Python has it: `TimedPattern` is `timed-pattern`.
+/// The name of a variant in Python: `TimedPattern` is `timed-pattern`.
 fn code(variant: &str) -> String {
     spaced(variant).replace(' ', "-")
 }

@@ -15,7 +15,7 @@ values_class! {
     /// specific force along the body axes in m/s² (z is -9.81 in level flight),
     /// indicated airspeed in m/s, barometric altitude in m.
     ///
-    /// NaN is what is not measured: its last value stays and grows old. A value
+    /// NaN means not measured: the last value is kept and becomes older. A value
     /// that no aircraft of this kind can reach is treated in the same way.
     #[pyclass(name = "Measurements", module = "fcc")]
     struct PyMeasurements(Measurements) without ["surfaces", "engage_switch", "plant"], settable;

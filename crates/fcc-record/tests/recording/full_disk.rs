@@ -74,7 +74,7 @@ fn a_full_disk_ends_the_recording_and_keeps_what_was_committed() {
 }
 
 #[test]
-fn where_deleting_is_configured_a_full_disk_costs_the_oldest_recording() {
+fn with_keep_total_mb_a_full_disk_deletes_the_oldest_recording() {
     let folder = tempfile::tempdir().unwrap();
     let old = folder
         .path()

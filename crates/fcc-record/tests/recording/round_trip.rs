@@ -1,7 +1,7 @@
 //! What is recorded is read back bit for bit.
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{AutopilotCommand, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
     ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, SensorFault, Stage, State, Time,
 };
@@ -31,6 +31,8 @@ const RESUME: Resume = Resume {
         aileron: 1e-300,
         rudder: 0.3,
     },
+    altimeter_setting_pa: Some(102_000.0),
+    altitude_reference: AltitudeReference::Field,
 };
 
 /// Records, reads, and returns what was read from a file that must be finished.
@@ -51,7 +53,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn every_bit_of_a_record_comes_back(
+    fn every_bit_of_a_record_is_restored(
         records in proptest::collection::vec(any_record(), 1..8),
         compression in prop_oneof![
             Just(Compression::None), Just(Compression::Lz4), Just(Compression::Zstd)
@@ -74,7 +76,7 @@ proptest! {
 }
 
 #[test]
-fn every_event_comes_back() {
+fn every_event_is_restored() {
     let gap = (3, 5, 1 << 60);
     let (count, first, last) = gap;
     let failsafe = State::Failsafe(Cause::Faults(Flags::bit(31)));
@@ -128,7 +130,14 @@ fn every_event_comes_back() {
         LoopCommand::Controller(AutopilotCommand::Airspeed(-0.0)),
         LoopCommand::Controller(AutopilotCommand::Heading(6.1)),
         LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
+        LoopCommand::Controller(AutopilotCommand::PressureAltitude(1_000.0)),
+        LoopCommand::Controller(AutopilotCommand::Height(-3.0)),
+        LoopCommand::Controller(AutopilotCommand::AltimeterSetting(99_999.9)),
         LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
+        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
+            altimeter_setting_pa: None,
+            ..RESUME
+        })),
         LoopCommand::Controller(AutopilotCommand::Resume(Resume {
             progress: Progress {
                 mode: Mode::Hold,
@@ -190,7 +199,7 @@ fn a_file_contains_metadata_and_ending() {
 }
 
 #[test]
-fn remarks_come_back_at_the_time_of_the_message_before() {
+fn remarks_have_the_time_of_the_message_before() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::start(about(), settings(folder.path())).unwrap();
     for message in &flight(3) {

@@ -95,7 +95,7 @@ impl Map {
         let x = axis(self.east_m, self.width_px, "east");
         let y = axis(self.north_m, self.height_px, "north");
         let panel = Panel { frame, x, y };
-        panel.axes(sheet, true);
+        panel.axes(sheet, true, "");
         let at = |place: &TrackPoint| (place.east_m / unit_m, place.north_m / unit_m);
         for (phase, places) in stretches(report, track) {
             let (ink, width_px) = match phase {

@@ -7,9 +7,10 @@ mod track;
 
 use comfy_table::Table;
 use fcc_core::flight::Autopilot;
+use fcc_core::flight::atmosphere::SEA_LEVEL_PRESSURE_PA;
 use fcc_core::flight::guidance::TimedPatternConfig;
 use fcc_core::framework::RecordOf;
-use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT};
+use fcc_telemetry::units::{AVIATION, M_FT, MPS_KT, PA_HPA};
 use fcc_telemetry::{FlightScore, PatternScorer, Sample, ScoredBy};
 use serde::Serialize;
 
@@ -31,6 +32,12 @@ pub type FlightSurvey = Survey<Autopilot>;
 /// At most this many legs are shown.
 const MOST_LEGS: usize = 16;
 
+/// At most this many altimeter settings are kept.
+const MOST_SETTINGS: usize = 16;
+
+/// The standard altimeter setting.
+const STANDARD_HPA: f64 = SEA_LEVEL_PRESSURE_PA * PA_HPA;
+
 /// Additions to a flight's report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct FlightAddition {
@@ -38,6 +45,8 @@ pub struct FlightAddition {
     pub flight: Option<FlightScore>,
     /// Why a part of the flight has no score.
     pub not_scored: Option<String>,
+    /// The altimeter settings, each once, in their order, hPa.
+    pub altimeter_settings_hpa: Vec<f64>,
     #[serde(skip)]
     scorer: Option<PatternScorer>,
     #[serde(skip)]
@@ -51,6 +60,31 @@ impl FlightAddition {
             scorer: pattern.map(PatternScorer::new),
             ..Self::default()
         }
+    }
+}
+
+impl FlightAddition {
+    fn set_altimeter(&mut self, setting_hpa: f64) {
+        let settings = &mut self.altimeter_settings_hpa;
+        if setting_hpa > 0.0
+            && settings.last() != Some(&setting_hpa)
+            && settings.len() < MOST_SETTINGS
+        {
+            settings.push(setting_hpa);
+        }
+    }
+
+    /// What the altimeter was set to, if that was not the standard pressure.
+    fn altimeter(&self) -> Option<String> {
+        let settings = &self.altimeter_settings_hpa;
+        if settings.iter().all(|hpa| *hpa == STANDARD_HPA) {
+            return None;
+        }
+        let settings: Vec<_> = settings.iter().map(|hpa| format!("{hpa:.2}")).collect();
+        Some(format!(
+            "The altimeter was set to {} hPa: the altitudes below are pressure altitudes.",
+            settings.join(", then ")
+        ))
     }
 }
 
@@ -70,7 +104,12 @@ impl Addition for FlightAddition {
             unscored.map(|why| format!("A part of the flight could not be scored: {why}."));
         let nowhere = "No position was measured: there is no ground track.";
         let nowhere = self.track.places().is_empty().then(|| nowhere.to_owned());
-        unscored.into_iter().chain(nowhere).collect()
+        let altimeter = self.altimeter();
+        unscored
+            .into_iter()
+            .chain(nowhere)
+            .chain(altimeter)
+            .collect()
     }
 
     fn figures(&self, run: &RunReport) -> Vec<Figure> {
@@ -121,6 +160,7 @@ impl Reported for Autopilot {
         if !position.is_never() {
             addition.track.push(time_s, &position.value);
         }
+        addition.set_altimeter(record.setpoints.altimeter_setting_pa * PA_HPA);
         if let Some(scorer) = &mut addition.scorer {
             let sample = Sample::measured(&record.measurements, time_s);
             // The legs lie around the set points that were captured, not around
@@ -156,7 +196,7 @@ impl Reported for Autopilot {
             ),
             plot(
                 "Altitude and pitch",
-                "Barometric altitude, desired and actual, and below it the pitch \
+                "Pressure altitude, desired and actual, and below it the pitch \
                  (thesis, figure 6.5).",
                 vec![
                     panel("altitude_m", "altitude").sized(170.0, Scale::Around(20.0)),
@@ -197,6 +237,21 @@ mod tests {
 
     use super::*;
     use crate::{FileEnd, Origin};
+
+    #[test]
+    fn settings_are_reported_once_each_and_the_standard_one_is_not() {
+        let mut addition = FlightAddition::default();
+        for pa in [101_325.0, 101_325.0] {
+            addition.set_altimeter(pa * PA_HPA);
+        }
+        assert_eq!(addition.altimeter(), None);
+        addition.set_altimeter(1_020.0);
+        assert_eq!(
+            addition.altimeter().unwrap(),
+            "The altimeter was set to 1013.25, then 1020.00 hPa: the altitudes below are pressure \
+             altitudes."
+        );
+    }
 
     /// A record of any values: a damaged file can hold it.
     fn record() -> impl Strategy<Value = RecordOf<Autopilot>> {

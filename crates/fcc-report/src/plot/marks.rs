@@ -45,6 +45,23 @@ impl Mark {
         }
     }
 
+    /// Its events as text, a line for each of the first few.
+    pub(crate) fn description(&self, events: &[EventLine]) -> String {
+        const MOST: usize = 12;
+        let own = events
+            .iter()
+            .filter(|event| (self.first..=self.last).contains(&event.number));
+        let lines: Vec<String> = own
+            .take(MOST)
+            .map(|event| format!("{} {}", event.number, event.text))
+            .collect();
+        let more = (self.last - self.first + 1).saturating_sub(MOST);
+        match more {
+            0 => lines.join("\n"),
+            more => format!("{}\nand {more} more", lines.join("\n")),
+        }
+    }
+
     fn half_width_px(&self) -> f64 {
         text_width_px(&self.label(), SMALL_PX) / 2.0
     }

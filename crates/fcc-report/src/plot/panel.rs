@@ -61,22 +61,38 @@ impl Panel {
     }
 
     /// Draws both axes with their grids; the label of the x axis if they are
-    /// wanted.
-    pub(crate) fn axes(&self, sheet: &mut Sheet, with_x_labels: bool) {
+    /// wanted. `zoom` are attributes for the page's script.
+    pub(crate) fn axes(&self, sheet: &mut Sheet, with_x_labels: bool, zoom: &str) {
         let (x, y) = (&self.x, &self.y);
-        let grid = |sheet: &mut Sheet, xs: &[f64], ys: &[f64], ink| {
-            for at in xs {
+        for (places, ink) in [(&x.light, FINE_GRID), (&Self::places(x), GRID)] {
+            for at in places {
                 self.line(sheet, &[(*at, y.from), (*at, y.to)], ink, 0.6);
             }
-            for at in ys {
-                self.line(sheet, &[(x.from, *at), (x.to, *at)], ink, 0.6);
-            }
-        };
-        let ticks = |axis: &Axis| axis.ticks.iter().map(|(at, _)| *at).collect::<Vec<_>>();
-        grid(sheet, &x.light, &y.light, FINE_GRID);
-        grid(sheet, &ticks(x), &ticks(y), GRID);
+        }
+        for at in &y.light {
+            self.line(sheet, &[(x.from, *at), (x.to, *at)], FINE_GRID, 0.6);
+        }
+        sheet.raw(format_args!("<g class=\"values\"{zoom}>"));
+        self.y_ticks(sheet);
+        sheet.raw(format_args!("</g>"));
         self.y_axis(sheet);
         self.x_axis(sheet, with_x_labels);
+    }
+
+    fn places(axis: &Axis) -> Vec<f64> {
+        axis.ticks.iter().map(|(at, _)| *at).collect()
+    }
+
+    /// For each tick a line of the grid, the tick and its label, in this order.
+    fn y_ticks(&self, sheet: &mut Sheet) {
+        let left = self.frame.left;
+        for (at, label) in &self.y.ticks {
+            self.line(sheet, &[(self.x.from, *at), (self.x.to, *at)], GRID, 0.6);
+            let (_, y) = self.place((self.x.from, *at));
+            sheet.line(&[(left - TICK_PX, y), (left, y)], FAINT, 0.8);
+            let font = Font(LABEL_PX, TEXT, Anchor::End, Height::Middle);
+            sheet.text((left - 6.0, y), label, font);
+        }
     }
 
     fn y_axis(&self, sheet: &mut Sheet) {
@@ -84,12 +100,6 @@ impl Panel {
             left, top, bottom, ..
         } = self.frame;
         sheet.line(&[(left, top), (left, bottom)], FAINT, 0.8);
-        for (at, label) in &self.y.ticks {
-            let (_, y) = self.place((self.x.from, *at));
-            sheet.line(&[(left - TICK_PX, y), (left, y)], FAINT, 0.8);
-            let font = Font(LABEL_PX, TEXT, Anchor::End, Height::Middle);
-            sheet.text((left - 6.0, y), label, font);
-        }
         if !self.y.title.is_empty() {
             let (x, y) = (left - Y_LABELS_PX + 4.0, f64::midpoint(top, bottom));
             let turned = format!("rotate(270, {}, {})", px(x), px(y));

@@ -35,7 +35,7 @@ pub(super) fn figure(title: &str, what: &str, rows: &[NamedPercentiles]) -> Opti
         y: Axis::rows(rows.len()),
     };
     let mut sheet = Sheet::default();
-    panel.axes(&mut sheet, true);
+    panel.axes(&mut sheet, true, "");
     for (number, row) in rows.iter().enumerate() {
         draw_row(&mut sheet, &panel, (rows.len() - number) as f64 - 0.5, row);
     }

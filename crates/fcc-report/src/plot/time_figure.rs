@@ -1,5 +1,7 @@
 //! Plots over time, one panel above another.
 
+use maud::html;
+
 use super::super::plots::{Curve, Ink};
 use super::super::report::RunReport;
 use super::super::states::Phase;
@@ -33,8 +35,50 @@ pub(super) struct TimePanel<'a> {
     pub(super) y: Axis,
     /// Whether they are directions, drawn within one turn.
     pub(super) fold: bool,
+    pub(super) refit: Refit,
     /// Drawn in this order.
     pub(super) curves: &'a [Curve],
+}
+
+/// How the page's script fits the vertical axis to the part of the time that is
+/// shown.
+#[derive(Clone, Copy)]
+pub(super) struct Refit {
+    pub(super) kind: Kind,
+    /// The least span.
+    pub(super) least: f64,
+    /// Values per unit of the labels.
+    pub(super) per: f64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Not at all.
+    Fixed,
+    /// To its own lines.
+    Line,
+    /// To those of all such panels.
+    Together,
+    /// To its own directions.
+    Compass,
+}
+
+impl Refit {
+    /// The attributes of a panel's values.
+    fn attributes(self, axis: &Axis) -> String {
+        let kind = match self.kind {
+            Kind::Fixed => return String::new(),
+            Kind::Line => "line",
+            Kind::Together => "together",
+            Kind::Compass => "compass",
+        };
+        let Self { least, per, .. } = self;
+        let (from, to) = (axis.from, axis.to);
+        format!(
+            " data-kind=\"{kind}\" data-from=\"{from}\" data-to=\"{to}\" data-least=\"{least}\" \
+             data-per=\"{per}\""
+        )
+    }
 }
 
 /// Draws panels over the time of a report.
@@ -69,8 +113,9 @@ pub(super) fn time_figure(
             },
             y: panel.y.clone(),
         };
-        axes.axes(&mut sheet, number + 1 == panels.len());
-        zoomable(&mut sheet, frame, |sheet| {
+        let last = number + 1 == panels.len();
+        axes.axes(&mut sheet, last, &panel.refit.attributes(&panel.y));
+        zoomable(&mut sheet, "time curves", frame, |sheet| {
             for curve in panel.curves {
                 let on_panel = |point: Point| {
                     let (x, y) = axes.place((point.time_s, point.value));
@@ -88,7 +133,10 @@ pub(super) fn time_figure(
     sheet.raw(format_args!("</g>"));
     for mark in &marks {
         let font = Font(SMALL_PX, FAINT, Anchor::Middle, Height::Bottom);
+        let words = html! { title { (mark.description(&report.events)) } };
+        sheet.raw(format_args!("<g>{}", words.into_string()));
         sheet.transformed_text((mark.at_px, top - 1.0), &mark.label(), font, "mark", "");
+        sheet.raw(format_args!("</g>"));
     }
     // For the page's script: the position of the time axis.
     let data = [
@@ -102,11 +150,11 @@ pub(super) fn time_figure(
 
 /// The content of a panel, from its upper left corner: a part of the sheet that
 /// can be zoomed by itself.
-fn zoomable(sheet: &mut Sheet, frame: Frame, draw: impl FnOnce(&mut Sheet)) {
+fn zoomable(sheet: &mut Sheet, class: &str, frame: Frame, draw: impl FnOnce(&mut Sheet)) {
     let (x, y) = (px(frame.left), px(frame.top));
     let (width, height) = (px(frame.right - frame.left), px(frame.bottom - frame.top));
     sheet.raw(format_args!(
-        "<svg class=\"time\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
+        "<svg class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" \
          viewBox=\"0 0 {width} {height}\" preserveAspectRatio=\"none\">"
     ));
     draw(sheet);
@@ -131,7 +179,7 @@ fn ground(sheet: &mut Sheet, report: &RunReport, frame: Frame, axis: &Axis, mark
              d=\"{path}\"/>"
         ));
     };
-    zoomable(sheet, frame, |sheet| {
+    zoomable(sheet, "time", frame, |sheet| {
         for (from_s, to_s, colour) in tints.chain(gaps) {
             // Short gaps are widened so that they are visible.
             let right = at(to_s).max(at(from_s) + 1.0);

@@ -5,7 +5,7 @@ use super::super::report::RunReport;
 use super::axis::{Axis, extent};
 use super::curves::Detail;
 use super::figure::Figure;
-use super::time_figure::{TimePanel, time_figure};
+use super::time_figure::{Kind, Refit, TimePanel, time_figure};
 
 /// The figures of all plots of a report.
 pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
@@ -17,6 +17,7 @@ fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
     let panels = plot.panels.iter().map(|panel| TimePanel {
         height_px: panel.height_px,
         y: axis(panel, plot),
+        refit: refit(panel),
         fold: panel.scale == Scale::Compass && turns_often(extent_of(panel)),
         curves: &panel.curves,
     });
@@ -28,6 +29,20 @@ fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
         svg: time_figure(report, &label, detail, &panels),
     }
 }
+
+fn refit(panel: &Panel) -> Refit {
+    let (kind, least) = match panel.scale {
+        Scale::Around(least) => (Kind::Line, least),
+        Scale::Together(least) => (Kind::Together, least),
+        Scale::Compass if !turns_often(extent_of(panel)) => (Kind::Compass, LEAST_TURN_DEG),
+        Scale::Compass | Scale::Percent => (Kind::Fixed, 0.0),
+    };
+    let per = 1.0;
+    Refit { kind, least, per }
+}
+
+/// The least span of an axis of directions, degrees.
+const LEAST_TURN_DEG: f64 = 20.0;
 
 fn extent_of(panel: &Panel) -> (f64, f64) {
     extent(panel.curves.iter().map(|curve| &curve.trace))
@@ -65,7 +80,7 @@ fn compass(extent: (f64, f64), title: &str) -> Axis {
     if turns_often(extent) {
         return Axis::stepped((0.0, 360.0), 90.0, title, label);
     }
-    let axis = Axis::around(extent, 20.0, 5, title);
+    let axis = Axis::around(extent, LEAST_TURN_DEG, 5, title);
     let range = (axis.from, axis.to);
     let step = match range.1 - range.0 {
         span if span > 1_080.0 => 180.0,

@@ -1,5 +1,7 @@
 //! The timeline of a flight: its states as a bar, and events as text below it.
 
+use std::cmp::Reverse;
+
 use super::super::events::EventLine;
 use super::super::report::RunReport;
 use super::super::states::Phase;
@@ -16,7 +18,9 @@ const ROW_PX: f64 = 14.0;
 /// Room between the bar and the first row of text, px.
 const LEAD_PX: f64 = 10.0;
 const MOST_ROWS: usize = 9;
-/// At most this many events are placed.
+/// Events that are less than this apart are listed together, px.
+const CROWD_PX: f64 = 4.0;
+/// At most this many lists of events are placed.
 const MOST_TRIED: usize = 80;
 const MOST_LETTERS: usize = 70;
 
@@ -134,39 +138,74 @@ impl Note {
 
 /// Places as many events as there is room for, the most important first, of
 /// equals the latest: text is to the right of its lead, so the leads of earlier
-/// events do not cross it.
+/// events do not cross it. Events at one place are a list in their order.
 fn place_notes(report: &RunReport) -> Vec<Note> {
-    let mut events: Vec<&EventLine> = report.events.iter().collect();
-    events.sort_by(|a, b| b.weight.cmp(&a.weight).then(b.time_s.total_cmp(&a.time_s)));
+    let mut crowds: Vec<(f64, Vec<&EventLine>)> = Vec::new();
+    for event in &report.events {
+        let at_px = time_px(report, event.time_s);
+        match crowds.last_mut() {
+            Some((first_px, crowd)) if at_px - *first_px < CROWD_PX => crowd.push(event),
+            _ => crowds.push((at_px, vec![event])),
+        }
+    }
+    let weight = |crowd: &[&EventLine]| crowd.iter().map(|event| event.weight).max();
+    crowds.sort_by(|(a_px, a), (b_px, b)| weight(b).cmp(&weight(a)).then(b_px.total_cmp(a_px)));
     let mut placed: Vec<Note> = Vec::new();
-    for event in events.into_iter().take(MOST_TRIED) {
+    for (at_px, mut crowd) in crowds.into_iter().take(MOST_TRIED) {
+        crowd.sort_by_key(|event| Reverse(event.weight));
+        crowd.truncate(MOST_ROWS);
+        crowd.sort_by_key(|event| event.number);
+        // Of those there is no room for, the least important is left out.
+        while let Some(least) = crowd
+            .iter()
+            .rposition(|event| crowd.iter().all(|other| event.weight <= other.weight))
+        {
+            let room = (0..MOST_ROWS)
+                .map(|row| list(at_px, &crowd, row))
+                .find(|list| {
+                    let is_clear = |note: &Note| placed.iter().all(|other| note.is_clear_of(other));
+                    list.iter()
+                        .all(|note| note.row < MOST_ROWS && is_clear(note))
+                });
+            if let Some(list) = room {
+                placed.extend(list);
+                break;
+            }
+            crowd.remove(least);
+        }
+    }
+    placed
+}
+
+/// Text of some events at one place, one below the other from a row on.
+fn list(at_px: f64, events: &[&EventLine], first_row: usize) -> Vec<Note> {
+    let label = |event: &&EventLine| {
         let mut label = format!("{} {}", event.number, event.text);
         if label.chars().count() > MOST_LETTERS {
             label = label.chars().take(MOST_LETTERS - 1).collect();
             label.push('…');
         }
-        let at_px = time_px(report, event.time_s);
-        let width_px = text_width_px(&label, SMALL_PX);
-        // Near the right edge the text is to the left.
-        let left_px = if at_px + 4.0 + width_px > RIGHT_PX {
+        label
+    };
+    let labels: Vec<String> = events.iter().map(label).collect();
+    let width_px = |label: &String| text_width_px(label, SMALL_PX);
+    let widest_px = labels.iter().map(width_px).fold(0.0, f64::max);
+    // Near the right edge the text is to the left.
+    let is_left = at_px + 4.0 + widest_px > RIGHT_PX;
+    let note = |(n, label): (usize, String)| {
+        let width_px = width_px(&label);
+        let left_px = if is_left {
             at_px - 4.0 - width_px
         } else {
             at_px + 4.0
         };
-        let mut note = Note {
+        Note {
             at_px,
             left_px,
             right_px: left_px + width_px,
-            row: 0,
+            row: first_row + n,
             label,
-        };
-        let room = (0..MOST_ROWS).find(|row| {
-            note.row = *row;
-            placed.iter().all(|other| note.is_clear_of(other))
-        });
-        if room.is_some() {
-            placed.push(note);
         }
-    }
-    placed
+    };
+    labels.into_iter().enumerate().map(note).collect()
 }

@@ -13,7 +13,7 @@ use super::sheet::{
     ACTUAL, Anchor, Colour, Dot, FAINT, Font, Height, OTHER, SMALL_PX, Sheet, TEXT, WHITE,
     WIDTH_PX, text_width_px,
 };
-use super::time_figure::{TimePanel, time_figure};
+use super::time_figure::{Kind, Refit, TimePanel, time_figure};
 
 const LEFT_PX: f64 = 90.0;
 const RIGHT_PX: f64 = WIDTH_PX - 22.0;
@@ -46,10 +46,16 @@ pub(super) fn figures(report: &RunReport, detail: Detail) -> Vec<Figure> {
 }
 
 fn lateness_over_time(report: &RunReport, detail: Detail) -> Figure {
+    let (_, high) = extent([&report.lateness.trace]);
     let panel = TimePanel {
         height_px: 100.0,
-        y: lateness_axis(extent([&report.lateness.trace])),
+        y: lateness_axis(high),
         fold: false,
+        refit: Refit {
+            kind: Kind::Line,
+            least: 1.0,
+            per: if high > LONG_US { 1e3 } else { 1.0 },
+        },
         curves: std::slice::from_ref(&report.lateness),
     };
     Figure {
@@ -59,9 +65,12 @@ fn lateness_over_time(report: &RunReport, detail: Detail) -> Figure {
     }
 }
 
-fn lateness_axis((_, high): (f64, f64)) -> Axis {
-    let high = high.max(1.0) * 1.06;
-    if high > 2_000.0 {
+/// A lateness above this is shown in ms, µs.
+const LONG_US: f64 = 2_000.0;
+
+fn lateness_axis(high: f64) -> Axis {
+    let (is_long, high) = (high > LONG_US, high.max(1.0) * 1.06);
+    if is_long {
         let mut axis = Axis::exactly((0.0, high / 1e3), 3, "lateness, ms");
         axis.to = high;
         for (at, _) in &mut axis.ticks {
@@ -104,7 +113,7 @@ fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Figure {
     };
     let band = (nominal_ms - two_percent, nominal_ms + two_percent);
     panel.fill(&mut sheet, (band.0, 0.0), (band.1, rows as f64), "#E2EEE2");
-    panel.axes(&mut sheet, true);
+    panel.axes(&mut sheet, true, "");
     let (middle, top) = panel.place((nominal_ms, rows as f64));
     let font = Font(SMALL_PX, FAINT, Anchor::Middle, Height::Bottom);
     sheet.text((middle, top - 2.0), "±2 %", font);
@@ -133,7 +142,7 @@ fn periods(timing: &Timing, of: &BoxPlot, run: &str) -> Figure {
         ),
         y: Axis::rows(1),
     };
-    panel.axes(&mut sheet, true);
+    panel.axes(&mut sheet, true, "");
     let mean_us = (mean_ms - nominal_ms) * 1e3;
     draw_box(&mut sheet, &panel, 0.5, &deviation, mean_us, ACTUAL);
     let beside = if timing.thesis.is_some() {
@@ -214,7 +223,7 @@ fn lateness(timing: &Timing) -> Figure {
         y,
     };
     let mut sheet = Sheet::default();
-    panel.axes(&mut sheet, true);
+    panel.axes(&mut sheet, true, "");
     for bin in bins.iter().filter(|bin| bin.count > 0) {
         let (from, to) = (bin.from_us.log10(), bin.to_us.log10());
         let inset = 0.04 * (to - from);

@@ -2,11 +2,11 @@
 
 mod panel;
 
-use fcc_core::framework::schema::{Kind, Schema};
+use fcc_core::framework::schema::Schema;
 use fcc_core::framework::{Readings, RecordOf};
-use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Column, columns};
+use fcc_telemetry::schema::columns;
 use fcc_telemetry::units::{SI, Shown};
+use fcc_telemetry::{RecordedQuantity, Telemetry};
 
 use super::terms::capitalized;
 use panel::Role;
@@ -24,83 +24,58 @@ pub struct Plot {
     pub panels: Vec<Panel>,
 }
 
-/// The values of a record, by name.
+/// The quantities of a record, by name.
 #[derive(Debug)]
-pub struct Quantities {
-    columns: Vec<Column>,
-}
+pub struct Quantities(Vec<RecordedQuantity>);
 
 impl Quantities {
     pub(crate) fn of<T: Schema>() -> Self {
-        Self {
-            columns: columns::<T>(),
-        }
+        Self(RecordedQuantity::all::<T>())
     }
 
-    /// The first number of this name in a part of the record.
-    fn find<'a>(&'a self, part: &'a str, name: &str) -> Option<(usize, &'a Column)> {
-        let mut numbers = self.numbers(part);
-        numbers.find(|(_, column)| column.field == name)
-    }
-
-    fn numbers<'a>(&'a self, part: &'a str) -> impl Iterator<Item = (usize, &'a Column)> {
-        let columns = self.columns.iter().enumerate();
-        columns.filter(move |(_, column)| {
-            column.kind == Kind::Number && column.path.split('.').next() == Some(part)
-        })
-    }
-
-    fn taken(&self, column: &Column) -> Option<usize> {
-        let path = format!("{}.taken", column.reading.as_ref()?);
-        self.columns.iter().position(|column| column.path == path)
+    fn find(&self, name: &str, is_output: bool) -> Option<&RecordedQuantity> {
+        let mut all = self.0.iter();
+        all.find(|of| of.column.field == name && of.commanded.is_some() == is_output)
     }
 
     /// Measurement, estimate and set point of this name.
     pub fn panel(&self, name: &'static str, units: &[Shown]) -> Panel {
-        let measured = self.find("measurements", name);
-        let estimated = self.find("estimate", name);
-        let desired = self.find("setpoints", name);
+        let found = self.find(name, false);
         let mut curves = Vec::new();
-        if let Some((value, column)) = measured {
-            let role = Role::Measured(self.taken(column));
-            let (ink, name) = match estimated {
-                Some(_) => (Ink::Measured, "measured"),
-                None => (Ink::Actual, "measured"),
+        if let Some(value) = found.and_then(|of| of.measured) {
+            let ink = match found.and_then(|of| of.estimated) {
+                Some(_) => Ink::Measured,
+                None => Ink::Actual,
             };
-            curves.push(Curve::new(ink, name, role, value));
+            let role = Role::Measured(found.and_then(|of| of.taken));
+            curves.push(Curve::new(ink, "measured", role, value));
         }
-        if let Some((value, _)) = estimated {
+        if let Some(value) = found.and_then(|of| of.estimated) {
             curves.push(Curve::new(Ink::Actual, "actual", Role::Estimated, value));
         }
-        if let Some((value, _)) = desired {
+        if let Some(value) = found.and_then(|of| of.desired) {
             curves.push(Curve::new(Ink::Desired, "desired", Role::Desired, value));
         }
-        let column = measured.or(estimated).or(desired);
-        Panel::of(name, column.map(|(_, column)| column), units, curves)
+        Panel::of(name, found.map(|of| &of.column), units, curves)
     }
 
     /// An output, as `units` have it.
     pub fn output(&self, name: &'static str, units: &[Shown]) -> Panel {
-        let output = self.find("outputs", name);
-        let curve = |(value, _)| Curve::new(Ink::Actual, "commanded", Role::Output, value);
-        let curves = output.map(curve).into_iter().collect();
-        Panel::of(name, output.map(|(_, column)| column), units, curves)
+        let found = self.find(name, true);
+        let curve = |value| Curve::new(Ink::Actual, "commanded", Role::Output, value);
+        let curves = found.and_then(|of| of.commanded).map(curve);
+        let curves = curves.into_iter().collect();
+        Panel::of(name, found.map(|of| &of.column), units, curves)
     }
 }
 
 /// The plots that follow from the schema.
 pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
     let mut plots: Vec<Plot> = Vec::new();
-    let mut shown: Vec<&'static str> = Vec::new();
     let mut readings: Vec<&str> = Vec::new();
-    for (_, column) in of.numbers("measurements") {
-        let name = column.field;
-        if shown.contains(&name) {
-            continue;
-        }
-        shown.push(name);
+    for RecordedQuantity { column, .. } in of.0.iter().filter(|of| of.measured.is_some()) {
         let reading = column.reading.as_deref().unwrap_or(&column.path);
-        let panel = of.panel(name, SI);
+        let panel = of.panel(column.field, SI);
         if let Some(plot) = plots.last_mut()
             && readings.last() == Some(&reading)
         {
@@ -114,21 +89,22 @@ pub(crate) fn declared<C: Telemetry>(of: &Quantities) -> Vec<Plot> {
             });
         }
     }
-    let estimates = of.numbers("estimate").chain(of.numbers("setpoints"));
-    let mut more: Vec<&'static str> = estimates.map(|(_, column)| column.field).collect();
-    more.retain(|name| !shown.contains(name));
-    more.dedup();
-    let outputs = of.numbers("outputs").map(|(_, column)| column.field);
+    let others = of.0.iter().filter(|of| of.measured.is_none());
+    let (outputs, more): (Vec<_>, Vec<_>) = others.partition(|of| of.commanded.is_some());
+    let panels = |all: Vec<&RecordedQuantity>, panel: fn(&Quantities, _, _) -> Panel| {
+        let panels = all.into_iter().map(|one| panel(of, one.column.field, SI));
+        panels.collect()
+    };
     plots.extend([
         Plot {
             title: "Other estimates and set points".to_owned(),
             caption: "Values that are not measured.".to_owned(),
-            panels: more.into_iter().map(|name| of.panel(name, SI)).collect(),
+            panels: panels(more, Quantities::panel),
         },
         Plot {
             title: "Outputs".to_owned(),
             caption: "Commanded values while the loop had control.".to_owned(),
-            panels: outputs.map(|name| of.output(name, SI)).collect(),
+            panels: panels(outputs, Quantities::output),
         },
     ]);
     plots.retain(|plot| !plot.panels.is_empty());

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_look_from_elsewhere_does_not_count_for_a_sharp_one() {
+    fn an_imprecise_measurement_does_not_count_as_precise() {
         // A look each 100 ns; ticks at 3.9 ms after multiples of 4. The first
         // two were missed: the clock was not read for 0.7 ms.
         let mut now_ns = 0_i64;
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_stands_still_is_none() {
+    fn a_clock_that_does_not_advance_has_no_tick() {
         let mut now_ns = 0;
         let stuck = || {
             now_ns += 1_000;
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn this_machines_tick_is_found_again_where_it_was() {
+    fn the_phase_of_this_machines_tick_is_constant() {
         // A machine that is elsewhere blurs a look; five of forty agree.
         let mut looks: Vec<KernelTick> = Vec::new();
         for _ in 0..40 {

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn begins_with_the_most_it_may_spend() {
+    fn begins_with_the_longest_margin() {
         assert_eq!(at_40_hz().ns(), 250 * US);
         let capped = EarlyWake {
             cpu_cap: 0.004,
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn follows_a_steady_lateness_with_the_guard() {
+    fn is_a_steady_lateness_plus_the_guard() {
         let mut margin = at_40_hz();
         ticks(&mut margin, steady(60, 544));
         // 60 µs and 20 µs of guard, rounded up to a bucket of a microsecond.
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn is_as_long_as_it_may_be_until_the_quantile_is_known() {
+    fn is_the_longest_until_the_quantile_is_known() {
         let mut margin = at_40_hz();
         // One in 500 is 0.002: of fewer, nothing is left of the quantile.
         ticks(&mut margin, steady(60, 499));
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn covers_the_share_of_wake_ups_that_it_was_asked_for() {
+    fn covers_the_configured_share_of_wake_ups() {
         let config = EarlyWake {
             quantile: 0.9,
             guard: Duration::ZERO,
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busier_machine_is_seen_within_a_second_and_forgotten_after_a_window() {
+    fn a_busier_machine_has_an_effect_within_a_second_and_for_a_window() {
         let mut margin = at_40_hz();
         ticks(&mut margin, steady(60, 2048));
         ticks(&mut margin, steady(150, 40));
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn small_savings_are_not_worth_a_move() {
+    fn a_small_change_does_not_move_the_margin() {
         let mut margin = at_40_hz();
         ticks(&mut margin, steady(100, 2048));
         assert_eq!(ticks(&mut margin, steady(90, 5000)), 0);

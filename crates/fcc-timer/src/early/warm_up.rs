@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_found_no_time_is_tried_again() {
+    fn a_warm_up_without_time_is_tried_again() {
         let mut warm_up = WarmUp::new();
         warm_up.took(150_000, LEFT_NS);
         let mut skipped = 0;
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_never_fits_makes_ten_ticks_of_a_hundred_thousand_late() {
+    fn a_warm_up_that_never_fits_makes_ten_ticks_of_a_hundred_thousand_late() {
         let mut warm_up = WarmUp::new();
         let mut late = 0;
         for _ in 0..100_000 {

@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cpu_that_takes_the_interrupts_is_left_alone() {
+    fn the_cpu_that_handles_the_interrupts_is_not_chosen() {
         let cpus = Cpus {
             device_interrupts: parse_interrupts(PI_4),
             ..Cpus::default()

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_far_out_counts_as_the_farthest() {
+    fn values_beyond_the_histogram_count_as_its_last() {
         let median = of(&[i64::MAX; 3]).median().unwrap();
         assert!((median / 1e9 - 1.0).abs() < 1e-3, "{median}");
     }

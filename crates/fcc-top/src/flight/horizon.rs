@@ -134,13 +134,13 @@ mod tests {
     }
 
     #[test]
-    fn level_the_lower_half_is_ground() {
+    fn in_level_flight_the_lower_half_is_ground() {
         let rows = drawn(0.0, 0.0);
         assert_eq!((&rows[0][..1], rows[10].contains('█')), (" ", true));
     }
 
     #[test]
-    fn nose_high_there_is_sky_alone() {
+    fn at_a_high_pitch_only_sky_is_visible() {
         assert!(drawn(25.0, 0.0).iter().all(|row| !row.contains('█')));
     }
 

@@ -6,6 +6,8 @@ mod table;
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{RecordOf, State};
+use fcc_telemetry::ShownAltitude;
+use fcc_telemetry::units::PA_HPA;
 use serde_json::{Map, Value, json};
 
 use self::table::Quantity;
@@ -20,10 +22,19 @@ impl Watched for Autopilot {
     ];
 
     fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, ScreenPart<Self>)> {
-        // When engaged, the mode of guidance and its progress.
+        // When engaged, the mode of guidance and its progress; the altimeter
+        // setting if it is not the standard one.
         let flown = match record {
             Some(record) if record.state == State::Engaged => record.setpoints.guidance.to_string(),
             _ => "Flight".to_owned(),
+        };
+        let setting_hpa = record.and_then(|record| ShownAltitude::of(record).setting_hpa);
+        let flown = match (record, setting_hpa) {
+            (Some(record), Some(hpa)) if record.state == State::Engaged => {
+                format!("{}, QNH {hpa:.0}", record.setpoints.guidance.mode)
+            }
+            (_, Some(hpa)) => format!("Flight, QNH {hpa:.0}"),
+            (_, None) => flown,
         };
         vec![
             ("Attitude".to_owned(), 23, horizon::draw),
@@ -42,6 +53,8 @@ impl Watched for Autopilot {
         let values = json!({
             "actual": all(|quantity| quantity.actual),
             "setpoints": engaged.then(|| all(|quantity| Some(quantity.desired))),
+            "altimeter_setting_hpa": record.setpoints.altimeter_setting_pa * PA_HPA,
+            "altitude_above": ShownAltitude::of(record).reference,
             "guidance": engaged.then(|| json!({
                 "mode": progress.mode.name(),
                 "item": progress.item,

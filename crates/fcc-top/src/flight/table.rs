@@ -2,6 +2,7 @@
 
 use fcc_core::flight::Autopilot;
 use fcc_core::framework::{Reading, RecordOf, State};
+use fcc_telemetry::ShownAltitude;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 use ratatui::Frame;
 use ratatui::layout::Rect;
@@ -50,6 +51,8 @@ pub(super) fn quantities(record: &RecordOf<Autopilot>) -> [Quantity; 6] {
         desired,
     };
     let (heading, altitude) = (known(&measured.heading_rad), known(&measured.altitude_m));
+    let shown = ShownAltitude::of(record);
+    let above = |m: f64| (m - shown.datum_m) * M_FT;
     let airspeed = known(&measured.airspeed_mps).map(|mps| mps * MPS_KT);
     let climb = known(&measured.velocity).map(|velocity| -velocity.down_mps * MPS_FPM);
     let attitude = known(&measured.attitude);
@@ -63,10 +66,10 @@ pub(super) fn quantities(record: &RecordOf<Autopilot>) -> [Quantity; 6] {
             compass(wanted.heading_rad),
         ),
         of(
-            ("altitude", "ft", "altitude_ft"),
+            (altitude_name(&shown), "ft", "altitude_ft"),
             0,
-            altitude.map(|m| m * M_FT),
-            wanted.altitude_m * M_FT,
+            altitude.map(above),
+            above(wanted.altitude_m),
         ),
         of(
             ("airspeed", "kt", "airspeed_kt"),
@@ -93,6 +96,14 @@ pub(super) fn quantities(record: &RecordOf<Autopilot>) -> [Quantity; 6] {
             wanted.pitch_rad.to_degrees(),
         ),
     ]
+}
+
+/// What kind of altitude it is, in the room for a name.
+fn altitude_name(shown: &ShownAltitude) -> &'static str {
+    match shown.name {
+        "pressure altitude" => "pressure",
+        name => name,
+    }
 }
 
 /// What was ever measured.

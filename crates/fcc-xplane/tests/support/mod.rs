@@ -18,14 +18,14 @@ pub mod bench;
 
 use std::collections::{HashMap, VecDeque};
 use std::net::{SocketAddr, SocketAddrV4, UdpSocket};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use fcc_core::framework::{Tick, Time};
 use fcc_xplane::{Errno, Port, Simulator, XPlaneConfig};
 
 pub const P: &str = "sim/flightmodel/position/";
-pub const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[0]";
+pub const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[56]";
 pub const OVERRIDE_JOYSTICK: &str = "sim/operation/override/override_joystick";
 pub const OVERRIDE_THROTTLES: &str = "sim/operation/override/override_throttles";
 pub const YOKE_PITCH: &str = "sim/joystick/yoke_pitch_ratio";
@@ -38,7 +38,10 @@ pub const PAUSED: &str = "sim/time/paused";
 /// A minimal X-Plane: stores requests and writes, and sends frames when the
 /// test calls for them.
 pub struct FakeXPlane {
+    /// Listens.
     pub socket: UdpSocket,
+    /// Sends, from another port, as X-Plane does.
+    pub sender: UdpSocket,
     /// The last requester.
     pub client: Option<SocketAddr>,
     /// Index -> path.
@@ -63,6 +66,8 @@ impl FakeXPlane {
     pub fn at(address: &str) -> Self {
         let socket = UdpSocket::bind(address).unwrap();
         socket.set_nonblocking(true).unwrap();
+        let ip = socket.local_addr().unwrap().ip();
+        let sender = UdpSocket::bind((ip, 0)).unwrap();
         let mut values: HashMap<String, f32> = [
             (PAUSED, 0.0),
             (FLIGHT_TIME, 100.0),
@@ -101,6 +106,7 @@ impl FakeXPlane {
         }
         Self {
             socket,
+            sender,
             client: None,
             subscribed: HashMap::new(),
             requests: 0,
@@ -230,7 +236,7 @@ impl FakeXPlane {
 
     pub fn send(&self, datagram: &[u8]) {
         if let Some(client) = self.client {
-            self.socket.send_to(datagram, client).unwrap();
+            self.sender.send_to(datagram, client).unwrap();
         }
     }
 
@@ -297,7 +303,7 @@ impl FakeXPlane {
             }
         }
         let to = SocketAddrV4::new([127, 0, 0, 1].into(), port);
-        self.socket.send_to(&datagram, to).unwrap();
+        self.sender.send_to(&datagram, to).unwrap();
     }
 }
 
@@ -373,6 +379,45 @@ impl Port for Scripted {
     }
 
     fn send(&self, _: &[u8], _: SocketAddr) -> Result<(), Errno> {
+        Ok(())
+    }
+}
+
+/// A datagram, and where it goes to or comes from.
+pub type Addressed = (Vec<u8>, SocketAddr);
+
+/// A network without sockets: what was sent, and what arrives, the last first.
+#[derive(Clone, Default)]
+pub struct Wire {
+    pub sent: Arc<Mutex<Vec<Addressed>>>,
+    pub arriving: Arc<Mutex<Vec<Addressed>>>,
+}
+
+impl Wire {
+    pub fn arrives(&self, datagram: &[u8], from: SocketAddr) {
+        self.arriving
+            .lock()
+            .unwrap()
+            .push((datagram.to_vec(), from));
+    }
+
+    /// What was sent since the last call.
+    pub fn take_sent(&self) -> Vec<Addressed> {
+        std::mem::take(&mut self.sent.lock().unwrap())
+    }
+}
+
+impl Port for Wire {
+    fn receive(&self, into: &mut [u8]) -> Result<Option<(usize, SocketAddr)>, Errno> {
+        let next = self.arriving.lock().unwrap().pop();
+        Ok(next.map(|(datagram, from)| {
+            into[..datagram.len()].copy_from_slice(&datagram);
+            (datagram.len(), from)
+        }))
+    }
+
+    fn send(&self, datagram: &[u8], to: SocketAddr) -> Result<(), Errno> {
+        self.sent.lock().unwrap().push((datagram.to_vec(), to));
         Ok(())
     }
 }

@@ -14,8 +14,8 @@ use nix::sys::socket::{
 use nix::sys::time::TimeValLike as _;
 use nix::time::{ClockId, clock_gettime};
 
-/// Generic lights 1, the engage switch.
-const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[0]";
+/// The engage switch.
+const SWITCH: &str = "sim/cockpit2/switches/generic_lights_switch[56]";
 /// Interval of reading between two frames. It does not affect the times, which
 /// the kernel stamps.
 const LOOK_EVERY: Duration = Duration::from_millis(2);

@@ -2,11 +2,10 @@
 
 use core::time::Duration;
 
-use super::Resume;
+use crate::flight::Altimeter;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
-use crate::schema;
 
 /// The autopilot's configuration.
 ///
@@ -46,6 +45,8 @@ pub struct AutopilotConfig {
     pub airspeed: AirspeedConfig,
     /// The limits of the loops' commands.
     pub envelope: Envelope,
+    /// The altimeter; a command changes its setting.
+    pub altimeter: Altimeter,
 }
 
 impl Default for AutopilotConfig {
@@ -62,39 +63,7 @@ impl Default for AutopilotConfig {
             altitude: AltitudeConfig::default(),
             airspeed: AirspeedConfig::default(),
             envelope: Envelope::default(),
+            altimeter: Altimeter::default(),
         }
-    }
-}
-
-schema! {
-    /// A command to the engaged autopilot. Each but the last changes one set
-    /// point, ends a pattern and leaves the other set points unchanged.
-    ///
-    /// ```
-    /// use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
-    /// use fcc_core::framework::Controller;
-    ///
-    /// let mut autopilot = Autopilot::new(AutopilotConfig::default());
-    /// autopilot.command(&AutopilotCommand::Altitude(960.12));
-    /// // Without being engaged it ignores commands.
-    /// assert_eq!(autopilot.setpoints().altitude_m, 0.0);
-    /// ```
-    #[derive(Clone, Copy, PartialEq, Debug)]
-    #[name("Command")]
-    #[non_exhaustive]
-    pub enum AutopilotCommand {
-        /// Indicated airspeed, m/s; limited to the envelope.
-        #[field(1)]
-        Airspeed(airspeed_mps: f64),
-        /// Magnetic heading, rad; the turn takes the shorter way from the
-        /// present heading.
-        #[field(2)]
-        Heading(heading_rad: f64),
-        /// Barometric altitude, m.
-        #[field(3)]
-        Altitude(altitude_m: f64),
-        /// Continue what was flown before a restart.
-        #[field(4)]
-        Resume(resume: Resume),
     }
 }

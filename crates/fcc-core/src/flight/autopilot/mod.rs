@@ -1,6 +1,7 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
 mod capture;
+mod command;
 mod config;
 pub mod flags;
 mod plant_clock;
@@ -14,7 +15,8 @@ use core::hint::black_box;
 use libm::cos;
 
 use capture::Capture;
-pub use config::{AutopilotCommand, AutopilotConfig};
+pub use command::AutopilotCommand;
+pub use config::AutopilotConfig;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -22,8 +24,8 @@ pub use scale::Scale;
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
-use super::{Measurements, PlantState, Setpoints, Surfaces};
-use crate::blocks::{wrap_pi, wrap_two_pi};
+use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
+use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
 /// Beyond this bank or pitch the autopilot does not engage, rad.
@@ -76,6 +78,9 @@ pub struct Autopilot {
     guidance: ActiveMode,
     targets: Targets,
     capture: Option<Capture>,
+    altimeter: Altimeter,
+    /// What the target altitude refers to.
+    reference: AltitudeReference,
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
@@ -94,6 +99,8 @@ impl Autopilot {
             guidance: ActiveMode::None,
             targets: Targets::default(),
             capture: None,
+            altimeter: config.altimeter,
+            reference: AltitudeReference::PressureLevel,
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
@@ -209,15 +216,9 @@ impl Controller for Autopilot {
             .unwrap_or("unknown condition")
     }
 
+    /// In the units in which commands are given: knots, degrees, feet.
     fn write_command(command: &AutopilotCommand, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match command {
-            AutopilotCommand::Airspeed(mps) => write!(f, "airspeed {mps:.1} m/s"),
-            AutopilotCommand::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
-            AutopilotCommand::Altitude(m) => write!(f, "altitude {m:.1} m"),
-            AutopilotCommand::Resume(Resume { progress, .. }) => {
-                write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
-            }
-        }
+        write!(f, "{command}")
     }
 
     /// The mode of guidance.
@@ -236,6 +237,7 @@ impl Controller for Autopilot {
             heading_rad: estimate.heading_rad,
             altitude_m: estimate.altitude_m,
         };
+        self.reference = AltitudeReference::PressureLevel;
         self.navigation.mark_altitude();
         self.capture = Some(Capture::of(estimate.altitude_m));
         self.change_mode(ModeInput::Engage);
@@ -286,6 +288,8 @@ impl Controller for Autopilot {
             airspeed_mps: self.targets.airspeed_mps,
             heading_rad: wrap_two_pi(self.targets.heading_rad),
             altitude_m: self.targets.altitude_m,
+            altitude_reference: self.reference,
+            altitude_above_reference_m: self.targets.altitude_m - self.datum_m(),
             roll_rad: lateral.roll_rad,
             climb_rate_mps: vertical.climb_rate_mps,
             pitch_rad: vertical.pitch_rad,
@@ -346,24 +350,7 @@ impl Controller for Autopilot {
     }
 
     fn command(&mut self, command: &AutopilotCommand) {
-        let mut targets = self.targets;
-        match *command {
-            AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
-                targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
-            }
-            AutopilotCommand::Heading(rad) if rad.is_finite() => {
-                let now_rad = self.navigation.estimate().heading_rad;
-                targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
-            }
-            AutopilotCommand::Altitude(m) if m.is_finite() => {
-                targets.altitude_m = m;
-                self.capture = None;
-            }
-            AutopilotCommand::Resume(ref resume) => return self.resume(resume),
-            _ => return,
-        }
-        self.targets = targets;
-        self.change_mode(ModeInput::SetPoint);
+        self.execute(command);
     }
 
     fn estimated(&self) -> Estimate {
@@ -375,6 +362,7 @@ impl Controller for Autopilot {
         guidance.captured.heading_rad = wrap_two_pi(guidance.captured.heading_rad);
         Setpoints {
             guidance,
+            altimeter_setting_pa: self.altimeter.setting_pa,
             ..self.setpoints
         }
     }

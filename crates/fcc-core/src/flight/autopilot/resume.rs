@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use libm::round;
 
 use super::Autopilot;
-use crate::flight::Surfaces;
 use crate::flight::guidance::{ActiveMode, ModeInput, Progress};
+use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference, Surfaces};
 use crate::schema;
 
 schema! {
@@ -21,6 +21,7 @@ schema! {
     /// let resume = Resume {
     ///     progress: Progress { mode: Mode::TimedPattern, elapsed_s: 65.0, ..Progress::default() },
     ///     surfaces: Surfaces { throttle: 0.7, ..Surfaces::default() },
+    ///     ..Resume::default()
     /// };
     /// let command = AutopilotCommand::Resume(resume);
     /// assert_eq!(command, AutopilotCommand::Resume(resume));
@@ -34,6 +35,12 @@ schema! {
         /// The last outputs; a release may have centred the surfaces since.
         #[field(3)]
         pub surfaces: Surfaces,
+        /// The altimeter setting, Pa; none if it is to stay as it is.
+        #[field(5)]
+        pub altimeter_setting_pa: Option<f64>,
+        /// What the altitude refers to.
+        #[field(6)]
+        pub altitude_reference: AltitudeReference,
     }
 }
 
@@ -59,6 +66,17 @@ impl Autopilot {
         progress.captured.airspeed_mps = self.config.envelope.allowed_airspeed(airspeed_mps);
         self.guidance = ActiveMode::resume(config, &progress);
         self.targets = self.guidance.targets().unwrap_or(aimed);
+        let setting_pa = resume.altimeter_setting_pa;
+        if let Some(pa) = setting_pa.filter(|pa| ALTIMETER_SETTINGS_PA.contains(pa)) {
+            self.altimeter.setting_pa = pa;
+        }
+        let reference = resume.altitude_reference;
+        let is_known = self.altimeter.datum_m(reference).is_some();
+        self.reference = if is_known {
+            reference
+        } else {
+            AltitudeReference::PressureLevel
+        };
         // The captured altitude is not refined any further.
         self.capture = None;
         self.take_over(&resume.surfaces);

@@ -2,8 +2,8 @@
 
 use super::SURFACE;
 use crate::blocks::{Pid, PidConfig};
-use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
+use crate::units::GRAVITY_MPS2;
 
 /// Gains of the airspeed loop.
 ///

@@ -4,8 +4,8 @@ use libm::{asin, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
 use crate::blocks::{LowPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
-use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
+use crate::units::GRAVITY_MPS2;
 
 /// Gains of the altitude loop; surface gains hold at the reference airspeed.
 ///

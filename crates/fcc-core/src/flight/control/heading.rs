@@ -4,8 +4,8 @@ use libm::{atan, cos, sin, tan};
 
 use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
 use crate::blocks::{Pid, PidConfig, RateLimit, SquareRootProfile, limit_abs};
-use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::flight::navigation::Estimate;
+use crate::units::GRAVITY_MPS2;
 
 /// Gains of the heading loop; surface gains hold at the reference airspeed.
 ///

@@ -44,7 +44,7 @@ schema! {
         /// than the aircraft can follow are never reversed.
         #[field(2)]
         pub heading_rad: f64,
-        /// Barometric altitude, m.
+        /// Pressure altitude, m.
         #[field(3)]
         pub altitude_m: f64,
     }
@@ -110,6 +110,7 @@ pub trait Guidance: Copy {
     /// Its progress.
     fn progress(&self) -> Progress;
 
-    /// Shifts the captured altitude, m, when a refined estimate is available.
+    /// Shifts the captured altitude, m, when a refined estimate is available, or
+    /// when the altimeter setting by which it was commanded changes.
     fn shift_altitude(&mut self, by_m: f64);
 }

@@ -7,8 +7,9 @@ use super::vertical::VerticalState;
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, limit_abs};
 use crate::flight::Measurements;
-use crate::flight::atmosphere::{GRAVITY_MPS2, density_ratio};
+use crate::flight::atmosphere::density_ratio;
 use crate::framework::Time;
+use crate::units::GRAVITY_MPS2;
 
 /// Complementary filter: the acceleration along the flight path over short
 /// times, the airspeed sensor over long times. So a gust that does not

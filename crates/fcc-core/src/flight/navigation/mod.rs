@@ -94,7 +94,7 @@ schema! {
         /// True airspeed, m/s.
         #[field(6)]
         pub true_airspeed_mps: f64,
-        /// Barometric altitude, m.
+        /// Pressure altitude, m.
         #[field(7)]
         pub altitude_m: f64,
         /// Climb rate, m/s, up.

@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_outlier_costs_one_reading() {
+    fn a_single_outlier_loses_one_reading() {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
         new.airspeed_mps.value = 90.0;

@@ -7,13 +7,13 @@ use super::vertical_covariance::{CrossCovariance, VerticalCovariance};
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
-use crate::flight::atmosphere::GRAVITY_MPS2;
 use crate::framework::Time;
+use crate::units::GRAVITY_MPS2;
 
 /// Altitude and climb rate.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VerticalState {
-    /// Barometric altitude, m.
+    /// Pressure altitude, m.
     pub altitude_m: f64,
     /// Up, m/s.
     pub climb_rate_mps: f64,

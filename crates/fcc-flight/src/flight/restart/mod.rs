@@ -82,6 +82,7 @@ fn fingerprint(config: &Config) -> u32 {
     let flown = Config {
         guidance: config.guidance,
         autopilot: config.autopilot.clone(),
+        altimeter: config.altimeter,
         x_plane: config.x_plane.clone(),
         sensor: config.sensor.clone(),
         actuator: config.actuator.clone(),
@@ -165,6 +166,8 @@ impl Restart {
                     self.keep(Resume {
                         progress: record.setpoints.guidance,
                         surfaces: record.outputs,
+                        altimeter_setting_pa: Some(record.setpoints.altimeter_setting_pa),
+                        altitude_reference: record.setpoints.altitude_reference,
                     });
                 }
             }

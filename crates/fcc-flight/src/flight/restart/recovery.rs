@@ -14,13 +14,11 @@ use fcc_core::flight::{AutopilotCommand, Resume};
 use fcc_core::framework::{Controller, EventKind, Flags, LoopCommand, Message, State, Switch};
 use fcc_runtime::CommandSender;
 use fcc_telemetry::FlightMessage;
+use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
 use super::state_file::Saved;
 use crate::flight::pilot::Pilot;
-
-const M_FT: f64 = 1.0 / 0.304_8;
-const MPS_KT: f64 = 3_600.0 / 1_852.0;
 
 /// A flight that is to be recovered.
 #[derive(Debug)]
@@ -165,8 +163,8 @@ fn recovered(resume: &Resume, age: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
+    use fcc_core::flight::Autopilot;
     use fcc_core::flight::guidance::{Mode, Progress};
-    use fcc_core::flight::{Autopilot, Surfaces};
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
@@ -181,7 +179,7 @@ mod tests {
                 mode: Mode::Hold,
                 ..Progress::default()
             },
-            surfaces: Surfaces::default(),
+            ..Resume::default()
         };
         let saved = Saved {
             at: BootInstant::now().unwrap(),

@@ -10,7 +10,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, Resume, Surfaces};
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
@@ -64,6 +64,11 @@ struct Page {
     airspeed_mps: f64,
     heading_rad: f64,
     altitude_m: f64,
+    #[serde(default)]
+    altimeter_setting_pa: Option<f64>,
+    /// The number of what the altitude refers to.
+    #[serde(default)]
+    altitude_reference: u8,
     throttle: f64,
     elevator: f64,
     aileron: f64,
@@ -121,7 +126,9 @@ fn sync_folder(path: &Path) -> io::Result<()> {
 }
 
 fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
-    let Resume { progress, surfaces } = saved.resume;
+    let Resume {
+        progress, surfaces, ..
+    } = saved.resume;
     let targets = progress.captured;
     let body = serde_json::to_vec(&Page {
         boot: saved.at.boot.clone(),
@@ -135,6 +142,8 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
         airspeed_mps: targets.airspeed_mps,
         heading_rad: targets.heading_rad,
         altitude_m: targets.altitude_m,
+        altimeter_setting_pa: saved.resume.altimeter_setting_pa,
+        altitude_reference: saved.resume.altitude_reference as u8,
         throttle: surfaces.throttle,
         elevator: surfaces.elevator,
         aileron: surfaces.aileron,
@@ -172,6 +181,7 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
         return Err(StateFileError::Damaged);
     }
     let page: Page = serde_json::from_slice(body).map_err(|_| StateFileError::Damaged)?;
+    let reference = AltitudeReference::from_number(page.altitude_reference);
     let mode = Mode::ALL.into_iter().find(|mode| mode.name() == page.mode);
     Ok(Saved {
         at: BootInstant {
@@ -201,6 +211,8 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
                 aileron: page.aileron,
                 rudder: page.rudder,
             },
+            altimeter_setting_pa: page.altimeter_setting_pa,
+            altitude_reference: reference.ok_or(StateFileError::Damaged)?,
         },
     })
 }
@@ -239,6 +251,8 @@ mod tests {
                     aileron: 0.02,
                     rudder: 0.0,
                 },
+                altimeter_setting_pa: Some(102_340.0),
+                altitude_reference: AltitudeReference::SeaLevel,
             },
         }
     }
@@ -296,7 +310,7 @@ mod tests {
         }
 
         #[test]
-        fn nothing_crashes_it(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn any_content_of_a_state_file_is_handled(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             let _ = decode(&bytes);
         }
     }

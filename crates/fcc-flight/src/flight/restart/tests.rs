@@ -1,7 +1,7 @@
 //! The evaluation of a state file that is found at the start.
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Measurements, Setpoints, Surfaces};
+use fcc_core::flight::{AltitudeReference, Measurements, Setpoints, Surfaces};
 use fcc_core::framework::{Event, Reading, Record, Tick, Time};
 use tempfile::TempDir;
 
@@ -24,6 +24,8 @@ const FLOWN: Resume = Resume {
         aileron: 0.0,
         rudder: 0.0,
     },
+    altimeter_setting_pa: Some(102_000.0),
+    altitude_reference: AltitudeReference::SeaLevel,
 };
 
 /// A folder with the state left by a flight.
@@ -199,6 +201,8 @@ fn engaged(resume: &Resume) -> FlightMessage {
     Message::Tick(Record {
         setpoints: Setpoints {
             guidance: resume.progress,
+            altimeter_setting_pa: resume.altimeter_setting_pa.unwrap_or_default(),
+            altitude_reference: resume.altitude_reference,
             ..Setpoints::default()
         },
         outputs: resume.surfaces,

@@ -1,0 +1,131 @@
+//! Commands to the autopilot.
+
+use core::fmt;
+
+use super::{Autopilot, Resume};
+use crate::blocks::wrap_pi;
+use crate::flight::guidance::ModeInput;
+use crate::flight::{ALTIMETER_SETTINGS_PA, AltitudeReference};
+use crate::schema;
+use crate::units::{FOOT_M, HECTOPASCAL_PA, KNOT_MPS};
+
+schema! {
+    /// A command to the autopilot. Those of a set point change it, end a pattern
+    /// and leave the other set points unchanged; without being engaged they are
+    /// ignored.
+    ///
+    /// ```
+    /// use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig};
+    /// use fcc_core::framework::Controller;
+    ///
+    /// let mut autopilot = Autopilot::new(AutopilotConfig::default());
+    /// autopilot.command(&AutopilotCommand::Altitude(960.12));
+    /// // Without being engaged it ignores commands.
+    /// assert_eq!(autopilot.setpoints().altitude_m, 0.0);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Debug)]
+    #[name("Command")]
+    #[non_exhaustive]
+    pub enum AutopilotCommand {
+        /// Indicated airspeed, m/s; limited to the envelope.
+        #[field(1)]
+        Airspeed(airspeed_mps: f64),
+        /// Magnetic heading, rad; the turn takes the shorter way from the
+        /// present heading.
+        #[field(2)]
+        Heading(heading_rad: f64),
+        /// Altitude above mean sea level by the altimeter setting, m.
+        #[field(3)]
+        Altitude(altitude_m: f64),
+        /// Continue what was flown before a restart.
+        #[field(4)]
+        Resume(resume: Resume),
+        /// Pressure altitude, m.
+        #[field(5)]
+        PressureAltitude(pressure_altitude_m: f64),
+        /// Height above the field's elevation by the altimeter setting, m;
+        /// ignored if the elevation is not configured.
+        #[field(6)]
+        Height(height_m: f64),
+        /// Altimeter setting (QNH), Pa, within [`ALTIMETER_SETTINGS_PA`], in
+        /// every state; outside it is ignored. An altitude or height that is
+        /// held is held by the new setting; a pattern and a pressure altitude
+        /// are unaffected.
+        ///
+        /// [`ALTIMETER_SETTINGS_PA`]: crate::flight::ALTIMETER_SETTINGS_PA
+        #[field(7)]
+        AltimeterSetting(altimeter_setting_pa: f64),
+    }
+}
+
+/// In the units in which commands are given: knots, degrees, feet, hectopascals.
+impl fmt::Display for AutopilotCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Airspeed(mps) => write!(f, "airspeed {:.1} kt", mps / KNOT_MPS),
+            Self::Heading(rad) => write!(f, "heading {:.1}°", rad.to_degrees()),
+            Self::Altitude(m) => write!(f, "altitude {:.0} ft", m / FOOT_M),
+            Self::PressureAltitude(m) => write!(f, "pressure altitude {:.0} ft", m / FOOT_M),
+            Self::Height(m) => write!(f, "height {:.0} ft", m / FOOT_M),
+            Self::AltimeterSetting(pa) => {
+                write!(f, "altimeter setting {:.2} hPa", pa / HECTOPASCAL_PA)
+            }
+            Self::Resume(Resume { progress, .. }) => {
+                write!(f, "resume {progress} after {:.1} s", progress.elapsed_s)
+            }
+        }
+    }
+}
+
+impl Autopilot {
+    /// Executes a command; one that is not applicable now is ignored.
+    pub(super) fn execute(&mut self, command: &AutopilotCommand) {
+        match *command {
+            AutopilotCommand::Airspeed(mps) if mps.is_finite() => {
+                self.targets.airspeed_mps = self.config.envelope.allowed_airspeed(mps);
+                self.change_mode(ModeInput::SetPoint);
+            }
+            AutopilotCommand::Heading(rad) if rad.is_finite() => {
+                let now_rad = self.navigation.estimate().heading_rad;
+                self.targets.heading_rad = now_rad + wrap_pi(rad - now_rad);
+                self.change_mode(ModeInput::SetPoint);
+            }
+            AutopilotCommand::Altitude(m) => self.fly_to(AltitudeReference::SeaLevel, m),
+            AutopilotCommand::PressureAltitude(m) => {
+                self.fly_to(AltitudeReference::PressureLevel, m);
+            }
+            AutopilotCommand::Height(m) => self.fly_to(AltitudeReference::Field, m),
+            AutopilotCommand::AltimeterSetting(pa) => self.set_altimeter(pa),
+            AutopilotCommand::Resume(ref resume) => self.resume(resume),
+            AutopilotCommand::Airspeed(_) | AutopilotCommand::Heading(_) => {}
+        }
+    }
+
+    /// The pressure altitude of what the target altitude refers to, m.
+    pub(super) fn datum_m(&self) -> f64 {
+        // Only a field whose elevation is known is referred to.
+        self.altimeter.datum_m(self.reference).unwrap_or(0.0)
+    }
+
+    /// Flies to an altitude above a reference, m.
+    fn fly_to(&mut self, reference: AltitudeReference, altitude_m: f64) {
+        if let Some(datum_m) = self.altimeter.datum_m(reference)
+            && altitude_m.is_finite()
+        {
+            self.reference = reference;
+            self.targets.altitude_m = altitude_m + datum_m;
+            self.capture = None;
+            self.change_mode(ModeInput::SetPoint);
+        }
+    }
+
+    /// Sets the altimeter. The target altitude is shifted with what it refers
+    /// to.
+    fn set_altimeter(&mut self, setting_pa: f64) {
+        if ALTIMETER_SETTINGS_PA.contains(&setting_pa) {
+            let before_m = self.datum_m();
+            self.altimeter.setting_pa = setting_pa;
+            self.guidance.shift_altitude(self.datum_m() - before_m);
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! A command that gives no result.
+
+use std::fmt::Display;
+
+use fcc_flight::config::ConfigError;
+use serde::Serialize;
+
+use crate::exit::Exit;
+use crate::output;
+
+/// Why a command gives no result, and its exit code.
+pub(super) struct Failure {
+    exit: Exit,
+    message: String,
+}
+
+impl Failure {
+    /// Something failed.
+    pub(super) fn new(message: impl Display) -> Self {
+        Self::of(Exit::Failure, message)
+    }
+
+    /// Something failed, with an exit code of its own.
+    pub(super) fn of(exit: Exit, message: impl Display) -> Self {
+        let message = format!("fccd: {message}");
+        Self { exit, message }
+    }
+
+    /// The command line is wrong, with the message of its parser.
+    pub(super) fn usage(message: impl Display) -> Self {
+        Self {
+            exit: Exit::Usage,
+            message: message.to_string(),
+        }
+    }
+
+    /// Prints the message, and with `--json` also an object with the key
+    /// `error` on standard output.
+    pub(super) fn print(self, json: bool) -> Exit {
+        #[derive(Serialize)]
+        struct Printed<'a> {
+            error: &'a str,
+        }
+        output::message(self.message.trim_end());
+        if json {
+            let error = self.message.trim();
+            return output::json(&Printed { error }, self.exit);
+        }
+        self.exit
+    }
+}
+
+impl From<ConfigError> for Failure {
+    /// Each problem begins with the file's name.
+    fn from(error: ConfigError) -> Self {
+        Self::usage(error)
+    }
+}

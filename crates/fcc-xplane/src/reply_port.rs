@@ -1,0 +1,91 @@
+//! From which of the simulator's ports its datagrams are accepted.
+//!
+//! X-Plane listens on one port, 49000 unless it was changed, and sends from
+//! another, 49001 unless it was changed. The port it sends from is learned from
+//! the first datagram that answers a request, and from then on datagrams from
+//! other ports of that machine are left out: another program or another X-Plane
+//! there could send them. When nothing has come from this port for
+//! [`KEPT_FOR`], the next port that answers is used: X-Plane was started again,
+//! and sends from another.
+
+use core::time::Duration;
+
+use fcc_core::framework::Time;
+
+use crate::protocol::Kind;
+
+/// X-Plane takes longer to start, and its freezes are mostly shorter.
+const KEPT_FOR: Duration = Duration::from_secs(2);
+
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    port: u16,
+    last: Time,
+}
+
+/// The ports in use. Replies and rows of Data Output are told apart: no source
+/// says that both come from one port in every version.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReplyPorts {
+    held: [Option<Held>; 3],
+}
+
+const fn place(kind: Kind) -> Option<usize> {
+    match kind {
+        Kind::Rref => Some(0),
+        Kind::Rpos => Some(1),
+        Kind::Data => Some(2),
+        Kind::Beacon => None,
+    }
+}
+
+impl ReplyPorts {
+    /// Whether a datagram of this kind is accepted from this port.
+    pub(crate) fn accepts(&self, kind: Kind, port: u16, now: Time) -> bool {
+        self.held(kind)
+            .is_none_or(|held| held.port == port || now.since(held.last) > KEPT_FOR)
+    }
+
+    /// A datagram that was accepted was requested, and whole.
+    pub(crate) fn hold(&mut self, kind: Kind, port: u16, now: Time) {
+        if let Some(held) = place(kind).and_then(|place| self.held.get_mut(place)) {
+            *held = Some(Held { port, last: now });
+        }
+    }
+
+    fn held(&self, kind: Kind) -> Option<Held> {
+        *self.held.get(place(kind)?)?
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after_ms(ms: i64) -> Time {
+        Time::from_nanos(1_000_000_000 + ms * 1_000_000)
+    }
+
+    #[test]
+    fn the_first_port_is_kept_until_it_has_been_silent() {
+        let mut ports = ReplyPorts::default();
+        assert!(ports.accepts(Kind::Rref, 49_001, after_ms(0)));
+        ports.hold(Kind::Rref, 49_001, after_ms(0));
+        for ms in (0..60_000).step_by(1_900) {
+            assert!(!ports.accepts(Kind::Rref, 49_003, after_ms(ms)), "{ms}");
+            ports.hold(Kind::Rref, 49_001, after_ms(ms));
+        }
+        assert!(!ports.accepts(Kind::Rref, 49_003, after_ms(60_800)));
+        assert!(ports.accepts(Kind::Rref, 49_003, after_ms(63_000)));
+        ports.hold(Kind::Rref, 49_003, after_ms(63_000));
+        assert!(!ports.accepts(Kind::Rref, 49_001, after_ms(63_001)));
+    }
+
+    #[test]
+    fn rows_may_come_from_another_port_than_replies() {
+        let mut ports = ReplyPorts::default();
+        ports.hold(Kind::Rref, 49_000, after_ms(0));
+        assert!(ports.accepts(Kind::Data, 49_001, after_ms(1)));
+        assert!(ports.accepts(Kind::Beacon, 49_707, after_ms(1)));
+    }
+}

@@ -1,0 +1,197 @@
+//! The ports of both sides: where X-Plane answers from, and where it answers to.
+
+mod support;
+
+use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
+
+use fcc_core::flight::Measurements;
+use fcc_core::framework::{ControlAuthority, PlantId, Released, Sensor};
+use fcc_xplane::{
+    DataRows, Input, RowsVersion, Simulator, Trouble, XPlane, XPlaneAuthority, XPlaneConfig,
+};
+use support::bench::{Bench, close};
+use support::{
+    Addressed, FakeXPlane, OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, P, Ticks, Wire, free_port,
+};
+
+const KNOT_MPS: f64 = 1.852 / 3.6;
+
+fn airspeed_kt(bench: &Bench) -> f64 {
+    bench.measurements.airspeed_mps.value / KNOT_MPS
+}
+
+#[test]
+fn the_port_that_answers_is_learned_and_others_are_left_out() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let answers = bench.simulator.sender.local_addr().unwrap().port();
+    assert_ne!(answers, bench.simulator.address().port());
+    assert_eq!(bench.status.reply_port(), Some(answers));
+    let other = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let client = bench.simulator.client.unwrap();
+    assert_eq!(bench.status.local_port(), Some(client.port()));
+    let speed = format!("{P}indicated_airspeed");
+    for _ in 0..200 {
+        bench.simulator.set(&speed, 400.0);
+        other.send_to(&bench.simulator.frame(), client).unwrap();
+        bench.simulator.set(&speed, 100.0);
+        bench.watch().unwrap();
+        close(airspeed_kt(&bench), 100.0);
+    }
+    assert_eq!(bench.status.counts().foreign, 200);
+    assert_eq!(bench.status.reply_port(), Some(answers));
+}
+
+/// Two seconds are 80 ticks of 25 ms.
+#[test]
+fn an_x_plane_that_returns_with_another_port_is_accepted_after_two_seconds() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..40 {
+        let _ = bench.sample();
+    }
+    bench.simulator.listen();
+    bench.simulator.sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let answers = bench.simulator.sender.local_addr().unwrap().port();
+    bench.simulator.set(&format!("{P}indicated_airspeed"), 50.0);
+    for _ in 0..40 {
+        let _ = bench.watch();
+        close(airspeed_kt(&bench), 100.0);
+    }
+    bench.watch().unwrap();
+    close(airspeed_kt(&bench), 50.0);
+    assert_eq!(bench.status.reply_port(), Some(answers));
+}
+
+/// Another program on X-Plane's machine claims that the overrides are clear.
+#[test]
+fn a_release_is_confirmed_only_by_the_port_that_answered() {
+    let mut bench = Bench::new();
+    bench.settle();
+    bench.fly().unwrap();
+    bench.simulator.listen();
+    bench.simulator.assert_shows(OVERRIDE_JOYSTICK, 1.0);
+    bench.simulator.accepts_writes = false;
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    let plant = authority.held().unwrap();
+    let impostor = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let releasing = std::thread::spawn(move || {
+        let within = Duration::from_millis(400);
+        authority.release(&plant, within, &mut || false)
+    });
+    let mut lies = 0;
+    while !releasing.is_finished() {
+        bench.simulator.live(0.0);
+        if let Some(client) = bench.simulator.client {
+            for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
+                bench.simulator.set(path, 0.0);
+            }
+            impostor.send_to(&bench.simulator.frame(), client).unwrap();
+            for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
+                bench.simulator.set(path, 1.0);
+            }
+            lies += 1;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(lies > 0);
+    let released = releasing.join().unwrap();
+    assert_eq!(released, Ok(Released::Unconfirmed));
+}
+
+/// Like the release helper: nothing is known of the killed daemon's connection.
+#[test]
+fn a_release_without_a_connection_learns_the_port() {
+    let mut simulator = FakeXPlane::new();
+    simulator.set(OVERRIDE_THROTTLES, 1.0);
+    let authority = XPlaneAuthority::without_connection(&simulator.config());
+    let plant = PlantId::new(format_args!("X-Plane at {}", simulator.address())).unwrap();
+    let releasing = std::thread::spawn(move || {
+        let within = Duration::from_secs(10);
+        authority.release(&plant, within, &mut || false)
+    });
+    while !releasing.is_finished() {
+        simulator.live(0.0);
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(releasing.join().unwrap(), Ok(Released::Confirmed));
+    simulator.assert_shows(OVERRIDE_THROTTLES, 0.0);
+}
+
+/// The datagrams to other addresses than the simulator's, of a second and a half
+/// of silence after a datagram from `answer`.
+fn openings(simulator: SocketAddr, reply_port: u16, answer: Option<SocketAddr>) -> Vec<Addressed> {
+    let config = XPlaneConfig {
+        simulator: Simulator::At(simulator),
+        reply_port,
+        ..XPlaneConfig::default()
+    };
+    let wire = Wire::default();
+    let Ok((mut sensor, _actuator)) = XPlane::over(&config, wire.clone(), None) else {
+        return Vec::new();
+    };
+    let (mut ticks, mut measurements) = (Ticks::new(), Measurements::default());
+    if let Some(from) = answer {
+        // Index 0 is the flight's time.
+        wire.arrives(b"RREF,\0\0\0\0\0\0\xc8\x42", from);
+        let _ = sensor.sample(&ticks.next(), &mut measurements);
+        wire.take_sent();
+    }
+    for _ in 0..60 {
+        let _ = sensor.sample(&ticks.next(), &mut measurements);
+    }
+    let mut sent = wire.take_sent();
+    sent.retain(|(_, to)| *to != simulator);
+    sent
+}
+
+#[test]
+fn a_datagram_without_effect_lets_answers_through_a_firewall_on_this_side() {
+    let there = "192.0.2.1:49000".parse().unwrap();
+    let here = "127.0.0.1:49000".parse().unwrap();
+    let sent = openings(there, 49_001, None);
+    // At once, and after a second.
+    assert_eq!(sent.len(), 2);
+    for (datagram, to) in sent {
+        assert_eq!(to.to_string(), "192.0.2.1:49001");
+        assert_eq!(datagram.len(), 413);
+        assert_eq!(&datagram[..9], b"RREF\0\0\0\0\0", "frequency 0");
+    }
+    // To the port that answered, once one has.
+    let answered = "192.0.2.1:50123".parse().unwrap();
+    let sent = openings(there, 49_001, Some(answered));
+    assert_eq!(
+        sent.iter().map(|(_, to)| *to).collect::<Vec<_>>(),
+        [answered]
+    );
+    // None where it is of no use, or not wished.
+    assert_eq!(openings(here, 49_001, None), []);
+    assert_eq!(openings(there, 0, None), []);
+    assert_eq!(openings(there, 49_000, None), []);
+}
+
+/// Rows arrive, and every request is lost.
+#[test]
+fn rows_without_an_answer_show_that_x_plane_does_not_hear() {
+    let free = free_port();
+    let mut bench = Bench::with(|config| {
+        config.local_port = free;
+        config.input = Input::Data(DataRows::of(RowsVersion::XPlane12));
+    });
+    for _ in 0..300 {
+        bench.simulator.send_rows(free);
+        let _ = bench.sample();
+    }
+    let at = bench.simulator.address();
+    assert_eq!(bench.status.trouble(), Some(Trouble::Unanswered(at)));
+    let message = Trouble::Unanswered(at).to_string();
+    assert!(message.contains("does not hear this program"), "{message}");
+    // It accepts incoming connections again.
+    for _ in 0..240 {
+        bench.simulator.live(0.025);
+        bench.simulator.send_rows(free);
+        let _ = bench.sample();
+    }
+    assert_eq!(bench.status.trouble(), None);
+}

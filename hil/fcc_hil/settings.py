@@ -1,0 +1,106 @@
+"""The settings of the stand-in, and its states.
+
+The defaults are the manners of a real X-Plane: replies from a port of their own, frames of uneven
+length, local axes that are not the aircraft's, an altimeter that is not at the standard pressure,
+surfaces that take time. `Settings.plain()` is without them, for tests that count frames or compare
+values.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from .faults import Address, Faults
+from .plant import Weather
+from .udp import ReplyPort
+from .units import STANDARD_INHG
+
+LARGEST_QUEUE = 140
+"""A frame takes about 140 messages (P. Muenzel of Laminar, charlylima/XPlaneUDP pull request 3)."""
+
+
+class Mode(Enum):
+    """The simulator's state."""
+
+    RUNNING = "running"
+    PAUSED = "paused"
+    """Paused: continues to send, `sim/time/paused` is 1."""
+    STALLED = "stalled"
+    """A map, a menu or an alert is open: its clock has stopped, and `sim/time/paused` stays 0."""
+    REPLAY = "replay"
+    """Shows the past: `sim/time/is_in_replay` is 1, the aircraft does not fly on."""
+    FROZEN = "frozen"
+    """Hung: reads nothing, sends nothing."""
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The settings of the stand-in."""
+
+    aircraft: str = "c172p"
+    seed: int = 1
+    host: str = "127.0.0.1"
+    """Of IPv4 or of IPv6."""
+    port: int = 49_000
+    """The port that it listens on; 0 selects a free one."""
+    reply_port: ReplyPort = "next"
+    """The port that it sends from, as X-Plane sends from 49001."""
+    frame_rate_hz: float = 60.0
+    frame_rates_hz: tuple[float, float] | None = (20.0, 144.0)
+    """Least and greatest rate of frames that vary at random about `frame_rate_hz`; None for
+    constant ones."""
+    version: int = 115_501
+    """The version of X-Plane."""
+    heading_deg: float = 0.0
+    magnetic_variation_deg: float = 0.0
+    """Positive where magnetic north lies east of true."""
+    weather: Weather = field(default_factory=Weather)
+    qnh_inhg: float = 30.12
+    """The pressure at sea level. The pilot's altimeter is set to it at first."""
+    origin_offset_deg: tuple[float, float] = (0.5, 0.5)
+    """Latitude and longitude of the local axes' origin less those of the aircraft at first."""
+    origin_moves_after_s: float = 45.0
+    """When the origin moves by itself, as at the edge of a scenery tile, in simulated time."""
+    surface_rate: float = 2.0
+    """How fast the control surfaces move, in full deflections a second."""
+    axial_sign: float = 1.0
+    """The sign of the axial load in row 4, in which sources differ: 1 is positive when pushed
+    forward (ArduPilot), -1 the other way (px4xplane)."""
+    sends_while_stalled: bool = True
+    """Whether it sends while a map, a menu or an alert is open: no source says so."""
+    queue: int = LARGEST_QUEUE
+    """How many of the datagrams that arrived since the last frame are read; the later ones are
+    lost."""
+    noise: bool = False
+    inbound: Faults = field(default_factory=Faults)
+    """Faults of datagrams to the simulator."""
+    outbound: Faults = field(default_factory=Faults)
+    """Faults of datagrams from it, except the beacon."""
+    shuffle: bool = True
+    """Whether the values in a reply are in random order."""
+    beacon: Address | None = None
+    """Destination of the beacon, BEACON_GROUP for all; None sends none."""
+    data_target: Address | None = None
+    """Destination of Data Output, as set in X-Plane's menus."""
+    data_rows: tuple[int, ...] = ()
+    """The rows selected there."""
+    data_rate_hz: float = 20.0
+
+    @classmethod
+    def plain(cls, **changes: Any) -> Settings:
+        """Return settings without the manners.
+
+        Constant frames, the standard pressure, local axes that stay level at the aircraft's start,
+        surfaces that follow at once.
+        """
+        plain: dict[str, Any] = {
+            "frame_rates_hz": None,
+            "qnh_inhg": STANDARD_INHG,
+            "origin_offset_deg": (0.0, 0.0),
+            "origin_moves_after_s": math.inf,
+            "surface_rate": math.inf,
+        }
+        return cls(**{**plain, **changes})

@@ -1,0 +1,107 @@
+"""Where X-Plane answers from, what prevents it, and what is said about it."""
+
+from __future__ import annotations
+
+import signal
+import socket
+import struct
+import threading
+from pathlib import Path
+
+from daemon_under_test import engage, flight, start, write_config
+
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Settings
+
+SUCCESS = 0
+FORGED_EVERY_S = 0.005
+FORGED = 1.0
+"""In every quantity, also the simulator's time."""
+
+
+def bound() -> socket.socket:
+    """Return a socket that never answers, on a free port."""
+    opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    opened.bind(("127.0.0.1", 0))
+    return opened
+
+
+def test_a_port_without_a_program_is_told_from_one_that_does_not_answer(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with bound() as nobody:
+        port = nobody.getsockname()[1]
+    with start(fccd, tmp_path, write_config(tmp_path, port)) as daemon:
+        daemon.wait_for(f"does not answer: no program listens on UDP port {port}")
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as mute:
+            mute.bind(("127.0.0.1", port))
+            log = daemon.wait_for("nothing else of that machine arrives here")
+            assert "Accept incoming connections" in log
+            ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    # Each once, though the state lasted.
+    for cause in ("no program listens", "nothing else of that machine"):
+        assert sum(cause in text for text in ending.events) == 1
+
+
+def test_forged_values_of_another_port_are_not_read(fccd: Path, tmp_path: Path) -> None:
+    with bound() as free:
+        port = free.getsockname()[1]
+    over = threading.Event()
+    values = b"RREF," + b"".join(struct.pack("<if", index, FORGED) for index in range(64))
+
+    def forge() -> None:
+        with bound() as forger:
+            while not over.wait(FORGED_EVERY_S):
+                forger.sendto(values, ("127.0.0.1", port))
+
+    with flight(fccd, tmp_path, x_plane=f"local_port = {port}") as (simulator, daemon):
+        daemon.wait_until_ready()
+        forging = threading.Thread(target=forge)
+        forging.start()
+        try:
+            engage(simulator, daemon)
+            for _ in range(3):
+                assert "engaged" in daemon.wait_for("heading")
+        finally:
+            over.set()
+            forging.join()
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def test_a_generic_light_that_this_version_lacks_is_named(fccd: Path, tmp_path: Path) -> None:
+    switch = "sim/cockpit2/switches/generic_lights_switch[100]"
+    with (
+        StandInProcess(Settings(port=0, version=105_101)) as simulator,
+        start(
+            fccd,
+            tmp_path,
+            write_config(tmp_path, simulator.port, x_plane=f'engage_switch = "{switch}"'),
+        ) as daemon,
+    ):
+        words = daemon.wait_for("does not exist in this version of X-Plane")
+        assert switch in words
+        assert "generic lights 0 to 63" in words
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+
+
+def test_a_fast_loop_sends_no_more_than_a_frame_takes(fccd: Path, tmp_path: Path) -> None:
+    """A loop of 1 kHz with eight engines, at 30 frames a second: without a limit, 366 a frame."""
+    with flight(
+        fccd,
+        tmp_path,
+        settings=Settings.plain(port=0, frame_rate_hz=30.0),
+        x_plane="engines = 8",
+        others="[loop]\nrate_hz = 1000\n[budget]\nfailsafe_after = 0\n",
+    ) as (simulator, daemon):
+        engage(simulator, daemon)
+        for _ in range(3):
+            assert "engaged" in daemon.wait_for("heading")
+        status = simulator.status()
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.report["released"] is True
+    assert status["messages"]["WriteDataref"] > 1_000
+    assert status["overflowed"] == 0
