@@ -25,7 +25,7 @@ macro_rules! exits {
 exits! {
     Success = 0, "success";
     Failure = 1, "the operating system, the network or a part of the program failed";
-    Usage = 2, "the command line or the configuration is wrong";
+    Usage = 2, "the command line or the configuration is wrong, or a recording is of another plant";
     Failsafe = 3, "the flight entered failsafe";
     RealtimeDenied = 4, "a real-time request was denied and realtime.strict is set";
     NotReleased = 5, "the controls may not have been released";
@@ -38,6 +38,7 @@ exits! {
     Taken = 12, "another program uses the simulator or the local port";
     Incomplete = 13, "a recording is damaged or unfinished: the result is of the rest, or a part is lost";
     NotRecorded = 14, "the flight succeeded, but was not recorded completely";
+    StepFailed = 15, "a step of the check against X-Plane failed or was skipped (x-plane check)";
 }
 
 impl From<Exit> for ExitCode {
