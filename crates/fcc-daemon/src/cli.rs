@@ -1,5 +1,7 @@
 //! The command line.
 
+pub mod x_plane;
+
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -10,6 +12,7 @@ use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
 use crate::exit::EXIT_CODES;
+use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
@@ -45,6 +48,8 @@ pub enum Action {
     Check(CheckArgs),
     /// Check whether this machine suits a real-time loop
     Doctor(DoctorArgs),
+    /// Check fccd against a running X-Plane
+    XPlane(XPlaneArgs),
     /// Report on a recorded flight: tables, and a page with plots
     Report(ReportArgs),
     /// Release X-Plane's controls if the daemon is killed; started by the
@@ -81,6 +86,7 @@ impl Action {
             Self::Check(args) => args.json,
             Self::Doctor(args) => args.json,
             Self::Report(args) => args.json,
+            Self::XPlane(args) => args.what.json(),
             Self::ReleaseHelper | Self::Completions { .. } | Self::Man { .. } => false,
         }
     }

@@ -39,6 +39,8 @@ pub enum Exit {
     Incomplete = 13,
     /// The flight succeeded, but was not recorded completely.
     NotRecorded = 14,
+    /// A step of the check against X-Plane failed or was skipped.
+    StepFailed = 15,
 }
 
 /// For `--help`.
@@ -59,7 +61,8 @@ Exit codes:
  12  another program uses the simulator or the local port
  13  a recording is damaged or unfinished: the result is of the rest (report,
      replay), or a part of it is lost (list, recover)
- 14  the flight succeeded, but was not recorded completely";
+ 14  the flight succeeded, but was not recorded completely
+ 15  a step of the check against X-Plane failed or was skipped (x-plane check)";
 
 impl From<Exit> for ExitCode {
     fn from(exit: Exit) -> Self {

@@ -72,6 +72,9 @@ pub enum EventCode {
     /// The controller's mode changed (mode before, mode now). An autopilot's: 0
     /// none, 1 hold, 2 timed pattern.
     ModeChanged = 18,
+    /// Conditions that the controller reports while control is held changed
+    /// (those that began, those that ended).
+    ConditionsChanged = 19,
 }
 
 impl Event {
@@ -162,6 +165,10 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         }
         EventKind::ModeChanged { from, to } => {
             (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
+        }
+        EventKind::ConditionsChanged { began, ended } => {
+            let values = [began.bits().into(), ended.bits().into(), 0];
+            (EventCode::ConditionsChanged, 0, values)
         }
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),

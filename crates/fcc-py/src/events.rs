@@ -79,6 +79,7 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::Hung { .. } => "hung",
         EventKind::SourceChanged(_) => "source-changed",
         EventKind::ModeChanged { .. } => "mode-changed",
+        EventKind::ConditionsChanged { .. } => "conditions-changed",
         _ => "other",
     }
 }

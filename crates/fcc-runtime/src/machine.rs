@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    AfterRelease, Cause, Controller, EventKind, LoopCommand, Record, RecordOf, StageTimes, State,
-    Tick, Time,
+    AfterRelease, Cause, Controller, EventKind, Flags, LoopCommand, Record, RecordOf, StageTimes,
+    State, Tick, Time,
 };
 use fcc_timer::{Expiry, Timer, TimerError, TimingStats, Wake, usage};
 use rtrb::{Consumer, RingBuffer};
@@ -48,6 +48,8 @@ pub struct Machine<C: Controller> {
     pub(crate) switch: EngageSwitch,
     /// The controller's mode in the last tick.
     mode: u8,
+    /// The conditions reported last.
+    conditions: Flags,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
     pub(crate) record: RecordOf<C>,
@@ -98,6 +100,7 @@ impl<C: Controller> Machine<C> {
             state: State::Standby,
             switch: EngageSwitch::new(config.switch_max_age),
             mode,
+            conditions: Flags::NONE,
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
@@ -263,6 +266,7 @@ impl<C: Controller> Machine<C> {
         self.record.estimate = self.controller.estimated();
         self.record.setpoints = self.controller.setpoints();
         self.report_mode(tick);
+        self.report_conditions(tick);
     }
 
     fn report_mode(&mut self, tick: &Tick) {
@@ -270,6 +274,25 @@ impl<C: Controller> Machine<C> {
         if from != to {
             self.mode = to;
             let kind = EventKind::ModeChanged { from, to };
+            self.telemetry.events.push(tick, kind);
+        }
+    }
+
+    /// Reports the controller's conditions while control is held; those that
+    /// hold at engagement, too.
+    fn report_conditions(&mut self, tick: &Tick) {
+        let before = self.conditions;
+        self.conditions = if self.state.holds_control() {
+            self.controller.conditions(tick, &self.measurements)
+        } else {
+            Flags::NONE
+        };
+        if self.state.holds_control() && self.conditions != before {
+            let [now, before] = [self.conditions.bits(), before.bits()];
+            let kind = EventKind::ConditionsChanged {
+                began: Flags::from_bits(now & !before),
+                ended: Flags::from_bits(before & !now),
+            };
             self.telemetry.events.push(tick, kind);
         }
     }

@@ -331,3 +331,35 @@ fn a_missed_deadline_makes_a_longer_step() {
     assert!((tick.dt_s - 0.075).abs() < 1e-15);
     assert_eq!(tick.lateness(), Duration::from_micros(40));
 }
+
+/// Conditions are reported as they change while control is held, those that hold
+/// at engagement too, and change nothing else.
+#[test]
+fn conditions_are_reported_while_control_is_held() {
+    let (first, second) = (Flags::bit(2), Flags::bit(5));
+    let changed = |began, ended| EventKind::ConditionsChanged { began, ended };
+    let mut bench = Bench::new();
+    bench.tick(|script| script.conditions = first);
+    assert_eq!(bench.events(), []);
+    bench.command(LoopCommand::Engage);
+    assert_eq!(bench.tick(|_| {}), Engaged);
+    assert_eq!(
+        bench.events(),
+        [change(Standby, Engaged), changed(first, Flags::NONE)]
+    );
+    bench.tick(|_| {});
+    bench.tick(|script| script.conditions = second);
+    assert_eq!(
+        bench.tick(|script| script.conditions = Flags::NONE),
+        Engaged
+    );
+    assert_eq!(
+        bench.events(),
+        [changed(second, first), changed(Flags::NONE, second)]
+    );
+    bench.tick(|script| script.conditions = second);
+    bench.command(LoopCommand::Disengage);
+    bench.tick(|_| {});
+    let events = bench.events();
+    assert_eq!(events.last(), Some(&RELEASED), "nothing after the release");
+}

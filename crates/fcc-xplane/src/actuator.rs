@@ -111,6 +111,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         }
         let unconfirmed = held.confirmation.is_overdue(now, link);
         link.set_unconfirmed(unconfirmed);
+        link.set_other_writer(held.confirmation.is_contested(now, link));
         match sent {
             Err(errno) => Err(ActuatorFault::Io { errno }),
             Ok(()) if unconfirmed => Err(ActuatorFault::Unconfirmed),
@@ -129,6 +130,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
         let mut confirmation = held.confirmation.clone();
         confirmation.wrote(tick.woke, yoke_ratios(outputs));
         black_box(confirmation.is_overdue(tick.woke, &self.link));
+        black_box(confirmation.is_contested(tick.woke, &self.link));
     }
 
     fn release(&mut self) -> Result<(), ActuatorFault> {
@@ -149,6 +151,7 @@ impl<P: Port> Actuator<Surfaces> for XPlaneActuator<P> {
             }
         }
         link.set_unconfirmed(false);
+        link.set_other_writer(false);
         link.set_control(Control::ReleaseMonitor);
         if released {
             self.held = None;

@@ -143,6 +143,9 @@ struct Reported {
     last: LastReport,
     pace: SimulatorState,
     missing: Vec<Missing>,
+    control: Control,
+    loads_differ: bool,
+    axial_backwards: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -161,6 +164,9 @@ impl Default for Reported {
             last: LastReport::Nothing,
             pace: SimulatorState::Running,
             missing: Vec::new(),
+            control: Control::Free,
+            loads_differ: false,
+            axial_backwards: false,
         }
     }
 }
@@ -188,7 +194,9 @@ impl Reported {
             }
             None => self
                 .recovery(status)
+                .or_else(|| self.change_of_control(status))
                 .or_else(|| self.change_of_pace(status))
+                .or_else(|| self.change_of_loads(status))
                 .or_else(|| self.change_of_missing(status)),
         }
     }
@@ -256,12 +264,44 @@ impl Reported {
             SimulatorState::Running => "X-Plane's time runs again",
             SimulatorState::Paused => "X-Plane is paused",
             SimulatorState::Stalled => "X-Plane's clock has stopped although it is not paused",
+            SimulatorState::Fast => "X-Plane's time runs more than twice as fast as real time",
             SimulatorState::Slow => {
                 "X-Plane is slow: fewer than 20 frames a second, or its time falls behind"
             }
         };
         let before = std::mem::replace(&mut self.pace, now);
         (before != now).then(|| text.to_owned())
+    }
+
+    /// Where the throttles are after a release: their levers have them again.
+    fn change_of_control(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let before = std::mem::replace(&mut self.control, status.control());
+        let released = before == Control::Held && self.control != Control::Held;
+        let lever = status.throttle_lever().filter(|_| released)?;
+        let percent = 100.0 * lever;
+        Some(format!(
+            "the throttle follows its lever again, which is at {percent:.0} %"
+        ))
+    }
+
+    /// That X-Plane's loads contradict each other, and which are used; each
+    /// once.
+    fn change_of_loads(&mut self, status: &XPlaneStatus) -> Option<String> {
+        if status.do_loads_differ() && !self.loads_differ {
+            self.loads_differ = true;
+            return Some(
+                "X-Plane's local accelerations contradict its load factor by more than 0.3 g; \
+                 the accelerations are used: fly by hand, and report it with X-Plane's version \
+                 and aircraft"
+                    .to_owned(),
+            );
+        }
+        let turned = status.is_axial_backwards() && !self.axial_backwards;
+        self.axial_backwards |= turned;
+        turned.then(|| {
+            "row 4 of Data Output has an axial load that is positive backwards: taken as such"
+                .to_owned()
+        })
     }
 
     /// A requested value that X-Plane does not send, or sends again: each

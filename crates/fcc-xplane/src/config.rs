@@ -112,6 +112,21 @@ pub struct DataRows {
     /// sources, 4 in one capture of X-Plane 12. Compare with Data Output on
     /// X-Plane's screen.
     pub magnetic_heading_column: u8,
+    /// What a positive axial load in row 4 means, on which sources disagree.
+    /// Default: found out in flight, and forwards until then.
+    pub axial_load: AxialLoad,
+}
+
+/// What a positive axial load in row 4 of Data Output means.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum AxialLoad {
+    /// Found out from pitch and airspeed, some seconds after the nose is 2° high
+    /// or low, or the aircraft changes its speed.
+    Auto,
+    /// A load forwards, as in an acceleration.
+    Forwards,
+    /// A load backwards.
+    Backwards,
 }
 
 impl DataRows {
@@ -120,6 +135,7 @@ impl DataRows {
         Self {
             version,
             magnetic_heading_column: 3,
+            axial_load: AxialLoad::Auto,
         }
     }
 }

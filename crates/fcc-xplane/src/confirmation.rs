@@ -5,11 +5,15 @@
 //! read back while they are written. Writing is confirmed as long as every
 //! recent readback agrees with what was recently sent. The throttle itself is
 //! not compared, since the engine model may change it, but its override is.
+//!
+//! Another program that writes the yoke is found by the same comparison: the
+//! override is set, and the yoke is again and again where nobody put it here.
 
 use core::time::Duration;
 
 use fcc_core::framework::Time;
 
+use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
 
@@ -20,6 +24,12 @@ const LATELY: Duration = Duration::from_millis(500);
 /// How far a readback may lie outside the recently sent values: rounding, if
 /// the simulator stores the ratio in another form.
 const TOLERANCE: f32 = 0.02;
+
+/// Another program writes the yoke once it has been where it was not put at
+/// intervals of less than [`LATELY`] for this long: a freeze of the simulator,
+/// after which it processes what it had queued, is shorter.
+const CONTESTED_AFTER: Duration = Duration::from_millis(1500);
+const CONTESTED_UNTIL: Duration = Duration::from_secs(5);
 
 const YOKE: [Quantity; 3] = [
     Quantity::YokePitch,
@@ -68,6 +78,9 @@ pub(crate) struct Confirmation {
     /// second: a readback is delayed by the round trip.
     extents: [[Extent; 2]; 3],
     turned: Time,
+    /// When the yoke was last read where it was not put.
+    moved_by_another: Time,
+    contested: Lasting,
 }
 
 impl Confirmation {
@@ -78,6 +91,8 @@ impl Confirmation {
             confirmed: now,
             extents: [[Extent::EMPTY; 2]; 3],
             turned: now,
+            moved_by_another: Time::NEVER,
+            contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
         }
     }
 
@@ -106,15 +121,34 @@ impl Confirmation {
         now.since(self.confirmed) > CONFIRMED_WITHIN
     }
 
+    /// Whether another program writes the yoke, too.
+    pub(crate) fn is_contested(&mut self, now: Time, link: &SharedState) -> bool {
+        let overridden = self
+            .recent(Quantity::OverrideJoystick, now, link)
+            .is_some_and(|(value, _)| value >= 0.5);
+        let elsewhere = YOKE.into_iter().zip(self.extents).any(|(axis, put)| {
+            let [present, before] = put;
+            self.recent(axis, now, link)
+                .is_some_and(|(value, _)| !present.with(before).holds(value))
+        });
+        if overridden && elsewhere {
+            self.moved_by_another = now;
+        }
+        let lately = !self.moved_by_another.is_never() && now.since(self.moved_by_another) < LATELY;
+        self.contested.step(now, lately)
+    }
+
+    /// The latest readback of a quantity, and its time.
+    fn recent(&self, quantity: Quantity, now: Time, link: &SharedState) -> Option<(f32, Time)> {
+        link.shown(quantity)
+            .filter(|(_, at)| *at > self.began && now.since(*at) <= LATELY)
+    }
+
     /// The time of the latest readback, if there is one and all of them agree.
     fn agreement(&self, now: Time, link: &SharedState) -> Option<Time> {
-        let recent = |quantity| {
-            link.shown(quantity)
-                .filter(|(_, at)| *at > self.began && now.since(*at) <= LATELY)
-        };
         let mut newest = None;
         for quantity in OVERRIDES {
-            if let Some((value, at)) = recent(quantity) {
+            if let Some((value, at)) = self.recent(quantity, now, link) {
                 if value < 0.5 {
                     return None;
                 }
@@ -122,7 +156,7 @@ impl Confirmation {
             }
         }
         for (quantity, [present, before]) in YOKE.into_iter().zip(self.extents) {
-            if let Some((value, at)) = recent(quantity) {
+            if let Some((value, at)) = self.recent(quantity, now, link) {
                 if !present.with(before).holds(value) {
                     return None;
                 }
@@ -192,5 +226,52 @@ mod tests {
             overdue_after(400, |_| Some([1.0, 1.0, 1.5])).last(),
             Some(&true)
         );
+    }
+
+    /// Whether another program is found to write the yoke, at the end of ticks
+    /// in which the yoke is read back as `readback` of the tick's number and of
+    /// what was written.
+    fn contested(ticks: u32, override_joystick: f64, readback: impl Fn(u32, f32) -> f32) -> bool {
+        let link = SharedState::new(None);
+        let mut now = Time::from_nanos(1_000_000_000);
+        let mut confirmation = Confirmation::begin(now);
+        let mut contested = false;
+        for tick in 0..ticks {
+            now = now + TICK;
+            let elevator = (f64::from(tick) * 0.1).sin() as f32 * 0.2;
+            confirmation.wrote(now, [Some(elevator), Some(0.0), Some(0.0)]);
+            link.show(Quantity::OverrideJoystick, override_joystick, now);
+            link.show(
+                Quantity::YokePitch,
+                f64::from(readback(tick, elevator)),
+                now,
+            );
+            contested = confirmation.is_contested(now, &link);
+        }
+        contested
+    }
+
+    #[test]
+    fn a_program_that_writes_the_yoke_now_and_then_is_found() {
+        // Every fifth frame is the other's: 8 a second.
+        assert!(contested(100, 1.0, |tick, ours| if tick % 5 == 0 {
+            0.7
+        } else {
+            ours
+        }));
+        assert!(contested(100, 1.0, |_, _| 0.7));
+    }
+
+    #[test]
+    fn neither_a_dead_link_nor_a_burst_of_old_values_is_another_program() {
+        // Input switched off: the override is not set either.
+        assert!(!contested(400, 0.0, |_, _| 0.7));
+        // A second of old values after a freeze.
+        assert!(!contested(60, 1.0, |tick, ours| if tick < 40 {
+            0.7
+        } else {
+            ours
+        }));
+        assert!(!contested(400, 1.0, |_, ours| ours));
     }
 }

@@ -12,14 +12,19 @@
 //! one) this cannot be detected: a late one gives a state some milliseconds old
 //! for one tick.
 
+use core::time::Duration;
+
 use fcc_core::flight::{
     Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
 };
 use fcc_core::framework::{Reading, Switch, Time};
 
+use crate::axial_load::AxialLoadSign;
 use crate::config::DataRows;
+use crate::consistency::ConsistencyCheck;
 use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{SharedState, count};
+use crate::other_control::OtherControlWatch;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
@@ -31,6 +36,11 @@ use crate::values::{Group, Values};
 /// between it stays as it was, at first off. So noise on it does not switch.
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
+/// An X-Plane that has true angles sends them in every frame: without one for
+/// this long, two frames at the lowest rate, those of the local axes are used.
+const TRUE_WITHIN: Duration = Duration::from_millis(100);
+/// Below this pitch, headings in the local axes and true ones can be compared.
+const HEADING_UP_TO_PITCH_RAD: f64 = 1.0;
 
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
@@ -44,11 +54,19 @@ pub(crate) struct Inbox {
     /// from them.
     accelerations: [f64; 3],
     force: SpecificForce,
+    /// Pitch and roll from the horizontal below the aircraft, less those from
+    /// that of the local axes.
+    lean: [f64; 2],
+    /// When the former last arrived.
+    true_attitude: Time,
     switch: Switch,
+    other_control: OtherControlWatch,
+    consistency: ConsistencyCheck,
+    axial_load: AxialLoadSign,
 }
 
 impl Inbox {
-    pub(crate) fn new(rows: Option<DataRows>, silent_after: core::time::Duration) -> Self {
+    pub(crate) fn new(rows: Option<DataRows>, silent_after: Duration) -> Self {
         Self {
             rows,
             clock: SimulatorClock::new(silent_after),
@@ -56,7 +74,12 @@ impl Inbox {
             position: Reading::default(),
             accelerations: [f64::NAN; 3],
             force: SpecificForce::default(),
+            lean: [0.0; 2],
+            true_attitude: Time::NEVER,
             switch: Switch::Off,
+            other_control: OtherControlWatch::default(),
+            consistency: ConsistencyCheck::default(),
+            axial_load: AxialLoadSign::new(rows.map(|rows| rows.axial_load)),
         }
     }
 
@@ -229,8 +252,8 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
-        self.publish_attitude(into);
-        self.publish_motion(into);
+        self.publish_attitude(now, into);
+        self.publish_motion(now, into, link);
         let values = &mut self.values;
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
             into.airspeed_mps = Reading::new(airspeed, taken);
@@ -243,8 +266,9 @@ impl Inbox {
         }
         if let Some(([throttle, elevator, aileron, rudder], taken)) = values.whole(Group::Surfaces)
         {
+            // In reverse it is negative, and with emergency power above 1.
             let surfaces = Surfaces {
-                throttle,
+                throttle: throttle.clamp(0.0, 1.0),
                 elevator,
                 aileron,
                 rudder,
@@ -259,12 +283,41 @@ impl Inbox {
             };
             into.engage_switch = Reading::new(self.switch, taken);
         }
+        if self.clock.last_received() == now {
+            self.publish_observations(now, into, link);
+        }
         self.publish_plant(now, into, link)
     }
 
-    fn publish_attitude(&mut self, into: &mut Measurements) {
+    /// What is known about the aircraft besides its measurements: in every tick
+    /// in which something arrived.
+    fn publish_observations(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
+        let other = self.other_control.step(now, &self.values, link);
+        into.other_control = Reading::new(other, now);
+        let accelerates = self.values.recent(Quantity::AccelerationUp, now);
+        let computed = accelerates.map(|_| self.force);
+        let suspect = self.consistency.step(now, &self.values, computed);
+        into.suspect = Reading::new(suspect, now);
+        link.set_loads_differ(suspect.specific_force);
+    }
+
+    fn publish_attitude(&mut self, now: Time, into: &mut Measurements) {
         let values = &mut self.values;
-        if let Some(([pitch_rad, roll_rad], taken)) = values.whole(Group::Attitude) {
+        let locally = values
+            .whole(Group::Attitude)
+            .filter(|_| now.since(self.true_attitude) > TRUE_WITHIN);
+        // Exactly level to the last bit is the answer of a version without it.
+        let truly = values
+            .whole(Group::TrueAttitude)
+            .filter(|([pitch, roll, _, _], _)| (*pitch, *roll) != (0.0, 0.0));
+        if let Some(([pitch, roll, local_pitch, local_roll], taken)) = truly {
+            self.true_attitude = taken;
+            self.lean = [pitch - local_pitch, roll - local_roll];
+        } else if locally.is_some() {
+            self.lean = [0.0; 2];
+        }
+        let truly = truly.map(|([pitch, roll, _, _], taken)| ([pitch, roll], taken));
+        if let Some(([pitch_rad, roll_rad], taken)) = truly.or(locally) {
             let attitude = Attitude {
                 pitch_rad,
                 roll_rad,
@@ -284,7 +337,7 @@ impl Inbox {
         }
     }
 
-    fn publish_motion(&mut self, into: &mut Measurements) {
+    fn publish_motion(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
         let values = &mut self.values;
         if let Some(([east, up, south, heading, pitch, roll], taken)) =
             values.whole(Group::Acceleration)
@@ -296,22 +349,32 @@ impl Inbox {
             let accelerations = [east, up, south];
             if accelerations != self.accelerations {
                 self.accelerations = accelerations;
-                self.force = specific_force(accelerations, [heading, pitch, roll]);
+                let [lean_pitch, lean_roll] = self.lean;
+                let attitude = Attitude {
+                    pitch_rad: pitch + lean_pitch,
+                    roll_rad: roll + lean_roll,
+                };
+                self.force = specific_force(accelerations, [heading, pitch, roll], attitude);
             }
             into.specific_force = Reading::new(self.force, taken);
         }
         if let Some(([normal, axial, side], taken)) = values.whole(Group::Loads) {
+            let pitch = values.recent(Quantity::Pitch, now);
+            let airspeed = values.recent(Quantity::Airspeed, now);
+            self.axial_load.step(now, axial, pitch.zip(airspeed));
+            link.set_axial_backwards(self.axial_load.is_backwards());
             let force = SpecificForce {
-                x_mps2: axial,
+                x_mps2: self.axial_load.forwards(axial),
                 y_mps2: side,
                 z_mps2: -normal,
             };
             into.specific_force = Reading::new(force, taken);
         }
         if let Some(([east, up, south], taken)) = values.whole(Group::Velocity) {
+            let (sin, cos) = local_north(values, now).sin_cos();
             let velocity = Velocity {
-                north_mps: -south,
-                east_mps: east,
+                north_mps: -south * cos - east * sin,
+                east_mps: east * cos - south * sin,
                 down_mps: -up,
             };
             into.velocity = Reading::new(velocity, taken);
@@ -340,6 +403,17 @@ impl Inbox {
         }
         state
     }
+}
+
+/// The true direction of the local axes' north, rad clockwise from true north;
+/// 0 where it is not known.
+fn local_north(values: &Values, now: Time) -> f64 {
+    let recent = |quantity| values.recent(quantity, now);
+    let level = recent(Quantity::Pitch).filter(|pitch| pitch.abs() < HEADING_UP_TO_PITCH_RAD);
+    recent(Quantity::TrueHeading)
+        .zip(recent(Quantity::LocalHeading))
+        .zip(level)
+        .map_or(0.0, |((truly, locally), _)| truly - locally)
 }
 
 /// Wraps an angle into 0..2π.

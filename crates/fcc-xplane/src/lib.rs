@@ -27,6 +27,8 @@
 //! | `quantity`, `rows`, `units`, `specific_force` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
+//! | `other_control` | what acts on the controls besides this program |
+//! | `consistency`, `axial_load` | values compared with each other |
 //! | `reply_port` | from which port of the simulator they are accepted |
 //! | `subscriptions`, `missing` | what to request, when to repeat it, and what does not arrive |
 //! | `traffic` | how much is sent to X-Plane |
@@ -52,16 +54,20 @@
 mod actuator;
 mod address;
 mod authority;
+mod axial_load;
 mod config;
 mod confirmation;
+mod consistency;
 mod controls;
 mod discovery;
 mod engage_switch;
 mod inbox;
+mod lasting;
 mod link;
 mod missing;
 mod no_answer;
 mod open;
+mod other_control;
 mod port;
 pub mod protocol;
 mod quantity;
@@ -83,7 +89,9 @@ mod values;
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
 pub use authority::XPlaneAuthority;
-pub use config::{DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError};
+pub use config::{
+    AxialLoad, DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError,
+};
 pub use discovery::{DiscoverError, Found, discover};
 pub use fcc_core::framework::Released;
 pub use link::Control;

@@ -45,13 +45,15 @@ impl Readback {
     }
 }
 
-/// The quantities that are written to X-Plane and read back.
-pub(crate) const READ_BACK: [Quantity; 5] = [
+/// The quantities that are written to X-Plane and read back, and where a
+/// released throttle returns to.
+pub(crate) const READ_BACK: [Quantity; 6] = [
     Quantity::OverrideJoystick,
     Quantity::OverrideThrottles,
     Quantity::YokePitch,
     Quantity::YokeRoll,
     Quantity::YokeHeading,
+    Quantity::ThrottleLever,
 ];
 
 /// All counters since opening.
@@ -99,6 +101,10 @@ pub(crate) struct SharedState {
     state: AtomicU8,
     control: AtomicU8,
     unconfirmed: AtomicBool,
+    /// Another program writes the held controls, too.
+    other_writer: AtomicBool,
+    loads_differ: AtomicBool,
+    axial_backwards: AtomicBool,
     answers_anything: AtomicBool,
     version: AtomicU32,
     /// A [`ValueSet`].
@@ -122,6 +128,9 @@ impl SharedState {
             state: AtomicU8::new(SimulatorState::Silent as u8),
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
+            other_writer: AtomicBool::new(false),
+            loads_differ: AtomicBool::new(false),
+            axial_backwards: AtomicBool::new(false),
             answers_anything: AtomicBool::new(false),
             version: AtomicU32::new(0),
             missing: AtomicU64::new(0),
@@ -218,6 +227,33 @@ impl SharedState {
 
     pub(crate) fn set_unconfirmed(&self, unconfirmed: bool) {
         self.unconfirmed.store(unconfirmed, Ordering::Relaxed);
+    }
+
+    /// Whether another program writes the held controls, too.
+    pub(crate) fn has_other_writer(&self) -> bool {
+        self.other_writer.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_other_writer(&self, writes: bool) {
+        self.other_writer.store(writes, Ordering::Relaxed);
+    }
+
+    /// Whether the local accelerations contradict the load factor.
+    pub(crate) fn do_loads_differ(&self) -> bool {
+        self.loads_differ.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_loads_differ(&self, differ: bool) {
+        self.loads_differ.store(differ, Ordering::Relaxed);
+    }
+
+    /// Whether the axial load in row 4 is positive backwards.
+    pub(crate) fn is_axial_backwards(&self) -> bool {
+        self.axial_backwards.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_axial_backwards(&self, backwards: bool) {
+        self.axial_backwards.store(backwards, Ordering::Relaxed);
     }
 
     /// Whether the simulator answers requests for datarefs that it does not have.

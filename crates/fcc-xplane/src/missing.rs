@@ -72,6 +72,14 @@ impl Expected {
             Self::Position => POSITION,
         }
     }
+
+    /// Whether its absence is reported.
+    pub(crate) fn is_needed(self) -> bool {
+        match self {
+            Self::Value(quantity) => quantity.is_needed(),
+            Self::Position => true,
+        }
+    }
 }
 
 /// Finds out which values are missing.

@@ -8,8 +8,8 @@
 //! - Row 17, attitude: magnetic heading in column 3, or in 4 according to one
 //!   capture.
 //! - Row 4, load factors in g: normal (column 4) is positive upwards, so it is
-//!   -z of the body; axial (5) and side (6) are taken as +x and +y, as two
-//!   independent programs do.
+//!   -z of the body; side (6) is +y, as two independent programs take it; on the
+//!   sign of axial (5) they disagree ([`axial_load`](crate::axial_load)).
 //! - Row 1, times: column 2 is the time of this flight, which does not advance
 //!   while paused and is reset when a flight is loaded.
 //! - Row 20: latitude and longitude are f32 here and lose about a metre.
@@ -19,7 +19,7 @@ use fcc_core::flight::Position;
 use crate::config::{DataRows, RowsVersion};
 use crate::protocol::data::Row;
 use crate::quantity::Quantity;
-use crate::units::FOOT_M;
+use crate::units::{FOOT_M, KNOT_MPS};
 
 const TIMES: i32 = 1;
 const SPEEDS: i32 = 3;
@@ -44,7 +44,10 @@ pub(crate) fn quantities(rows: DataRows, row: &Row, mut found: impl FnMut(Quanti
     };
     match row.index {
         TIMES => give(Quantity::FlightTime, FLIGHT_TIME, 1.0),
-        SPEEDS => give(Quantity::Airspeed, 0, 1.0),
+        SPEEDS => {
+            give(Quantity::Airspeed, 0, 1.0);
+            give(Quantity::TrueAirspeed, 2, KNOT_MPS);
+        }
         LOADS => {
             give(Quantity::LoadNormal, 4, 1.0);
             give(Quantity::LoadAxial, 5, 1.0);

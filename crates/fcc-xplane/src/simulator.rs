@@ -28,6 +28,10 @@ const PACE_OVER: Duration = Duration::from_secs(1);
 /// Slow below this share of our time, until it is above [`PACE_REGAINED`].
 const PACE_LOST: f64 = 0.9;
 const PACE_REGAINED: f64 = 0.95;
+/// Fast above this share of our time, until it is below [`PACE_SLOWED`]: twice
+/// our time, which is flown, plus the jitter of the measurement.
+const PACE_FAST: f64 = 2.2;
+const PACE_SLOWED: f64 = 2.1;
 /// Slow above this frame period (20 frames a second, where X-Plane begins to
 /// slow its time), until it is below [`FRAME_REGAINED_S`] (22 a second).
 const FRAME_LOST_S: f64 = 1.0 / 20.0;
@@ -53,6 +57,9 @@ pub enum SimulatorState {
     /// In this tick its clock went back by a second or more, or gained a second
     /// on ours: a flight was loaded. This lasts for one tick only.
     Jumped = 5,
+    /// Its time runs more than 2.2 times as fast as ours over 1 to 2 s, until it
+    /// is less than 2.1 times as fast.
+    Fast = 6,
 }
 
 impl SimulatorState {
@@ -66,6 +73,7 @@ impl SimulatorState {
             Self::Stalled => Some(PlantState::Stalled),
             Self::Slow => Some(PlantState::Slow),
             Self::Jumped => Some(PlantState::Jumped),
+            Self::Fast => Some(PlantState::Fast),
         }
     }
 
@@ -77,6 +85,7 @@ impl SimulatorState {
             3 => Self::Stalled,
             4 => Self::Slow,
             5 => Self::Jumped,
+            6 => Self::Fast,
             _ => Self::Silent,
         }
     }
@@ -119,8 +128,16 @@ pub(crate) struct SimulatorClock {
     /// The samples from which the pace is measured: the older one, until the
     /// younger is [`PACE_OVER`] old.
     marks: [ClockSample; 2],
-    slow: bool,
+    pace: Pace,
     jumped: bool,
+}
+
+/// How fast the simulator's time runs.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Pace {
+    Slow,
+    Even,
+    Fast,
 }
 
 impl SimulatorClock {
@@ -133,7 +150,7 @@ impl SimulatorClock {
             paused: false,
             frame_period_s: 0.0,
             marks: [ClockSample::default(); 2],
-            slow: false,
+            pace: Pace::Even,
             jumped: false,
         }
     }
@@ -201,7 +218,7 @@ impl SimulatorClock {
     fn begin_pace(&mut self, now: Time) {
         self.advanced = now;
         self.marks = [self.latest; 2];
-        self.slow = false;
+        self.pace = Pace::Even;
     }
 
     fn update_pace(&mut self, now: Time) {
@@ -219,9 +236,17 @@ impl SimulatorClock {
             1.0
         };
         if pace < PACE_LOST || self.frame_period_s > FRAME_LOST_S {
-            self.slow = true;
-        } else if measured && pace > PACE_REGAINED && self.frame_period_s < FRAME_REGAINED_S {
-            self.slow = false;
+            self.pace = Pace::Slow;
+        } else if pace > PACE_FAST {
+            self.pace = Pace::Fast;
+        } else if measured {
+            self.pace = match self.pace {
+                Pace::Slow if pace <= PACE_REGAINED || self.frame_period_s >= FRAME_REGAINED_S => {
+                    Pace::Slow
+                }
+                Pace::Fast if pace >= PACE_SLOWED => Pace::Fast,
+                _ => Pace::Even,
+            };
         }
     }
 
@@ -257,10 +282,12 @@ impl SimulatorClock {
             SimulatorState::Paused
         } else if self.has_stopped() {
             SimulatorState::Stalled
-        } else if self.slow {
-            SimulatorState::Slow
         } else {
-            SimulatorState::Running
+            match self.pace {
+                Pace::Slow => SimulatorState::Slow,
+                Pace::Even => SimulatorState::Running,
+                Pace::Fast => SimulatorState::Fast,
+            }
         }
     }
 }

@@ -3,48 +3,75 @@
 //! `local_ax/ay/az` are the acceleration of the aircraft over the ground in
 //! X-Plane's local axes (x east, y up, z south), without gravity: 0 in steady
 //! level flight. Specific force is that acceleration minus gravity, in body
-//! axes: f = Rᵀ (a - g), with R the rotation from body to north-east-down.
+//! axes: f = Rᵀ a - g, with R the rotation from body to local axes and g gravity
+//! in body axes. Gravity points down below the aircraft, not along the local
+//! axes, which belong to a point up to some tens of kilometres away: so it needs
+//! the true pitch and roll.
 //!
 //! `g_axil` and `g_side` are not used: sources do not state, or disagree on,
 //! their sign and whether they include the component of gravity along their
 //! axis. The definition above is unambiguous. Rows of Data Output have only the
 //! load factors, so these are used there, see [`rows`](crate::rows).
 
-use fcc_core::flight::SpecificForce;
+use fcc_core::flight::{Attitude, SpecificForce};
 
 use crate::units::GRAVITY_MPS2;
 
 /// Specific force from the acceleration over the ground in X-Plane's axes
-/// (east, up, south; m/s²) and the attitude (true heading, pitch, roll; rad).
+/// (east, up, south; m/s²), the attitude in these axes (heading, pitch, roll;
+/// rad), and the attitude at the place of the aircraft.
 ///
 /// The rotation is the z-y-x Euler sequence (Stevens, Lewis and Johnson,
 /// Aircraft Control and Simulation, 3rd ed. 2016, section 1.3).
 pub(crate) fn specific_force(
     [east, up, south]: [f64; 3],
     [heading_rad, pitch_rad, roll_rad]: [f64; 3],
+    attitude: Attitude,
 ) -> SpecificForce {
-    let north = -south;
-    let down = -up - GRAVITY_MPS2;
-
+    let (north, down) = (-south, -up);
     let (sin_heading, cos_heading) = heading_rad.sin_cos();
-    let (sin_pitch, cos_pitch) = pitch_rad.sin_cos();
-    let (sin_roll, cos_roll) = roll_rad.sin_cos();
-
     // One rotation at a time: heading about z, pitch about y, roll about x.
     let ahead = cos_heading * north + sin_heading * east;
     let across = cos_heading * east - sin_heading * north;
+    let [forward, right, below] = tilted([ahead, across, down], pitch_rad, roll_rad);
+    let gravity = [0.0, 0.0, GRAVITY_MPS2];
+    let [x, y, z] = tilted(gravity, attitude.pitch_rad, attitude.roll_rad);
+    SpecificForce {
+        x_mps2: forward - x,
+        y_mps2: right - y,
+        z_mps2: below - z,
+    }
+}
+
+/// A vector ahead, to the right and down, in the axes of a body with this pitch
+/// and roll.
+fn tilted([ahead, across, down]: [f64; 3], pitch_rad: f64, roll_rad: f64) -> [f64; 3] {
+    let (sin_pitch, cos_pitch) = pitch_rad.sin_cos();
+    let (sin_roll, cos_roll) = roll_rad.sin_cos();
     let forward = cos_pitch * ahead - sin_pitch * down;
     let below = sin_pitch * ahead + cos_pitch * down;
-    SpecificForce {
-        x_mps2: forward,
-        y_mps2: cos_roll * across + sin_roll * below,
-        z_mps2: cos_roll * below - sin_roll * across,
-    }
+    [
+        forward,
+        cos_roll * across + sin_roll * below,
+        cos_roll * below - sin_roll * across,
+    ]
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use fcc_core::flight::{Attitude, SpecificForce};
+
+    use crate::units::GRAVITY_MPS2;
+
+    /// Where the local axes are those of the place.
+    fn specific_force(accelerations: [f64; 3], angles: [f64; 3]) -> SpecificForce {
+        let [_, pitch_rad, roll_rad] = angles;
+        let attitude = Attitude {
+            pitch_rad,
+            roll_rad,
+        };
+        super::specific_force(accelerations, angles, attitude)
+    }
 
     fn close(force: SpecificForce, expected: [f64; 3]) {
         let got = [force.x_mps2, force.y_mps2, force.z_mps2];
@@ -104,5 +131,15 @@ mod tests {
             specific_force([0.0, -9.80665, 0.0], [0.3, -0.2, 1.0]),
             [0.0; 3],
         );
+    }
+
+    /// Level flight where the local axes lean by 1°: an accelerometer measures
+    /// gravity along the aircraft's z, and the sine of 1° of it nowhere.
+    #[test]
+    fn leaning_local_axes_do_not_move_gravity() {
+        let lean = 1.0_f64.to_radians();
+        let level = Attitude::default();
+        let force = super::specific_force([0.0; 3], [0.5, lean, -lean], level);
+        close(force, [0.0, 0.0, -GRAVITY_MPS2]);
     }
 }

@@ -10,6 +10,7 @@ use crate::engage_switch::lights_if_beyond;
 use crate::link::{Control, SharedState};
 use crate::missing::Missing;
 use crate::no_answer::{InWords, Why};
+use crate::quantity::Quantity;
 use crate::simulator::SimulatorState;
 
 /// The status of the connection to X-Plane, readable from any thread without a
@@ -112,6 +113,24 @@ impl XPlaneStatus {
     /// Whether controls have been written for over a second without effect.
     pub fn is_unconfirmed(&self) -> bool {
         self.link.is_unconfirmed()
+    }
+
+    /// The position of the first engine's throttle lever, 0 to 1, less in
+    /// reverse; once received.
+    pub fn throttle_lever(&self) -> Option<f64> {
+        let (lever, _) = self.link.shown(Quantity::ThrottleLever)?;
+        Some(lever.into())
+    }
+
+    /// Whether the accelerations that are used contradict the load factor.
+    pub fn do_loads_differ(&self) -> bool {
+        self.link.do_loads_differ()
+    }
+
+    /// Whether the axial load in row 4 of Data Output is positive backwards: as
+    /// configured, or found out.
+    pub fn is_axial_backwards(&self) -> bool {
+        self.link.is_axial_backwards()
     }
 
     /// X-Plane's version, 115501 for 11.55r01, once received.

@@ -105,7 +105,7 @@ impl Subscriptions {
         for quantity in Quantity::all() {
             if let Some(rows) = rows.filter(|_| quantity.comes_in_rows()) {
                 let comes = row_of(rows, quantity).map(|_| Expected::Value(quantity));
-                expected.extend(comes);
+                expected.extend(comes.filter(|_| quantity.is_needed()));
                 continue;
             }
             let Some(path) = quantity.path(&config.engage_switch) else {
@@ -125,7 +125,8 @@ impl Subscriptions {
             rref::request(&mut request, 1, NONEXISTENT_INDEX, NONEXISTENT_DATAREF)?;
             list.push(Subscription::to(Request::Nonexistent(request)));
         }
-        expected.extend(list.iter().filter_map(|asked| asked.request.expected()));
+        let asked = list.iter().filter_map(|asked| asked.request.expected());
+        expected.extend(asked.filter(|asked| asked.is_needed()));
         Ok(Self {
             list,
             resubscribe: config.resubscribe,

@@ -11,9 +11,16 @@ pub(crate) const GRAVITY_MPS2: f64 = 9.806_65;
 /// A unit that X-Plane uses.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Unit {
-    /// Already the unit used internally: s, m, m/s, m/s², rad/s, a ratio or a
-    /// flag.
-    Si,
+    Seconds,
+    /// 0 or 1.
+    Flag,
+    /// A number without a unit.
+    Number,
+    Ratio,
+    MetresPerSecond,
+    MetresPerSecondSquared,
+    RadiansPerSecond,
+    KilogramsPerCubicMetre,
     Degrees,
     Knots,
     Feet,
@@ -23,7 +30,15 @@ pub(crate) enum Unit {
 impl Unit {
     pub(crate) fn to_si(self, value: f64) -> f64 {
         match self {
-            Self::Si => value,
+            // Units that are used internally, too.
+            Self::Seconds
+            | Self::Flag
+            | Self::Number
+            | Self::Ratio
+            | Self::MetresPerSecond
+            | Self::MetresPerSecondSquared
+            | Self::RadiansPerSecond
+            | Self::KilogramsPerCubicMetre => value,
             Self::Degrees => value.to_radians(),
             Self::Knots => value * KNOT_MPS,
             Self::Feet => value * FOOT_M,

@@ -17,6 +17,7 @@ use crate::quantity::Quantity;
 #[repr(u8)]
 pub(crate) enum Group {
     Attitude,
+    TrueAttitude,
     Heading,
     Rates,
     Acceleration,
@@ -30,11 +31,12 @@ pub(crate) enum Group {
 }
 
 impl Group {
-    const COUNT: usize = 11;
+    const COUNT: usize = 12;
 
     /// All of them, in the order of their numbers.
     const ALL: [Self; Self::COUNT] = [
         Self::Attitude,
+        Self::TrueAttitude,
         Self::Heading,
         Self::Rates,
         Self::Acceleration,
@@ -52,13 +54,14 @@ impl Group {
         use Quantity as Q;
         match self {
             Self::Attitude => &[Q::Pitch, Q::Roll],
+            Self::TrueAttitude => &[Q::TruePitch, Q::TrueRoll, Q::Pitch, Q::Roll],
             Self::Heading => &[Q::MagneticHeading],
             Self::Rates => &[Q::RollRate, Q::PitchRate, Q::YawRate],
             Self::Acceleration => &[
                 Q::AccelerationEast,
                 Q::AccelerationUp,
                 Q::AccelerationSouth,
-                Q::TrueHeading,
+                Q::LocalHeading,
                 Q::Pitch,
                 Q::Roll,
             ],
@@ -72,6 +75,10 @@ impl Group {
         }
     }
 }
+
+/// A value that stands alone is used up to this age: some frames at the lowest
+/// rate, and a lost datagram.
+const RECENT: Duration = Duration::from_millis(500);
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Value {
@@ -98,7 +105,7 @@ struct Together {
 const TOGETHER_WITHIN: Duration = Duration::from_millis(100);
 
 /// The latest value of each quantity.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Values {
     values: [Value; Quantity::COUNT],
     /// Counts the frames; the present one.
@@ -111,6 +118,17 @@ pub(crate) struct Values {
 
 const fn bit(quantity: Quantity) -> u64 {
     1 << (quantity as u8)
+}
+
+impl Default for Values {
+    fn default() -> Self {
+        Self {
+            values: [Value::default(); Quantity::COUNT],
+            frame: 0,
+            new: [0; Group::COUNT],
+            together: [Together::default(); Group::COUNT],
+        }
+    }
 }
 
 impl Values {
@@ -158,6 +176,12 @@ impl Values {
     /// When a quantity last arrived.
     pub(crate) fn arrived(&self, quantity: Quantity) -> Time {
         self.value(quantity).arrived
+    }
+
+    /// The latest value of a quantity, if it is not older than [`RECENT`].
+    pub(crate) fn recent(&self, quantity: Quantity, now: Time) -> Option<f64> {
+        let Value { value, arrived, .. } = self.value(quantity);
+        (!arrived.is_never() && now.since(arrived) <= RECENT).then_some(value)
     }
 
     fn value(&self, quantity: Quantity) -> Value {
@@ -277,7 +301,7 @@ mod tests {
             Quantity::AccelerationEast,
             Quantity::AccelerationUp,
             Quantity::AccelerationSouth,
-            Quantity::TrueHeading,
+            Quantity::LocalHeading,
             PITCH,
             ROLL,
         ];

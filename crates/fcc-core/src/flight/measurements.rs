@@ -67,6 +67,12 @@ schema! {
         /// A simulated plant's clock and state; never taken on a real one.
         #[field(12, column = "plant_*")]
         pub plant: Reading<Plant>,
+        /// What else acts on the controls, if the source can tell.
+        #[field(13, column = "other_*")]
+        pub other_control: Reading<OtherControl>,
+        /// Readings of the same source that its own other values contradict.
+        #[field(14, column = "suspect_*")]
+        pub suspect: Reading<Suspect>,
     }
 }
 
@@ -83,6 +89,8 @@ readings!(Measurements {
     surfaces: "surfaces",
     engage_switch: "engage switch",
     plant: "the plant's state",
+    other_control: "other control",
+    suspect: "suspect readings",
 });
 
 schema! {
@@ -228,6 +236,59 @@ schema! {
 }
 
 schema! {
+    /// What acts on the controls besides this program, as far as a source can
+    /// tell.
+    ///
+    /// ```
+    /// use fcc_core::flight::OtherControl;
+    ///
+    /// let climbing_alone = OtherControl { autopilot: true, ..OtherControl::default() };
+    /// assert_ne!(climbing_alone, OtherControl::default());
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+    pub struct OtherControl {
+        /// Another autopilot moves the controls by its servos.
+        #[field(1)]
+        pub autopilot: bool,
+        /// Another autothrottle moves the throttles.
+        #[field(2)]
+        pub autothrottle: bool,
+        /// Another flight control computer determines the control surfaces.
+        #[field(3)]
+        pub fly_by_wire: bool,
+        /// Artificial stability, such as a yaw damper, adds to the controls.
+        #[field(4)]
+        pub stability: bool,
+        /// Another program writes the controls that this one writes.
+        #[field(5)]
+        pub writer: bool,
+        /// Thrust is reversed.
+        #[field(6)]
+        pub reverse_thrust: bool,
+    }
+}
+
+schema! {
+    /// Readings that the other values of their source contradict.
+    ///
+    /// ```
+    /// use fcc_core::flight::Suspect;
+    ///
+    /// let pitot_ice = Suspect { airspeed: true, ..Suspect::default() };
+    /// assert!(!pitot_ice.specific_force);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+    pub struct Suspect {
+        /// Whether the airspeed is contradicted.
+        #[field(1)]
+        pub airspeed: bool,
+        /// Whether the specific force is contradicted.
+        #[field(2)]
+        pub specific_force: bool,
+    }
+}
+
+schema! {
     /// The state of a simulated plant.
     ///
     /// ```
@@ -246,5 +307,7 @@ schema! {
         Slow = 3,
         /// Its clock jumped: it was restarted, reloaded or repositioned.
         Jumped = 4,
+        /// Time runs more than twice as fast as the wall clock.
+        Fast = 7,
     }
 }

@@ -22,7 +22,8 @@ mod surfaces;
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
 pub use autopilot::{Autopilot, AutopilotCommand, AutopilotConfig, Resume, Scale, flags};
 pub use measurements::{
-    Attitude, BodyRates, Measurements, Plant, PlantState, Position, SpecificForce, Velocity,
+    Attitude, BodyRates, Measurements, OtherControl, Plant, PlantState, Position, SpecificForce,
+    Suspect, Velocity,
 };
 pub use setpoints::Setpoints;
 pub use surfaces::Surfaces;

@@ -112,8 +112,15 @@ pub trait Controller: Send {
     /// Faults that make it unsafe to stay engaged; empty if there are none.
     fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
-    /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits) and
-    /// [`faults`](Self::faults), as text for users.
+    /// Conditions to report while control is held that need not be faults; empty
+    /// if there are none. The loop reports each change as an event.
+    fn conditions(&self, _tick: &Tick, _measurements: &Self::Measurements) -> Flags {
+        Flags::NONE
+    }
+
+    /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits),
+    /// [`faults`](Self::faults) and [`conditions`](Self::conditions), as text for
+    /// users.
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;

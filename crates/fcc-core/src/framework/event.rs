@@ -234,5 +234,16 @@ schema! {
             #[field(2)]
             to: u8,
         },
+        /// [`Controller::conditions`] began or ended while control is held:
+        /// [`Controller::flag_name`] names them.
+        #[field(31)]
+        ConditionsChanged {
+            /// Those that began.
+            #[field(1)]
+            began: Flags,
+            /// Those that ended.
+            #[field(2)]
+            ended: Flags,
+        },
     }
 }

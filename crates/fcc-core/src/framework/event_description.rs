@@ -109,6 +109,7 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
             EventKind::ModeChanged { from, to } => {
                 write!(f, "mode: {}, was {}", C::mode_name(to), C::mode_name(from))
             }
+            EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {
                     let separator = if n > 0 { ", " } else { "" };
@@ -135,6 +136,23 @@ fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: Stat
         }
         _ => Ok(()),
     }
+}
+
+/// The conditions that began, then those that ended.
+fn condition_change<C: Controller>(
+    f: &mut fmt::Formatter<'_>,
+    began: Flags,
+    ended: Flags,
+) -> fmt::Result {
+    let mut separator = "";
+    for (word, flags) in [("now", began), ("no longer", ended)] {
+        if !flags.is_empty() {
+            write!(f, "{separator}{word}: ")?;
+            name_flags::<C>(f, flags)?;
+            separator = "; ";
+        }
+    }
+    Ok(())
 }
 
 fn ms(ns: u64) -> f64 {

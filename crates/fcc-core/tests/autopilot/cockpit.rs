@@ -4,8 +4,8 @@ use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{
-    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, Plant, PlantState,
-    SpecificForce, Surfaces, flags,
+    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, OtherControl, Plant, PlantState,
+    SpecificForce, Surfaces, Suspect, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
@@ -31,6 +31,8 @@ pub(crate) struct Cockpit {
     pub(crate) measurements: Measurements,
     pub(crate) silent: Flags,
     pub(crate) switch: Option<Switch>,
+    pub(crate) other_control: OtherControl,
+    pub(crate) suspect: Suspect,
 }
 
 #[derive(Clone, Copy)]
@@ -80,6 +82,8 @@ impl Cockpit {
             measurements: Measurements::default(),
             silent: Flags::NONE,
             switch: None,
+            other_control: OtherControl::default(),
+            suspect: Suspect::default(),
         };
         for _ in 0..80 {
             cockpit.observe();
@@ -122,6 +126,8 @@ impl Cockpit {
             airspeed_mps: Reading::new(feel.airspeed_kt * KNOT_MPS, now),
             altitude_m: Reading::new(feel.altitude_m, now),
             surfaces: Reading::new(STANDING, now),
+            other_control: Reading::new(self.other_control, now),
+            suspect: Reading::new(self.suspect, now),
             plant: feel.plant.map_or_else(Reading::default, |state| {
                 Reading::new(
                     Plant {
@@ -205,5 +211,9 @@ impl Cockpit {
 
     pub(crate) fn faults(&self) -> Flags {
         self.autopilot.faults(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn conditions(&self) -> Flags {
+        self.autopilot.conditions(&self.tick, &self.measurements)
     }
 }

@@ -6,4 +6,5 @@ mod altimeter;
 mod cockpit;
 mod faults;
 mod flying;
+mod other_control;
 mod resuming;

@@ -18,6 +18,7 @@ mod run;
 mod timing;
 #[cfg(feature = "live")]
 mod top;
+mod x_plane;
 
 use std::fs;
 use std::io::ErrorKind;
@@ -72,6 +73,7 @@ fn carry_out(command: Action) -> Result<Exit, Failure> {
         Action::Top(args) => top::top(&args)?,
         Action::Check(args) => check::check(&args),
         Action::Doctor(args) => doctor::doctor(&args)?,
+        Action::XPlane(args) => x_plane::x_plane(&args)?,
         Action::Report(args) => report::report(&args)?,
         Action::ReleaseHelper => release_helper::release_helper()?,
         Action::Completions { shell } => completions(shell),

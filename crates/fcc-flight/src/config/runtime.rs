@@ -3,7 +3,8 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::AfterRelease;
+use fcc_core::flight::flags;
+use fcc_core::framework::{AfterRelease, Flags};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
@@ -187,6 +188,22 @@ impl From<Then> for AfterRelease {
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
+    /// Engage although another autopilot is on.
+    pub permit_autopilot: bool,
+    /// Engage although another autothrottle is on.
+    pub permit_autothrottle: bool,
+    /// Engage although another flight control computer moves the surfaces.
+    pub permit_fly_by_wire: bool,
+}
+
+impl EngageSection {
+    /// The conditions that do not prevent engaging.
+    pub(super) const fn permitted(&self) -> Flags {
+        Flags::NONE
+            .with(flags::OTHER_AUTOPILOT, self.permit_autopilot)
+            .with(flags::OTHER_AUTOTHROTTLE, self.permit_autothrottle)
+            .with(flags::FLY_BY_WIRE, self.permit_fly_by_wire)
+    }
 }
 
 /// `[failsafe]`.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use fcc_xplane::{DataRows, Input, Output, RowsVersion, Simulator, XPlaneConfig};
+use fcc_xplane::{AxialLoad, DataRows, Input, Output, RowsVersion, Simulator, XPlaneConfig};
 use serde::{Deserialize, Serialize};
 
 /// `[x-plane]`.
@@ -23,6 +23,8 @@ pub struct XPlaneSection {
     /// Column of the magnetic heading in the attitude row, for
     /// `input = "data"`.
     pub magnetic_heading_column: u8,
+    /// What a positive axial load in row 4 means, for `input = "data"`.
+    pub axial_load: AxialLoadChoice,
     /// How control surfaces are written.
     pub output: OutputChoice,
     /// The rate at which each dataref is requested.
@@ -53,6 +55,18 @@ pub enum InputChoice {
     Data,
 }
 
+/// What a positive axial load in row 4 of Data Output means.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AxialLoadChoice {
+    /// Found out in flight.
+    Auto,
+    /// A load forwards.
+    Forwards,
+    /// A load backwards.
+    Backwards,
+}
+
 /// How control surfaces are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -73,6 +87,7 @@ impl Default for XPlaneSection {
             input: InputChoice::Rref,
             data_version: 12,
             magnetic_heading_column: 3,
+            axial_load: AxialLoadChoice::Auto,
             output: OutputChoice::Dref,
             rate_hz: core.rate_hz,
             engines: core.engines,
@@ -100,6 +115,11 @@ impl From<&XPlaneSection> for XPlaneConfig {
                         _ => RowsVersion::XPlane12,
                     },
                     magnetic_heading_column: section.magnetic_heading_column,
+                    axial_load: match section.axial_load {
+                        AxialLoadChoice::Auto => AxialLoad::Auto,
+                        AxialLoadChoice::Forwards => AxialLoad::Forwards,
+                        AxialLoadChoice::Backwards => AxialLoad::Backwards,
+                    },
                 }),
             },
             output: match section.output {

@@ -209,7 +209,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 19] = [
+    const KINDS: [&str; 20] = [
         "remark",
         "state-changed",
         "command-received",
@@ -229,6 +229,7 @@ fn kind_of(code: u32) -> &'static str {
         "hung",
         "source-changed",
         "mode-changed",
+        "conditions-changed",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

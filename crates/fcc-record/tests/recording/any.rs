@@ -54,7 +54,10 @@ impl Source for AnyBits {
         match kind {
             _ if self.in_state => None,
             Kind::Bool => Some(Value::Bool(special)),
-            Kind::Code(of) => Some(Value::Code((bits % of.variants.len() as u64) as u8)),
+            Kind::Code(of) => {
+                let variant = &of.variants[bits as usize % of.variants.len()];
+                Some(Value::Code(variant.number))
+            }
             Kind::Number if special => Some(Value::Number(NUMBERS[bits as usize % NUMBERS.len()])),
             Kind::Instant if special => Some(Value::Instant(i64::MIN)),
             kind => Value::from_bits(kind, bits),

@@ -104,6 +104,10 @@ fn every_event_is_restored() {
             from: 0,
             to: u8::MAX,
         },
+        EventKind::ConditionsChanged {
+            began: Flags::from_bits(0x8100_0000),
+            ended: Flags::NONE,
+        },
         EventKind::SensorRecovered { index: u16::MAX },
         EventKind::ActuatorRecovered { index: 0 },
     ];

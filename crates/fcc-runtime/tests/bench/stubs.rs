@@ -56,6 +56,10 @@ impl Controller for Stub {
         self.stage.script().faults
     }
 
+    fn conditions(&self, _: &Tick, _: &Measured) -> Flags {
+        self.stage.script().conditions
+    }
+
     fn flag_name(bit: u32) -> &'static str {
         ["nobody home", "too cold"]
             .get(bit as usize)

@@ -127,7 +127,7 @@ fn frozen_accelerations_give_a_frozen_force() {
             (Quantity::AccelerationEast, east),
             (Quantity::AccelerationUp, 0.5),
             (Quantity::AccelerationSouth, 0.0),
-            (Quantity::TrueHeading, 0.0),
+            (Quantity::LocalHeading, 0.0),
             (Quantity::Pitch, 2.0),
             (Quantity::Roll, roll_deg),
         ])
@@ -246,5 +246,72 @@ fn noise_on_the_switch_does_not_switch() {
     ] {
         bench.tick(&[values(&[(Quantity::EngageSwitch, value)])]);
         assert_eq!(bench.measurements.engage_switch.value, switch);
+    }
+}
+
+/// X-Plane's local axes lean by 1° and step when their origin moves; attitude,
+/// specific force and velocity are those at the aircraft.
+#[test]
+fn attitude_is_that_at_the_aircraft_where_x_plane_has_it() {
+    let frame = |lean_deg: f32| {
+        values(&[
+            (Quantity::Pitch, 3.0 + lean_deg),
+            (Quantity::Roll, 10.0 - lean_deg),
+            (Quantity::LocalHeading, 90.0 - lean_deg),
+            (Quantity::TruePitch, 3.0),
+            (Quantity::TrueRoll, 10.0),
+            (Quantity::TrueHeading, 90.0),
+            (Quantity::AccelerationEast, lean_deg * 1e-6),
+            (Quantity::AccelerationUp, 0.0),
+            (Quantity::AccelerationSouth, 0.0),
+            (Quantity::VelocityEast, 50.0),
+            (Quantity::VelocityUp, 0.0),
+            (Quantity::VelocitySouth, 0.0),
+        ])
+    };
+    let mut bench = Bench::new(None);
+    for lean_deg in [0.0, 1.0, -1.0] {
+        bench.tick(&[frame(lean_deg)]);
+        let measured = bench.measurements;
+        assert_close(measured.attitude.value.pitch_rad.to_degrees(), 3.0);
+        assert_close(measured.attitude.value.roll_rad.to_degrees(), 10.0);
+        // g·sin 3° = 0.513 238 m/s², g·cos 3°·sin 10° = 1.700 581 m/s².
+        let force = measured.specific_force.value;
+        assert!((force.x_mps2 - 0.513_238).abs() < 1e-4, "{force:?}");
+        assert!((force.y_mps2 + 1.700_581).abs() < 1e-4, "{force:?}");
+        // East in axes whose north is 1° right of true north: 0.8726 m/s south.
+        let north = -50.0 * f64::from(lean_deg).to_radians().sin();
+        assert!((measured.velocity.value.north_mps - north).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn without_true_angles_or_where_they_are_answered_by_zero_the_local_ones_are_used() {
+    let local = [(Quantity::Pitch, 3.0), (Quantity::Roll, 10.0)];
+    let zero = [(Quantity::TruePitch, 0.0), (Quantity::TrueRoll, 0.0)];
+    for frame in [local.to_vec(), [local, zero].concat()] {
+        let mut bench = Bench::new(None);
+        bench.tick(&[values(&frame)]);
+        assert_close(
+            bench.measurements.attitude.value.pitch_rad.to_degrees(),
+            3.0,
+        );
+    }
+}
+
+#[test]
+fn a_throttle_in_reverse_does_not_hide_the_controls() {
+    let mut bench = Bench::new(None);
+    for (throttle, read) in [(-0.4, 0.0), (0.6, 0.6), (1.2, 1.0)] {
+        bench.tick(&[values(&[
+            (Quantity::Throttle, throttle),
+            (Quantity::YokePitch, 0.1),
+            (Quantity::YokeRoll, 0.0),
+            (Quantity::YokeHeading, 0.0),
+        ])]);
+        let measured = bench.measurements;
+        assert_eq!(measured.surfaces.taken, bench.now);
+        assert!((measured.surfaces.value.throttle - read).abs() < 1e-6);
+        assert_eq!(measured.other_control.value.reverse_thrust, throttle < 0.0);
     }
 }

@@ -92,7 +92,9 @@ fn time_at_eight_tenths_is_slow_and_recovers() {
 #[test]
 fn accelerated_time_is_neither_slow_nor_a_jump() {
     let mut bench = Bench::new();
-    assert_eq!(bench.fly(400, 16.0), SimulatorState::Running);
+    assert_eq!(bench.fly(400, 2.0), SimulatorState::Running);
+    assert_eq!(bench.fly(400, 16.0), SimulatorState::Fast);
+    assert_eq!(bench.fly(400, 2.0), SimulatorState::Running);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::flight::Altimeter;
 use crate::flight::control::{AirspeedConfig, AltitudeConfig, Envelope, HeadingConfig};
 use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
+use crate::framework::Flags;
 
 /// The autopilot's configuration.
 ///
@@ -33,6 +34,10 @@ pub struct AutopilotConfig {
     /// The time that navigation needs to settle before the autopilot can
     /// engage.
     pub settling: Duration,
+    /// Conditions of [`flags`](super::flags) that are reported but do not
+    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE` and
+    /// `FLY_BY_WIRE`.
+    pub permitted: Flags,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -57,6 +62,7 @@ impl Default for AutopilotConfig {
             max_age: Duration::from_millis(250),
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
+            permitted: Flags::NONE,
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

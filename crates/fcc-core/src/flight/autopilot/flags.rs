@@ -46,6 +46,23 @@ pub const FROZEN_ALTITUDE: Flags = Flags::bit(18);
 /// range, or too far from the last.
 pub const REJECTED: Flags = Flags::bit(19);
 
+/// Another autopilot's servos move the controls.
+pub const OTHER_AUTOPILOT: Flags = Flags::bit(24);
+/// Another autothrottle moves the throttles.
+pub const OTHER_AUTOTHROTTLE: Flags = Flags::bit(25);
+/// Another flight control computer determines the control surfaces.
+pub const FLY_BY_WIRE: Flags = Flags::bit(26);
+/// Artificial stability adds to the controls.
+pub const STABILITY: Flags = Flags::bit(27);
+/// Another program writes the controls.
+pub const OTHER_WRITER: Flags = Flags::bit(28);
+/// Thrust is reversed.
+pub const REVERSE_THRUST: Flags = Flags::bit(29);
+/// The simulator's time runs more than twice as fast as ours.
+pub const PLANT_FAST: Flags = Flags::bit(30);
+/// The airspeed contradicts its source's other values.
+pub const SUSPECT_AIRSPEED: Flags = Flags::bit(31);
+
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
 const FROZEN_SHIFT: u32 = 13;
@@ -68,7 +85,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 20] = [
+pub(super) const NAMES: [&str; 32] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -89,6 +106,18 @@ pub(super) const NAMES: [&str; 20] = [
     "airspeed is frozen",
     "altitude is frozen",
     "measured values are implausible",
+    "nothing arrives from the simulator",
+    "the simulator was reloaded",
+    "the aircraft was moved",
+    "the simulator shows a replay",
+    "another autopilot is on",
+    "another autothrottle is on",
+    "another flight control computer moves the control surfaces",
+    "artificial stability moves the controls",
+    "another program writes the controls",
+    "thrust is reversed",
+    "simulator time runs more than twice as fast",
+    "airspeed contradicts the simulator's true airspeed",
 ];
 
 #[cfg(test)]

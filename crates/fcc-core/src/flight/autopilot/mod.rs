@@ -4,6 +4,7 @@ mod capture;
 mod command;
 mod config;
 pub mod flags;
+mod other_control;
 mod plant_clock;
 mod resume;
 mod scale;
@@ -188,7 +189,7 @@ impl Controller for Autopilot {
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        self.unsafe_to_fly(tick.woke, measurements)
+        (self.unsafe_to_fly(tick.woke, measurements) | self.not_permitted(measurements))
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
             .with(
                 flags::SETTLING,
@@ -206,7 +207,11 @@ impl Controller for Autopilot {
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements)
+        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(measurements)
+    }
+
+    fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
+        self.external(measurements)
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -304,10 +309,15 @@ impl Controller for Autopilot {
     }
 
     /// Wings level while the attitude is known, level flight while the climb
-    /// rate is; otherwise the trims that the loops had found; trim throttle.
-    fn failsafe(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
+    /// rate is; otherwise the trims that the loops had found; trim throttle,
+    /// idle while thrust is reversed.
+    fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
         let unusable = flags::unusable(self.stale(tick.woke), self.frozen());
-        let throttle = self.config.airspeed.trim_throttle;
+        let throttle = if measurements.other_control.value.reverse_thrust {
+            0.0
+        } else {
+            self.config.airspeed.trim_throttle
+        };
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
         if unusable.intersects(flags::ATTITUDE | flags::BODY_RATES) {

@@ -132,7 +132,7 @@ pub(crate) fn plausibility_gate(
         &mut good.airspeed_mps,
         &new.airspeed_mps,
         convinced,
-        |mps| within(*mps, MAX_AIRSPEED_MPS),
+        |mps| within(*mps, MAX_AIRSPEED_MPS) && !airspeed_is_suspect(new),
         |a, b, gap_s| AIRSPEED_MPS.holds(b - a, gap_s),
     );
     let altitude = take(
@@ -167,15 +167,24 @@ pub(crate) fn plausibility_gate(
     good.engage_switch = new.engage_switch;
     good.position = new.position;
     good.velocity = new.velocity;
+    good.other_control = new.other_control;
+    good.suspect = new.suspect;
     [
         attitude, heading, rates, force, airspeed, altitude, angle, true, true, surfaces, true,
-        plant,
+        plant, true, true,
     ]
     .into_iter()
     .zip(0..)
     .fold(Flags::NONE, |all, (plausible, bit)| {
         all.with(Flags::bit(bit), plausible)
     })
+}
+
+/// Whether the source of the airspeed contradicts it: only that of the airspeed
+/// itself, since of several sources another one may be right.
+pub(crate) fn airspeed_is_suspect(measured: &Measurements) -> bool {
+    let suspect = measured.suspect;
+    suspect.value.airspeed && !suspect.is_never() && suspect.source == measured.airspeed_mps.source
 }
 
 fn take<T: Copy>(
@@ -214,6 +223,7 @@ fn within(value: f64, most: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::Suspect;
     use crate::framework::{Readings, Time};
 
     const MAX_AGE: Duration = Duration::from_millis(250);
@@ -265,13 +275,13 @@ mod tests {
     fn which_values_are_plausible_is_returned_in_the_order_of_the_measurements() {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
-        assert_eq!(plausibility_gate(&mut good, &new, MAX_AGE).bits(), 0xfff);
+        assert_eq!(plausibility_gate(&mut good, &new, MAX_AGE).bits(), 0x3fff);
         // 30 m in 25 ms, and 400 kt more.
         new.altitude_m = Reading::new(944.0, ms(50));
         new.airspeed_mps = Reading::new(257.0, ms(50));
         new.plant.value.time_s = f64::NAN;
         let plausible = plausibility_gate(&mut good, &new, MAX_AGE);
-        let rejected = (0..12)
+        let rejected = (0..14)
             .filter(|bit| !plausible.contains(Flags::bit(*bit)))
             .map(|bit| <Measurements as Readings>::NAMES[bit as usize]);
         assert!(rejected.eq(["airspeed", "altitude", "the plant's state"]));
@@ -285,6 +295,25 @@ mod tests {
         plausibility_gate(&mut good, &new, MAX_AGE);
         plausibility_gate(&mut good, &flying(ms(50)), MAX_AGE);
         assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(50)));
+    }
+
+    #[test]
+    fn a_suspect_airspeed_is_not_used_unless_it_is_another_sensors() {
+        let mut good = flying(ms(0));
+        let mut new = flying(ms(25));
+        new.suspect = Reading::new(
+            Suspect {
+                airspeed: true,
+                ..Suspect::default()
+            },
+            ms(25),
+        );
+        plausibility_gate(&mut good, &new, MAX_AGE);
+        assert_eq!(good.airspeed_mps.taken, ms(0));
+        assert_eq!(good.altitude_m.taken, ms(25));
+        new.airspeed_mps.source = 1;
+        plausibility_gate(&mut good, &new, MAX_AGE);
+        assert_eq!(good.airspeed_mps.taken, ms(25));
     }
 
     #[test]

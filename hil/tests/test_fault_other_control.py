@@ -1,0 +1,138 @@
+"""Flights in which something else acts on the controls, and simulators that run too fast."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+from daemon_under_test import (
+    DaemonUnderTest,
+    assert_released,
+    engage,
+    flight,
+    wait_until,
+)
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.truth import COLUMNS
+
+SUCCESS = 0
+FAILSAFE = 3
+
+HOLD = '[guidance]\nmode = "hold"\n'
+SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
+LEVER = 0.35
+ICE = 0.22
+"""The airspeed indicator shows 78 % of the airspeed: at 100 kt that is no jump, but 20 kt less."""
+CONTRADICTED = "airspeed contradicts the simulator's true airspeed"
+FT_M = 0.3048
+
+
+def refuse(simulator: StandInProcess, daemon: DaemonUnderTest, why: str) -> None:
+    """Switch on, and be refused for this reason."""
+    simulator.write(ENGAGE_SWITCH, 1.0)
+    assert why in daemon.wait_for("not engaged: ")
+    simulator.write(ENGAGE_SWITCH, 0.0)
+
+
+def truth_now(simulator: StandInProcess) -> dict[str, float]:
+    return dict(zip(COLUMNS, simulator.progress().now, strict=True))
+
+
+def test_x_planes_own_autopilot_refuses_engaging_and_is_reported_in_flight(
+    fccd: Path, tmp_path: Path
+) -> None:
+    with flight(fccd, tmp_path, others=HOLD) as (simulator, daemon):
+        daemon.wait_until_ready()
+        simulator.act("autothrottle:1")
+        assert "another autothrottle is on" in daemon.wait_for("not ready")
+        refuse(simulator, daemon, "another autothrottle is on")
+        simulator.act("autothrottle:0")
+        simulator.act("damper:1")
+        daemon.wait_until_ready()
+        engage(simulator, daemon)
+        simulator.act("servos:1")
+        daemon.wait_for("now: another autopilot is on")
+        simulator.act("servos:0")
+        daemon.wait_for("no longer: another autopilot is on")
+        simulator.act(f"lever:{LEVER}")
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        assert "35 %" in daemon.wait_for("the throttle follows its lever again")
+        simulator.act("servos:1")
+        assert "another autopilot is on" in daemon.wait_for("not ready")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+
+
+def test_a_permitted_autopilot_does_not_prevent_engaging(fccd: Path, tmp_path: Path) -> None:
+    permitted = f"{HOLD}[engage]\npermit_autopilot = true\n"
+    with flight(fccd, tmp_path, others=permitted) as (simulator, daemon):
+        daemon.wait_until_ready()
+        simulator.act("servos:1")
+        engage(simulator, daemon)
+        daemon.wait_for("now: another autopilot is on")
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+
+
+def test_another_writer_is_named(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=HOLD) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.act("writer:4")
+        daemon.wait_for("now: another program writes the controls")
+        assert "engaged" in daemon.wait_for("heading")
+        daemon.wait_for("no longer: another program writes the controls")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    assert ending.exit_code == SUCCESS
+
+
+def test_reverse_thrust_refuses_engaging(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=HOLD + SHORT_FAILSAFE) as (simulator, daemon):
+        daemon.wait_until_ready()
+        simulator.act("reverse:1")
+        refuse(simulator, daemon, "thrust is reversed")
+        simulator.act("reverse:0")
+        engage(simulator, daemon)
+        simulator.act("reverse:1")
+        assert "thrust is reversed" in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("actuators released")
+        daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+
+
+def test_pitot_ice_is_a_failsafe(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=HOLD + SHORT_FAILSAFE) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.act(f"ice:{ICE}")
+        assert CONTRADICTED in daemon.wait_for("engaged -> failsafe")
+        daemon.wait_for("actuators released")
+        refuse(simulator, daemon, CONTRADICTED)
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == FAILSAFE
+
+
+def test_twice_as_fast_is_flown_and_four_times_as_fast_refused(fccd: Path, tmp_path: Path) -> None:
+    with flight(fccd, tmp_path, others=HOLD) as (simulator, daemon):
+        daemon.wait_until_ready()
+        simulator.act("speed:2")
+        engage(simulator, daemon)
+        before = truth_now(simulator)
+        wait_until(
+            lambda: truth_now(simulator)["time_s"] > before["time_s"] + 20.0,
+            "20 s of the simulator's time",
+        )
+        after = truth_now(simulator)
+        assert abs(after["altitude_m"] - before["altitude_m"]) < 15.0 * FT_M
+        assert abs(after["heading_rad"] - before["heading_rad"]) < 0.05
+        simulator.act("speed:4")
+        daemon.wait_for("now: simulator time runs more than twice as fast")
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        daemon.wait_for("engaged -> standby")
+        refuse(simulator, daemon, "simulator time runs more than twice as fast")
+        ending = daemon.end(signal.SIGTERM)
+    assert ending.exit_code == SUCCESS
+    assert not [text for text in ending.events if "failsafe" in text]
