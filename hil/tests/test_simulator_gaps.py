@@ -119,7 +119,7 @@ def lengths_s(flown: Flown, text: str) -> list[float]:
 
 
 def assert_lengths(flown: Flown, text: str) -> None:
-    """A busy machine makes a gap longer, and may make others."""
+    """Assert the lengths of gaps: a busy machine makes them longer, and may make others."""
     found = lengths_s(flown, text)
     for length_s in LENGTHS_S:
         assert any(length_s - 0.11 < lasted_s < length_s + AT_ONCE_S for lasted_s in found), found
