@@ -25,6 +25,7 @@ use crate::consistency::ConsistencyCheck;
 use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{SharedState, count};
 use crate::other_control::OtherControlWatch;
+use crate::pressure_altitude::PressureAltitude;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
@@ -60,6 +61,7 @@ pub(crate) struct Inbox {
     /// When the former last arrived.
     true_attitude: Time,
     switch: Switch,
+    altitude: PressureAltitude,
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
     axial_load: AxialLoadSign,
@@ -77,6 +79,7 @@ impl Inbox {
             lean: [0.0; 2],
             true_attitude: Time::NEVER,
             switch: Switch::Off,
+            altitude: PressureAltitude::new(),
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
             axial_load: AxialLoadSign::new(rows.map(|rows| rows.axial_load)),
@@ -258,9 +261,7 @@ impl Inbox {
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
             into.airspeed_mps = Reading::new(airspeed, taken);
         }
-        if let Some(([altitude], taken)) = values.whole(Group::Altitude) {
-            into.altitude_m = Reading::new(altitude, taken);
-        }
+        self.altitude.publish(values, into);
         if let Some(([angle], taken)) = values.whole(Group::AngleOfAttack) {
             into.angle_of_attack_rad = Reading::new(angle, taken);
         }

@@ -69,6 +69,7 @@ mod no_answer;
 mod open;
 mod other_control;
 mod port;
+mod pressure_altitude;
 pub mod protocol;
 mod quantity;
 mod release;
