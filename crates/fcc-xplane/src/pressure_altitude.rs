@@ -10,9 +10,13 @@
 //! it reads the knob, and rows of Data Output come in other datagrams than
 //! datarefs. Neither leads to a step:
 //! - for [`SETTLES`] after a change, each indicated altitude is corrected by
-//!   that of the settings in this time that leaves it nearest to the last;
+//!   that of the settings in this time that leaves it nearest to where the
+//!   aircraft is expected;
 //! - a jump that no known setting explains is held back for [`HELD_FOR`], for
 //!   its setting may be on its way.
+//!
+//! Where the aircraft is expected is tracked from the altitudes before by an
+//! alpha-beta filter (Benedict and Bordner 1962).
 
 use core::time::Duration;
 
@@ -29,10 +33,13 @@ const OWN_WITHIN: Duration = Duration::from_millis(300);
 const SETTLES: Duration = Duration::from_millis(250);
 /// Less than the age at which an altitude is too old.
 const HELD_FOR: Duration = Duration::from_millis(150);
-/// What an altitude may differ from the last one: a gust at the static source,
-/// and the steepest dive. A click of the knob, 0.01 inHg, is 2.8 m.
-const AT_ONCE_M: f64 = 2.0;
-const PER_S_M: f64 = 60.0;
+/// What an altitude may differ from the expected one: noise, and a click of the
+/// knob, 0.01 inHg or 2.8 m.
+const MOST_OFF_M: f64 = 4.0;
+/// The filter's gains: one altitude by the wrong setting moves it little, and
+/// beta is alpha²/(2 - alpha).
+const ALPHA: f64 = 0.2;
+const BETA: f64 = 0.022;
 /// More than are turned through in [`SETTLES`] at 20 frames a second.
 const SETTINGS: usize = 8;
 
@@ -55,8 +62,43 @@ pub(crate) struct PressureAltitude {
     indicated_since: Time,
     /// The present setting first.
     settings: [Option<Setting>; SETTINGS],
-    /// The last altitude found from the altimeter.
-    last: Option<(f64, Time)>,
+    /// Where the aircraft was, by the altimeter.
+    track: Option<Track>,
+}
+
+/// Altitude and climb rate at a time.
+#[derive(Clone, Copy, Debug)]
+struct Track {
+    altitude_m: f64,
+    climb_mps: f64,
+    at: Time,
+}
+
+impl Track {
+    const fn new(altitude_m: f64, at: Time) -> Self {
+        Self {
+            altitude_m,
+            climb_mps: 0.0,
+            at,
+        }
+    }
+
+    fn expected_m(&self, now: Time) -> f64 {
+        self.altitude_m + self.climb_mps * now.since(self.at).as_secs_f64()
+    }
+
+    fn after(&self, altitude_m: f64, now: Time) -> Self {
+        let passed_s = now.since(self.at).as_secs_f64();
+        let off_m = altitude_m - self.expected_m(now);
+        if passed_s <= 0.0 {
+            return *self;
+        }
+        Self {
+            altitude_m: self.expected_m(now) + ALPHA * off_m,
+            climb_mps: self.climb_mps + BETA / passed_s * off_m,
+            at: now,
+        }
+    }
 }
 
 impl PressureAltitude {
@@ -65,7 +107,7 @@ impl PressureAltitude {
             own: Time::NEVER,
             indicated_since: Time::NEVER,
             settings: [None; SETTINGS],
-            last: None,
+            track: None,
         }
     }
 
@@ -108,21 +150,29 @@ impl PressureAltitude {
         }
         self.set(setting_pa, taken);
         if taken.since(self.own.max(self.indicated_since)) < OWN_WITHIN {
-            self.last = None;
+            self.track = None;
             return None;
         }
-        let altitude_m = match self.last {
-            Some((last_m, at)) if taken.since(at) < HELD_FOR => {
-                let most_m = AT_ONCE_M + PER_S_M * taken.since(at).as_secs_f64();
-                let found_m = self.nearest(indicated_m, last_m, taken)?;
-                (found_m - last_m).abs().le(&most_m).then_some(found_m)?
-            }
-            Some((last_m, at)) if taken.since(at) < SETTLES => {
-                self.nearest(indicated_m, last_m, taken)?
-            }
-            _ => indicated_m + self.settings.first().copied().flatten()?.datum_m,
+        let present = self.settings.first().copied().flatten()?;
+        let recent = self
+            .track
+            .filter(|track| taken.since(track.at) < SETTLES)
+            .map(|track| (track, track.expected_m(taken)));
+        let Some((track, expected_m)) = recent else {
+            let altitude_m = indicated_m + present.datum_m;
+            self.track = Some(Track::new(altitude_m, taken));
+            return Some(altitude_m);
         };
-        self.last = Some((altitude_m, taken));
+        let altitude_m = self.nearest(indicated_m, expected_m, taken)?;
+        let is_expected = (altitude_m - expected_m).abs() <= MOST_OFF_M;
+        if !is_expected && taken.since(track.at) < HELD_FOR {
+            return None;
+        }
+        self.track = Some(if is_expected {
+            track.after(altitude_m, taken)
+        } else {
+            Track::new(altitude_m, taken)
+        });
         Some(altitude_m)
     }
 
@@ -150,14 +200,18 @@ impl PressureAltitude {
         }
     }
 
-    /// The pressure altitude nearest to the last one, by the settings that may
-    /// be in the indicated altitude.
-    fn nearest(&self, indicated_m: f64, last_m: f64, now: Time) -> Option<f64> {
+    /// The pressure altitude nearest to the expected one, by the settings that
+    /// may be in the indicated altitude.
+    fn nearest(&self, indicated_m: f64, expected_m: f64, now: Time) -> Option<f64> {
         let settings = self.settings.iter().flatten();
         settings
             .filter(|setting| setting.replaced.is_never() || now.since(setting.replaced) < SETTLES)
             .map(|setting| indicated_m + setting.datum_m)
-            .min_by(|one, other| (one - last_m).abs().total_cmp(&(other - last_m).abs()))
+            .min_by(|one, other| {
+                (one - expected_m)
+                    .abs()
+                    .total_cmp(&(other - expected_m).abs())
+            })
     }
 }
 
@@ -236,17 +290,30 @@ mod tests {
         }
     }
 
-    /// A knob of a tenth of an inch a second, in clicks, for five seconds, whose
-    /// clicks come a frame late. 0.5 inHg are 460 ft here, by the table.
+    /// A knob of a tenth of an inch a second, in clicks, for five seconds, in a
+    /// climb of 1,000 ft/min. 0.5 inHg are 460 ft here, by the table. The clicks
+    /// come with the altitude that they change, up to two frames later, or a
+    /// frame earlier: then one altitude for each is off by the click.
     #[test]
     fn no_step_comes_of_a_knob_that_is_turned_on() {
-        let clicks = |ms: i64| (ms.clamp(4_000, 9_000) - 4_000) / 100;
-        let found = found(|ms| {
-            let indicated_ft = 2_980.0 + 9.2 * clicks(ms - FRAME_MS) as f64;
-            (indicated_ft * FOOT_M, 29.9 + 0.01 * clicks(ms) as f64)
-        });
-        for feet in found {
-            assert!((feet.unwrap() - 3_000.0).abs() < 2.0, "{feet:?}");
+        let clicks = |ms: i64| ((ms.clamp(4_000, 9_000) - 4_000) / 100) as f64;
+        for (late, wrong) in [(2, 0), (1, 0), (0, 0), (-1, 50)] {
+            let climbed_ft = |ms: i64| 1_000.0 / 60_000.0 * ms as f64;
+            let found = found(|ms| {
+                let indicated_ft = 2_980.0 + climbed_ft(ms) + 9.2 * clicks(ms - late * FRAME_MS);
+                (indicated_ft * FOOT_M, 29.9 + 0.01 * clicks(ms))
+            });
+            let off_ft = found.iter().zip((2_000 / FRAME_MS)..).map(|(found, n)| {
+                let feet = found.expect("nothing is held back");
+                (feet - 3_000.0 - climbed_ft(n * FRAME_MS)).abs()
+            });
+            let off_ft: Vec<_> = off_ft.collect();
+            assert_eq!(
+                off_ft.iter().filter(|ft| **ft > 2.0).count(),
+                wrong,
+                "{late}"
+            );
+            assert!(off_ft.iter().all(|ft| *ft < 12.0));
         }
     }
 
