@@ -80,6 +80,7 @@ pub(crate) enum Quantity {
     StabilityHeading,
     EngineMode,
     ThrottleLever,
+    Replay,
     PressureAltitude,
     AltimeterSetting,
 }
