@@ -85,6 +85,7 @@ mod traffic;
 mod udp_port;
 mod units;
 mod values;
+mod written;
 
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
