@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
+.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -70,6 +70,9 @@ test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/sys
 	cargo build --locked --release -p thermostat
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
 	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
+
+test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (10 minutes)
+	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
 
 faulty: $(STAMPS)/rust
 	cargo build --locked --release -p fcc-daemon --features fault-injection
@@ -260,6 +263,8 @@ $(STAMPS)/vm:
 
 # The modules `fcc` and `pendulum` are built anew whenever their sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module
+# With the conformance suites, which its tests run.
 $(STAMPS)/python-module: $(STAMPS)/python
 	for module in crates/fcc-py examples/pendulum; do \
-	    (cd $$module && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet) || exit 1; done
+	    (cd $$module && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet \
+	        $$(grep -q '^conformance = ' Cargo.toml && echo --features conformance,pyo3/extension-module)) || exit 1; done

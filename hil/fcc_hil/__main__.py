@@ -79,6 +79,8 @@ def _standin(options: argparse.Namespace) -> int:
         beacon=BEACON_GROUP if options.beacon else None,
         data_target=options.data_target,
         data_rows=options.data_rows,
+        person=options.person or bool(options.misbehave),
+        misbehaves_in=options.misbehave,
     )
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -183,6 +185,18 @@ def _parser() -> argparse.ArgumentParser:
         default=(),
         metavar="N,N",
         help="its rows, as in 3,17,20",
+    )
+    serves.add_argument(
+        "--person",
+        action="store_true",
+        help="with a person, who does what `fccd x-plane check --yes` asks for",
+    )
+    serves.add_argument(
+        "--misbehave",
+        type=simulator_options.steps,
+        default=(),
+        metavar="N,N",
+        help="misbehave in what these steps of that check show",
     )
     serves.add_argument("--seconds", type=float, metavar="S", help="end after so many seconds")
     serves.add_argument(

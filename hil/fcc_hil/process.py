@@ -23,6 +23,7 @@ from typing import Any, cast
 
 from . import actions
 from .cockpit import Release, Write
+from .person import AttendedStandIn
 from .sensor_faults import SensorFault
 from .standin import Mode, Progress, Settings, StandIn
 from .state import Controls
@@ -110,7 +111,7 @@ def _serve(settings: Settings, pipe: Connection) -> None:
     # Ctrl-C reaches the whole group; the starting process ends this one.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        simulator = StandIn(settings)
+        simulator = AttendedStandIn(settings) if settings.person else StandIn(settings)
     except Exception as error:
         pipe.send(error)
         return

@@ -88,6 +88,10 @@ class Settings:
     data_rows: tuple[int, ...] = ()
     """The rows selected there."""
     data_rate_hz: float = 20.0
+    person: bool = False
+    """Whether a person sits at it, who does what `fccd x-plane check --yes` asks for (`person`)."""
+    misbehaves_in: tuple[int, ...] = ()
+    """The steps of that check in which it misbehaves (`misbehaviour`); needs the person."""
 
     @classmethod
     def plain(cls, **changes: Any) -> Settings:

@@ -9,6 +9,7 @@ from typing import Any, cast
 from . import actions
 from .aircraft import AIRCRAFT
 from .faults import Address, Faults
+from .misbehaviour import MISBEHAVIOURS
 from .plant import Weather
 from .standin import Settings
 from .udp import ReplyPort
@@ -28,6 +29,17 @@ def rows(text: str) -> tuple[int, ...]:
         return tuple(int(number) for number in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"'{text}': give row numbers, as in 3,17,20") from None
+
+
+def steps(text: str) -> tuple[int, ...]:
+    """Read numbers of steps of `fccd x-plane check`."""
+    numbers = rows(text)
+    unknown = [number for number in numbers if number not in MISBEHAVIOURS]
+    if unknown:
+        raise argparse.ArgumentTypeError(
+            f"'{text}': there is no step {unknown[0]}: give 1 to {max(MISBEHAVIOURS)}"
+        )
+    return numbers
 
 
 def appointment(text: str) -> tuple[float, str]:

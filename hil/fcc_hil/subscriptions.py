@@ -96,6 +96,10 @@ class Subscriptions:
                 listing[client] = paths
         return listing
 
+    def value_of(self, path: str, read: Getter, readout: Readout) -> float:  # noqa: ARG002
+        """Return a value as it is sent."""
+        return read(readout)
+
     def due(
         self, now_s: float, readout: Readout, withheld: frozenset[str] = frozenset()
     ) -> list[tuple[Address, bytes]]:
@@ -103,7 +107,7 @@ class Subscriptions:
         datagrams = []
         for client, state in self._clients.items():
             pairs = [
-                (index, value.read(readout))
+                (index, self.value_of(value.path, value.read, readout))
                 for index, value in state.values.items()
                 if value.due.take(now_s) and value.path not in withheld
             ]

@@ -83,7 +83,7 @@ def test_a_permitted_autopilot_does_not_prevent_engaging(fccd: Path, tmp_path: P
 def test_another_writer_is_named(fccd: Path, tmp_path: Path) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
-        simulator.act("writer:4")
+        simulator.act("writer:3")
         daemon.wait_for("now: another program writes the controls")
         assert "engaged" in daemon.wait_for("heading")
         daemon.wait_for("no longer: another program writes the controls")
@@ -124,8 +124,8 @@ def test_twice_as_fast_is_flown_and_four_times_as_fast_refused(fccd: Path, tmp_p
         engage(simulator, daemon)
         before = truth_now(simulator)
         wait_until(
-            lambda: truth_now(simulator)["time_s"] > before["time_s"] + 20.0,
-            "20 s of the simulator's time",
+            lambda: truth_now(simulator)["time_s"] > before["time_s"] + 12.0,
+            "12 s of the simulator's time",
         )
         after = truth_now(simulator)
         assert abs(after["altitude_ft"] - before["altitude_ft"]) < 15.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import fcc
@@ -127,6 +128,18 @@ def test_it_records_as_the_daemon_does(level: fcc.Measurements, tmp_path: Path) 
     log = metadata(files[0])
     assert log["fcc.recording"]["plant"] == "a Cessna"
     assert log["fcc.end"]["ending"] == "enough"
+
+
+def test_a_machine_is_read_while_it_records(level: fcc.Measurements, tmp_path: Path) -> None:
+    machine = fcc.Machine(HOLD)
+    _watch(machine, level, 50.0)
+    with ThreadPoolExecutor(1) as pool:
+        recording = pool.submit(machine.record_to, tmp_path)
+        while not recording.done():
+            assert machine.state == "standby"
+            machine.step(level, readback=READBACK, switch=False)
+    assert len(recording.result()) == 1
+    assert machine.tick > 2_000
 
 
 def test_a_folder_that_cannot_be_written_to_is_an_error(level: fcc.Measurements) -> None:

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fcc_core::flight::AutopilotConfig;
-use fcc_flight::config::{Config, ConfigError};
+use fcc_flight::config::{Config, ConfigError, keyed};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
@@ -63,9 +63,9 @@ impl PyConfig {
     /// Every key with its sections, in the order of a file.
     fn keys(&self) -> PyResult<Vec<String>> {
         let values = self.config.values().map_err(|error| refused(&error))?;
-        let mut keys = Vec::new();
-        gather(&values, "", &mut keys);
-        Ok(keys)
+        let keys = keyed(&values).into_iter();
+        let values = keys.filter(|(_, value)| !value.is_table());
+        Ok(values.map(|(key, _)| key).collect())
     }
 
     /// Another configuration, with other values for some keys:
@@ -129,22 +129,6 @@ pub(crate) fn configuration(given: Option<&Bound<'_, PyAny>>) -> PyResult<Config
 /// The autopilot's part of it.
 pub(crate) fn autopilot_config(given: Option<&Bound<'_, PyAny>>) -> PyResult<AutopilotConfig> {
     configuration(given).map(|config| config.autopilot_config())
-}
-
-fn gather(value: &Value, prefix: &str, keys: &mut Vec<String>) {
-    match value {
-        Value::Table(table) => {
-            for (name, inner) in table {
-                let key = if prefix.is_empty() {
-                    name.clone()
-                } else {
-                    format!("{prefix}.{name}")
-                };
-                gather(inner, &key, keys);
-            }
-        }
-        _ => keys.push(prefix.to_owned()),
-    }
 }
 
 fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {

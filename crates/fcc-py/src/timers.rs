@@ -53,59 +53,42 @@ impl From<Expiry> for PyExpiry {
 /// Timing statistics: periods in ms, lateness in µs, the share (0..1) of periods
 /// within 2 % of the nominal one. The values of periods are NaN before the
 /// second tick, those of lateness before the first.
-#[pyclass(name = "TimingSummary", module = "fcc", frozen, get_all)]
-pub(crate) struct PyTimingSummary {
-    rate_hz: f64,
-    ticks: u64,
-    missed: u64,
-    runtime_s: f64,
-    period_mean_ms: f64,
-    period_median_ms: f64,
-    period_min_ms: f64,
-    period_max_ms: f64,
-    period_range_ms: f64,
-    period_within_2_percent: f64,
-    lateness_p50_us: f64,
-    lateness_p99_us: f64,
-    lateness_p99_9_us: f64,
-    lateness_max_us: f64,
-}
+#[pyclass(name = "TimingSummary", module = "fcc", frozen)]
+pub(crate) struct PyTimingSummary(TimingSummary);
 
-#[pymethods]
-impl PyTimingSummary {
-    fn __repr__(&self) -> String {
-        format!(
-            "TimingSummary(rate_hz={}, ticks={}, missed={}, period_mean_ms={:.4}, \
-             lateness_p99_us={:.1}, lateness_max_us={:.1})",
-            self.rate_hz,
-            self.ticks,
-            self.missed,
-            self.period_mean_ms,
-            self.lateness_p99_us,
-            self.lateness_max_us
-        )
-    }
-}
+/// Makes fields of the summary attributes.
+macro_rules! attributes {
+    ($($name:ident: $type:ty),* $(,)?) => {
+        #[pymethods]
+        impl PyTimingSummary {
+            $(
+                #[getter]
+                const fn $name(&self) -> $type {
+                    self.0.$name
+                }
+            )*
 
-impl From<TimingSummary> for PyTimingSummary {
-    fn from(summary: TimingSummary) -> Self {
-        Self {
-            rate_hz: summary.rate_hz,
-            ticks: summary.ticks,
-            missed: summary.missed,
-            runtime_s: summary.runtime_s,
-            period_mean_ms: summary.period_mean_ms,
-            period_median_ms: summary.period_median_ms,
-            period_min_ms: summary.period_min_ms,
-            period_max_ms: summary.period_max_ms,
-            period_range_ms: summary.period_range_ms,
-            period_within_2_percent: summary.period_within_2_percent,
-            lateness_p50_us: summary.lateness_p50_us,
-            lateness_p99_us: summary.lateness_p99_us,
-            lateness_p99_9_us: summary.lateness_p99_9_us,
-            lateness_max_us: summary.lateness_max_us,
+            fn __repr__(&self) -> String {
+                format!(
+                    "TimingSummary(rate_hz={}, ticks={}, missed={}, period_mean_ms={:.4}, \
+                     lateness_p99_us={:.1}, lateness_max_us={:.1})",
+                    self.0.rate_hz,
+                    self.0.ticks,
+                    self.0.missed,
+                    self.0.period_mean_ms,
+                    self.0.lateness_p99_us,
+                    self.0.lateness_max_us
+                )
+            }
         }
-    }
+    };
+}
+
+attributes! {
+    rate_hz: f64, ticks: u64, missed: u64, runtime_s: f64,
+    period_mean_ms: f64, period_median_ms: f64, period_min_ms: f64, period_max_ms: f64,
+    period_range_ms: f64, period_within_2_percent: f64,
+    lateness_p50_us: f64, lateness_p99_us: f64, lateness_p99_9_us: f64, lateness_max_us: f64,
 }
 
 /// A periodic timer of the kernel, `"timerfd"`, `"posix"` or `"nanosleep"`:
@@ -220,7 +203,7 @@ impl PyTimer {
 
     /// The statistics since it was started.
     fn summary(&self) -> PyTimingSummary {
-        self.stats().summary().into()
+        PyTimingSummary(self.stats().summary())
     }
 
     /// The kernel's timer: timerfd, posix or nanosleep.

@@ -112,15 +112,17 @@ const fitValues = ({ panels, left, span }, from, shown) => {
 const drawValues = (panel, left, span, least, most) => {
   const [grid, tick, label] = panel.marks;
   if (!label) return;
-  const count = Math.max(2, panel.height / 320);
-  const wanted = (most - least) / panel.per / count;
+  const wanted = (most - least) / panel.per / Math.max(2, panel.height / 320);
   const isCompass = panel.kind === "compass";
-  const step = isCompass && wanted > 1
+  const range = [least / panel.per, most / panel.per];
+  let step = isCompass && wanted > 1
     ? [2, 5, 10, 30, 45, 90, 180].find((step) => step >= wanted) ?? 180 : niceStep(wanted);
+  // A scale needs at least two ticks.
+  for (let n = 0; n < 2 && multiples(...range, step).length < 2; n++) step = niceStep(0.4 * step);
   const text = (value) => isCompass
     ? (((value % 360) + 360) % 360).toFixed(decimalsOf(step)).padStart(3, "0")
     : value.toFixed(decimalsOf(step)).replace(/^-(?=0*\.?0*$)/, "").replace("-", "\u2212");
-  const marks = multiples(least / panel.per, most / panel.per, step).flatMap((value) => {
+  const marks = multiples(...range, step).flatMap((value) => {
     const y = panel.top + (most - value * panel.per) / (most - least) * panel.height;
     const [ownGrid, ownTick, ownLabel] = [grid, tick, label].map((mark) => mark.cloneNode());
     ownGrid.setAttribute("points", `${left},${y} ${left + span},${y}`);

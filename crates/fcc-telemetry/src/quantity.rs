@@ -24,13 +24,16 @@ pub struct RecordedQuantity {
 }
 
 impl RecordedQuantity {
-    /// All numbers of a record: measurements, then estimates and set points
-    /// that are not measured, then outputs.
+    /// All quantities of a record: measurements, then estimates and set points
+    /// that are not measured, then outputs; numbers, and what has a name for
+    /// each of its values.
     pub fn all<T: Schema>() -> Vec<Self> {
         let columns = columns::<T>();
         let mut all: Vec<Self> = Vec::new();
-        let numbers = columns.iter().enumerate();
-        for (place, column) in numbers.filter(|(_, column)| column.kind == Kind::Number) {
+        let is_shown =
+            |column: &Column| matches!(column.kind, Kind::Number | Kind::Bool | Kind::Code(_));
+        let columns_shown = columns.iter().enumerate();
+        for (place, column) in columns_shown.filter(|(_, column)| is_shown(column)) {
             let mut quantity = Self::of(column);
             let Some(value) = quantity.value(&column.path) else {
                 continue;

@@ -1,6 +1,6 @@
 //! The values of a record: measured, desired, commanded.
 
-use fcc_core::framework::schema::{Value, unit};
+use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_core::framework::{RecordOf, State};
 use fcc_telemetry::schema::Leaves;
 use fcc_telemetry::units::{SI, Shown};
@@ -100,6 +100,7 @@ fn rows<C: Telemetry>(record: &RecordOf<C>) -> Vec<Row> {
             is_output,
         }
     };
-    let all = RecordedQuantity::all::<RecordOf<C>>();
-    all.into_iter().map(row).collect()
+    let all = RecordedQuantity::all::<RecordOf<C>>().into_iter();
+    let numbers = all.filter(|of| of.column.kind == Kind::Number);
+    numbers.map(row).collect()
 }

@@ -268,7 +268,7 @@ mod tests {
         }));
         assert!(contested(100, 1.0, |_, _| 0.7));
         // Within what was written, but not written.
-        assert!(contested(100, 1.0, |tick, ours| if tick % 3 == 0 {
+        assert!(contested(400, 1.0, |tick, ours| if tick % 3 == 0 {
             0.1234
         } else {
             ours

@@ -12,6 +12,9 @@ const READ_BACK_WITHIN: Duration = Duration::from_secs(1);
 /// X-Plane stores what was written as f32, as it was sent.
 const SAME: f32 = 1e-4;
 
+/// From so many on, all values are expected to be recognised.
+const RECOGNISED: u8 = 40;
+
 /// Elevator, aileron and rudder, and when they were written; NaN for none.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
@@ -24,9 +27,10 @@ struct Entry {
 pub(crate) struct Written {
     entries: [Entry; MOST],
     next: usize,
-    /// For each axis, whether a value other than 0 was ever recognised: a
-    /// simulator that stores something else than what is sent never shows one.
-    recognised: [bool; 3],
+    /// The values other than 0 that were recognised, less those that were not,
+    /// up to [`RECOGNISED`]: a simulator that stores something else than what
+    /// is sent shows few, by chance.
+    recognised: u8,
 }
 
 impl Written {
@@ -38,7 +42,7 @@ impl Written {
         Self {
             entries: [never; MOST],
             next: 0,
-            recognised: [false; 3],
+            recognised: 0,
         }
     }
 
@@ -60,10 +64,13 @@ impl Written {
                     .get(axis)
                     .is_some_and(|written| (written - value).abs() <= SAME)
         });
-        let Some(recognised) = self.recognised.get_mut(axis) else {
-            return false;
-        };
-        *recognised |= ours && value.abs() > SAME;
-        *recognised && !ours
+        if self.recognised < RECOGNISED && value.abs() > SAME {
+            self.recognised = if ours {
+                self.recognised + 1
+            } else {
+                self.recognised.saturating_sub(1)
+            };
+        }
+        self.recognised == RECOGNISED && !ours
     }
 }

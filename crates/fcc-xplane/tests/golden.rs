@@ -3,7 +3,7 @@
 
 use fcc_xplane::protocol::beacon::{self, Host, Role};
 use fcc_xplane::protocol::data::{self, Row};
-use fcc_xplane::protocol::{Kind, Malformed, PathError, dref, rpos, rref};
+use fcc_xplane::protocol::{Kind, Malformed, PathError, cmnd, dref, rpos, rref};
 
 #[rustfmt::skip]
 const RREF_11: [u8; 29] = [
@@ -263,6 +263,17 @@ fn a_write_is_509_bytes() {
     dref::set_value(&mut write, -0.5);
     expected[5..9].copy_from_slice(&[0, 0, 0, 0xbf]);
     assert_eq!(write, expected);
+}
+
+#[test]
+fn a_command_is_its_path_closed_by_nul() {
+    let mut buffer = [0xaa; cmnd::COMMAND_BYTES];
+    let sent = cmnd::write(&mut buffer, "sim/operation/pause_toggle").unwrap();
+    assert_eq!(sent, b"CMND\0sim/operation/pause_toggle\0");
+    assert_eq!(cmnd::write(&mut buffer, ""), Err(PathError::Empty));
+    let longest = "a".repeat(499);
+    assert_eq!(cmnd::write(&mut buffer, &longest).unwrap().len(), 505);
+    assert!(cmnd::write(&mut buffer, &"a".repeat(500)).is_err());
 }
 
 #[test]

@@ -313,6 +313,11 @@ fn a_zoomed_plot_of_a_long_flight_shows_finer_lines() {
     let finer = finer.filter(|(overview, detail)| **detail > 4 * **overview);
     assert!(finer.count() >= 6, "{overview:?} {detail:?}");
     assert!(page.len() < 4_500_000, "{}", page.len());
+    // What the script fits each axis of values by.
+    let count = |part: &str| page.matches(part).count();
+    assert_eq!(count("<svg class=\"time curves\""), 9);
+    assert_eq!(count("<g class=\"values\" data-kind=\"line\""), 4);
+    assert_eq!(count("<g class=\"values\" data-kind=\"together\""), 3);
     let svgs = report.to_svgs();
     let mut files = svgs.iter();
     assert!(

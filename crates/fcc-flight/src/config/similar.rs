@@ -1,6 +1,7 @@
 //! Suggestions for mistyped names.
 
 use super::Config;
+use super::values::keyed;
 
 /// The minimum similarity of a suggestion: 1 means equal (Winkler, 1990).
 const ALIKE: f64 = 0.8;
@@ -26,18 +27,7 @@ pub(super) fn elsewhere(name: &str) -> Option<String> {
         built_in: Some(super::BuiltInSection::default()),
         ..Config::default()
     };
-    let mut keys = Vec::new();
-    gather("", &config.values().ok()?, &mut keys);
-    keys.into_iter()
-        .find(|key| key.rsplit('.').next() == Some(name))
-}
-
-fn gather(prefix: &str, value: &toml::Value, keys: &mut Vec<String>) {
-    if !prefix.is_empty() {
-        keys.push(prefix.to_owned());
-    }
-    for (name, value) in value.as_table().into_iter().flatten() {
-        let separator = if prefix.is_empty() { "" } else { "." };
-        gather(&format!("{prefix}{separator}{name}"), value, keys);
-    }
+    let values = config.values().ok()?;
+    let mut keys = keyed(&values).into_iter().map(|(key, _)| key);
+    keys.find(|key| key.rsplit('.').next() == Some(name))
 }

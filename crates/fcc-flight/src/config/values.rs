@@ -60,6 +60,17 @@ impl Config {
     }
 }
 
+/// All sections and values below one, each with its key, in the order of a file.
+pub fn keyed(value: &Value) -> Vec<(String, &Value)> {
+    let mut found = Vec::new();
+    for (name, inner) in value.as_table().into_iter().flatten() {
+        found.push((name.clone(), inner));
+        let below = keyed(inner).into_iter();
+        found.extend(below.map(|(key, value)| (format!("{name}.{key}"), value)));
+    }
+    found
+}
+
 /// Sets a value at its key; none if a section on the path is a value.
 fn put(values: &mut Value, key: &str, value: Value) -> Option<()> {
     let (sections, name) = match key.rsplit_once('.') {

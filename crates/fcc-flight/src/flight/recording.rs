@@ -1,6 +1,5 @@
 //! The recording of a flight.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -15,7 +14,7 @@ use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::{Outcome, RecordingOutcome};
 use super::plan::Pace;
 use super::repair::Repair;
-use crate::config::{Aircraft, Config};
+use crate::config::{Aircraft, Config, keyed};
 
 /// How long a disk may be delayed before records are lost, at 136 Hz or less.
 const WRITTEN_WITHIN_S: f64 = 60.0;
@@ -51,11 +50,14 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
         Some(Aircraft::BuiltIn(_)) => "built-in",
         None => "none",
     };
-    let mut parameters = BTreeMap::new();
     // A configuration that was read can be written.
-    if let Ok(values) = toml::Value::try_from(config) {
-        flatten(String::new(), &values, &mut parameters);
-    }
+    let values = toml::Value::try_from(config);
+    let values = values.iter().flat_map(keyed);
+    let parameter = |(key, value): (String, &toml::Value)| match value {
+        toml::Value::Table(_) => None,
+        toml::Value::String(text) => Some((key, text.clone())),
+        value => Some((key, value.to_string())),
+    };
     let machine = uname().ok();
     let said = |part: Option<&std::ffi::OsStr>| {
         part.map(|words| words.to_string_lossy().into_owned())
@@ -76,28 +78,8 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
         rate_hz: config.tick.rate_hz,
         config_as_given: as_given,
         config: toml::to_string(config).unwrap_or_default(),
-        parameters,
+        parameters: values.filter_map(parameter).collect(),
         ..About::default()
-    }
-}
-
-fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>) {
-    match value {
-        toml::Value::Table(table) => {
-            for (name, value) in table {
-                let key = match key.as_str() {
-                    "" => name.clone(),
-                    section => format!("{section}.{name}"),
-                };
-                flatten(key, value, into);
-            }
-        }
-        toml::Value::String(text) => {
-            into.insert(key, text.clone());
-        }
-        value => {
-            into.insert(key, value.to_string());
-        }
     }
 }
 
@@ -105,7 +87,7 @@ fn flatten(key: String, value: &toml::Value, into: &mut BTreeMap<String, String>
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
 /// Records the run of a loop.
-pub(super) struct Recording<C: Recorded> {
+pub(super) struct FlightRecorder<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
@@ -116,7 +98,7 @@ pub(super) struct Recording<C: Recorded> {
     reported: Instant,
 }
 
-impl<C: Recorded> Recording<C> {
+impl<C: Recorded> FlightRecorder<C> {
     pub(super) fn new(request: RecordingRequest) -> Self {
         Self {
             settings: request.settings,
@@ -129,7 +111,7 @@ impl<C: Recorded> Recording<C> {
     }
 }
 
-impl<C: Recorded> Observer<C> for Recording<C> {
+impl<C: Recorded> Observer<C> for FlightRecorder<C> {
     /// Before its own is the newest.
     fn prepare(&mut self, _: &mut Reports) {
         self.unfinished = last_unfinished(&self.settings.folder);
@@ -273,8 +255,10 @@ mod tests {
             .unwrap();
         let is_whole = || fcc_record::Recording::open(path).unwrap().is_whole();
 
-        let (mut recording, mut reports) =
-            (Recording::<Autopilot>::new(request), Reports::default());
+        let (mut recording, mut reports) = (
+            FlightRecorder::<Autopilot>::new(request),
+            Reports::default(),
+        );
         recording.prepare(&mut reports);
         assert!(!is_whole());
         let facts = Facts {

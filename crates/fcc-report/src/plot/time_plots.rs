@@ -32,6 +32,7 @@ fn figure(report: &RunReport, plot: &Plot, detail: Detail) -> Figure {
 
 fn refit(panel: &Panel) -> Refit {
     let (kind, least) = match panel.scale {
+        _ if !panel.labels().is_empty() => (Kind::Fixed, 0.0),
         Scale::Around(least) => (Kind::Line, least),
         Scale::Together(least) => (Kind::Together, least),
         Scale::Compass if !turns_often(extent_of(panel)) => (Kind::Compass, LEAST_TURN_DEG),
@@ -56,6 +57,7 @@ fn turns_often((low, high): (f64, f64)) -> bool {
 fn axis(panel: &Panel, plot: &Plot) -> Axis {
     let title = &panel.title();
     match panel.scale {
+        _ if !panel.labels().is_empty() => named(panel.labels(), title),
         Scale::Around(least) => {
             let count = (panel.height_px / 32.0) as usize;
             Axis::around(extent_of(panel), least, count, title)
@@ -71,6 +73,21 @@ fn axis(panel: &Panel, plot: &Plot) -> Axis {
         Scale::Percent => Axis::stepped((-4.0, 104.0), 25.0, title, |at| format!("{at:.0}")),
         Scale::Compass => compass(extent_of(panel), title),
     }
+}
+
+/// Letters of a name that there is room for.
+const LETTERS: usize = 8;
+
+/// A row for each of some names.
+fn named(labels: &[String], title: &str) -> Axis {
+    let range = (-0.5, labels.len() as f64 - 0.5);
+    Axis::stepped(range, 1.0, title, |at| {
+        let label = labels.get(at.round() as usize).map_or("", String::as_str);
+        match label.char_indices().nth(LETTERS + 1) {
+            None => label.to_owned(),
+            Some(_) => label.chars().take(LETTERS).chain(['…']).collect(),
+        }
+    })
 }
 
 /// Directions are counted beyond full turns, so that no line jumps at north,

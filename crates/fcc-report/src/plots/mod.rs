@@ -126,3 +126,19 @@ fn title_of<C: Telemetry>(path: &str) -> String {
     let own = path.rsplit('.').next().unwrap_or(path).replace('_', " ");
     capitalized(named.copied().unwrap_or(&own))
 }
+
+#[cfg(all(test, feature = "flight"))]
+mod tests {
+    use fcc_core::flight::Autopilot;
+
+    use super::*;
+
+    /// docs/telemetry.md: 0 none, 1 hold, 2 timed pattern.
+    #[test]
+    fn a_mode_is_plotted_by_its_names() {
+        let plots = declared::<Autopilot>(&Quantities::of::<RecordOf<Autopilot>>());
+        let mut panels = plots.iter().flat_map(|plot| &plot.panels);
+        let mode = panels.find(|panel| panel.title() == "mode").unwrap();
+        assert_eq!(mode.labels(), ["none", "hold", "timed pattern"]);
+    }
+}

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use fcc_core::framework::schema::{Value, unit};
+use fcc_core::framework::schema::{Kind, Value, unit};
 use fcc_core::framework::{Record, State, Time};
-use fcc_telemetry::schema::Column;
+use fcc_telemetry::schema::{Column, spaced};
 use fcc_telemetry::units::Shown;
 use serde::Serialize;
 
@@ -30,6 +30,15 @@ pub struct Panel {
     wraps: bool,
     /// Whether the set point is followed in failsafe, too.
     in_failsafe: bool,
+    labels: Vec<String>,
+}
+
+fn labels(column: &Column) -> Vec<String> {
+    match column.kind {
+        Kind::Bool => vec!["no".to_owned(), "yes".to_owned()],
+        Kind::Code(of) => of.variants.iter().map(|one| spaced(one.name)).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// Range of a value.
@@ -108,6 +117,7 @@ impl Panel {
         units: &[Shown],
         curves: Vec<Curve>,
     ) -> Self {
+        let labels = column.map_or_else(Vec::new, labels);
         let shown = column.map(|column| Shown::of(column, units));
         let (shown_in, factor) = shown.map_or(("", 1.0), |shown| (shown.unit, shown.scale));
         let range = column.and_then(|column| column.range);
@@ -115,7 +125,10 @@ impl Panel {
         Self {
             quantity: unit::of(name).quantity.replace('_', " "),
             shown_in,
-            height_px: 120.0,
+            height_px: match labels.len() {
+                0 => 120.0,
+                count => 16.0 * count as f64 + 8.0,
+            },
             scale: match (shown_in, range) {
                 ("%", Some((0.0, _))) => Scale::Percent,
                 _ => Scale::Around(span.filter(|s| s.is_finite()).map_or(1e-3, |s| s / 10.0)),
@@ -124,7 +137,13 @@ impl Panel {
             factor,
             wraps: shown_in == "°" && span.is_some_and(|span| (span - 360.0).abs() < 1e-9),
             in_failsafe: false,
+            labels,
         }
+    }
+
+    /// The names of its values 0, 1, 2, ...; none of numbers.
+    pub(crate) fn labels(&self) -> &[String] {
+        &self.labels
     }
 
     /// The quantity and its unit.
@@ -137,7 +156,8 @@ impl Panel {
 
     /// The ranges of its lines.
     pub(crate) fn ranges(&self) -> impl Iterator<Item = ValueRange> {
-        self.curves.iter().filter_map(|curve| {
+        let curves = self.curves.iter().filter(|_| self.labels.is_empty());
+        curves.filter_map(|curve| {
             let (lowest, highest) = curve.trace.extent()?;
             Some(ValueRange {
                 quantity: self.quantity.clone(),
@@ -183,6 +203,8 @@ impl Panel {
         let (factor, wraps, in_failsafe) = (self.factor, self.wraps, self.in_failsafe);
         let number = |curve: &Curve| match values.get(curve.value) {
             Some(Value::Number(number)) => Some(number * factor).filter(|n| n.is_finite()),
+            Some(Value::Bool(truth)) => Some(f64::from(u8::from(*truth))),
+            Some(Value::Code(number)) => Some(f64::from(*number)),
             _ => None,
         };
         let measures = |curve: &Curve| matches!(curve.role, Role::Measured(_));

@@ -11,6 +11,7 @@
 //! X-Plane it is NUL.
 
 pub mod beacon;
+pub mod cmnd;
 pub mod data;
 pub mod dref;
 mod fields;

@@ -1,0 +1,46 @@
+//! `fccd x-plane identify`: how X-Plane's aircraft responds to its controls.
+
+use std::fmt::Write as _;
+
+use fcc_xplane_check::{Identified, IdentifyError, identify as carry_out};
+
+use super::terminal::Terminal;
+use super::{Failure, not_begun, request};
+use crate::cli::x_plane::IdentifyArgs;
+use crate::exit::Exit;
+use crate::output;
+
+/// Measures the responses, and prints gains.
+pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
+    let request = request(&args.connection, args.files.clone())?;
+    let mut terminal = Terminal::open(false)?;
+    let result = carry_out(request, &mut terminal);
+    drop(terminal);
+    let found = result.map_err(|error| match error {
+        IdentifyError::NotBegun(error) => not_begun(&error),
+        error => Failure::new(error),
+    })?;
+    Ok(if args.json {
+        output::json(&found, Exit::Success)
+    } else {
+        output::result(text(&found), Exit::Success)
+    })
+}
+
+/// A table as comments, and the lines for the configuration.
+fn text(found: &Identified) -> String {
+    let mut text = format!(
+        "# At {:.0} kt; response to a full deflection, rad/s after 0.6 s, of the throttle m/s\u{b2}:\n",
+        found.airspeed_kt
+    );
+    for response in &found.responses {
+        let _ = writeln!(
+            text,
+            "#   {:<9}{:8.3}   Cessna 172: {:.3}",
+            response.control, response.response, response.reference
+        );
+    }
+    text.push_str("# A first guess: check it with `fccd x-plane check --only 9,11`.\n");
+    text.push_str(&found.toml());
+    text
+}

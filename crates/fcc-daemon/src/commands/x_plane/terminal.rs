@@ -1,0 +1,128 @@
+//! The check on a terminal: what it says, and what the person answers.
+
+use std::io::{self, BufRead};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+
+use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
+use indicatif::ProgressBar;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+use super::Failure;
+use crate::output;
+
+/// The keys, once.
+const KEYS: &str = "Enter: done; s, Enter: leave this step out; q, Enter: end the check.";
+
+/// Standard error for what is said, standard input for answers.
+pub(super) struct Terminal {
+    /// Replaced all the time; hidden where standard error is no terminal.
+    live: ProgressBar,
+    answers: Option<Receiver<Answer>>,
+    stopped: Arc<AtomicBool>,
+}
+
+impl Terminal {
+    /// Catches signals, so that the daemon is ended properly, and reads answers
+    /// if there is a person.
+    pub(super) fn open(has_person: bool) -> Result<Self, Failure> {
+        let stopped = Arc::<AtomicBool>::default();
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            signal_hook::flag::register(signal, Arc::clone(&stopped))
+                .map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
+        }
+        let terminal = Self {
+            live: ProgressBar::new_spinner(),
+            answers: has_person.then(read_answers),
+            stopped,
+        };
+        if has_person {
+            terminal.say(KEYS);
+        }
+        Ok(terminal)
+    }
+
+    fn say(&self, text: &str) {
+        self.live.suspend(|| output::message(text));
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.live.finish_and_clear();
+    }
+}
+
+/// Reads lines in a thread, which ends with the program.
+fn read_answers() -> Receiver<Answer> {
+    let (to, answers) = mpsc::channel();
+    thread::spawn(move || {
+        for line in io::stdin().lock().lines().map_while(Result::ok) {
+            let answer = match line.trim() {
+                "s" => Answer::Skip,
+                "q" => Answer::Quit,
+                _ => Answer::Done,
+            };
+            if to.send(answer).is_err() {
+                return;
+            }
+        }
+        // The input has ended: nobody answers any more.
+        let _ = to.send(Answer::Quit);
+    });
+    answers
+}
+
+impl Screen for Terminal {
+    fn begin(&mut self, step: &Step) {
+        self.say(&format!("\n{:2}. {}", step.number, step.title));
+        if self.answers.is_some() {
+            self.say(&format!("    {}", step.action));
+        }
+    }
+
+    fn instruct(&mut self, text: &str, confirm: bool) {
+        // An answer given before the question is none.
+        if let Some(answers) = &self.answers {
+            answers.try_iter().for_each(drop);
+        }
+        let how = if confirm {
+            ""
+        } else {
+            " (It is seen when it is done.)"
+        };
+        self.say(&format!("  → {text}{how}"));
+    }
+
+    fn live(&mut self, text: &str) {
+        self.live.set_message(text.to_owned());
+        self.live.tick();
+    }
+
+    fn end(&mut self, result: &StepResult) {
+        let mut text = format!(
+            "    {} after {:.1} s",
+            result.outcome.as_str(),
+            result.duration_s
+        );
+        if let Some(why) = &result.why {
+            text.push_str(": ");
+            text.push_str(why);
+        }
+        if let Some(advice) = result.advice.filter(|_| result.outcome == Outcome::Failed) {
+            text.push_str("\n    ");
+            text.push_str(advice);
+        }
+        self.say(&text);
+    }
+
+    fn answer(&mut self) -> Option<Answer> {
+        self.answers.as_ref()?.try_recv().ok()
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+}

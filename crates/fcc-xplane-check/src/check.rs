@@ -1,0 +1,200 @@
+//! Runs the steps.
+
+use std::fs;
+use std::io;
+use std::net::{SocketAddr, ToSocketAddrs};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use fcc_xplane::{DiscoverError, XPlaneConfig, discover};
+
+use crate::bench::{Bench, Stop};
+use crate::link::Link;
+use crate::report::{Report, Simulator};
+use crate::screen::Screen;
+use crate::step::{Outcome, Step, StepResult};
+use crate::steps::STEPS;
+use crate::waits::{FULL, SHORT};
+
+/// Several beacons.
+const BEACON_WITHIN: Duration = Duration::from_secs(5);
+
+/// What to check.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The program `fccd`.
+    pub program: PathBuf,
+    /// The text of its configuration.
+    pub config: String,
+    /// Where X-Plane is, and the engage switch: from that configuration.
+    pub x_plane: XPlaneConfig,
+    /// A folder for the daemon's files; it is made.
+    pub folder: PathBuf,
+    /// The numbers of the steps to do; all if there are none.
+    pub only: Vec<u8>,
+    /// Nobody is asked: a stand-in does what a person would.
+    pub is_unattended: bool,
+    /// Shortened waits.
+    pub is_short: bool,
+    /// The UDP port to receive on, 0 for any that is free.
+    pub local_port: u16,
+}
+
+/// Why the check could not begin.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// X-Plane was not found.
+    #[error(transparent)]
+    NotFound(#[from] DiscoverError),
+    /// Its host name is unknown.
+    #[error("cannot find X-Plane at {host}: {source}; give its IP address")]
+    UnknownHost {
+        /// The host.
+        host: String,
+        /// The operating system's error.
+        source: io::Error,
+    },
+    /// No socket, or no folder.
+    #[error("{what}: {source}")]
+    Io {
+        /// What failed.
+        what: String,
+        /// The operating system's error.
+        source: io::Error,
+    },
+}
+
+impl CheckError {
+    /// Whether another program uses the port.
+    pub fn is_taken(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::AddrInUse)
+    }
+}
+
+/// Connects to X-Plane, and prepares to start the daemon.
+pub(crate) fn open(request: Request, screen: &mut dyn Screen) -> Result<Bench<'_>, CheckError> {
+    let io = |what: String| move |source| CheckError::Io { what, source };
+    let address = locate(&request.x_plane)?;
+    let port = request.local_port;
+    let link = Link::open(address, &request.x_plane, port)
+        .map_err(io(format!("cannot receive on UDP port {port}")))?;
+    fs::create_dir_all(&request.folder)
+        .map_err(io(format!("cannot make {}", request.folder.display())))?;
+    Ok(Bench::new(
+        link,
+        (request.program, request.folder),
+        screen,
+        if request.is_short { SHORT } else { FULL },
+        (request.is_unattended, request.config),
+    ))
+}
+
+/// Does the steps one after another, and returns the results. Waits for the
+/// network and for people.
+///
+/// # Errors
+/// If it could not begin.
+pub fn check(request: Request, screen: &mut dyn Screen) -> Result<Report, CheckError> {
+    let (only, config) = (request.only.clone(), request.config.clone());
+    let how = (request.is_short, request.is_unattended);
+    let mut bench = open(request, screen)?;
+    let mut results = Vec::new();
+    let mut has_quit = false;
+    for step in &STEPS {
+        if !only.is_empty() && !only.contains(&step.number) {
+            continue;
+        }
+        if has_quit {
+            results.push(not_done(step));
+            continue;
+        }
+        let (result, quit) = carry_out(step, &mut bench);
+        has_quit = quit;
+        results.push(result);
+    }
+    bench.daemon.stop();
+    let simulator = Simulator::seen(&bench.link);
+    Ok(Report::new(simulator, results, how, config))
+}
+
+fn not_done(step: &Step) -> StepResult {
+    StepResult {
+        number: step.number,
+        title: step.title,
+        outcome: Outcome::Skipped,
+        why: Some("the check was ended".to_owned()),
+        advice: None,
+        duration_s: 0.0,
+        figures: Vec::new(),
+        notes: Vec::new(),
+        daemon: Vec::new(),
+    }
+}
+
+/// Does one step. Returns its result, and whether the check shall end.
+fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
+    bench.screen.begin(step);
+    bench.begin(step.number);
+    let began = Instant::now();
+    let done = (step.run)(bench);
+    let figures = bench.figures.clone();
+    bench.end();
+    (step.restore)(bench);
+    let outside: Vec<String> = figures
+        .iter()
+        .filter(|figure| !figure.within)
+        .map(|figure| {
+            let limit = figure.limit.as_deref().unwrap_or_default();
+            format!("{} {} ({limit})", figure.name, figure.text())
+        })
+        .collect();
+    let quit = matches!(done, Err(Stop::Quit));
+    let (outcome, why) = match done {
+        Ok(()) if outside.is_empty() => (Outcome::Passed, None),
+        Ok(()) => (Outcome::Failed, Some(outside.join("; "))),
+        Err(Stop::Failed(why)) => {
+            let all = std::iter::once(why).chain(outside);
+            (Outcome::Failed, Some(all.collect::<Vec<_>>().join("; ")))
+        }
+        Err(Stop::Skipped(why)) => (Outcome::Skipped, Some(why)),
+        Err(Stop::Quit) => (Outcome::Skipped, Some("the check was ended".to_owned())),
+    };
+    bench.daemon.read();
+    let lines = bench.daemon.since(began).iter();
+    let result = StepResult {
+        number: step.number,
+        title: step.title,
+        outcome,
+        why,
+        advice: (outcome == Outcome::Failed).then_some(step.advice),
+        duration_s: began.elapsed().as_secs_f64(),
+        figures,
+        notes: bench.notes.clone(),
+        daemon: lines
+            .filter(|line| !line.is_status())
+            .map(|line| line.text.trim().to_owned())
+            .collect(),
+    };
+    bench.screen.end(&result);
+    (result, quit)
+}
+
+fn locate(config: &XPlaneConfig) -> Result<SocketAddr, CheckError> {
+    use fcc_xplane::Simulator as At;
+    match &config.simulator {
+        At::At(address) => Ok(*address),
+        At::Beacon => Ok(discover(config.beacon, BEACON_WITHIN)?.address.into()),
+        At::Named(host) => {
+            let host = host.to_string();
+            let found = host.to_socket_addrs().map(Iterator::collect::<Vec<_>>);
+            found
+                .and_then(|all| {
+                    let first = all.iter().find(|address| address.is_ipv4());
+                    let first = first.or(all.first()).copied();
+                    first.ok_or_else(|| io::Error::other("it has no address"))
+                })
+                .map_err(|source| CheckError::UnknownHost { host, source })
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! How an X-Plane aircraft responds to its controls, and the gains that follow.
+//!
+//! The daemon flies level; for each control it releases, the check holds the
+//! controls where they were, deflects one of them up and down, and the daemon
+//! takes over again. An aircraft that responds half as much as the Cessna 172
+//! on which the gains were tuned needs gains twice as large:
+//! `[autopilot.scale]`, as a first guess.
+
+use std::fmt::Write as _;
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+
+use crate::bench::{Bench, Stop, failed};
+use crate::check::{CheckError, Request, open};
+use crate::configuration::Guidance;
+use crate::screen::Screen;
+use crate::watched::Watched;
+
+/// The interval of writes: faster than frames.
+const WRITE_EVERY: Duration = Duration::from_millis(15);
+/// How long the controls are held before a deflection.
+const REST: Duration = Duration::from_millis(300);
+/// How long the daemon makes sure of its release: an override that is set
+/// meanwhile is taken for its own, and cleared.
+const RELEASED: Duration = Duration::from_millis(500);
+/// How long level flight may take to become steady.
+const STEADY_WITHIN: Duration = Duration::from_secs(40);
+/// How long it has to be.
+const STEADY_FOR: Duration = Duration::from_secs(3);
+const KNOT_MPS: f64 = 0.514_444;
+
+/// A control, its deflection, and the response of the Cessna 172.
+struct Control {
+    name: &'static str,
+    written: Watched,
+    /// What responds.
+    response: Watched,
+    /// In X-Plane's unit to SI.
+    to_si: f64,
+    deflection: f64,
+    lasts: Duration,
+    /// Whether the value itself is the response after the time, or its change
+    /// per second.
+    is_rate: bool,
+    /// JSBSim's c172p: response for a full deflection, as
+    /// `hil/fcc_hil/tuning/identify.py` measures it with the same deflection and
+    /// time, at 100 kt.
+    reference: f64,
+}
+
+const CONTROLS: [Control; 4] = [
+    Control {
+        name: "elevator",
+        written: Watched::YokePitch,
+        response: Watched::PitchRate,
+        to_si: 1.0,
+        deflection: 0.08,
+        lasts: Duration::from_millis(600),
+        is_rate: false,
+        reference: 0.621,
+    },
+    Control {
+        name: "aileron",
+        written: Watched::YokeRoll,
+        response: Watched::RollRate,
+        to_si: 1.0,
+        deflection: 0.08,
+        lasts: Duration::from_millis(600),
+        is_rate: false,
+        reference: 1.095,
+    },
+    Control {
+        name: "rudder",
+        written: Watched::YokeHeading,
+        response: Watched::YawRate,
+        to_si: 1.0,
+        deflection: 0.08,
+        lasts: Duration::from_millis(600),
+        is_rate: false,
+        reference: 0.417,
+    },
+    Control {
+        name: "throttle",
+        written: Watched::Throttle,
+        response: Watched::Airspeed,
+        to_si: KNOT_MPS,
+        deflection: 0.1,
+        lasts: Duration::from_secs(4),
+        is_rate: true,
+        reference: 3.75,
+    },
+];
+
+/// Scales beyond these mean a control without effect, or another's.
+const LEAST: f64 = 0.05;
+const MOST: f64 = 20.0;
+
+/// The response to one control.
+#[derive(Clone, Debug, Serialize)]
+pub struct Response {
+    /// `elevator`, `aileron`, `rudder` or `throttle`.
+    pub control: &'static str,
+    /// For a full deflection: rad/s after 0.6 s; of the throttle m/s².
+    pub response: f64,
+    /// The same of the Cessna 172 on which the gains were tuned.
+    pub reference: f64,
+    /// For `[autopilot.scale]`.
+    pub scale: f64,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Identified {
+    /// Indicated airspeed.
+    pub airspeed_kt: f64,
+    /// Of each control.
+    pub responses: Vec<Response>,
+}
+
+impl Identified {
+    /// Lines for the configuration.
+    pub fn toml(&self) -> String {
+        let mut text = format!(
+            "[autopilot]\nreference_airspeed_kt = {:.0}.0\n\n[autopilot.scale]\n",
+            self.airspeed_kt
+        );
+        for found in &self.responses {
+            let _ = writeln!(text, "{} = {:.3}", found.control, found.scale);
+        }
+        text
+    }
+}
+
+/// Why nothing was found.
+#[derive(thiserror::Error, Debug)]
+#[non_exhaustive]
+pub enum IdentifyError {
+    /// It could not begin.
+    #[error(transparent)]
+    NotBegun(#[from] CheckError),
+    /// It ended early; the controls were released.
+    #[error("{0}")]
+    Ended(String),
+}
+
+/// Has the daemon fly level, deflects one control after another, and returns
+/// how the aircraft responds. The aircraft must fly level already, in calm air.
+///
+/// # Errors
+/// If it could not begin, or if it was ended: by the envelope, by a control
+/// without effect, or by a signal.
+pub fn identify(request: Request, screen: &mut dyn Screen) -> Result<Identified, IdentifyError> {
+    let mut bench = open(request, screen)?;
+    let found = fly(&mut bench).map_err(|stop| {
+        IdentifyError::Ended(match stop {
+            Stop::Failed(why) | Stop::Skipped(why) => why,
+            Stop::Quit => "ended by a signal".to_owned(),
+        })
+    });
+    bench.set_switch(false);
+    bench.daemon.stop();
+    found
+}
+
+fn fly(bench: &mut Bench<'_>) -> Result<Identified, Stop> {
+    let mut responses = Vec::new();
+    let mut airspeed_kt = f64::NAN;
+    for control in &CONTROLS {
+        steady(bench)?;
+        airspeed_kt = bench.number(Watched::Airspeed);
+        let flown = deflect(bench, control);
+        release(bench);
+        let response = flown? / control.deflection;
+        let ratio = control.reference / response;
+        if !(LEAST..=MOST).contains(&ratio) {
+            return failed(format!(
+                "the {} has no effect, or the opposite one: {response:.3} for a full deflection, \
+                 the Cessna's {}",
+                control.name, control.reference
+            ));
+        }
+        responses.push(Response {
+            control: control.name,
+            response,
+            reference: control.reference,
+            scale: ratio,
+        });
+    }
+    // The daemon leaves the aircraft in steady flight.
+    steady(bench)?;
+    bench.disengage()?;
+    Ok(Identified {
+        airspeed_kt,
+        responses,
+    })
+}
+
+/// Has the daemon fly level until the flight is steady.
+fn steady(bench: &mut Bench<'_>) -> Result<(), Stop> {
+    bench.engage(Guidance::Hold)?;
+    let mut since = Instant::now();
+    let is_steady = bench.until("steady level flight", STEADY_WITHIN, |b| {
+        let rates = [Watched::RollRate, Watched::PitchRate, Watched::YawRate];
+        let calm = rates.iter().all(|rate| b.number(*rate).abs() < 0.03)
+            && b.number(Watched::Roll).abs() < 3.0
+            && b.number(Watched::ClimbRate).abs() < 150.0;
+        if !calm {
+            since = Instant::now();
+        }
+        since.elapsed() >= STEADY_FOR
+    })?;
+    if is_steady {
+        return Ok(());
+    }
+    failed("the flight does not become steady: fly in calm air, trimmed")
+}
+
+/// The controls, as they were held.
+struct Held([(Watched, f64); 4]);
+
+impl Held {
+    fn now(bench: &Bench<'_>) -> Self {
+        Self(CONTROLS.map(|control| (control.written, bench.number(control.written))))
+    }
+
+    /// Writes them, one with a deflection.
+    fn write(&self, bench: &Bench<'_>, deflected: Watched, deflection: f64) {
+        for (what, value) in self.0 {
+            let more = if what == deflected { deflection } else { 0.0 };
+            bench.link.write(bench.link.path(what), value + more);
+        }
+    }
+}
+
+/// Takes the controls, deflects one of them up and down, and returns half the
+/// difference of the responses.
+fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
+    let held = Held::now(bench);
+    let limits = Envelope::now(bench);
+    bench.disengage()?;
+    bench.wait("released", RELEASED)?;
+    for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
+        bench.link.write(bench.link.path(what), 1.0);
+    }
+    hold(bench, &held, &limits, (control.written, 0.0), REST)?;
+    let mut responses = [0.0; 2];
+    for (response, sign) in responses.iter_mut().zip([1.0, -1.0]) {
+        let before = bench.number(control.response);
+        let deflection = (control.written, sign * control.deflection);
+        hold(bench, &held, &limits, deflection, control.lasts)?;
+        *response = (bench.number(control.response) - before) * control.to_si;
+        if control.is_rate {
+            *response /= control.lasts.as_secs_f64();
+        }
+        // A surface's rate swings back before the other deflection.
+        if !control.is_rate {
+            break;
+        }
+    }
+    let [up, down] = responses;
+    Ok(if control.is_rate {
+        (up - down) / 2.0
+    } else {
+        up
+    })
+}
+
+/// Writes the controls for a time, within the envelope.
+fn hold(
+    bench: &mut Bench<'_>,
+    held: &Held,
+    limits: &Envelope,
+    (deflected, deflection): (Watched, f64),
+    duration: Duration,
+) -> Result<(), Stop> {
+    let until = Instant::now() + duration;
+    while Instant::now() < until {
+        held.write(bench, deflected, deflection);
+        bench.wait("deflected", WRITE_EVERY)?;
+        limits.check(bench)?;
+    }
+    Ok(())
+}
+
+/// Gives the controls back, however it went.
+fn release(bench: &Bench<'_>) {
+    for what in [Watched::YokePitch, Watched::YokeRoll, Watched::YokeHeading] {
+        bench.link.write(bench.link.path(what), 0.0);
+    }
+    for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
+        bench.link.write(bench.link.path(what), 0.0);
+    }
+}
+
+/// Beyond these the aircraft is handed back.
+struct Envelope {
+    pitch_deg: f64,
+    airspeed_kt: f64,
+}
+
+const MOST_BANK_DEG: f64 = 25.0;
+const MOST_PITCH_DEG: f64 = 8.0;
+const LOADS_G: std::ops::RangeInclusive<f64> = 0.4..=1.7;
+const LEAST_AIRSPEED: f64 = 0.85;
+
+impl Envelope {
+    fn now(bench: &Bench<'_>) -> Self {
+        Self {
+            pitch_deg: bench.number(Watched::Pitch),
+            airspeed_kt: bench.number(Watched::Airspeed),
+        }
+    }
+
+    fn check(&self, bench: &Bench<'_>) -> Result<(), Stop> {
+        let bank = bench.number(Watched::Roll).abs();
+        let pitch = (bench.number(Watched::Pitch) - self.pitch_deg).abs();
+        let airspeed = bench.number(Watched::Airspeed);
+        let load = bench.number(Watched::LoadNormal);
+        let within = bank <= MOST_BANK_DEG
+            && pitch <= MOST_PITCH_DEG
+            && airspeed >= LEAST_AIRSPEED * self.airspeed_kt
+            && (load.is_nan() || LOADS_G.contains(&load));
+        if within {
+            return Ok(());
+        }
+        failed(format!(
+            "ended outside the envelope: bank {bank:.0}°, pitch changed by {pitch:.0}°, \
+             {airspeed:.0} kt, load {load:.1} g"
+        ))
+    }
+}

@@ -1,0 +1,164 @@
+"""`fccd x-plane check` against the stand-in with a person at it.
+
+Every step passes, and each fails when the stand-in misbehaves in what the step checks. The checks
+run at the same time, most of which is waiting: the steps in parts, well and badly behaved. A
+misbehaviour lasts as long as its step, so that no step fails by another's. FCCD_FULL_CHECK=1
+(`make test-x-plane`) runs the steps in full.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from daemon_under_test import write_config
+
+from fcc_hil.misbehaviour import MISBEHAVIOURS
+from fcc_hil.process import StandInProcess
+from fcc_hil.settings import Settings
+
+STEPS = tuple(range(1, 21))
+IS_FULL = os.environ.get("FCCD_FULL_CHECK") == "1"
+PATIENCE_S = 1_800.0 if IS_FULL else 240.0
+SUCCESS, USAGE, STEP_FAILED = 0, 2, 15
+# In parts of about the same duration.
+PARTS = ((1, 2, 3, 4, 5, 6, 7, 8), (9, 10, 11, 20), (12, 13, 14, 15, 16, 17, 18, 19))
+# Not handled yet: map, replay, altimeter, freeze, reload.
+PENDING = (13, 14, 15, 18, 19)
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A finished check."""
+
+    exit_codes: list[int]
+    steps: dict[int, dict[str, Any]]
+    reports: list[str]
+    log: str
+
+    def why(self, number: int) -> str:
+        return json.dumps(self.steps[number], indent=2, ensure_ascii=False)
+
+
+class Check:
+    """A running check against a stand-in of its own."""
+
+    def __init__(self, fccd: Path, scratch: Path, only: tuple[int, ...], misbehaves: bool) -> None:
+        self._stack = contextlib.ExitStack()
+        self._scratch = scratch
+        scratch.mkdir()
+        settings = Settings(
+            port=0,
+            # X-Plane 12, which has all datarefs.
+            version=121_000,
+            person=True,
+            misbehaves_in=only if misbehaves else (),
+        )
+        simulator = self._stack.enter_context(StandInProcess(settings))
+        config = write_config(scratch, simulator.port, others="[failsafe]\nhold_s = 1.0\n")
+        words = [fccd, "x-plane", "check", "--yes", "--config", config, "--json"]
+        words += ["--only", ",".join(map(str, only)), "--report", scratch / "report.md"]
+        words += [] if IS_FULL else ["--quick"]
+        out = self._stack.enter_context((scratch / "out").open("wb"))
+        err = self._stack.enter_context((scratch / "err").open("wb"))
+        self._process = subprocess.Popen(
+            [str(word) for word in words], stdin=subprocess.DEVNULL, stdout=out, stderr=err
+        )
+
+    def wait(self) -> tuple[int, dict[str, Any], str, str]:
+        try:
+            exit_code = self._process.wait(PATIENCE_S)
+        finally:
+            if self._process.poll() is None:
+                self._process.kill()
+                self._process.wait()
+            self._stack.close()
+        log = (self._scratch / "err").read_text()
+        printed = (self._scratch / "out").read_text()
+        assert printed, log
+        report = json.loads(printed)
+        assert report == json.loads((self._scratch / "report.json").read_text())
+        return exit_code, report, (self._scratch / "report.md").read_text(), log
+
+
+@pytest.fixture(scope="module")
+def checks(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Checked]:
+    """Run all four; by whether the stand-in misbehaves."""
+    scratch = tmp_path_factory.mktemp("check")
+    running = {
+        misbehaves: [
+            Check(fccd, scratch / f"{misbehaves}-{place}", only, misbehaves)
+            for place, only in enumerate(PARTS)
+        ]
+        for misbehaves in (False, True)
+    }
+    ended = {}
+    for misbehaves, parts in running.items():
+        results = [part.wait() for part in parts]
+        ended[misbehaves] = Checked(
+            [exit_code for exit_code, *_ in results],
+            {step["number"]: step for _, report, *_ in results for step in report["steps"]},
+            [markdown for _, _, markdown, _ in results],
+            "\n".join(log for *_, log in results),
+        )
+    return ended
+
+
+@pytest.mark.parametrize("number", STEPS)
+def test_a_step_passes(checks: dict[bool, Checked], number: int) -> None:
+    good = checks[False]
+    if number in PENDING and good.steps[number]["outcome"] == "failed":
+        pytest.xfail(str(good.steps[number]["why"]))
+    assert good.steps[number]["outcome"] == "passed", good.why(number)
+    assert good.steps[number]["why"] is None
+
+
+@pytest.mark.parametrize("number", STEPS, ids=lambda n: f"{n}: {MISBEHAVIOURS[n].does}")
+def test_a_step_fails_when_the_stand_in_misbehaves(
+    checks: dict[bool, Checked], number: int
+) -> None:
+    bad = checks[True]
+    assert bad.steps[number]["outcome"] == "failed", bad.why(number)
+    assert bad.steps[number]["why"]
+    assert bad.steps[number]["advice"]
+
+
+def test_the_exit_code_and_the_report_say_how_it_ended(checks: dict[bool, Checked]) -> None:
+    # The part without what is not handled yet.
+    assert checks[False].exit_codes[:2] == [SUCCESS, SUCCESS], checks[False].log
+    assert checks[True].exit_codes == [STEP_FAILED] * len(PARTS)
+    good, bad = checks[False].reports[0], checks[True].reports[0]
+    assert "8 of 8 steps passed" in good
+    assert "0 of 8 steps passed, 8 failed" in bad
+    assert "| X-Plane | 12.1.0 |" in good
+    assert 'simulator = "127.0.0.1:' in good
+
+
+def test_without_a_person_and_without_yes_it_says_what_to_do(fccd: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [fccd, "x-plane", "check"],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.returncode == USAGE
+    assert "--yes" in done.stderr
+
+
+def test_the_page_has_every_step_by_its_title(fccd: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "x-plane.md").read_text()
+    listed = subprocess.run(
+        [fccd, "x-plane", "steps", "--json"], capture_output=True, text=True, check=True
+    )
+    steps = json.loads(listed.stdout)
+    assert [step["number"] for step in steps] == list(STEPS)
+    for step in steps:
+        assert f"| {step['number']} {step['title']} |" in page
