@@ -1,7 +1,8 @@
 //! Events of a loop.
 
 use super::{
-    ActuatorFault, Controller, Flags, LoopCommand, SensorFault, SourceChange, Stage, State, Time,
+    ActuatorFault, Controller, Flags, LoopCommand, Notice, SensorFault, SourceChange, Stage, State,
+    Time,
 };
 use crate::schema;
 
@@ -38,7 +39,10 @@ schema! {
 /// The event of a controller's loop.
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
 /// use fcc_core::framework::{EventKind, EventOf, LoopCommand, Time};
 ///
 /// let event: EventOf<Heating> = EventOf::<Heating> {
@@ -233,6 +237,17 @@ schema! {
             /// The mode now.
             #[field(2)]
             to: u8,
+        },
+        /// The controller noticed something:
+        /// [`Controller::write_notice`] describes it.
+        #[field(29)]
+        Noticed(notice: Notice),
+        /// Control is given back at once, without a failsafe.
+        #[field(30)]
+        ReleasedAtOnce {
+            /// Why: [`Controller::must_release`].
+            #[field(1)]
+            conditions: Flags,
         },
         /// [`Controller::conditions`] began or ended while control is held:
         /// [`Controller::flag_name`] names them.

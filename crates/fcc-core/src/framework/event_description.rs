@@ -17,8 +17,11 @@ impl<O: Copy> EventKind<O> {
 /// An event as text for users; see [`EventKind::description`].
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
-/// use fcc_core::framework::EventKind;
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
+/// use fcc_core::framework::{EventKind, Flags};
 ///
 /// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
 /// assert!(refused.description::<Heating>().to_string().ends_with("the door is open"));
@@ -108,6 +111,11 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
             ),
             EventKind::ModeChanged { from, to } => {
                 write!(f, "mode: {}, was {}", C::mode_name(to), C::mode_name(from))
+            }
+            EventKind::Noticed(notice) => C::write_notice(&notice, f),
+            EventKind::ReleasedAtOnce { conditions } => {
+                f.write_str("control is given back at once: ")?;
+                name_flags::<C>(f, conditions)
             }
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {

@@ -34,7 +34,7 @@ schema! {
         /// The controller's set points.
         #[field(5, column = "desired_*")]
         pub setpoints: S,
-        /// The outputs sent to the actuators; the default if none were.
+        /// The outputs for the actuators; the default if none were computed.
         #[field(6, column = "commanded_*")]
         pub outputs: O,
         /// Failed samples of sensors since the loop's start.
@@ -75,8 +75,11 @@ schema! {
 /// The record of a controller's loop.
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
-/// use fcc_core::framework::{RecordOf, State};
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
+/// use fcc_core::framework::{RecordOf, State, Tick};
 ///
 /// let record = RecordOf::<Heating>::new(Tick::default(), State::Standby);
 /// assert_eq!(record.measurements, 0.0);
