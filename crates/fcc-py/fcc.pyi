@@ -125,7 +125,7 @@ class Measurements:
     def airspeed_mps(self, value: float) -> None: ...
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude in m above the standard pressure level."""
+        """Pressure altitude in m."""
 
     @altitude_m.setter
     def altitude_m(self, value: float) -> None: ...
@@ -227,7 +227,7 @@ class Setpoints:
 
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m, whatever the set point refers to."""
 
     @property
     def roll_rad(self) -> float:
@@ -263,7 +263,19 @@ class Setpoints:
 
     @property
     def guidance_captured_altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m."""
+
+    @property
+    def altimeter_setting_pa(self) -> float:
+        """The altimeter setting (QNH), Pa; in every state."""
+
+    @property
+    def altitude_reference(self) -> str:
+        """What the altitude refers to."""
+
+    @property
+    def altitude_above_reference_m(self) -> float:
+        """The altitude above what it refers to, m."""
 
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
@@ -308,7 +320,7 @@ class Estimate:
 
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m."""
 
     @property
     def climb_rate_mps(self) -> float:
@@ -485,6 +497,9 @@ class Autopilot:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     @property
     def engaged(self) -> bool: ...
@@ -546,6 +561,9 @@ class Machine:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
@@ -862,7 +880,7 @@ class Watcher:
 
 @final
 class Commander:
-    """Gives commands to the loop of any plant on this machine, each carried out on return."""
+    """Sends commands to the loop of any plant on this machine; each waits until carried out."""
 
     def __new__(cls, instance: str = "fccd") -> Commander: ...
     def engage(self) -> int: ...
