@@ -55,7 +55,8 @@ pub(crate) struct Bench<'a> {
     pub(crate) figures: Vec<Figure>,
     pub(crate) notes: Vec<String>,
     pub(crate) step: u8,
-    pub(crate) began: Instant,
+    /// The check was ended: nobody is asked any more.
+    pub(crate) is_ending: bool,
     shown: Instant,
 }
 
@@ -77,7 +78,7 @@ impl<'a> Bench<'a> {
             figures: Vec::new(),
             notes: Vec::new(),
             step: 0,
-            began: Instant::now(),
+            is_ending: false,
             shown: Instant::now(),
         }
     }
@@ -85,7 +86,6 @@ impl<'a> Bench<'a> {
     /// A step begins.
     pub(crate) fn begin(&mut self, step: u8) {
         self.step = step;
-        self.began = Instant::now();
         self.figures.clear();
         self.notes.clear();
         self.cue("begin");
@@ -221,6 +221,9 @@ impl<'a> Bench<'a> {
         what: &str,
         mut holds: impl FnMut(&Self) -> bool,
     ) -> Done {
+        if self.is_ending {
+            return Err(Stop::Quit);
+        }
         let limit = if self.is_unattended {
             self.cue(cue);
             BY_A_CUE
@@ -251,6 +254,9 @@ impl<'a> Bench<'a> {
         if self.is_unattended {
             self.cue(cue);
             return Ok(());
+        }
+        if self.is_ending {
+            return Err(Stop::Quit);
         }
         self.screen.instruct(instruction, true);
         let until = Instant::now() + BY_A_PERSON;
