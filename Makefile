@@ -263,6 +263,8 @@ $(STAMPS)/vm:
 
 # The modules `fcc` and `pendulum` are built anew whenever their sources changed: cargo knows.
 .PHONY: $(STAMPS)/python-module
+# With the conformance suites, which its tests run.
 $(STAMPS)/python-module: $(STAMPS)/python
 	for module in crates/fcc-py examples/pendulum; do \
-	    (cd $$module && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet) || exit 1; done
+	    (cd $$module && VIRTUAL_ENV=$(abspath $(VENV)) $(abspath $(VENV))/bin/maturin develop --release --quiet \
+	        $$(grep -q '^conformance = ' Cargo.toml && echo --features conformance,pyo3/extension-module)) || exit 1; done

@@ -125,7 +125,7 @@ class Measurements:
     def airspeed_mps(self, value: float) -> None: ...
     @property
     def altitude_m(self) -> float:
-        """Pressure altitude in m."""
+        """Barometric altitude in m above the standard pressure level."""
 
     @altitude_m.setter
     def altitude_m(self, value: float) -> None: ...
@@ -227,7 +227,7 @@ class Setpoints:
 
     @property
     def altitude_m(self) -> float:
-        """Pressure altitude, m, whatever the set point refers to."""
+        """Barometric altitude, m."""
 
     @property
     def roll_rad(self) -> float:
@@ -263,19 +263,7 @@ class Setpoints:
 
     @property
     def guidance_captured_altitude_m(self) -> float:
-        """Pressure altitude, m."""
-
-    @property
-    def altimeter_setting_pa(self) -> float:
-        """The altimeter setting (QNH), Pa; in every state."""
-
-    @property
-    def altitude_reference(self) -> str:
-        """What the altitude refers to."""
-
-    @property
-    def altitude_above_reference_m(self) -> float:
-        """The altitude above what it refers to, m."""
+        """Barometric altitude, m."""
 
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
@@ -320,7 +308,7 @@ class Estimate:
 
     @property
     def altitude_m(self) -> float:
-        """Pressure altitude, m."""
+        """Barometric altitude, m."""
 
     @property
     def climb_rate_mps(self) -> float:
@@ -497,9 +485,6 @@ class Autopilot:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
-        pressure_altitude_m: float | None = None,
-        height_m: float | None = None,
-        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     @property
     def engaged(self) -> bool: ...
@@ -561,9 +546,6 @@ class Machine:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
-        pressure_altitude_m: float | None = None,
-        height_m: float | None = None,
-        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
@@ -820,11 +802,13 @@ class Timer:
 
 @final
 class Recording:
-    """A recording of a flight, whole or cut off."""
+    """A recording of any plant, whole or cut off."""
 
     def __new__(cls, path: _Path) -> Recording: ...
     @property
     def records(self) -> _Records: ...
+    @property
+    def columns(self) -> dict[str, dict[str, Any]]: ...
     @property
     def events(self) -> list[Event]: ...
     @property
@@ -860,13 +844,15 @@ def replay(
 
 @final
 class Watcher:
-    """Watches a daemon on this machine, by its instance's name."""
+    """Watches the loop of any plant on this machine, by its instance's name."""
 
     def __new__(cls, instance: str = "fccd") -> Watcher: ...
     def latest(self, timeout_s: float = 1.0) -> np.void | None: ...
     def records(self) -> _Records: ...
     def events(self) -> list[Event]: ...
     def status(self, timeout_s: float = 1.5) -> dict[str, Any] | None: ...
+    @property
+    def columns(self) -> dict[str, dict[str, Any]]: ...
     @property
     def info(self) -> dict[str, Any]: ...
     @property
@@ -876,19 +862,10 @@ class Watcher:
 
 @final
 class Commander:
-    """Gives commands to a daemon on this machine; each waits until it is carried out."""
+    """Gives commands to the loop of any plant on this machine, each carried out on return."""
 
     def __new__(cls, instance: str = "fccd") -> Commander: ...
     def engage(self) -> int: ...
     def disengage(self) -> int: ...
     def stop(self) -> int: ...
-    def set(
-        self,
-        *,
-        airspeed_mps: float | None = None,
-        heading_rad: float | None = None,
-        altitude_m: float | None = None,
-        pressure_altitude_m: float | None = None,
-        height_m: float | None = None,
-        altimeter_setting_pa: float | None = None,
-    ) -> int: ...
+    def set(self, **setpoints: float) -> int: ...

@@ -86,22 +86,29 @@ pub use waiting::waits;
 
 /// Generates a module with one test for each requirement of
 /// [`Sensor`](fcc_core::framework::Sensor), for a [`SensorBench`]; with `,
-/// vanishes` those for a [`VanishingSource`] as well.
+/// vanishes` those for a [`VanishingSource`] as well. Named `list` it is an array
+/// of the requirements, each with its name, for another test runner.
 #[macro_export]
 macro_rules! sensor_conformance {
+    (list: $bench:ty $(, $vanishes:ident)?) => {
+        $crate::sensor_conformance! { @ list list $bench: $($vanishes)? }
+    };
     ($name:ident: $bench:ty) => {
-        $crate::sensor_conformance! { @ $name $bench: }
+        $crate::sensor_conformance! { @ promises $name $bench: }
     };
     ($name:ident: $bench:ty, vanishes) => {
-        $crate::sensor_conformance! { @ $name $bench:
+        $crate::sensor_conformance! { @ promises $name $bench: vanishes }
+    };
+    (@ $as:ident $name:ident $bench:ty: vanishes) => {
+        $crate::sensor_conformance! { @ $as $name $bench:
             nothing_is_measured_before_the_source_is_there
             an_old_value_stays_old
             silence_is_reported_and_ends
             sampling_what_vanished_never_waits_nor_allocates
         }
     };
-    (@ $name:ident $bench:ty: $($more:ident)*) => {
-        $crate::promises! { sensor $name $bench:
+    (@ $as:ident $name:ident $bench:ty: $($more:ident)*) => {
+        $crate::$as! { sensor $name $bench:
             every_reading_comes_and_none_is_of_the_future
             a_source_with_nothing_new_changes_no_value
             a_tick_after_missed_ones_is_sampled_like_any
@@ -116,21 +123,27 @@ macro_rules! sensor_conformance {
 
 /// Generates a module with one test for each requirement of
 /// [`Actuator`](fcc_core::framework::Actuator), for an [`ActuatorBench`]; with
-/// `, vanishes` those for a [`VanishingPlant`] as well.
+/// `, vanishes` those for a [`VanishingPlant`] as well; `list` as for sensors.
 #[macro_export]
 macro_rules! actuator_conformance {
+    (list: $bench:ty $(, $vanishes:ident)?) => {
+        $crate::actuator_conformance! { @ list list $bench: $($vanishes)? }
+    };
     ($name:ident: $bench:ty) => {
-        $crate::actuator_conformance! { @ $name $bench: }
+        $crate::actuator_conformance! { @ promises $name $bench: }
     };
     ($name:ident: $bench:ty, vanishes) => {
-        $crate::actuator_conformance! { @ $name $bench:
+        $crate::actuator_conformance! { @ promises $name $bench: vanishes }
+    };
+    (@ $as:ident $name:ident $bench:ty: vanishes) => {
+        $crate::actuator_conformance! { @ $as $name $bench:
             a_plant_that_vanished_is_a_fault_until_it_is_back
             a_release_that_a_vanished_plant_missed_is_made_up_for
             driving_what_vanished_never_waits_nor_allocates
         }
     };
-    (@ $name:ident $bench:ty: $($more:ident)*) => {
-        $crate::promises! { actuator $name $bench:
+    (@ $as:ident $name:ident $bench:ty: $($more:ident)*) => {
+        $crate::$as! { actuator $name $bench:
             the_first_apply_takes_control_and_each_is_followed
             release_gives_control_back
             a_second_release_does_nothing
@@ -161,6 +174,18 @@ macro_rules! authority_conformance {
             the_unique_name_is_its_own
             what_has_not_changed_is_not_reported_again
         }
+    };
+}
+
+/// The requirements, each with its name.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! list {
+    ($kind:ident list $bench:ty: $($requirement:ident)*) => {
+        [$((
+            stringify!($requirement),
+            $crate::$kind::$requirement::<$bench> as fn(),
+        )),*]
     };
 }
 

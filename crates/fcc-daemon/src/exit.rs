@@ -12,7 +12,8 @@ pub enum Exit {
     Success = 0,
     /// The operating system, the network or a part of the program failed.
     Failure = 1,
-    /// The command line or the configuration is wrong.
+    /// The command line or the configuration is wrong, or a recording is of
+    /// another plant.
     Usage = 2,
     /// The flight was in failsafe.
     Failsafe = 3,
@@ -48,7 +49,8 @@ pub const EXIT_CODES: &str = "\
 Exit codes:
   0  success
   1  the operating system, the network or a part of the program failed
-  2  the command line or the configuration is wrong
+  2  the command line or the configuration is wrong, or a recording is of
+     another plant
   3  the flight entered failsafe
   4  a real-time request was denied and realtime.strict is set
   5  the controls may not have been released

@@ -62,6 +62,17 @@ pub enum WatchError {
         /// This program's.
         own: u32,
     },
+    /// The loop is of another plant than the program's.
+    #[error(
+        "'{instance}' is a loop of another plant, {plant}: watch it with its own program, or in \
+         Python with fcc.Watcher, which watches every plant's"
+    )]
+    AnotherPlant {
+        /// The daemon's name.
+        instance: Instance,
+        /// Its plant.
+        plant: String,
+    },
     /// The maximum number of programs is watching.
     #[error("{MAX_WATCHERS} programs watch fccd '{0}', which is the maximum: end one of them")]
     TooMany(Instance),

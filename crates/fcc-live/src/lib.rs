@@ -4,12 +4,13 @@
 //! its thread, `fcc-live`, puts them into shared memory with iceoryx2. Watchers
 //! that join, leave, hang or are killed have no effect on the loop's thread.
 //!
-//! A program opens a [`Watcher`]; programs in other languages read the same
+//! A program opens a [`Watcher`], or for any plant a [`RowWatcher`]; programs in other languages read the same
 //! services by the layouts in `docs/telemetry.md`:
 //!
 //! | service | what | history |
 //! |---|---|---|
 //! | `fcc/INSTANCE/info` | [`Info`]: who publishes, in which layout | 1 |
+//! | `fcc/INSTANCE/columns/v2` | the columns of a record | 1 |
 //! | `fcc/INSTANCE/record/v2` | the record of each tick | 1 |
 //! | `fcc/INSTANCE/event/v2` | [`Event`]: what happened once | 64 |
 //! | `fcc/INSTANCE/status/v2` | [`Status`]: each second, how the run stands | 1 |
@@ -28,8 +29,9 @@ mod item;
 mod lateness;
 mod place;
 mod publisher;
-mod record;
+mod row_watcher;
 mod services;
+mod shared_types;
 mod space;
 mod status;
 mod text;
@@ -37,8 +39,8 @@ mod thread;
 mod watcher;
 
 pub use command::{
-    AircraftLimits, COMMANDS_VERSION, CommandError, Commander, FlightCommand, InvalidCommand,
-    NewSetpoints, OutsideLimits, PendingCommand, Quantity, Verdict,
+    COMMANDS_VERSION, Command, CommandError, Commandable, CommandableSetpoint, Commander,
+    InvalidCommand, OutsideLimits, PendingCommand, PlantLimits, SentCommands, Verdict,
 };
 pub use error::{PublishError, WatchError};
 pub use event::{Event, EventCode};
@@ -47,6 +49,7 @@ pub use lateness::{LATENESS_BOUNDS_NS, LatenessCounts};
 #[cfg(feature = "flight")]
 pub use publisher::Publisher;
 pub use publisher::PublisherOf;
+pub use row_watcher::RowWatcher;
 pub use services::{EVENT_HISTORY, MAX_WATCHERS, RECORD_BUFFER};
 pub use status::{RecorderState, RecorderStatus, Status};
 pub use text::Text;

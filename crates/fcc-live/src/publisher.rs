@@ -13,6 +13,7 @@ use super::command::{CommandServer, Ends, PendingCommand, Verdict};
 use super::item::Item;
 use super::thread::{self, Started};
 use super::{Event, Info, PublishError, RecorderStatus};
+use fcc_telemetry::schema::words;
 use fcc_telemetry::{Instance, Telemetry};
 
 /// How long the start and the end of publishing may take. A flight waits no
@@ -111,7 +112,7 @@ impl<C: Telemetry> PublisherOf<C> {
     /// Publishes information about the daemon; before this, no program can
     /// watch.
     pub fn describe(&mut self, info: Info) {
-        let record_bytes = size_of::<C::Words>() as u32;
+        let record_bytes = (words::<RecordOf<C>>() * size_of::<u64>()) as u32;
         self.put(Item::Info(Info {
             record_bytes,
             ..info

@@ -4,11 +4,14 @@ use std::fmt::Debug;
 
 use iceoryx2::node::{Node, NodeBuilder};
 use iceoryx2::port::publisher::{Publisher, PublisherCreateError};
-use iceoryx2::prelude::{BackpressureStrategy, SignalHandlingMode, ZeroCopySend, ipc_threadsafe};
+use iceoryx2::prelude::{
+    BackpressureStrategy, IceoryxSend, SignalHandlingMode, ZeroCopySend, ipc_threadsafe,
+};
 use iceoryx2::service::builder::publish_subscribe::{
-    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+    Builder, PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
 };
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
+use iceoryx2::service::port_factory::publisher::PortFactoryPublisher;
 use iceoryx2::service::service_name::ServiceName;
 use nix::sys::resource::{Resource, getrlimit};
 
@@ -40,10 +43,12 @@ const BORROWED: usize = 2;
 /// Python program's objects do; compatible with the services of iceoryx2's
 /// single-threaded kind.
 pub(super) type Ipc = ipc_threadsafe::Service;
-/// A service of plain data.
+/// A service of plain data, or of slices of it.
 pub(super) type Service<T> = PortFactory<Ipc, T, ()>;
 /// The writing side of a service.
 pub(super) type Out<T> = Publisher<Ipc, T, ()>;
+/// A service and its writing side.
+type Published<T> = (Service<T>, Out<T>);
 /// A process' access to all services.
 pub(super) type Access = Node<Ipc>;
 
@@ -63,7 +68,14 @@ pub(super) const INFO: Topic = Topic {
     buffer: 2,
     history: 1,
 };
-/// Each tick.
+/// The columns of its records, as JSON.
+pub(super) const COLUMNS: Topic = Topic {
+    name: "columns",
+    versioned: true,
+    buffer: 1,
+    history: 1,
+};
+/// Each tick, as words.
 pub(super) const RECORD: Topic = Topic {
     name: "record",
     versioned: true,
@@ -98,8 +110,11 @@ impl Topic {
 
     /// All samples that can be in use at once. Slow watchers share the newest
     /// ones, and each has those it has borrowed: far less than the product of
-    /// watchers and buffer that is reserved by default.
+    /// watchers and buffer that is reserved by default. Columns are sent once.
     const fn samples(self) -> usize {
+        if self.buffer == 1 {
+            return self.buffer + self.history;
+        }
         self.buffer + self.history + MAX_WATCHERS * BORROWED + 16
     }
 
@@ -108,13 +123,39 @@ impl Topic {
         self,
         access: &Access,
         instance: &Instance,
-    ) -> Result<(Service<T>, Out<T>), PublishError> {
+    ) -> Result<Published<T>, PublishError> {
+        let service = self.settings::<T>(access, instance)?.open_or_create();
+        let service = service.map_err(|error| refused(error, instance))?;
+        let publisher = self.port(&service).create();
+        let publisher = publisher.map_err(|error| not_created(error, instance))?;
+        Ok((service, publisher))
+    }
+
+    /// The same for messages of at most `most` elements.
+    pub(super) fn publish_slices<T: Debug + ZeroCopySend + 'static>(
+        self,
+        access: &Access,
+        instance: &Instance,
+        most: usize,
+    ) -> Result<Published<[T]>, PublishError> {
+        let service = self.settings::<[T]>(access, instance)?.open_or_create();
+        let service = service.map_err(|error| refused(error, instance))?;
+        let port = self.port(&service).initial_max_slice_len(most);
+        let publisher = port.create();
+        let publisher = publisher.map_err(|error| not_created(error, instance))?;
+        Ok((service, publisher))
+    }
+
+    fn settings<T: Debug + IceoryxSend + ?Sized>(
+        self,
+        access: &Access,
+        instance: &Instance,
+    ) -> Result<Builder<T, (), Ipc>, PublishError> {
         let name = self.service_name(instance).ok_or_else(|| {
             PublishError::NoSharedMemory(format!("'{instance}' is not a valid service name"))
         })?;
-        let service = access
-            .service_builder(&name)
-            .publish_subscribe::<T>()
+        let builder = access.service_builder(&name).publish_subscribe::<T>();
+        Ok(builder
             .max_publishers(1)
             .max_subscribers(MAX_WATCHERS)
             .max_nodes(MAX_NODES)
@@ -123,22 +164,18 @@ impl Topic {
             .history_size(self.history)
             // The oldest is overwritten: nothing waits for a watcher that
             // hangs.
-            .enable_safe_overflow(true)
-            .open_or_create()
-            .map_err(|error| refused(error, instance))?;
-        let publisher = service
+            .enable_safe_overflow(true))
+    }
+
+    fn port<T: Debug + IceoryxSend + ?Sized>(
+        self,
+        service: &Service<T>,
+    ) -> PortFactoryPublisher<'_, Ipc, T, ()> {
+        service
             .publisher_builder()
             .max_loaned_samples(2)
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .override_sample_preallocation(move |most| most.min(self.samples()))
-            .create()
-            .map_err(|error| match error {
-                PublisherCreateError::ExceedsMaxSupportedPublishers => {
-                    PublishError::NameTaken(instance.clone())
-                }
-                error => PublishError::NoSharedMemory(explained(&error)),
-            })?;
-        Ok((service, publisher))
     }
 
     /// Opens the reading side; never creates a service.
@@ -147,23 +184,50 @@ impl Topic {
         access: &Access,
         instance: &Instance,
     ) -> Result<Service<T>, WatchError> {
-        use PublishSubscribeOpenError as Open;
-        let name = self
-            .service_name(instance)
-            .ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
-        access
-            .service_builder(&name)
-            .publish_subscribe::<T>()
-            .open()
-            .map_err(|error| match error {
-                Open::DoesNotExist | Open::IsMarkedForDestruction | Open::HangsInCreation => {
-                    WatchError::NotRunning(instance.clone())
-                }
-                Open::ExceedsMaxNumberOfNodes => WatchError::TooMany(instance.clone()),
-                Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()),
-                Open::IncompatibleTypes => WatchError::Damaged(instance.clone()),
-                error => WatchError::NoSharedMemory(explained(&error)),
-            })
+        let service = self.reading::<T>(access, instance)?.open();
+        service.map_err(|error| not_opened(error, instance))
+    }
+
+    /// The same for messages of several elements.
+    pub(super) fn watch_slices<T: Debug + ZeroCopySend + 'static>(
+        self,
+        access: &Access,
+        instance: &Instance,
+    ) -> Result<Service<[T]>, WatchError> {
+        let service = self.reading::<[T]>(access, instance)?.open();
+        service.map_err(|error| not_opened(error, instance))
+    }
+
+    fn reading<T: Debug + IceoryxSend + ?Sized>(
+        self,
+        access: &Access,
+        instance: &Instance,
+    ) -> Result<Builder<T, (), Ipc>, WatchError> {
+        let name = self.service_name(instance);
+        let name = name.ok_or_else(|| WatchError::NotRunning(instance.clone()))?;
+        Ok(access.service_builder(&name).publish_subscribe::<T>())
+    }
+}
+
+fn not_created(error: PublisherCreateError, instance: &Instance) -> PublishError {
+    match error {
+        PublisherCreateError::ExceedsMaxSupportedPublishers => {
+            PublishError::NameTaken(instance.clone())
+        }
+        error => PublishError::NoSharedMemory(explained(&error)),
+    }
+}
+
+fn not_opened(error: PublishSubscribeOpenError, instance: &Instance) -> WatchError {
+    use PublishSubscribeOpenError as Open;
+    match error {
+        Open::DoesNotExist | Open::IsMarkedForDestruction | Open::HangsInCreation => {
+            WatchError::NotRunning(instance.clone())
+        }
+        Open::ExceedsMaxNumberOfNodes => WatchError::TooMany(instance.clone()),
+        Open::InsufficientPermissions => WatchError::NotPermitted(instance.clone()),
+        Open::IncompatibleTypes => WatchError::Damaged(instance.clone()),
+        error => WatchError::NoSharedMemory(explained(&error)),
     }
 }
 

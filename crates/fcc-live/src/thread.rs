@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use iceoryx2::port::update_connections::UpdateConnections;
 use iceoryx2::prelude::PortFactory;
+use iceoryx2::sample_mut::SampleMut;
 use nix::time::{ClockId, clock_gettime};
 use rtrb::Consumer;
 
@@ -15,11 +16,13 @@ use super::command::{CommandServer, Rings};
 use super::item::Item;
 use super::lateness::Lateness;
 use super::place::Place;
-use super::record::Published;
-use super::services::{self, Access, EVENT, INFO, Out, RECORD, STATUS, Service};
+use super::services::{self, Access, COLUMNS, EVENT, INFO, Out, RECORD, STATUS, Service};
 use super::space;
 use super::{Event, Info, PublishError, RecorderStatus, Status};
-use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
+use fcc_core::framework::RecordOf;
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::schema::{RecordDescription, write_words};
+use fcc_telemetry::{Instance, Telemetry};
 
 /// The thread's name, as `top -H` shows it.
 pub(super) const NAME: &str = "fcc-live";
@@ -50,7 +53,8 @@ pub(super) fn publish<C: Telemetry>(
     started: &SyncSender<Started>,
     reports: &SyncSender<String>,
 ) {
-    let mut thread = match Publishing::<C>::open(instance, commands) {
+    let columns = RecordDescription::of::<RecordOf<C>>();
+    let mut thread = match Publishing::open(instance, &columns, commands) {
         Ok(thread) => thread,
         Err(error) => {
             // The daemon waits for this, unless it has given up.
@@ -76,7 +80,7 @@ pub(super) fn publish<C: Telemetry>(
             // From now on: missed intervals are not made up for after a stall.
             next_status = Instant::now() + STATUS_EVERY;
             if !over && thread.ports.is_removed() {
-                let (again, words) = thread.publish_again(instance);
+                let (again, words) = thread.publish_again(instance, &columns);
                 let _ = reports.try_send(words);
                 let Some(again) = again else {
                     return;
@@ -104,9 +108,12 @@ pub(super) fn wait(thread: &JoinHandle<()>, at_most: Duration) {
 }
 
 /// The services of a daemon, and this process' access to them.
-struct Ports<C: Telemetry> {
-    records: Out<Published<C>>,
-    service: Service<Published<C>>,
+struct Ports {
+    columns: Out<[u8]>,
+    records: Out<[u64]>,
+    /// Of a record.
+    words: usize,
+    service: Service<[u64]>,
     events: Out<Event>,
     statuses: Out<Status>,
     infos: Out<Info>,
@@ -116,8 +123,8 @@ struct Ports<C: Telemetry> {
     access: Access,
 }
 
-impl<C: Telemetry> Ports<C> {
-    fn open(instance: &Instance) -> Result<Self, PublishError> {
+impl Ports {
+    fn open(instance: &Instance, described: &RecordDescription) -> Result<Self, PublishError> {
         if let Some(words) = space::too_little(space::NEEDED_BYTES) {
             return Err(PublishError::NoSharedMemory(words));
         }
@@ -125,7 +132,9 @@ impl<C: Telemetry> Ports<C> {
         // First, because its layout never changes: a name that is taken is
         // found here.
         let (info, infos) = INFO.publish(&access, instance)?;
-        let (service, records) = RECORD.publish(&access, instance)?;
+        let words = described.row_bytes / size_of::<u64>();
+        let (service, records) = RECORD.publish_slices(&access, instance, words)?;
+        let columns = publish_columns(&access, instance, described)?;
         let (_, events) = EVENT.publish(&access, instance)?;
         let (_, statuses) = STATUS.publish(&access, instance)?;
         let names = [
@@ -133,7 +142,9 @@ impl<C: Telemetry> Ports<C> {
             records.id().value().to_string(),
         ];
         Ok(Self {
+            columns,
             records,
+            words,
             service,
             events,
             statuses,
@@ -143,15 +154,43 @@ impl<C: Telemetry> Ports<C> {
         })
     }
 
+    /// Publishes a record; whether that was possible.
+    fn send(&self, record: &impl Schema) -> bool {
+        let loaned = self.records.loan_slice(self.words);
+        loaned.is_ok_and(|mut sample| {
+            write_words(record, sample.payload_mut());
+            sample.send().is_ok()
+        })
+    }
+
     /// Whether somebody has removed the files, so that no program can watch.
     fn is_removed(&self) -> bool {
         self.files.iter().any(|file| !file.exists())
     }
 }
 
-struct Publishing<C: Telemetry> {
+/// Publishes the columns; who watches later finds them, too.
+fn publish_columns(
+    access: &Access,
+    instance: &Instance,
+    described: &RecordDescription,
+) -> Result<Out<[u8]>, PublishError> {
+    let json = described.to_json();
+    let (_, columns) = COLUMNS.publish_slices(access, instance, json.len())?;
+    let sent = columns
+        .loan_slice_uninit(json.len())
+        .map(|sample| sample.write_from_slice(json.as_bytes()))
+        .map(SampleMut::send);
+    match sent {
+        Ok(Ok(_)) => Ok(columns),
+        Ok(Err(error)) => Err(PublishError::NoSharedMemory(services::explained(&error))),
+        Err(error) => Err(PublishError::NoSharedMemory(services::explained(&error))),
+    }
+}
+
+struct Publishing {
     desk: Option<CommandServer>,
-    ports: Ports<C>,
+    ports: Ports,
     info: Option<Info>,
     lateness: Lateness,
     recorder: RecorderStatus,
@@ -160,9 +199,13 @@ struct Publishing<C: Telemetry> {
     paused: bool,
 }
 
-impl<C: Telemetry> Publishing<C> {
-    fn open(instance: &Instance, commands: Option<Rings>) -> Result<Self, PublishError> {
-        let ports = Ports::open(instance)?;
+impl Publishing {
+    fn open(
+        instance: &Instance,
+        described: &RecordDescription,
+        commands: Option<Rings>,
+    ) -> Result<Self, PublishError> {
+        let ports = Ports::open(instance, described)?;
         let desk = commands
             .map(|rings| CommandServer::open(&ports.access, instance, rings))
             .transpose()?;
@@ -180,12 +223,16 @@ impl<C: Telemetry> Publishing<C> {
 
     /// Publishes under the same name after the files were removed, and says how
     /// that went.
-    fn publish_again(self, instance: &Instance) -> (Option<Self>, String) {
+    fn publish_again(
+        self,
+        instance: &Instance,
+        described: &RecordDescription,
+    ) -> (Option<Self>, String) {
         const REMOVED: &str = "the files of live telemetry in /dev/shm were removed";
         let rings = self.desk.map(CommandServer::into_rings);
         // They would remove the new ones of the same names.
         drop(self.ports);
-        match Self::open(instance, rings) {
+        match Self::open(instance, described, rings) {
             Ok(Self { desk, ports, .. }) => {
                 if let Some(info) = self.info {
                     let _ = ports.infos.send_copy(info);
@@ -231,18 +278,12 @@ impl<C: Telemetry> Publishing<C> {
         }
     }
 
-    fn take(&mut self, item: &Item<C>) {
+    fn take<C: Telemetry>(&mut self, item: &Item<C>) {
         match item {
             Item::Record(record) => {
                 self.lateness.take(&record.tick);
                 self.time_ns = record.tick.woke.as_nanos();
-                if self.paused
-                    || self
-                        .ports
-                        .records
-                        .send_copy(Published(C::Words::of_record(record)))
-                        .is_err()
-                {
+                if self.paused || !self.ports.send(record) {
                     self.not_published += 1;
                 }
             }
@@ -266,6 +307,7 @@ impl<C: Telemetry> Publishing<C> {
     fn connect_watchers(&self) {
         if !self.paused {
             let _ = self.ports.infos.update_connections();
+            let _ = self.ports.columns.update_connections();
             let _ = self.ports.records.update_connections();
             let _ = self.ports.events.update_connections();
             let _ = self.ports.statuses.update_connections();

@@ -1,30 +1,21 @@
-//! The reading side.
+//! Watches a loop whose types the program has.
 
-use std::time::{Duration, Instant};
+use std::marker::PhantomData;
+use std::ops::{Deref, DerefMut};
 
 use fcc_core::framework::RecordOf;
-use iceoryx2::port::subscriber::{Subscriber, SubscriberCreateError};
-use iceoryx2::prelude::{PortFactory, ZeroCopySend};
 
-use super::place::Place;
-use super::record::Published;
-use super::services::{self, Access, EVENT, INFO, Ipc, RECORD, STATUS, Service};
-use super::space;
-use super::{Event, Info, LAYOUT, Status, WatchError};
-use fcc_telemetry::{Instance, RecordWords as _, Telemetry};
-
-/// How long a daemon may take to publish its information: long enough for a
-/// busy machine. A daemon that has ended is noticed at once.
-const PATIENCE: Duration = Duration::from_secs(5);
-const LOOK_EVERY: Duration = Duration::from_millis(5);
-
-type In<T> = Subscriber<Ipc, T, ()>;
+use super::WatchError;
+use super::row_watcher::RowWatcher;
+use fcc_telemetry::schema::{RecordDescription, read_words};
+use fcc_telemetry::{Instance, Telemetry};
 
 /// Watches a flight on this machine.
 #[cfg(feature = "flight")]
 pub type Watcher = WatcherOf<fcc_core::flight::Autopilot>;
 
-/// Watches a loop on this machine, from this or another process.
+/// Watches a loop on this machine, from this or another process: events, status
+/// and end as [`RowWatcher`], its records as structs.
 ///
 /// ```no_run
 /// use fcc_telemetry::Instance;
@@ -42,45 +33,31 @@ pub type Watcher = WatcherOf<fcc_core::flight::Autopilot>;
 /// ```
 #[derive(Debug)]
 pub struct WatcherOf<C: Telemetry> {
-    instance: Instance,
-    info: Info,
-    records: In<Published<C>>,
-    events: In<Event>,
-    statuses: In<Status>,
-    service: Service<Published<C>>,
-    // Dropped last: it cleans up after the others.
-    access: Access,
+    rows: RowWatcher,
+    of: PhantomData<fn() -> C>,
 }
 
 impl<C: Telemetry> WatcherOf<C> {
-    /// Starts to watch. The newest record, the newest status and up to 64 past
-    /// events are available at once.
+    /// Starts to watch, as [`RowWatcher::open`].
     ///
     /// # Errors
-    /// When no daemon of this name runs here, it publishes in another layout,
-    /// or the maximum number of programs is watching.
+    /// As there, and when the loop is of another plant.
     pub fn open(instance: &Instance) -> Result<Self, WatchError> {
-        if let Some(words) = space::too_little(space::WATCHER_BYTES) {
-            return Err(WatchError::NoSharedMemory(words));
+        let rows = RowWatcher::open(instance)?;
+        let own = RecordDescription::of::<RecordOf<C>>();
+        if rows.columns().is_of_another_plant(&own) {
+            return Err(WatchError::AnotherPlant {
+                instance: instance.clone(),
+                plant: rows.info().plant.as_str().to_owned(),
+            });
         }
-        let access = services::access().map_err(WatchError::NoSharedMemory)?;
-        let info = read_info(&access, instance)?;
-        check_layout(&info, instance)?;
-        let service = RECORD.watch::<Published<C>>(&access, instance)?;
+        if !rows.columns().has_layout_of(&own) {
+            return Err(WatchError::Damaged(instance.clone()));
+        }
         Ok(Self {
-            info,
-            records: subscribe(&service, instance)?,
-            events: subscribe(&EVENT.watch(&access, instance)?, instance)?,
-            statuses: subscribe(&STATUS.watch(&access, instance)?, instance)?,
-            service,
-            access,
-            instance: instance.clone(),
+            rows,
+            of: PhantomData,
         })
-    }
-
-    /// The daemon.
-    pub const fn info(&self) -> &Info {
-        &self.info
     }
 
     /// The newest record not returned yet; earlier ones are skipped.
@@ -88,11 +65,8 @@ impl<C: Telemetry> WatcherOf<C> {
     /// # Errors
     /// When it is not a valid record, or shared memory fails.
     pub fn latest(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
-        let mut newest = None;
-        while let Some(found) = next(&self.records)? {
-            newest = Some(found);
-        }
-        newest.map(|found| self.record(&found)).transpose()
+        let found = self.rows.newest(read_words::<RecordOf<C>>)?;
+        self.valid(found)
     }
 
     /// The next record; none if there is none yet. A watcher that polls less
@@ -102,117 +76,29 @@ impl<C: Telemetry> WatcherOf<C> {
     /// # Errors
     /// When it is not a valid record, or shared memory fails.
     pub fn next_record(&mut self) -> Result<Option<RecordOf<C>>, WatchError> {
-        next(&self.records)?
-            .map(|found| self.record(&found))
-            .transpose()
+        let found = self.rows.next(read_words::<RecordOf<C>>)?;
+        self.valid(found)
     }
 
-    /// The next event; none if there is none yet.
-    ///
-    /// # Errors
-    /// When shared memory fails.
-    pub fn next_event(&mut self) -> Result<Option<Event>, WatchError> {
-        next(&self.events)
-    }
-
-    /// The newest status not returned yet.
-    ///
-    /// # Errors
-    /// When shared memory fails.
-    pub fn latest_status(&mut self) -> Result<Option<Status>, WatchError> {
-        let mut newest = None;
-        while let Some(status) = next(&self.statuses)? {
-            newest = Some(status);
-        }
-        Ok(newest)
-    }
-
-    /// Whether the daemon still publishes. It checks processes: call it only
-    /// when no data has come for a while.
-    pub fn is_alive(&self) -> bool {
-        publishes(&self.access, &self.service)
-    }
-
-    fn record(&self, found: &Published<C>) -> Result<RecordOf<C>, WatchError> {
-        found
-            .0
-            .record()
-            .map_err(|_| WatchError::Damaged(self.instance.clone()))
+    fn valid<E>(
+        &self,
+        found: Option<Result<RecordOf<C>, E>>,
+    ) -> Result<Option<RecordOf<C>>, WatchError> {
+        let found = found.transpose();
+        found.map_err(|_| WatchError::Damaged(self.rows.instance().clone()))
     }
 }
 
-fn publishes<T: std::fmt::Debug + ZeroCopySend>(access: &Access, service: &Service<T>) -> bool {
-    // A killed one stays in the list until it is cleaned up.
-    access.try_cleanup_dead_nodes();
-    service.dynamic_config().number_of_publishers() > 0
-}
+impl<C: Telemetry> Deref for WatcherOf<C> {
+    type Target = RowWatcher;
 
-/// Whether this program can read what the daemon publishes.
-pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), WatchError> {
-    if info.is_understood() {
-        return Ok(());
-    }
-    Err(WatchError::OtherLayout {
-        instance: instance.clone(),
-        software: info.software.as_str().to_owned(),
-        layout: info.layout,
-        own: LAYOUT,
-    })
-}
-
-/// A daemon's information about itself.
-pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
-    find_info(access, instance).map_err(|error| match error {
-        WatchError::NotRunning(instance) => {
-            match Place::of_this_user().other_users().into_iter().next() {
-                Some(user) => WatchError::PerhapsAnothers { instance, user },
-                None => WatchError::NotRunning(instance),
-            }
-        }
-        error => error,
-    })
-}
-
-fn find_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
-    let service = INFO.watch::<Info>(access, instance)?;
-    let infos = subscribe(&service, instance)?;
-    let deadline = Instant::now() + PATIENCE;
-    loop {
-        let mut newest = None;
-        while let Some(info) = next(&infos)? {
-            newest = Some(info);
-        }
-        if let Some(info) = newest {
-            return Ok(info);
-        }
-        // Another watcher may have the service open after the daemon has ended.
-        if Instant::now() > deadline || service.dynamic_config().number_of_publishers() == 0 {
-            return Err(WatchError::NotRunning(instance.clone()));
-        }
-        std::thread::sleep(LOOK_EVERY);
+    fn deref(&self) -> &RowWatcher {
+        &self.rows
     }
 }
 
-fn subscribe<T: std::fmt::Debug + ZeroCopySend + 'static>(
-    service: &Service<T>,
-    instance: &Instance,
-) -> Result<In<T>, WatchError> {
-    service
-        .subscriber_builder()
-        .create()
-        .map_err(|error| match error {
-            SubscriberCreateError::ExceedsMaxSupportedSubscribers => {
-                WatchError::TooMany(instance.clone())
-            }
-            error => WatchError::NoSharedMemory(services::explained(&error)),
-        })
-}
-
-fn next<T: std::fmt::Debug + ZeroCopySend + Copy + 'static>(
-    from: &In<T>,
-) -> Result<Option<T>, WatchError> {
-    match from.receive() {
-        Ok(sample) => Ok(sample.map(|sample| *sample)),
-        Err(error) => Err(WatchError::NoSharedMemory(services::explained(&error))),
+impl<C: Telemetry> DerefMut for WatcherOf<C> {
+    fn deref_mut(&mut self) -> &mut RowWatcher {
+        &mut self.rows
     }
 }

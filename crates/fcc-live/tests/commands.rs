@@ -5,8 +5,7 @@ use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
 use fcc_live::{
-    CommandError, Commander, FlightCommand, Info, NewSetpoints, PendingCommand, Publisher, Text,
-    Verdict,
+    Command, CommandError, Commander, Info, OutsideLimits, PendingCommand, Publisher, Text, Verdict,
 };
 use fcc_telemetry::Instance;
 
@@ -50,14 +49,9 @@ fn next(publisher: &mut Publisher) -> PendingCommand {
     }
 }
 
-const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
-    airspeed_mps: None,
-    heading_rad: Some(1.25),
-    altitude_m: None,
-    pressure_altitude_m: None,
-    height_m: None,
-    altimeter_setting_pa: None,
-});
+fn heading() -> Command {
+    Command::set([("heading_rad", 1.25)])
+}
 
 #[test]
 fn a_command_arrives_and_its_answer_returns() {
@@ -66,14 +60,14 @@ fn a_command_arrives_and_its_answer_returns() {
     let result = thread::scope(|scope| {
         let giver = scope.spawn(|| {
             let mut commander = Commander::open(&instance).unwrap();
-            let first = commander.command(HEADING);
-            (first, commander.command(FlightCommand::Engage))
+            let first = commander.command(&heading());
+            (first, commander.command(&Command::Engage))
         });
         let asked = next(&mut publisher);
-        assert_eq!(asked.command, HEADING);
+        assert_eq!(asked.command, heading());
         publisher.answer(asked.id, Verdict::CarriedOut { tick: 77 });
         let asked = next(&mut publisher);
-        assert_eq!(asked.command, FlightCommand::Engage);
+        assert_eq!(asked.command, Command::Engage);
         publisher.answer(asked.id, Verdict::Refused("too slow".to_owned()));
         publisher.flush();
         giver.join().unwrap()
@@ -90,7 +84,7 @@ fn a_program_that_waits_is_answered_when_the_flight_ends() {
         let giver = scope.spawn(|| {
             Commander::open(&instance)
                 .unwrap()
-                .command(FlightCommand::Disengage)
+                .command(&Command::Disengage)
         });
         next(&mut publisher);
         drop(publisher);
@@ -110,20 +104,29 @@ fn a_program_that_waits_is_answered_when_the_flight_ends() {
 }
 
 #[test]
-fn an_invalid_command_is_not_sent() {
-    let instance = instance("nonsense");
+fn a_value_outside_its_limits_returns_with_them() {
+    let instance = instance("limits");
     let mut publisher = started(&instance);
-    let mut commander = Commander::open(&instance).unwrap();
-    let nonsense = FlightCommand::Set(NewSetpoints {
-        altitude_m: Some(f64::INFINITY),
-        ..NewSetpoints::default()
+    let outside = OutsideLimits {
+        name: "altitude_m".to_owned(),
+        value: f64::INFINITY,
+        least: -500.0,
+        most: 20_000.0,
+    };
+    let result = thread::scope(|scope| {
+        let giver = scope.spawn(|| {
+            let mut commander = Commander::open(&instance).unwrap();
+            commander.command(&Command::set([("altitude_m", f64::INFINITY)]))
+        });
+        let asked = next(&mut publisher);
+        publisher.answer(asked.id, Verdict::Outside(outside.clone()));
+        publisher.flush();
+        giver.join().unwrap()
     });
-    let words = commander.command(nonsense).unwrap_err().to_string();
-    assert!(
-        words.contains("altitude is inf m: choose -500 to 20000 m"),
-        "{words}"
-    );
-    assert_eq!(publisher.next_command(), None);
+    let refused = result.unwrap_err();
+    assert_eq!(refused, CommandError::InvalidCommand(outside.into()));
+    let words = "refused: altitude is inf m: choose -500 to 20000 m";
+    assert_eq!(refused.to_string(), words);
 }
 
 #[test]

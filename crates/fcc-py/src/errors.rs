@@ -140,8 +140,11 @@ pub(crate) static TIMER: Exception = Exception::new(
     "A timer that cannot be made, started or waited for.",
 );
 
-/// Adds the exceptions to the module.
-pub(crate) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+/// Adds the exceptions to a module.
+///
+/// # Errors
+/// Those of Python.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for exception in [
         &ERROR, &CONFIG, &ENGAGE, &FLIGHT, &RECORDING, &TELEMETRY, &COMMAND, &TIMER,
     ] {

@@ -1,6 +1,6 @@
 //! Events.
 
-use fcc_core::framework::{Controller, EventKind, EventOf, Time};
+use fcc_core::framework::{Controller, Event, EventKind, EventOf, Time};
 use fcc_telemetry::describe_event;
 use pyo3::prelude::*;
 
@@ -38,11 +38,11 @@ impl PyEvent {
         sensors: &[String],
         actuators: &[String],
     ) -> Self {
-        Self::described::<C>(event, describe_event::<C>(event, sensors, actuators))
+        Self::described(event, describe_event::<C>(event, sensors, actuators))
     }
 
     /// An event with its description.
-    pub(crate) fn described<C: Controller>(event: &EventOf<C>, text: String) -> Self {
+    pub(crate) fn described<O>(event: &Event<O>, text: String) -> Self {
         Self {
             tick: event.tick,
             time_s: seconds(event.time),

@@ -281,7 +281,7 @@ impl Observer<Autopilot> for PythonObserver {
     }
 
     fn event(&mut self, event: &FlightEvent, description: &str, _: &FlightTime) {
-        let event = PyEvent::described::<Autopilot>(event, description.to_owned());
+        let event = PyEvent::described(event, description.to_owned());
         lock(&self.log).events.push(event);
     }
 

@@ -10,15 +10,16 @@
 //! | `config` | configurations, by key |
 //! | `blocks`, `formulas` | the core's blocks and formulas |
 //! | `timers` | the kernel's timers |
-//! | `recordings` | recordings as numpy arrays; list, recover, report, replay |
-//! | `live` | a running daemon: watching it, and sending commands |
+//! | `recordings` | recordings of any plant as numpy arrays; list, recover, report, replay |
+//! | `live` | a running loop of any plant, watched and given commands |
 //! | `values`, `structured` | structs with a schema as classes and as structured arrays |
 //! | `events`, `errors`, `arguments`, `json` | events, exceptions, checks, dicts |
 //!
 //! Nothing is computed here: each call is passed on to the crate that the daemon
 //! uses.
 //! Without the feature `flight` only what the loop of any controller needs is
-//! compiled: `examples/pendulum` is a module of its own on it.
+//! compiled: `examples/pendulum` is a module of its own on it, with the same
+//! `Recording` and `Watcher`.
 
 #![cfg_attr(
     not(feature = "flight"),
@@ -36,8 +37,11 @@ mod blocks;
 mod callbacks;
 #[cfg(feature = "flight")]
 mod commanded;
+#[cfg(feature = "flight")]
 mod config;
-mod errors;
+#[cfg(feature = "conformance")]
+mod conformance;
+pub mod errors;
 pub mod events;
 #[cfg(feature = "flight")]
 mod fleet;
@@ -47,11 +51,10 @@ mod flight;
 mod formulas;
 mod json;
 #[cfg(feature = "live")]
-mod live;
+pub mod live;
 #[macro_use]
 pub mod machine;
-#[cfg(feature = "flight")]
-mod recordings;
+pub mod recordings;
 #[cfg(feature = "flight")]
 mod stepped;
 pub mod structured;

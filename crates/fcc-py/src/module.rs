@@ -64,16 +64,13 @@ fn fcc(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<timers::PyTimer>()?;
     module.add_class::<timers::PyExpiry>()?;
     module.add_class::<timers::PyTimingSummary>()?;
-    module.add_class::<recordings::PyRecording>()?;
-    module.add_function(wrap_pyfunction!(recordings::list_recordings, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::recover, module)?)?;
+    recordings::register(module)?;
     module.add_function(wrap_pyfunction!(recordings::report, module)?)?;
-    module.add_function(wrap_pyfunction!(recordings::replay, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::replay_flight, module)?)?;
+    #[cfg(feature = "conformance")]
+    module.add_function(wrap_pyfunction!(crate::conformance::conformance, module)?)?;
     #[cfg(feature = "live")]
-    {
-        module.add_class::<live::PyWatcher>()?;
-        module.add_class::<live::PyCommander>()?;
-    }
+    live::register(module)?;
     Ok(())
 }
 

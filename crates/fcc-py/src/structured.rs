@@ -6,8 +6,8 @@ use std::collections::HashMap;
 use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
 
-use fcc_core::framework::schema::{Kind, Schema};
-use fcc_telemetry::schema::{columns, words, write_words};
+use fcc_core::framework::schema::Schema;
+use fcc_telemetry::schema::{RecordDescription, words, write_words};
 use numpy::{PyArray1, PyArrayDescr};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,10 +27,6 @@ impl<T: Schema> Rows<T> {
         }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.words.is_empty()
-    }
-
     pub(crate) fn push(&mut self, row: &T) {
         let begin = self.words.len();
         self.words.resize(begin + words::<T>(), 0);
@@ -44,7 +40,7 @@ impl<T: Schema> Rows<T> {
     /// # Errors
     /// Those of numpy.
     pub fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        PyArray1::from_vec(py, self.words).call_method1("view", (dtype::<T>(py)?,))
+        array(py, self.words, &dtype::<T>(py)?)
     }
 }
 
@@ -75,7 +71,7 @@ pub(crate) fn dtype<T: Schema>(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDesc
     if let Some(dtype) = found {
         return Ok(dtype.into_bound(py));
     }
-    let made = make::<T>(py)?;
+    let made = dtype_of(py, &RecordDescription::of::<T>())?;
     let kept = made.clone().unbind();
     known()
         .get_or_insert_default()
@@ -83,26 +79,51 @@ pub(crate) fn dtype<T: Schema>(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDesc
     Ok(made)
 }
 
-fn make<T: Schema>(py: Python<'_>) -> PyResult<Bound<'_, PyArrayDescr>> {
+/// The dtype of a described record.
+pub(crate) fn dtype_of<'py>(
+    py: Python<'py>,
+    record: &RecordDescription,
+) -> PyResult<Bound<'py, PyArrayDescr>> {
     let (mut names, mut formats, mut offsets) = (Vec::new(), Vec::new(), Vec::new());
-    for column in columns::<T>() {
-        names.push(column.name);
-        formats.push(format_of(column.kind));
-        offsets.push(column.offset);
+    for column in &record.columns {
+        // No description has another type.
+        if let Some((letter, bytes)) = column.layout() {
+            names.push(&*column.name);
+            formats.push(format!("{letter}{bytes}"));
+            offsets.push(column.offset);
+        }
     }
     let layout = PyDict::new(py);
     layout.set_item("names", names)?;
     layout.set_item("formats", formats)?;
     layout.set_item("offsets", offsets)?;
-    layout.set_item("itemsize", words::<T>() * size_of::<u64>())?;
+    layout.set_item("itemsize", record.row_bytes)?;
     PyArrayDescr::new(py, layout)
 }
 
-fn format_of(kind: Kind) -> String {
-    let letter = match kind {
-        Kind::Bool | Kind::Code(_) | Kind::Flags | Kind::Count(_) => 'u',
-        Kind::Signed(_) | Kind::Instant => 'i',
-        Kind::Number => 'f',
-    };
-    format!("{letter}{}", kind.bytes())
+/// The words of rows as an array, which takes their memory.
+pub(crate) fn array<'py>(
+    py: Python<'py>,
+    words: Vec<u64>,
+    dtype: &Bound<'py, PyArrayDescr>,
+) -> PyResult<Bound<'py, PyAny>> {
+    PyArray1::from_vec(py, words).call_method1("view", (dtype,))
+}
+
+/// The columns of a record by their names, each as a dict.
+pub(crate) fn columns<'py>(
+    py: Python<'py>,
+    record: &RecordDescription,
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    for column in &record.columns {
+        let described = PyDict::new(py);
+        described.set_item("path", &column.path)?;
+        described.set_item("unit", &column.unit)?;
+        described.set_item("meaning", &column.meaning)?;
+        described.set_item("range", column.range)?;
+        described.set_item("codes", &column.codes)?;
+        columns.set_item(&column.name, described)?;
+    }
+    Ok(columns)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use fcc_telemetry::{DeniedRequest, Realtime};
+use fcc_telemetry::{Denial, Realtime};
 use sha2::{Digest, Sha256};
 
 /// What is known of a flight before it begins. Every file of its recording
@@ -52,6 +52,9 @@ pub(super) const REALTIME: &str = "fcc.realtime";
 pub(super) const PARAMETERS: &str = "fcc.parameters";
 pub(super) const CONFIG: &str = "config.toml";
 pub(super) const CONFIG_AS_GIVEN: &str = "config-as-given.toml";
+/// The attachment with the [columns](fcc_telemetry::schema::RecordDescription)
+/// of a record.
+pub(super) const COLUMNS: &str = "columns.json";
 
 /// Separates the entries of a list: no name contains it.
 const SEPARATOR: &str = "\n";
@@ -70,9 +73,12 @@ impl About {
         digits
     }
 
-    /// When it began: `2026-11-20T04:21:33Z`.
+    /// When it began: `2026-11-20T04:21:33Z`, or `unknown`.
     pub fn started(&self) -> String {
-        super::utc::timestamp(self.started_unix_ns)
+        match self.started_unix_ns {
+            0 => "unknown".to_owned(),
+            unix_ns => super::utc::timestamp(unix_ns),
+        }
     }
 
     /// The metadata records with these fields; attachments carry the rest.
@@ -173,10 +179,10 @@ impl About {
 }
 
 /// A denied request, of which a file holds only the text.
-fn in_words(request: String) -> DeniedRequest {
-    DeniedRequest {
+fn in_words(request: String) -> Denial {
+    Denial {
         request,
-        ..DeniedRequest::default()
+        ..Denial::default()
     }
 }
 

@@ -10,7 +10,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
-use super::about::{About, CONFIG, CONFIG_AS_GIVEN};
+use super::about::{About, COLUMNS, CONFIG, CONFIG_AS_GIVEN};
 use super::disk::Disk;
 use super::end::{END, RunStatistics};
 use super::foxglove;
@@ -20,6 +20,7 @@ use super::settings::Compression;
 use super::wire::log::Level;
 use crate::recorded::{Recorded, Views};
 use fcc_telemetry::describe_event;
+use fcc_telemetry::schema::RecordDescription;
 use fcc_telemetry::schema::protobuf::encode;
 
 /// The largest size of a chunk before compression: the memory a reader needs at
@@ -104,14 +105,19 @@ impl<C: Recorded> RecordingFile<C> {
             })?;
         }
         let as_given = about.config_as_given.as_ref();
-        let texts = [(CONFIG, Some(&about.config)), (CONFIG_AS_GIVEN, as_given)];
-        for (name, text) in texts {
+        let columns = RecordDescription::of::<RecordOf<C>>().to_json();
+        let texts = [
+            (CONFIG, "application/toml", Some(&about.config)),
+            (CONFIG_AS_GIVEN, "application/toml", as_given),
+            (COLUMNS, "application/json", Some(&columns)),
+        ];
+        for (name, media_type, text) in texts {
             if let Some(text) = text {
                 writer.attach(&Attachment {
                     log_time: about.started_unix_ns,
                     create_time: about.started_unix_ns,
                     name: name.to_owned(),
-                    media_type: "application/toml".to_owned(),
+                    media_type: media_type.to_owned(),
                     data: text.as_bytes().into(),
                 })?;
             }

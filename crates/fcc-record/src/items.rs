@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 
 use fcc_core::framework::schema::Schema;
-use fcc_core::framework::{Message, Tick, Time};
-use mcap::records::{MessageHeader, Record};
+use fcc_core::framework::{Message, Record, Tick, Time};
+use mcap::records::{self as mcap_records, MessageHeader};
 use prost::Message as _;
 
 use super::damage::Damage;
@@ -14,6 +14,7 @@ use super::raw::{DamagedBytes, Next, RawReader};
 use super::remark::Remark;
 use super::schema::{self, Topic};
 use super::wire;
+use fcc_telemetry::schema::RecordDescription;
 use fcc_telemetry::schema::protobuf::{DecodeError, decode};
 
 /// A record or an event of a loop, for any plant: the declared schema
@@ -33,6 +34,9 @@ pub trait RecordedMessage: Sized {
 
     /// Its tick; none for an event.
     fn tick(&self) -> Option<&Tick>;
+
+    /// The columns of its record; none if records of any plant are read.
+    fn columns() -> Option<RecordDescription>;
 }
 
 impl<M: Schema, E: Schema, S: Schema, O: Schema, R: Schema> RecordedMessage
@@ -52,10 +56,11 @@ impl<M: Schema, E: Schema, S: Schema, O: Schema, R: Schema> RecordedMessage
             Self::Event(_) => None,
         }
     }
-}
 
-/// What every loop records, whatever its plant: ticks, states, events.
-pub(super) type AnyMessage = Message<(), (), (), (), ()>;
+    fn columns() -> Option<RecordDescription> {
+        Some(RecordDescription::of::<Record<M, E, S, O>>())
+    }
+}
 
 /// One item of a recording.
 #[derive(Clone, PartialEq, Debug)]
@@ -272,11 +277,13 @@ impl Channels {
     /// The item in an MCAP record, if there is one.
     pub(super) fn item<M: RecordedMessage>(
         &mut self,
-        record: &Record<'_>,
+        record: &mcap_records::Record<'_>,
         clock_offset_ns: i64,
     ) -> Option<Result<Item<M>, String>> {
         match record {
-            Record::Channel(channel) if channel.message_encoding == schema::ENCODING => {
+            mcap_records::Record::Channel(channel)
+                if channel.message_encoding == schema::ENCODING =>
+            {
                 for (topic, id) in [
                     (Topic::Record, &mut self.record),
                     (Topic::Event, &mut self.event),
@@ -288,7 +295,7 @@ impl Channels {
                 }
                 None
             }
-            Record::Message { header, data } => {
+            mcap_records::Record::Message { header, data } => {
                 let id = header.channel_id;
                 if id == self.record {
                     Some(

@@ -33,6 +33,7 @@
 //! The measured cost of compression: see [`Compression`].
 
 mod about;
+mod any_plant;
 mod chunk;
 mod crash;
 mod damage;
@@ -67,6 +68,7 @@ mod wire;
 mod writing;
 
 pub use about::About;
+pub use any_plant::{AnyPlantMessage, Unread};
 pub use crash::last_unfinished;
 pub use damage::Damage;
 pub use disk::{Disk, DiskFile, FileSystem, create_output, is_being_written, read_file};

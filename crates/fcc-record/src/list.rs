@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::damage::Damage;
 use super::reader::{OpenError, Recording, Verified};
-use super::{disk, name, utc};
+use super::{disk, name};
 
 /// Properties of one recording.
 #[derive(Clone, PartialEq, Debug, Serialize)]
@@ -15,7 +15,7 @@ pub struct Entry {
     /// The file.
     #[serde(serialize_with = "name::serialize")]
     pub path: PathBuf,
-    /// When the flight began, in UTC: `2026-11-20T04:21:33Z`.
+    /// When the flight began, in UTC: `2026-11-20T04:21:33Z`, or `unknown`.
     pub started: String,
     /// The part number, from 1.
     pub part: u32,
@@ -110,7 +110,7 @@ fn describe(recording: &Recording, verified: Verified) -> Entry {
     let account = verified.account;
     Entry {
         path: path.to_owned(),
-        started: utc::timestamp(about.started_unix_ns),
+        started: about.started(),
         part: about.part,
         plant: about.plant.clone(),
         duration_s: account.duration_ns as f64 * 1e-9,

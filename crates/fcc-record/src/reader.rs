@@ -3,16 +3,19 @@
 use std::io::{self, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use fcc_core::framework::Message;
 use mcap::records::Record;
 
-use super::about::About;
+use super::about::{About, COLUMNS};
+use super::any_plant::AnyMessage;
 use super::damage::Damage;
 use super::disk;
 use super::end::{End, RunStatistics};
-use super::items::{AnyMessage, Items, Messages, RecordedMessage};
+use super::items::{Channels, Item, Items, Messages, RecordedMessage};
 use super::raw::{Next, RawReader};
 use super::schema::{self, Topic};
 use super::summary;
+use fcc_telemetry::schema::RecordDescription;
 
 /// An opened recording: what is known of the flight, and its messages.
 ///
@@ -42,6 +45,7 @@ pub struct Recording {
     path: PathBuf,
     bytes: u64,
     about: About,
+    columns: Option<RecordDescription>,
     whole: bool,
     end: Option<End>,
 }
@@ -66,6 +70,19 @@ pub enum OpenError {
         path: PathBuf,
         /// What is wrong with it, as text.
         why: String,
+    },
+    /// It is a recording of another plant than the program's.
+    #[error(
+        "{path}: is a recording of another plant, {plant}, by {software}: open it with that \
+         program, or in Python with fcc.Recording, which reads every plant's"
+    )]
+    AnotherPlant {
+        /// The file.
+        path: PathBuf,
+        /// Its plant.
+        plant: String,
+        /// The program that recorded it.
+        software: String,
     },
 }
 
@@ -103,7 +120,7 @@ impl Recording {
         });
         file.seek(SeekFrom::Start(0)).map_err(refused)?;
         let raw = RawReader::new(file).map_err(refused)?;
-        let about = read_about(raw).map_err(|why| OpenError::NotARecording {
+        let (about, columns) = read_about(raw).map_err(|why| OpenError::NotARecording {
             path: path.clone(),
             why,
         })?;
@@ -111,14 +128,31 @@ impl Recording {
             path,
             bytes,
             about,
+            columns,
             whole: index.is_some(),
             end,
         })
     }
 
+    /// Opens a recording of the plant of these messages.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), or that it is another plant's.
+    pub fn open_as<M: RecordedMessage>(path: impl AsRef<Path>) -> Result<Self, OpenError> {
+        let recording = Self::open(path)?;
+        recording.has_plant_of::<M>()?;
+        Ok(recording)
+    }
+
     /// What is known of the flight: machine, loop, configuration.
     pub const fn about(&self) -> &About {
         &self.about
+    }
+
+    /// The columns of its records, for programs without its plant's types; none
+    /// if they are damaged.
+    pub const fn columns(&self) -> Option<&RecordDescription> {
+        self.columns.as_ref()
     }
 
     /// Whether the file is finished. If not, the recorder was killed, the power
@@ -221,7 +255,7 @@ impl Recording {
     /// Records and events from the first, in order of log time.
     ///
     /// # Errors
-    /// When the file can no longer be opened.
+    /// When the file can no longer be opened, or is of another plant.
     pub fn messages<M: RecordedMessage>(&self) -> Result<Messages<M>, OpenError> {
         self.items().map(Messages::new)
     }
@@ -229,10 +263,24 @@ impl Recording {
     /// Records, events and remarks from the first, in order of log time.
     ///
     /// # Errors
-    /// When the file can no longer be opened.
+    /// When the file can no longer be opened, or is of another plant.
     pub fn items<M: RecordedMessage>(&self) -> Result<Items<M>, OpenError> {
+        self.has_plant_of::<M>()?;
         self.raw()
             .map(|raw| Items::new(raw, self.about.clock_offset_ns, self.end.clone()))
+    }
+
+    fn has_plant_of<M: RecordedMessage>(&self) -> Result<(), OpenError> {
+        match (&self.columns, M::columns()) {
+            (Some(columns), Some(own)) if columns.is_of_another_plant(&own) => {
+                Err(OpenError::AnotherPlant {
+                    path: self.path.clone(),
+                    plant: self.about.plant.clone(),
+                    software: self.about.software.clone(),
+                })
+            }
+            _ => Ok(()),
+        }
     }
 
     fn raw(&self) -> Result<RawReader, OpenError> {
@@ -256,31 +304,37 @@ enum Writer {
 }
 
 /// Reads what precedes the first message.
-fn read_about(mut raw: RawReader) -> Result<About, String> {
+fn read_about(mut raw: RawReader) -> Result<(About, Option<RecordDescription>), String> {
     enum Content {
         Profile(Writer),
         Flight(bool),
         OwnTopic,
+        OwnRecord,
         Other,
         Messages,
     }
-    let mut about = About::default();
+    let (mut about, mut columns) = (About::default(), None);
     let (mut is_ours, mut known, mut has_header) = (false, false, false);
     loop {
-        let content = raw.next(|record| match record {
+        let content = raw.next(|record| match &record {
             Record::Header(header) => Content::Profile(match header.profile.as_str() {
                 schema::PROFILE => Writer::Present,
-                schema::FIRST_PROFILE => Writer::Earlier(header.library),
+                schema::FIRST_PROFILE => Writer::Earlier(header.library.clone()),
                 _ => Writer::Other,
             }),
             Record::Metadata(metadata) => {
-                Content::Flight(about.take_metadata(&metadata.name, metadata.metadata))
+                Content::Flight(about.take_metadata(&metadata.name, metadata.metadata.clone()))
             }
             Record::Attachment { header, data, .. } => {
-                about.take_attachment(&header.name, &data);
+                about.take_attachment(&header.name, data);
+                if header.name == COLUMNS {
+                    let text = String::from_utf8_lossy(data);
+                    columns = RecordDescription::from_json(&text).ok();
+                }
                 Content::Other
             }
             Record::Channel(channel) if channel.topic == Topic::Record.name() => Content::OwnTopic,
+            Record::Message { .. } if is_record(&record) => Content::OwnRecord,
             Record::Schema { .. } | Record::Channel(_) | Record::Message { .. } => {
                 Content::Messages
             }
@@ -299,19 +353,36 @@ fn read_about(mut raw: RawReader) -> Result<About, String> {
                 is_ours = matches!(written, Writer::Present);
             }
             // With all before it damaged.
-            Next::Record(Content::OwnTopic) if !has_header => return Ok(about),
+            Next::Record(Content::OwnTopic | Content::OwnRecord) if !has_header => {
+                return Ok((about, columns));
+            }
             Next::Record(Content::Flight(taken)) => known |= taken,
             Next::Record(Content::Other) | Next::Damage(_) => {}
             // Either of the two may be damaged.
-            Next::Record(Content::OwnTopic | Content::Messages) if is_ours || known => {
-                return Ok(about);
+            Next::Record(Content::OwnTopic | Content::OwnRecord | Content::Messages)
+                if is_ours || known =>
+            {
+                return Ok((about, columns));
             }
             Next::Record(Content::Messages) if !has_header => {}
-            Next::End if known => return Ok(about),
+            Next::End if known => return Ok((about, columns)),
             Next::End if is_ours => return Err("it contains no metadata of a flight".to_owned()),
-            Next::Record(Content::OwnTopic | Content::Messages) | Next::End => {
+            Next::Record(Content::OwnTopic | Content::OwnRecord | Content::Messages)
+            | Next::End => {
                 return Err("another program wrote it".to_owned());
             }
         }
+    }
+}
+
+/// Whether it is a record of a loop in the channel that the recorder gives them,
+/// whose declaration may be damaged.
+fn is_record(record: &Record<'_>) -> bool {
+    match Channels::default().item::<AnyMessage>(record, 0) {
+        Some(Ok(Item::Message(Message::Tick(record)))) => {
+            let tick = record.tick;
+            tick.number > 0 && !tick.scheduled.is_never() && !tick.woke.is_never()
+        }
+        _ => false,
     }
 }

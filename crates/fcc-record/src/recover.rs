@@ -12,12 +12,13 @@ use mcap::{Attachment, McapError};
 use prost::Message as _;
 use serde::Serialize;
 
+use super::any_plant::AnyMessage;
 use super::damage::Damage;
 use super::disk;
 use super::end::{END, End, RunStatistics};
 use super::file::options;
 use super::foxglove;
-use super::items::{AnyMessage, Channels, Item};
+use super::items::{Channels, Item};
 use super::name::{self, damaged, unfinished};
 use super::raw::{Cut, Next, RawReader};
 use super::reader::{OpenError, Recording, Verified};
@@ -334,7 +335,7 @@ impl Copy {
     /// Reports each gap: as an event, and as a line of the log.
     fn report_gaps(&mut self) -> Result<(), McapError> {
         for damage in mem::take(&mut self.gaps) {
-            if let Some(event) = damage.event::<()>() {
+            if let Some(event) = damage.event() {
                 self.run_statistics.take(&AnyMessage::Event(event));
                 let text = damage.event_text();
                 let mut bytes = Vec::new();

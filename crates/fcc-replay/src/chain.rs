@@ -16,6 +16,13 @@ pub struct Chain {
     others: Vec<Recording>,
 }
 
+impl ChainError {
+    /// Whether the recording is of another plant than the program's.
+    pub const fn is_another_plant(&self) -> bool {
+        matches!(self, Self::Open(OpenError::AnotherPlant { .. }))
+    }
+}
+
 /// Reason why files cannot be replayed as one recording.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]
@@ -56,12 +63,13 @@ pub enum ChainError {
 }
 
 impl Chain {
-    /// Opens the files of a recording.
+    /// Opens the files of a recording of this controller's loop.
     ///
     /// # Errors
-    /// When they are not the parts of one recording in their order.
-    pub fn open(files: &[PathBuf]) -> Result<Self, ChainError> {
-        let mut recordings = files.iter().map(Recording::open);
+    /// When they are not the parts of one recording in their order, or are of
+    /// another plant.
+    pub fn open<C: Controller>(files: &[PathBuf]) -> Result<Self, ChainError> {
+        let mut recordings = files.iter().map(Recording::open_as::<MessageOf<C>>);
         let first = recordings.next().ok_or(ChainError::Empty)??;
         let others = recordings.collect::<Result<Vec<_>, _>>()?;
         let mut before = &first;

@@ -126,4 +126,5 @@ pub use machine::Machine;
 pub use overruns::Budget;
 pub use report::{Ending, LoopReport};
 pub use run::{Loop, LoopHandle, SpawnError, THREAD_NAME};
+pub use switch::SwitchOwner;
 pub use watchdog::{Hang, WatchdogConfig, watch};

@@ -16,12 +16,24 @@ pub(crate) enum SwitchEdge {
 /// engage again before it is steady.
 const LOCK_OUT: Duration = Duration::from_millis(500);
 
-/// Detects the edges of the engage switch.
-///
-/// The switch belongs to one sensor: the most preferred one that has ever
-/// delivered a switch. What others deliver while that one is silent is no
-/// switch, since the difference between two sensors' switches is not a movement
-/// of either.
+/// The sensor to which the engage switch belongs: the most preferred one that
+/// has ever delivered a switch. What others deliver while that one is silent is
+/// no switch, since the difference between two sensors' switches is not a
+/// movement of either.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct SwitchOwner(Option<u8>);
+
+impl SwitchOwner {
+    /// Takes the sensor that delivered a switch; whether the switch is its.
+    pub fn owns(&mut self, source: u8) -> bool {
+        let owner = self.0.unwrap_or(source).min(source);
+        self.0 = Some(owner);
+        owner == source
+    }
+}
+
+/// Detects the edges of the engage switch, which [belongs](SwitchOwner) to one
+/// sensor.
 ///
 /// If the switch is already on when the loop starts, or when its readings
 /// resume, the loop must not take control: an on edge counts only if an off
@@ -30,8 +42,7 @@ const LOCK_OUT: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub(crate) struct EngageSwitch {
     max_age: Duration,
-    /// The sensor to which the switch belongs.
-    owner: Option<u8>,
+    owner: SwitchOwner,
     last_position: Option<Switch>,
     off_since_gap: bool,
     switched_off: Time,
@@ -43,7 +54,7 @@ impl EngageSwitch {
     pub(crate) const fn new(max_age: Duration) -> Self {
         Self {
             max_age,
-            owner: None,
+            owner: SwitchOwner(None),
             last_position: None,
             off_since_gap: false,
             switched_off: Time::NEVER,
@@ -54,14 +65,16 @@ impl EngageSwitch {
     /// Processes this tick's reading; a stale one, or one of another sensor, is
     /// ignored.
     pub(crate) fn watch(&mut self, reading: Reading<Switch>, now: Time) -> Option<SwitchEdge> {
-        let position = reading.fresh(now, self.max_age);
-        if position.is_some() && self.owner.is_none_or(|owner| reading.source < owner) {
+        let before = self.owner;
+        let delivered = reading.fresh(now, self.max_age);
+        let position = delivered.filter(|_| self.owner.owns(reading.source));
+        if self.owner != before {
             *self = Self {
-                owner: Some(reading.source),
+                owner: self.owner,
                 ..Self::new(self.max_age)
             };
         }
-        let Some(position) = position.filter(|_| self.owner == Some(reading.source)) else {
+        let Some(position) = position else {
             self.off_since_gap = false;
             self.on_is_due = false;
             return None;

@@ -28,11 +28,11 @@ pub use altitude::ShownAltitude;
 pub use instance::{Instance, InstanceError};
 pub use message::describe_event;
 #[cfg(feature = "flight")]
-pub use message::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
+pub use message::{FlightEvent, FlightMessage, FlightRecord};
 #[cfg(feature = "flight")]
 pub use pattern_scorer::PatternScorer;
 pub use quantity::RecordedQuantity;
 #[cfg(feature = "flight")]
 pub use score::{FlightScore, Leg, LegScore, Sample, ScoreError, ScoredBy, score};
-pub use telemetry::{RecordWords, Telemetry};
-pub use timing::{DeniedRequest, Lateness, Period, Realtime, TimingReport};
+pub use telemetry::Telemetry;
+pub use timing::{Denial, Lateness, Period, Realtime, TimingReport};

@@ -3,22 +3,18 @@
 use fcc_core::framework::{Controller, EventKind, EventOf, Readings, SourceChange};
 
 #[cfg(feature = "flight")]
-pub use of_flights::{FlightEvent, FlightMessage, FlightRecord, FlightWords};
+pub use of_flights::{FlightEvent, FlightMessage, FlightRecord};
 
 #[cfg(feature = "flight")]
 mod of_flights {
     use fcc_core::flight::Autopilot;
     use fcc_core::framework::{EventOf, MessageOf, RecordOf};
 
-    use crate::schema::{Words, words};
     use crate::telemetry::Telemetry;
     use crate::units::{AVIATION, Shown};
 
     /// The record of one tick of a flight.
     pub type FlightRecord = RecordOf<Autopilot>;
-
-    /// The words of a flight's record, as in shared memory and arrays.
-    pub type FlightWords = Words<FlightRecord, { words::<FlightRecord>() }>;
 
     /// An event of a flight.
     pub type FlightEvent = EventOf<Autopilot>;
@@ -27,7 +23,6 @@ mod of_flights {
     pub type FlightMessage = MessageOf<Autopilot>;
 
     impl Telemetry for Autopilot {
-        type Words = FlightWords;
         const UNITS: &'static [Shown] = AVIATION;
     }
 }

@@ -155,12 +155,12 @@ pub struct Realtime {
     /// Longest wake-up latency of the CPUs, if a limit was granted.
     pub cpu_dma_latency_us: Option<u32>,
     /// Requests that were denied.
-    pub refused: Vec<DeniedRequest>,
+    pub refused: Vec<Denial>,
 }
 
 impl From<&RealtimeGranted> for Realtime {
     fn from(granted: &RealtimeGranted) -> Self {
-        let denied = granted.denied.iter().map(|denied| DeniedRequest {
+        let denied = granted.denied.iter().map(|denied| Denial {
             request: denied.request.clone(),
             reason: denied.reason.clone(),
             remedy: denied.remedy.clone(),
@@ -179,9 +179,9 @@ impl From<&RealtimeGranted> for Realtime {
     }
 }
 
-/// A request that was denied.
+/// A denied request, as it is recorded and reported.
 #[derive(Clone, PartialEq, Eq, Debug, Default, Serialize)]
-pub struct DeniedRequest {
+pub struct Denial {
     /// What was requested.
     pub request: String,
     /// Why it was denied.
@@ -190,7 +190,7 @@ pub struct DeniedRequest {
     pub remedy: String,
 }
 
-impl fmt::Display for DeniedRequest {
+impl fmt::Display for Denial {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.request)?;
         if !self.reason.is_empty() {

@@ -27,4 +27,4 @@ pub use picture::Picture;
 pub use screen::draw;
 pub use snapshot::{json_of, snapshot};
 pub use terminal::{TopError, top};
-pub use watched::{Part, Watched};
+pub use watched::{ScreenPart, Watched};

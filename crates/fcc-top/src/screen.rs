@@ -10,7 +10,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph};
 
 use super::picture::Picture;
-use super::watched::{Part, Watched};
+use super::watched::{ScreenPart, Watched};
 use super::{health, timing};
 
 /// Smallest screen with room for everything.
@@ -48,7 +48,7 @@ pub fn draw<C: Watched>(frame: &mut Frame<'_>, instance: &Instance, picture: &Pi
         Constraint::Length(1),
     ])
     .areas(area);
-    let row = |area: Rect, parts: Vec<(String, u16, Part<C>)>| {
+    let row = |area: Rect, parts: Vec<(String, u16, ScreenPart<C>)>| {
         // A wide screen widens all of them.
         let widths = parts.iter().map(|(_, width, _)| Constraint::Fill(*width));
         let areas = Layout::horizontal(widths).spacing(1).split(area);
@@ -58,12 +58,13 @@ pub fn draw<C: Watched>(frame: &mut Frame<'_>, instance: &Instance, picture: &Pi
     };
     let mut above = C::parts(picture.record.as_ref());
     above.push(("Lateness".to_owned(), 28, timing::draw));
-    let below: Vec<(String, u16, Part<C>)> = vec![
+    let below: Vec<(String, u16, ScreenPart<C>)> = vec![
         ("Stages".to_owned(), 23, health::stages),
         ("Sensor ages".to_owned(), 27, health::ages),
         ("Telemetry".to_owned(), 28, health::recorder),
     ];
-    let events_part: Vec<(String, u16, Part<C>)> = vec![("Events".to_owned(), 1, draw_events)];
+    let events_part: Vec<(String, u16, ScreenPart<C>)> =
+        vec![("Events".to_owned(), 1, draw_events)];
     let parts = row(upper, above)
         .chain(row(lower, below))
         .chain(row(events, events_part));

@@ -10,7 +10,7 @@ use super::picture::Picture;
 use super::values;
 
 /// Draws a part of the screen.
-pub type Part<C> = fn(&mut Frame<'_>, Rect, &Picture<C>);
+pub type ScreenPart<C> = fn(&mut Frame<'_>, Rect, &Picture<C>);
 
 /// A controller whose loop can be watched in a terminal. Its declared values
 /// are enough; an implementation may show them differently.
@@ -24,7 +24,7 @@ pub trait Watched: Telemetry + Sized {
 
     /// The parts to the left of the lateness, each with its title and relative
     /// width: by default a table of all values.
-    fn parts(_record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
+    fn parts(_record: Option<&RecordOf<Self>>) -> Vec<(String, u16, ScreenPart<Self>)> {
         vec![("Values".to_owned(), 50, values::draw)]
     }
 

@@ -4,11 +4,10 @@ use std::time::Duration;
 
 use fcc_core::blocks::{Pid, PidConfig};
 use fcc_core::framework::schema::in_range;
-use fcc_core::framework::{Controller, Flags, Reading, RecordOf, Tick};
+use fcc_core::framework::{Controller, Flags, Reading, Tick};
 use fcc_core::schema;
 use fcc_record::Recorded;
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Words, words};
 
 schema! {
     /// The measurements of a pendulum.
@@ -137,9 +136,7 @@ impl Controller for Balance {
     }
 }
 
-impl Telemetry for Balance {
-    type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
-}
+impl Telemetry for Balance {}
 
 impl Recorded for Balance {
     type Views = ();

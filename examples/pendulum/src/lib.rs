@@ -11,13 +11,13 @@
 
 mod controller;
 
-use std::path::PathBuf;
 use std::sync::Mutex;
 use std::time::Duration;
 
 use fcc::events::PyEvent;
-use fcc::machine::{Lockstep, replay};
+use fcc::machine::Lockstep;
 use fcc::values::{Values as _, from_keywords, register};
+use fcc::{errors, live, recordings};
 use fcc_core::framework::LoopCommand;
 use fcc_record::About;
 use fcc_runtime::LoopConfig;
@@ -84,13 +84,15 @@ fcc::machine_class! {
     fn command(&self, angle_rad: f64) -> PyResult<()> {
         self.lockstep().send(LoopCommand::Controller(angle_rad))
     }
+}
 
-    /// Replays a recording, and compares every value of every tick.
-    #[staticmethod]
-    #[pyo3(name = "replay")]
-    fn again(py: Python<'_>, file: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-        replay(py, &[file], |_| Balance::default(), &LoopConfig::default())
-    }
+/// Replays a recording, and compares every value of every tick. `paths` is a
+/// file, or the parts of a recording, oldest first.
+#[pyfunction]
+fn replay<'py>(paths: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    recordings::replay(paths, true, |chain| {
+        recordings::loop_of(chain, Balance::default(), &LoopConfig::default())
+    })
 }
 
 /// An inverted pendulum under the loop that flies an aircraft.
@@ -100,5 +102,9 @@ fn pendulum(module: &Bound<'_, PyModule>) -> PyResult<()> {
     register::<PyMotor>(module)?;
     register::<PyWanted>(module)?;
     module.add_class::<PyEvent>()?;
-    module.add_class::<PyMachine>()
+    module.add_class::<PyMachine>()?;
+    errors::register(module)?;
+    recordings::register(module)?;
+    module.add_function(wrap_pyfunction!(replay, module)?)?;
+    live::register(module)
 }

@@ -26,12 +26,13 @@ use std::thread;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use fcc_live::PublisherOf;
 use fcc_record::{RecorderOf, RecordingPace};
 use fcc_runtime::{Link, Loop, LoopCommand, LoopConfig, LoopReport, Message, Parts, RecordOf};
+use fcc_telemetry::Instance;
 use fcc_timer::{RealtimeRequest, Timer, TimerKind};
 
 use room::{Heater, Thermometer};
+use show::Live;
 use thermostat::{Config, Thermostat};
 
 const PERIOD: Duration = Duration::from_millis(25);
@@ -45,9 +46,12 @@ struct Arguments {
     /// Record the run into this folder.
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
-    /// Publish the run for `thermostat top`.
+    /// Publish the run for `thermostat top`, and accept commands.
     #[arg(long)]
     live: bool,
+    /// The name under which it is published and watched.
+    #[arg(long, global = true, default_value = "thermostat")]
+    instance: Instance,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -88,7 +92,8 @@ fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
         None => {
             let timer = TimerKind::Timerfd.build(PERIOD)?;
             let folder = arguments.record.as_deref();
-            heat(timer, SECONDS, folder, arguments.live, out)?;
+            let live = arguments.live.then_some(&arguments.instance);
+            heat(timer, SECONDS, folder, live, out)?;
         }
         Some(Command::Replay { files }) => return replay::replay(&files, out),
         Some(Command::Report { file, html, json }) => {
@@ -100,7 +105,7 @@ fn run(arguments: Arguments) -> Result<ExitCode, Box<dyn Error>> {
             };
             writeln!(out, "{text}")?;
         }
-        Some(Command::Top) => fcc_top::top::<Thermostat>(&show::instance()?)?,
+        Some(Command::Top) => fcc_top::top::<Thermostat>(&arguments.instance)?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -125,15 +130,16 @@ fn heat(
     timer: Box<dyn Timer>,
     seconds: u64,
     folder: Option<&Path>,
-    live: bool,
+    live: Option<&Instance>,
     out: &mut dyn Write,
 ) -> Result<LoopReport, Box<dyn Error>> {
     let parts = parts(timer, &Heater::default());
     let mut recorder = folder
         .map(|folder| recording::start(folder, &parts, RecordingPace::RealTime))
         .transpose()?;
-    let instance = show::instance()?;
-    let mut publisher = live.then(|| show::publish(&instance, &parts)).transpose()?;
+    let mut live = live
+        .map(|instance| Live::begin(instance, &parts))
+        .transpose()?;
     let config = LoopConfig {
         realtime: RealtimeRequest {
             priority: Some(50),
@@ -151,7 +157,7 @@ fn heat(
         let mut last = None;
         for _ in 0..LOOKS_A_SECOND {
             thread::sleep(Duration::from_secs(1) / LOOKS_A_SECOND);
-            let newest = receive(&mut link, recorder.as_mut(), publisher.as_mut(), out);
+            let newest = receive(&mut link, recorder.as_mut(), live.as_mut(), out);
             last = newest.or(last);
         }
         if let Some(record) = last {
@@ -167,12 +173,7 @@ fn heat(
     link.commands.send(LoopCommand::Stop)?;
     let report = handle.join();
     // For the recording; how the loop ended is in the report.
-    receive(
-        &mut link,
-        recorder.as_mut(),
-        publisher.as_mut(),
-        &mut io::sink(),
-    );
+    receive(&mut link, recorder.as_mut(), live.as_mut(), &mut io::sink());
     let _ = print_report(&report, out);
     if let Some(recorder) = recorder {
         let recorded = recording::finish(recorder, &report.ending.to_string())?;
@@ -187,7 +188,7 @@ fn heat(
 fn receive(
     link: &mut Link<Thermostat>,
     mut recorder: Option<&mut RecorderOf<Thermostat>>,
-    mut publisher: Option<&mut PublisherOf<Thermostat>>,
+    mut live: Option<&mut Live>,
     out: &mut dyn Write,
 ) -> Option<RecordOf<Thermostat>> {
     let mut last = None;
@@ -195,8 +196,8 @@ fn receive(
         if let Some(recorder) = &mut recorder {
             recorder.take(&message);
         }
-        if let Some(publisher) = &mut publisher {
-            show::publish_message(publisher, &message);
+        if let Some(live) = &mut live {
+            live.take(&message);
         }
         match message {
             Message::Tick(record) => last = Some(record),
@@ -205,11 +206,9 @@ fn receive(
             }
         }
     }
-    if let Some(publisher) = publisher {
-        if let Some(recorder) = recorder {
-            publisher.recorder(show::recorder(&recorder.status()));
-        }
-        publisher.flush();
+    if let Some(live) = live {
+        let status = recorder.map(|recorder| show::recorder(&recorder.status()));
+        live.poll(status, &mut link.commands);
     }
     last
 }
@@ -288,7 +287,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let timer = TimerKind::Timerfd.build(PERIOD).unwrap();
         let mut full = File::options().write(true).open("/dev/full").unwrap();
-        let report = heat(timer, 1, Some(folder.path()), false, &mut full).unwrap();
+        let report = heat(timer, 1, Some(folder.path()), None, &mut full).unwrap();
         assert!(matches!(report.ending, Ending::StopCommand));
         assert!(report.released);
         assert!(report.ticks > 1);

@@ -10,7 +10,7 @@ use fcc_record::{About, RecorderOf, RecorderSettings, Recording, messages};
 use fcc_replay::{Chain, Identity, Replay, run};
 use fcc_runtime::{LoopCommand, LoopConfig, Machine, Message, MessageOf, Parts, RecordOf};
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{columns, header};
+use fcc_telemetry::schema::{columns, header, read_words, words, write_words};
 use fcc_timer::ManualTimer;
 use fcc_top::{Picture, json_of};
 
@@ -22,11 +22,9 @@ macro_rules! tank {
     ($module:ident: $($reading:ident = $number:literal),*) => {
         mod $module {
             use fcc_core::framework::{
-                Actuator, ActuatorFault, Controller, Flags, Reading, RecordOf, Sensor, SensorFault,
-                Tick,
+                Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, Tick,
             };
             use fcc_core::schema;
-            use fcc_telemetry::schema::{Words, words};
 
             schema! {
                 /// The measurements of a tank.
@@ -112,9 +110,7 @@ macro_rules! tank {
                 }
             }
 
-            impl fcc_telemetry::Telemetry for Tank {
-                type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
-            }
+            impl fcc_telemetry::Telemetry for Tank {}
 
             impl fcc_record::Recorded for Tank {
                 type Views = ();
@@ -208,8 +204,9 @@ fn the_reading_is_recorded_shared_shown_and_replayed() {
     let last = records.last().unwrap();
     assert_eq!(last.measurements.inflow_mps.value, TICKS as f64 * 0.1);
 
-    let words = <after::Tank as Telemetry>::Words::of(last);
-    assert_eq!(words.get().unwrap(), *last);
+    let mut shared = vec![0; words::<RecordOf<after::Tank>>()];
+    write_words(last, &mut shared);
+    assert_eq!(read_words::<RecordOf<after::Tank>>(&shared).unwrap(), *last);
 
     let mut picture = Picture::<after::Tank>::of(&Info::of_this_process());
     picture.record(last);
@@ -218,7 +215,7 @@ fn the_reading_is_recorded_shared_shown_and_replayed() {
 
     let replay = || Replay::new(after::Tank, PERIOD, &LoopConfig::default()).unwrap();
     let mut same = Identity::of::<after::Tank>();
-    let chain = Chain::open(&status.files).unwrap();
+    let chain = Chain::open::<after::Tank>(&status.files).unwrap();
     let replayed = chain.replay(
         replay(),
         |recorded, again| same.take(recorded, again),

@@ -5,15 +5,12 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use fcc_record::{About, Recorded, RecorderOf, RecorderSettings, RecorderStatus, RecordingPace};
-use fcc_runtime::{Parts, RecordOf};
+use fcc_runtime::Parts;
 use fcc_telemetry::Telemetry;
-use fcc_telemetry::schema::{Words, words};
 
 use crate::thermostat::{Config, Thermostat};
 
-impl Telemetry for Thermostat {
-    type Words = Words<RecordOf<Self>, { words::<RecordOf<Self>>() }>;
-}
+impl Telemetry for Thermostat {}
 
 impl Recorded for Thermostat {
     type Views = ();
@@ -74,7 +71,7 @@ pub(crate) fn finish(
 mod tests {
     use fcc_core::framework::schema::{Schema, Values};
     use fcc_record::Recording;
-    use fcc_runtime::{Message, MessageOf};
+    use fcc_runtime::{Message, MessageOf, RecordOf};
 
     use super::*;
     use crate::replay::tests::{TICKS, record};

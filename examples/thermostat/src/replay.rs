@@ -20,7 +20,7 @@ fn replay_of(config: &Config, period: Duration) -> Result<Replay<Thermostat>, Ti
 /// Replays a recording by the configuration in it, and reports whether all of
 /// it was the same.
 pub(crate) fn replay(files: &[PathBuf], out: &mut dyn Write) -> Result<ExitCode, Box<dyn Error>> {
-    let chain = Chain::open(files)?;
+    let chain = Chain::open::<Thermostat>(files)?;
     let config = toml::from_str(&chain.about().config)
         .map_err(|error| format!("{}: {error}", chain.config_name()))?;
     let period = Duration::try_from_secs_f64(1.0 / chain.about().rate_hz)?;

@@ -1,12 +1,15 @@
-//! The report on a run, and the screen that watches one: what is declared of the
-//! values is enough for both.
+//! The report on a run, the screen that watches one, and commands from other
+//! programs: what is declared of the values is enough.
 
 use std::path::Path;
 
-use fcc_live::{Info, PublisherOf, RecorderState, RecorderStatus, Text};
+use fcc_live::{
+    Commandable, CommandableSetpoint, Info, PublisherOf, RecorderState, RecorderStatus,
+    SentCommands, Text,
+};
 use fcc_record::Recording;
 use fcc_report::{Report, Reported, Survey, Terms};
-use fcc_runtime::{Message, MessageOf, Parts};
+use fcc_runtime::{CommandSender, Message, MessageOf, Parts};
 use fcc_telemetry::{Instance, describe_event};
 use fcc_top::Watched;
 
@@ -26,6 +29,16 @@ impl Watched for Thermostat {
     const PROGRAM: &'static str = "thermostat";
 }
 
+impl Commandable for Thermostat {
+    const SETPOINTS: &'static [CommandableSetpoint<f64>] = &[CommandableSetpoint {
+        name: "room_c",
+        limits: 5.0..=30.0,
+        command: |wanted_c| wanted_c,
+        needs_control: false,
+        alternatives: None,
+    }];
+}
+
 /// Reports on a recording, and writes a page with its plots if one is wanted.
 pub(crate) fn report(file: &Path, page: Option<&Path>) -> Result<Report<()>, String> {
     let recording = Recording::open(file).map_err(|error| error.to_string())?;
@@ -39,39 +52,60 @@ pub(crate) fn report(file: &Path, page: Option<&Path>) -> Result<Report<()>, Str
 /// Records that may wait to be published: as many as a run in lockstep has.
 const WAITING: usize = 512;
 
-/// The name under which a run is published.
-pub(crate) fn instance() -> Result<Instance, String> {
-    let name: Result<Instance, _> = "thermostat".parse();
-    name.map_err(|error| error.to_string())
+/// A run that other programs watch and command.
+pub(crate) struct Live {
+    publisher: PublisherOf<Thermostat>,
+    commands: SentCommands<Thermostat>,
 }
 
-/// Publishes a run of these parts to whoever watches.
-pub(crate) fn publish(
-    instance: &Instance,
-    parts: &Parts<Thermostat>,
-) -> Result<PublisherOf<Thermostat>, String> {
-    let mut publisher = PublisherOf::start(instance, WAITING).map_err(|error| error.to_string())?;
-    publisher.describe(Info {
-        software: Text::new(env!("CARGO_PKG_VERSION")),
-        plant: Text::new("room"),
-        rate_hz: 1.0 / parts.timer.period().as_secs_f64(),
-        timer: Text::new(parts.timer.name()),
-        ..Info::of_this_process()
-    });
-    Ok(publisher)
-}
+impl Live {
+    /// Publishes a run of these parts.
+    pub(crate) fn begin(instance: &Instance, parts: &Parts<Thermostat>) -> Result<Self, String> {
+        let publisher = PublisherOf::start_with_commands(instance, WAITING);
+        let mut publisher = publisher.map_err(|error| error.to_string())?;
+        publisher.describe(Info {
+            software: Text::new(env!("CARGO_PKG_VERSION")),
+            plant: Text::new("room"),
+            rate_hz: 1.0 / parts.timer.period().as_secs_f64(),
+            timer: Text::new(parts.timer.name()),
+            ..Info::of_this_process()
+        });
+        Ok(Self {
+            publisher,
+            commands: SentCommands::new(Vec::new()),
+        })
+    }
 
-/// Publishes a record or an event.
-pub(crate) fn publish_message(
-    publisher: &mut PublisherOf<Thermostat>,
-    message: &MessageOf<Thermostat>,
-) {
-    match message {
-        Message::Tick(record) => publisher.record(record),
-        Message::Event(event) => {
-            let words = describe_event::<Thermostat>(event, &[], &[]);
-            publisher.event(fcc_live::Event::new(event, &words));
+    /// Publishes a record or an event, and answers commands by it.
+    pub(crate) fn take(&mut self, message: &MessageOf<Thermostat>) {
+        match message {
+            Message::Tick(record) => {
+                self.publisher.record(record);
+                let (tick, state) = (record.tick.number, record.state.state());
+                while let Some((id, verdict)) = self.commands.verdict(tick, state) {
+                    self.publisher.answer(id, verdict);
+                }
+            }
+            Message::Event(event) => {
+                let words = describe_event::<Thermostat>(event, &[], &[]);
+                self.publisher.event(fcc_live::Event::new(event, &words));
+                self.commands.event(event);
+            }
         }
+    }
+
+    /// Sends other programs' commands to the loop, and publishes what was taken.
+    pub(crate) fn poll(&mut self, status: Option<RecorderStatus>, to: &mut CommandSender<f64>) {
+        if let Some(status) = status {
+            self.publisher.recorder(status);
+        }
+        while let Some(asked) = self.publisher.next_command() {
+            let send = |command| to.send(command).map_err(|error| error.to_string());
+            if let Some((id, verdict)) = self.commands.send(asked, send) {
+                self.publisher.answer(id, verdict);
+            }
+        }
+        self.publisher.flush();
     }
 }
 
@@ -204,7 +238,7 @@ mod tests {
             }
         });
         let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
-        let instance = instance().unwrap();
+        let instance: Instance = "thermostat".parse().unwrap();
         terminal
             .draw(|frame| draw(frame, &instance, &picture))
             .unwrap();
@@ -236,10 +270,10 @@ mod tests {
         let instance: Instance = name.parse().unwrap();
         let timer = Box::new(ManualTimer::new(PERIOD).unwrap());
         let parts = parts(timer, &Heater::default());
-        let mut publisher = publish(&instance, &parts).unwrap();
+        let mut live = Live::begin(&instance, &parts).unwrap();
         let watcher = fcc_live::WatcherOf::<Thermostat>::open(&instance).unwrap();
-        heated(|message| publish_message(&mut publisher, message));
-        publisher.flush();
+        heated(|message| live.take(message));
+        live.publisher.flush();
         let json = fcc_top::snapshot(watcher).unwrap();
         assert_eq!(json["tick"]["state"], "engaged");
         assert!(json["tick"]["outputs"]["power"].as_f64().unwrap() > 0.0);

@@ -1,7 +1,9 @@
 //! `fccd command`: commands to a daemon on this machine.
 
+use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
-use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
+use fcc_live::{Command, CommandError, Commander, PlantLimits};
+use fcc_telemetry::units::AVIATION;
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -21,11 +23,12 @@ struct Sent {
 
 /// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
-    let command = FlightCommand::from(&args.what);
+    let command = Command::from(&args.what);
+    // By the limits for any aircraft; the daemon knows those of its own.
     command
-        .check()
-        .map_err(|error| Failure::of(Exit::Usage, error.in_knots_degrees_feet()))?;
-    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(command));
+        .for_the_loop::<Autopilot>(&PlantLimits::new())
+        .map_err(|error| Failure::of(Exit::Usage, error.text_in(AVIATION)))?;
+    let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(&command));
     let exit = match &result {
         Ok(_) => Exit::Success,
         Err(CommandError::Refused(_) | CommandError::InvalidCommand(_)) => Exit::Refused,
@@ -33,7 +36,7 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     };
     // In the units of the command line.
     let result = result.map_err(|error| match error {
-        CommandError::InvalidCommand(why) => format!("refused: {}", why.in_knots_degrees_feet()),
+        CommandError::InvalidCommand(why) => format!("refused: {}", why.text_in(AVIATION)),
         other => other.to_string(),
     });
     if args.json {
@@ -57,29 +60,35 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-impl From<&CommandChoice> for FlightCommand {
+impl From<&CommandChoice> for Command {
     fn from(what: &CommandChoice) -> Self {
         match what {
             CommandChoice::Engage => Self::Engage,
             CommandChoice::Disengage => Self::Disengage,
             CommandChoice::Stop => Self::Stop,
-            CommandChoice::Set(set) => Self::Set(NewSetpoints::from(set)),
+            CommandChoice::Set(set) => set.into(),
         }
     }
 }
 
-impl From<&SetArgs> for NewSetpoints {
+impl From<&SetArgs> for Command {
     fn from(set: &SetArgs) -> Self {
-        Self {
-            airspeed_mps: set.airspeed_kt.map(|kt| kt * KNOT_MPS),
-            heading_rad: set.heading_deg.map(f64::to_radians),
-            altitude_m: set.altitude_ft.map(|ft| ft * FOOT_M),
-            pressure_altitude_m: set.pressure_altitude_ft.map(|ft| ft * FOOT_M),
-            height_m: set.height_ft.map(|ft| ft * FOOT_M),
-            altimeter_setting_pa: set
-                .altimeter_hpa
-                .map(|hpa| hpa * HECTOPASCAL_PA)
-                .or_else(|| set.altimeter_inhg.map(|inhg| inhg * INHG_PA)),
-        }
+        let altimeter_setting_pa = set
+            .altimeter_hpa
+            .map(|hpa| hpa * HECTOPASCAL_PA)
+            .or_else(|| set.altimeter_inhg.map(|inhg| inhg * INHG_PA));
+        let setpoints = [
+            ("airspeed_mps", set.airspeed_kt.map(|kt| kt * KNOT_MPS)),
+            ("heading_rad", set.heading_deg.map(f64::to_radians)),
+            ("altitude_m", set.altitude_ft.map(|ft| ft * FOOT_M)),
+            (
+                "pressure_altitude_m",
+                set.pressure_altitude_ft.map(|ft| ft * FOOT_M),
+            ),
+            ("height_m", set.height_ft.map(|ft| ft * FOOT_M)),
+            ("altimeter_setting_pa", altimeter_setting_pa),
+        ];
+        let given = setpoints.into_iter();
+        Self::set(given.filter_map(|(name, value)| Some((name, value?))))
     }
 }

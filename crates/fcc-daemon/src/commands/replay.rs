@@ -36,7 +36,14 @@ struct Outcome {
 
 /// Replays a recording.
 pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
-    let chain = Chain::open(&args.files).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
+    let chain = Chain::open::<Autopilot>(&args.files).map_err(|error| {
+        let exit = if error.is_another_plant() {
+            Exit::Usage
+        } else {
+            Exit::NotReplayed
+        };
+        Failure::of(exit, error)
+    })?;
     let recorded =
         recorded_config(&chain).map_err(|error| Failure::of(Exit::NotReplayed, error))?;
     let other = args.config.as_deref().map(Config::load).transpose()?;

@@ -1,8 +1,9 @@
 //! `fccd report FILE`: a report on a recording.
 
 use fcc_flight::replay::recorded_pattern;
-use fcc_record::Recording;
+use fcc_record::{OpenError, Recording};
 use fcc_report::{FlightAddition, FlightReport, FlightSurvey};
+use fcc_telemetry::FlightMessage;
 
 use super::failure::Failure;
 use super::progress;
@@ -12,7 +13,14 @@ use crate::output;
 
 /// Reads a recording and reports on it.
 pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
-    let report = make(args).map_err(Failure::new)?;
+    let recording = Recording::open_as::<FlightMessage>(&args.file).map_err(|error| {
+        let exit = match error {
+            OpenError::AnotherPlant { .. } => Exit::Usage,
+            _ => Exit::Failure,
+        };
+        Failure::of(exit, error)
+    })?;
+    let report = make(args, &recording).map_err(Failure::new)?;
     let exit = if report.is_complete() || fcc_record::is_being_written(&args.file) {
         Exit::Success
     } else {
@@ -25,11 +33,10 @@ pub(super) fn report(args: &ReportArgs) -> Result<Exit, Failure> {
     })
 }
 
-fn make(args: &ReportArgs) -> Result<FlightReport, String> {
-    let recording = Recording::open(&args.file).map_err(|error| error.to_string())?;
+fn make(args: &ReportArgs, recording: &Recording) -> Result<FlightReport, String> {
     let bar = progress::bar(recording.bytes(), "reading");
     let addition = FlightAddition::new(recorded_pattern(recording.about()));
-    let report = FlightSurvey::read(&recording, addition, args.csv.as_deref(), |read| {
+    let report = FlightSurvey::read(recording, addition, args.csv.as_deref(), |read| {
         bar.set_position(read);
     })?;
     bar.finish_and_clear();

@@ -9,7 +9,7 @@ use fcc_flight::config::{BuiltInSection, Config};
 use fcc_flight::flight::assemble;
 use fcc_record::{About, Recorder, RecorderSettings, RecordingPace};
 use fcc_runtime::{Machine, Parts};
-use fcc_telemetry::{DeniedRequest, FlightMessage, Realtime};
+use fcc_telemetry::{Denial, FlightMessage, Realtime};
 use fcc_timer::ManualTimer;
 
 /// A remark at the end of a recorded flight.
@@ -105,10 +105,10 @@ fn about(rate_hz: u32) -> About {
         actuators: vec!["built-in aircraft".to_owned()],
         realtime: Realtime {
             policy: "SCHED_OTHER".to_owned(),
-            refused: vec![DeniedRequest {
+            refused: vec![Denial {
                 request: "SCHED_FIFO 80 was refused".to_owned(),
                 remedy: "give CAP_SYS_NICE".to_owned(),
-                ..DeniedRequest::default()
+                ..Denial::default()
             }],
             ..Realtime::default()
         },

@@ -3,23 +3,23 @@
 use std::io::ErrorKind;
 use std::sync::Arc;
 
+#[cfg(feature = "live")]
+use fcc_core::flight::AutopilotConfig;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
-use fcc_live::{AircraftLimits, FlightCommand};
+use fcc_live::{PlantLimits, SentCommands};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
 
-#[cfg(feature = "live")]
-use super::commands::Commands;
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
 use super::plan::Pace;
-use super::recording::{Recording, RecordingRequest};
+use super::recording::{FlightRecorder, RecordingRequest};
 use super::restart::{RestartKeeper, RestartRequest};
 use super::scorer::Scorer;
 use super::truth_recorder::{TruthReceiver, tap};
@@ -181,7 +181,7 @@ impl Assembly {
             observers.push(Box::new(RestartKeeper::new(request)));
         }
         if let Some(request) = recording {
-            observers.push(Box::new(Recording::<Autopilot>::new(request)));
+            observers.push(Box::new(FlightRecorder::<Autopilot>::new(request)));
         }
         let autopilot = self.autopilot.config();
         let guidance = &autopilot.guidance;
@@ -191,19 +191,29 @@ impl Assembly {
             #[cfg(feature = "live")]
             observers.push(Box::new(Live::<Autopilot>::new(
                 config,
-                Commands::new(
-                    AircraftLimits {
-                        airspeeds_mps: autopilot.envelope.allowed_airspeeds(),
-                        has_field_elevation: autopilot.altimeter.field_elevation_m.is_some(),
-                    },
-                    FlightCommand::for_the_loop,
-                ),
+                SentCommands::new(limits(autopilot)),
             )));
         }
         // The last, so that it receives what the others report at their end.
         observers.push(Box::new(EventLog::default()));
         observers
     }
+}
+
+/// What an aircraft permits of the set points of other programs.
+#[cfg(feature = "live")]
+fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
+    let mut limits = vec![("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds()))];
+    if autopilot.altimeter.field_elevation_m.is_none() {
+        limits.push((
+            "height_m",
+            Err(
+                "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
+                 the configuration, or give an altitude",
+            ),
+        ));
+    }
+    limits
 }
 
 #[cfg(test)]

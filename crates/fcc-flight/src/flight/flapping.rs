@@ -13,11 +13,11 @@ const OVER_S: f64 = 10.0;
 
 /// The lines about faults that come and go.
 #[derive(Debug, Default)]
-pub struct Flapping(Vec<Part>);
+pub struct Flapping(Vec<FaultSource>);
 
 /// A sensor, an actuator, or readings that change their source.
 #[derive(Debug)]
-struct Part {
+struct FaultSource {
     name: String,
     since_s: f64,
     passed: u32,
@@ -40,7 +40,7 @@ impl Flapping {
         }
         let (name, _) = line.split_once(": ").unwrap_or((line, ""));
         let Some(part) = self.0.iter_mut().find(|part| part.name == name) else {
-            self.0.push(Part {
+            self.0.push(FaultSource {
                 name: name.to_owned(),
                 since_s: time_s,
                 passed: 1,

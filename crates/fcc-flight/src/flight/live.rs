@@ -1,11 +1,12 @@
 //! Live telemetry of a flight.
 
 use fcc_core::framework::{EventOf, RecordOf};
-use fcc_live::{Event, Info, PublisherOf, RecorderState, RecorderStatus, Text};
+use fcc_live::{
+    Commandable, Event, Info, PublisherOf, RecorderState, RecorderStatus, SentCommands, Text,
+};
 use fcc_record as recording;
-use fcc_telemetry::{Instance, Telemetry};
+use fcc_telemetry::Instance;
 
-use super::commands::Commands;
 use super::observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 use super::outcome::Outcome;
 use crate::config::Config;
@@ -17,17 +18,17 @@ const MOST_WAITING: usize = 2_048;
 
 /// Publishes the run of a loop and receives commands; without effect if that is
 /// not possible.
-pub(super) struct Live<C: Telemetry> {
+pub(super) struct Live<C: Commandable> {
     instance: Instance,
     takes_commands: bool,
     /// The most records that wait to be published.
     waiting: usize,
     publisher: Option<PublisherOf<C>>,
-    commands: Commands<C>,
+    commands: SentCommands<C>,
 }
 
-impl<C: Telemetry> Live<C> {
-    pub(super) fn new(config: &Config, commands: Commands<C>) -> Self {
+impl<C: Commandable> Live<C> {
+    pub(super) fn new(config: &Config, commands: SentCommands<C>) -> Self {
         Self {
             instance: config.telemetry.instance.clone(),
             takes_commands: config.telemetry.commands,
@@ -38,7 +39,7 @@ impl<C: Telemetry> Live<C> {
     }
 }
 
-impl<C: Telemetry<Command: PartialEq>> Observer<C> for Live<C> {
+impl<C: Commandable> Observer<C> for Live<C> {
     /// Begins to publish. Without shared memory the flight continues, and this
     /// is reported.
     fn prepare(&mut self, reports: &mut Reports) {
@@ -112,7 +113,11 @@ impl<C: Telemetry<Command: PartialEq>> Observer<C> for Live<C> {
             return;
         };
         while let Some(asked) = publisher.next_command() {
-            if let Some((id, verdict)) = self.commands.send(asked, access.commands) {
+            let send = |command| {
+                let sent = access.commands.send(command);
+                sent.map_err(|error| error.to_string())
+            };
+            if let Some((id, verdict)) = self.commands.send(asked, send) {
                 publisher.answer(id, verdict);
             }
         }

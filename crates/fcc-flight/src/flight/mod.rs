@@ -5,8 +5,6 @@
 //! the [`Outcome`]. What only the host program can do is done by its [`Host`].
 
 mod assemble;
-#[cfg(feature = "live")]
-mod commands;
 #[cfg(any(test, feature = "conformance"))]
 pub mod conformance;
 mod control_override;

@@ -150,15 +150,15 @@ mod tests {
     use super::super::assemble::assemble;
     use super::super::conformance::observer_conforms;
     use super::super::event_log::EventLog;
-    use super::super::recording::{Recording, RecordingRequest};
+    #[cfg(feature = "live")]
+    use super::super::live::Live;
+    use super::super::recording::{FlightRecorder, RecordingRequest};
     use super::super::restart::{RestartKeeper, RestartRequest};
     use super::super::scorer::Scorer;
-    #[cfg(feature = "live")]
-    use super::super::{commands::Commands, live::Live};
     use crate::config::Config;
     use fcc_core::flight::Autopilot;
     #[cfg(feature = "live")]
-    use fcc_live::{AircraftLimits, FlightCommand};
+    use fcc_live::SentCommands;
 
     /// Files in a folder of the test's own, and a name of its own.
     fn config(folder: &tempfile::TempDir) -> Config {
@@ -188,18 +188,12 @@ mod tests {
         });
         observer_conforms(|| {
             let request = RecordingRequest::of(&config, None).unwrap();
-            Box::new(Recording::<Autopilot>::new(request))
+            Box::new(FlightRecorder::<Autopilot>::new(request))
         });
         observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
         #[cfg(feature = "live")]
         observer_conforms(|| {
-            let commands = Commands::new(
-                AircraftLimits {
-                    airspeeds_mps: 30.0..=80.0,
-                    has_field_elevation: false,
-                },
-                FlightCommand::for_the_loop,
-            );
+            let commands = SentCommands::new(vec![("airspeed_mps", Ok(30.0..=80.0))]);
             Box::new(Live::<Autopilot>::new(&config, commands))
         });
     }

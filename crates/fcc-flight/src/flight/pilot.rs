@@ -48,6 +48,10 @@ impl Controller for Pilot {
         self.autopilot.faults(tick, measurements)
     }
 
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.conditions(tick, measurements)
+    }
+
     fn flag_name(bit: u32) -> &'static str {
         Autopilot::flag_name(bit)
     }

@@ -87,7 +87,7 @@ pub fn about(config: &Config, as_given: Option<String>) -> About {
 const REPORT_EVERY: Duration = Duration::from_secs(1);
 
 /// Records the run of a loop.
-pub(super) struct Recording<C: Recorded> {
+pub(super) struct FlightRecorder<C: Recorded> {
     settings: RecorderSettings,
     about: About,
     recorder: Option<RecorderOf<C>>,
@@ -98,7 +98,7 @@ pub(super) struct Recording<C: Recorded> {
     reported: Instant,
 }
 
-impl<C: Recorded> Recording<C> {
+impl<C: Recorded> FlightRecorder<C> {
     pub(super) fn new(request: RecordingRequest) -> Self {
         Self {
             settings: request.settings,
@@ -111,7 +111,7 @@ impl<C: Recorded> Recording<C> {
     }
 }
 
-impl<C: Recorded> Observer<C> for Recording<C> {
+impl<C: Recorded> Observer<C> for FlightRecorder<C> {
     /// Before its own is the newest.
     fn prepare(&mut self, _: &mut Reports) {
         self.unfinished = last_unfinished(&self.settings.folder);
@@ -255,8 +255,10 @@ mod tests {
             .unwrap();
         let is_whole = || fcc_record::Recording::open(path).unwrap().is_whole();
 
-        let (mut recording, mut reports) =
-            (Recording::<Autopilot>::new(request), Reports::default());
+        let (mut recording, mut reports) = (
+            FlightRecorder::<Autopilot>::new(request),
+            Reports::default(),
+        );
         recording.prepare(&mut reports);
         assert!(!is_whole());
         let facts = Facts {

@@ -6,13 +6,11 @@ use iceoryx2::port::client::Client;
 use iceoryx2::prelude::BackpressureStrategy;
 use iceoryx2::service::builder::request_response::RequestResponseOpenError;
 
+use super::super::row_watcher::{check_layout, read_info};
 use super::super::services::{self, Access, Ipc};
-use super::super::watcher::{check_layout, read_info};
 use super::super::{Info, WatchError};
 use super::wire::{Answer, CommandRequest};
-use super::{
-    COMMANDS_VERSION, CommandError, FlightCommand, InvalidCommand, Verdict, command_server,
-};
+use super::{COMMANDS_VERSION, Command, CommandError, InvalidCommand, Verdict, command_server};
 use fcc_telemetry::Instance;
 
 /// How long a daemon may take to answer: about ten times what it takes at the
@@ -20,16 +18,16 @@ use fcc_telemetry::Instance;
 const PATIENCE: Duration = Duration::from_secs(10);
 const LOOK_EVERY: Duration = Duration::from_millis(2);
 
-/// Sends commands to a daemon on this machine.
+/// Sends commands to a daemon, or to the loop of any other plant, on this
+/// machine.
 ///
 /// ```no_run
 /// use fcc_telemetry::Instance;
-/// use fcc_live::{Commander, FlightCommand, NewSetpoints};
+/// use fcc_live::{Command, Commander};
 ///
 /// let mut commander = Commander::open(&Instance::default())?;
-/// commander.command(FlightCommand::Engage)?;
-/// let set = NewSetpoints { heading_rad: Some(1.57), ..NewSetpoints::default() };
-/// let tick = commander.command(FlightCommand::Set(set))?;
+/// commander.command(&Command::Engage)?;
+/// let tick = commander.command(&Command::set([("heading_rad", 1.57)]))?;
 /// println!("carried out in tick {tick}");
 /// # Ok::<(), fcc_live::CommandError>(())
 /// ```
@@ -86,14 +84,12 @@ impl Commander {
     /// did.
     ///
     /// # Errors
-    /// When the set points are invalid, the daemon refuses the command, has
-    /// ended, or does not answer.
-    pub fn command(&mut self, command: FlightCommand) -> Result<u64, CommandError> {
-        command.check()?;
+    /// When the daemon refuses the command, has ended, or does not answer.
+    pub fn command(&mut self, command: &Command) -> Result<u64, CommandError> {
         let gone = || CommandError::Unreachable(WatchError::NotRunning(self.instance.clone()));
         let pending = self
             .client
-            .send_copy(CommandRequest::from(command))
+            .send_copy(CommandRequest::try_from(command)?)
             .map_err(|error| WatchError::NoSharedMemory(services::explained(&error)))?;
         let deadline = Instant::now() + PATIENCE;
         loop {
@@ -101,7 +97,7 @@ impl Commander {
             let connected = pending.is_connected();
             match pending.receive() {
                 Ok(Some(answer)) => {
-                    return match answer.verdict(&command) {
+                    return match answer.verdict() {
                         Verdict::CarriedOut { tick } => Ok(tick),
                         Verdict::Refused(words) => Err(CommandError::Refused(words)),
                         Verdict::Outside(outside) => Err(InvalidCommand::from(outside).into()),

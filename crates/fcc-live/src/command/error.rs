@@ -2,38 +2,46 @@
 
 use super::super::WatchError;
 use super::OutsideLimits;
+use super::outside_limits::quantity;
 use fcc_telemetry::Instance;
+use fcc_telemetry::units::Shown;
 
 /// Why a command is invalid.
-#[derive(thiserror::Error, Clone, Copy, PartialEq, Debug)]
+#[derive(thiserror::Error, Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub enum InvalidCommand {
-    /// It changes nothing.
-    #[error(
-        "no set point is given: give an airspeed, a heading, an altitude or an altimeter setting"
-    )]
-    NoSetpoint,
-    /// It has several altitudes.
-    #[error("several altitudes are given: give an altitude, a pressure altitude or a height")]
-    SeveralAltitudes,
-    /// It has a height, and what heights refer to is not configured.
-    #[error(
-        "a height needs the elevation of its field: set altimeter.field_elevation_ft in the \
-         configuration, or give an altitude"
-    )]
-    NoFieldElevation,
-    /// A set point is out of range, for any aircraft or for this one; in SI
-    /// units.
+    /// It changes nothing; the names of the set points.
+    #[error("no set point is given: choose of {}", .0.join(", "))]
+    NoSetpoint(Vec<&'static str>),
+    /// The controller has no such set point; the names of those that it has.
+    #[error("there is no set point '{}': choose of {}", .0, .1.join(", "))]
+    UnknownSetpoint(String, Vec<&'static str>),
+    /// It has several values of which only one is permitted.
+    #[error("{0}")]
+    Alternatives(&'static str),
+    /// The plant does not have this set point, for this reason.
+    #[error("{0}")]
+    NotPermitted(&'static str),
+    /// It changes more than a command can.
+    #[error("more than {0} set points in one command: give several commands")]
+    TooManySetpoints(usize),
+    /// A set point is out of its limits, in the unit at the end of its name.
     #[error(transparent)]
     Outside(#[from] OutsideLimits),
 }
 
 impl InvalidCommand {
-    /// In the units of the command line: knots, degrees, feet.
-    pub fn in_knots_degrees_feet(&self) -> String {
+    /// As text, in those of these units that fit, with quantities instead of
+    /// names.
+    pub fn text_in(&self, units: &[Shown]) -> String {
         match self {
-            Self::NoSetpoint | Self::SeveralAltitudes | Self::NoFieldElevation => self.to_string(),
-            Self::Outside(outside) => outside.in_knots_degrees_feet(),
+            Self::Outside(outside) => outside.text_in(units),
+            Self::NoSetpoint(names) => {
+                let names = names.iter().map(|name| quantity(name));
+                let names: Vec<_> = names.collect();
+                format!("no set point is given: choose of {}", names.join(", "))
+            }
+            other => other.to_string(),
         }
     }
 }
@@ -61,7 +69,7 @@ pub enum CommandError {
     /// The maximum number of programs is connected.
     #[error("too many programs give commands to fccd '{0}' at once: end one of them")]
     TooMany(Instance),
-    /// The command is invalid; in SI units.
+    /// The command is invalid.
     #[error("refused: {0}")]
     InvalidCommand(#[from] InvalidCommand),
     /// The daemon refused it.

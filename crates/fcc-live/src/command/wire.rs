@@ -5,7 +5,12 @@
 use iceoryx2::prelude::ZeroCopySend;
 
 use super::super::Text;
-use super::{COMMANDS_VERSION, FlightCommand, NewSetpoints, OutsideLimits, Quantity, Verdict};
+use super::{COMMANDS_VERSION, Command, InvalidCommand, OutsideLimits, Verdict};
+
+/// Set points in one command.
+const MOST_SETPOINTS: usize = 8;
+/// The longest name of one, in bytes.
+const NAME_BYTES: usize = 32;
 
 /// A command in shared memory.
 #[derive(Clone, Copy, Debug)]
@@ -15,39 +20,35 @@ pub(super) struct CommandRequest {
     pub(super) version: u32,
     /// 0 engage, 1 disengage, 2 stop, 3 set.
     pub(super) code: u32,
-    /// NaN: unchanged.
-    pub(super) airspeed_mps: f64,
-    /// NaN: unchanged.
-    pub(super) heading_rad: f64,
-    /// NaN: unchanged.
-    pub(super) altitude_m: f64,
-    /// NaN: unchanged.
-    pub(super) pressure_altitude_m: f64,
-    /// NaN: unchanged.
-    pub(super) height_m: f64,
-    /// NaN: unchanged.
-    pub(super) altimeter_setting_pa: f64,
+    /// The names of set points; empty after the last.
+    pub(super) names: [Text<NAME_BYTES>; MOST_SETPOINTS],
+    /// Their values, in the units at the ends of their names.
+    pub(super) values: [f64; MOST_SETPOINTS],
 }
 
 /// An answer in shared memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub(super) struct Answer {
-    /// 0 carried out, 1 refused, 2 refused because of the airspeed's limits.
+    /// 0 carried out, 1 refused, 2 refused because of a set point's limits.
     pub(super) code: u32,
     /// [`COMMANDS_VERSION`].
     pub(super) version: u32,
     /// The tick that read the command; 0 if none did.
     pub(super) tick: u64,
-    /// The smallest airspeed of this aircraft, m/s; with code 2 only.
-    pub(super) least_mps: f64,
-    /// The largest airspeed.
-    pub(super) most_mps: f64,
+    /// The value that is out of its limits; with code 2 only.
+    pub(super) value: f64,
+    /// The smallest permitted value.
+    pub(super) least: f64,
+    /// The largest permitted value.
+    pub(super) most: f64,
+    /// The name of the set point.
+    pub(super) name: Text<NAME_BYTES>,
     /// The reason for refusing it.
     pub(super) text: Text<224>,
 }
 
-// SAFETY: repr(C), numbers only.
+// SAFETY: repr(C), numbers and bytes only.
 unsafe impl ZeroCopySend for CommandRequest {
     unsafe fn type_name() -> &'static str {
         "fcc.v2.Command"
@@ -70,25 +71,30 @@ const CARRIED_OUT: u32 = 0;
 const REFUSED: u32 = 1;
 const OUTSIDE: u32 = 2;
 
-impl From<FlightCommand> for CommandRequest {
-    fn from(command: FlightCommand) -> Self {
+impl TryFrom<&Command> for CommandRequest {
+    type Error = InvalidCommand;
+
+    fn try_from(command: &Command) -> Result<Self, InvalidCommand> {
         let (code, set) = match command {
-            FlightCommand::Engage => (ENGAGE, NewSetpoints::default()),
-            FlightCommand::Disengage => (DISENGAGE, NewSetpoints::default()),
-            FlightCommand::Stop => (STOP, NewSetpoints::default()),
-            FlightCommand::Set(set) => (SET, set),
+            Command::Engage => (ENGAGE, &[][..]),
+            Command::Disengage => (DISENGAGE, &[][..]),
+            Command::Stop => (STOP, &[][..]),
+            Command::Set(set) => (SET, &set[..]),
         };
-        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        Self {
+        if set.len() > MOST_SETPOINTS {
+            return Err(InvalidCommand::TooManySetpoints(MOST_SETPOINTS));
+        }
+        let mut request = Self {
             version: COMMANDS_VERSION,
             code,
-            airspeed_mps: number(set.airspeed_mps),
-            heading_rad: number(set.heading_rad),
-            altitude_m: number(set.altitude_m),
-            pressure_altitude_m: number(set.pressure_altitude_m),
-            height_m: number(set.height_m),
-            altimeter_setting_pa: number(set.altimeter_setting_pa),
+            names: [Text::default(); MOST_SETPOINTS],
+            values: [0.0; MOST_SETPOINTS],
+        };
+        let places = request.names.iter_mut().zip(&mut request.values);
+        for ((name, value), (given, number)) in places.zip(set) {
+            (*name, *value) = (Text::new(given), *number);
         }
+        Ok(request)
     }
 }
 
@@ -96,8 +102,8 @@ impl CommandRequest {
     /// Another program may have written anything.
     ///
     /// # Errors
-    /// Why it is not a valid command, as text.
-    pub(super) fn command(&self) -> Result<FlightCommand, String> {
+    /// Why it is not a command, as text.
+    pub(super) fn command(&self) -> Result<Command, String> {
         if self.version != COMMANDS_VERSION {
             return Err(format!(
                 "the command has version {}, and this daemon accepts version {COMMANDS_VERSION}: use \
@@ -105,25 +111,14 @@ impl CommandRequest {
                 self.version
             ));
         }
-        let given = |value: f64| (!value.is_nan()).then_some(value);
-        let command = match self.code {
-            ENGAGE => FlightCommand::Engage,
-            DISENGAGE => FlightCommand::Disengage,
-            STOP => FlightCommand::Stop,
-            SET => FlightCommand::Set(NewSetpoints {
-                airspeed_mps: given(self.airspeed_mps),
-                heading_rad: given(self.heading_rad),
-                altitude_m: given(self.altitude_m),
-                pressure_altitude_m: given(self.pressure_altitude_m),
-                height_m: given(self.height_m),
-                altimeter_setting_pa: given(self.altimeter_setting_pa),
-            }),
+        let given = self.names.iter().map(Text::as_str).zip(self.values);
+        Ok(match self.code {
+            ENGAGE => Command::Engage,
+            DISENGAGE => Command::Disengage,
+            STOP => Command::Stop,
+            SET => Command::set(given.take_while(|(name, _)| !name.is_empty())),
             other => return Err(format!("there is no command with the number {other}")),
-        };
-        command
-            .check()
-            .map(|()| command)
-            .map_err(|error| error.to_string())
+        })
     }
 }
 
@@ -133,8 +128,10 @@ impl From<&Verdict> for Answer {
             code: CARRIED_OUT,
             version: COMMANDS_VERSION,
             tick: 0,
-            least_mps: 0.0,
-            most_mps: 0.0,
+            value: 0.0,
+            least: 0.0,
+            most: 0.0,
+            name: Text::default(),
             text: Text::default(),
         };
         match verdict {
@@ -149,8 +146,10 @@ impl From<&Verdict> for Answer {
             },
             Verdict::Outside(outside) => Self {
                 code: OUTSIDE,
-                least_mps: outside.least,
-                most_mps: outside.most,
+                value: outside.value,
+                least: outside.least,
+                most: outside.most,
+                name: Text::new(&outside.name),
                 text: Text::new(&outside.to_string()),
                 ..answer
             },
@@ -159,21 +158,15 @@ impl From<&Verdict> for Answer {
 }
 
 impl Answer {
-    /// The result of this command.
-    pub(super) fn verdict(&self, command: &FlightCommand) -> Verdict {
-        match (self.code, command) {
-            (CARRIED_OUT, _) => Verdict::CarriedOut { tick: self.tick },
-            (
-                OUTSIDE,
-                FlightCommand::Set(NewSetpoints {
-                    airspeed_mps: Some(value),
-                    ..
-                }),
-            ) => Verdict::Outside(OutsideLimits {
-                quantity: Quantity::Airspeed,
-                value: *value,
-                least: self.least_mps,
-                most: self.most_mps,
+    /// The result of the command.
+    pub(super) fn verdict(&self) -> Verdict {
+        match self.code {
+            CARRIED_OUT => Verdict::CarriedOut { tick: self.tick },
+            OUTSIDE => Verdict::Outside(OutsideLimits {
+                name: self.name.as_str().to_owned(),
+                value: self.value,
+                least: self.least,
+                most: self.most,
             }),
             _ => Verdict::Refused(self.text.as_str().to_owned()),
         }
@@ -192,70 +185,62 @@ mod tests {
     fn the_layouts_are_as_documented() {
         assert_eq!(
             (size_of::<CommandRequest>(), size_of::<Answer>()),
-            (56, 256)
+            (328, 296)
         );
         assert_eq!(
             [
                 offset_of!(CommandRequest, version),
                 offset_of!(CommandRequest, code),
-                offset_of!(CommandRequest, airspeed_mps),
-                offset_of!(CommandRequest, heading_rad),
-                offset_of!(CommandRequest, altitude_m),
-                offset_of!(CommandRequest, pressure_altitude_m),
-                offset_of!(CommandRequest, height_m),
-                offset_of!(CommandRequest, altimeter_setting_pa),
+                offset_of!(CommandRequest, names),
+                offset_of!(CommandRequest, values),
             ],
-            [0, 4, 8, 16, 24, 32, 40, 48]
+            [0, 4, 8, 264]
         );
         assert_eq!(
             [
                 offset_of!(Answer, code),
                 offset_of!(Answer, version),
                 offset_of!(Answer, tick),
-                offset_of!(Answer, least_mps),
-                offset_of!(Answer, most_mps),
+                offset_of!(Answer, value),
+                offset_of!(Answer, least),
+                offset_of!(Answer, most),
+                offset_of!(Answer, name),
                 offset_of!(Answer, text),
             ],
-            [0, 4, 8, 16, 24, 32]
+            [0, 4, 8, 16, 24, 32, 40, 72]
         );
     }
 
     #[test]
     fn commands_and_results_are_read_back() {
         for command in [
-            FlightCommand::Engage,
-            FlightCommand::Disengage,
-            FlightCommand::Stop,
-            FlightCommand::Set(NewSetpoints {
-                heading_rad: Some(1.5),
-                height_m: Some(100.0),
-                altimeter_setting_pa: Some(101_000.0),
-                ..NewSetpoints::default()
-            }),
+            Command::Engage,
+            Command::Disengage,
+            Command::Stop,
+            Command::set([("heading_rad", 1.5), ("room_c", 21.0)]),
         ] {
-            assert_eq!(CommandRequest::from(command).command(), Ok(command));
+            let request = CommandRequest::try_from(&command).unwrap();
+            assert_eq!(request.command(), Ok(command));
         }
+        let many = Command::set([("heading_rad", 1.5); 9]);
+        assert!(CommandRequest::try_from(&many).is_err());
         for verdict in [
             Verdict::CarriedOut { tick: 9 },
             Verdict::Refused("why".to_owned()),
             Verdict::Outside(OutsideLimits {
-                quantity: Quantity::Airspeed,
+                name: "airspeed_mps".to_owned(),
                 value: 90.0,
                 least: 40.0,
                 most: 60.0,
             }),
         ] {
-            let command = FlightCommand::Set(NewSetpoints {
-                airspeed_mps: Some(90.0),
-                ..NewSetpoints::default()
-            });
-            assert_eq!(Answer::from(&verdict).verdict(&command), verdict);
+            assert_eq!(Answer::from(&verdict).verdict(), verdict);
         }
     }
 
     #[test]
     fn another_version_is_refused() {
-        let mut request = CommandRequest::from(FlightCommand::Engage);
+        let mut request = CommandRequest::try_from(&Command::Engage).unwrap();
         request.version = 1;
         let words = request.command().unwrap_err();
         assert!(
@@ -265,29 +250,14 @@ mod tests {
     }
 
     proptest! {
-        /// Invalid bytes in shared memory never give an invalid command.
+        /// Invalid bytes in shared memory never give an invalid name.
         #[test]
-        fn any_bytes_are_a_valid_command_or_refused(version in 0..3_u32, code in 0..6_u32, bits: [u64; 6]) {
-            let [
-                airspeed_mps,
-                heading_rad,
-                altitude_m,
-                pressure_altitude_m,
-                height_m,
-                altimeter_setting_pa,
-            ] = bits.map(f64::from_bits);
-            let request = CommandRequest {
-                version,
-                code,
-                airspeed_mps,
-                heading_rad,
-                altitude_m,
-                pressure_altitude_m,
-                height_m,
-                altimeter_setting_pa,
-            };
-            if let Ok(command) = request.command() {
-                prop_assert!(command.check().is_ok());
+        fn any_bytes_are_a_command_or_refused(version in 0..4_u32, code in 0..6_u32, bits: [u64; 8]) {
+            let values = bits.map(f64::from_bits);
+            let name = Text::new(&String::from_utf8_lossy(&bits[0].to_le_bytes()));
+            let request = CommandRequest { version, code, names: [name; 8], values };
+            if let Ok(Command::Set(set)) = request.command() {
+                prop_assert!(set.len() <= 8 && set.iter().all(|(name, _)| !name.is_empty()));
             }
         }
     }

@@ -1,18 +1,19 @@
-//! Commands to a running daemon.
+//! Commands to a running loop.
 
 use std::sync::{Mutex, PoisonError};
 
-use fcc_live::{CommandError, Commander, FlightCommand, NewSetpoints};
+use fcc_live::{Command, CommandError, Commander};
 use fcc_telemetry::Instance;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use super::instance;
 use crate::errors;
 
-/// Sends commands to a daemon on this machine, by its instance's name. Each call
-/// waits until the command is carried out, with the GIL released, and returns the
-/// tick that did it.
+/// Sends commands to a daemon, or to the loop of any other plant, on this machine,
+/// by its instance's name. Each call
+/// waits until the command is carried out and returns the tick that did; the GIL
+/// is released meanwhile.
 ///
 /// Raises `CommandError` with the daemon's reason if it refuses, and
 /// `TelemetryError` if it cannot be reached.
@@ -48,51 +49,32 @@ impl PyCommander {
 
     /// Engages: the present state becomes the set points.
     fn engage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Engage)
+        self.command(py, &Command::Engage)
     }
 
     /// Disengages: releases the controls.
     fn disengage(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Disengage)
+        self.command(py, &Command::Disengage)
     }
 
-    /// Releases the controls and ends the daemon.
+    /// Releases the controls and ends the program.
     fn stop(&self, py: Python<'_>) -> PyResult<u64> {
-        self.command(py, FlightCommand::Stop)
+        self.command(py, &Command::Stop)
     }
 
-    /// Commands other set points; those not given keep their value: indicated
-    /// airspeed (m/s, within the envelope), magnetic heading (rad, -2π to 2π),
-    /// altitude (m, -500 to 20,000): above sea level by the altimeter setting, or a
-    /// pressure altitude, or a height above the configured field. Ends a pattern. An
-    /// altimeter setting (Pa, 94,000 to 106,000) alone ends none, and is also set in
-    /// standby.
-    #[pyo3(signature = (*, airspeed_mps = None, heading_rad = None, altitude_m = None,
-                        pressure_altitude_m = None, height_m = None,
-                        altimeter_setting_pa = None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-    fn set(
-        &self,
-        py: Python<'_>,
-        airspeed_mps: Option<f64>,
-        heading_rad: Option<f64>,
-        altitude_m: Option<f64>,
-        pressure_altitude_m: Option<f64>,
-        height_m: Option<f64>,
-        altimeter_setting_pa: Option<f64>,
-    ) -> PyResult<u64> {
-        let command = FlightCommand::Set(NewSetpoints {
-            airspeed_mps,
-            heading_rad,
-            altitude_m,
-            pressure_altitude_m,
-            height_m,
-            altimeter_setting_pa,
-        });
-        command
-            .check()
-            .map_err(|error| PyValueError::new_err(error.to_string()))?;
-        self.command(py, command)
+    /// Commands other set points, by their names; those not given keep their
+    /// value. Of a flight: indicated airspeed (`airspeed_mps`, within the envelope),
+    /// magnetic heading (`heading_rad`, -2π to 2π), and, -500 to 20,000, `altitude_m`
+    /// (above sea level by the altimeter setting), `pressure_altitude_m` or `height_m`
+    /// (above the configured field). Ends a pattern. `altimeter_setting_pa` (94,000 to
+    /// 106,000) alone ends none, and is also set in standby.
+    #[pyo3(signature = (**setpoints))]
+    fn set(&self, py: Python<'_>, setpoints: Option<&Bound<'_, PyDict>>) -> PyResult<u64> {
+        let mut given = Vec::new();
+        for (name, value) in setpoints.into_iter().flatten() {
+            given.push((name.extract()?, value.extract()?));
+        }
+        self.command(py, &Command::Set(given))
     }
 
     fn __repr__(&self) -> String {
@@ -101,7 +83,7 @@ impl PyCommander {
 }
 
 impl PyCommander {
-    fn command(&self, py: Python<'_>, command: FlightCommand) -> PyResult<u64> {
+    fn command(&self, py: Python<'_>, command: &Command) -> PyResult<u64> {
         py.detach(|| {
             let mut commander = self
                 .commander

@@ -1,14 +1,20 @@
-//! A running daemon: watching it, and sending commands.
+//! A running loop of any plant: watched, and given commands.
 
 mod commander;
 mod watcher;
 
-pub(crate) use commander::PyCommander;
-pub(crate) use watcher::PyWatcher;
-
 use fcc_telemetry::Instance;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+/// Adds to a module the classes for any plant: `Watcher`, `Commander`.
+///
+/// # Errors
+/// Those of Python.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<watcher::PyWatcher>()?;
+    module.add_class::<commander::PyCommander>()
+}
 
 /// A daemon's name.
 fn instance(name: &str) -> PyResult<Instance> {

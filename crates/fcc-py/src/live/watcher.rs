@@ -1,11 +1,12 @@
-//! A flight on this machine, live.
+//! A loop on this machine, live.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use fcc_core::framework::Time;
-use fcc_live::{Event, Info, RecorderState, Status, WatchError, Watcher};
-use fcc_telemetry::{FlightRecord, Instance};
+use fcc_live::{Event, Info, RecorderState, RowWatcher, Status, WatchError};
+use fcc_telemetry::Instance;
+use numpy::PyArrayDescr;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -13,7 +14,7 @@ use super::instance;
 use crate::arguments::within;
 use crate::errors;
 use crate::events::{PyEvent, seconds};
-use crate::structured::Rows;
+use crate::structured::{array, columns, dtype_of};
 
 /// The interval between reads while it waits.
 const LOOK_EVERY: Duration = Duration::from_millis(2);
@@ -22,15 +23,17 @@ const ASK_EVERY: Duration = Duration::from_millis(250);
 /// How often it checks for an interruption from the keyboard.
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
-/// Watches a daemon on this machine, by its instance's name. The newest record
-/// and the last 64 events are there at once.
+/// Watches a daemon, or the loop of any other plant, on this machine, by its
+/// instance's name. The newest record and the last 64 events are there at once.
 ///
 /// Raises `TelemetryError` if there is no such daemon, if it is of another
 /// version, and when it has ended. Iterating gives each record as it comes, as
-/// a row of `fcc.RECORD`, and raises `TelemetryError` when the daemon ends.
+/// a row (of a flight: of `fcc.RECORD`), and raises `TelemetryError` when the
+/// daemon ends.
 #[pyclass(name = "Watcher", module = "fcc")]
 pub(crate) struct PyWatcher {
-    watcher: Mutex<Watcher>,
+    watcher: Mutex<RowWatcher>,
+    dtype: Py<PyArrayDescr>,
     instance: Instance,
 }
 
@@ -45,36 +48,37 @@ impl PyWatcher {
     fn new(py: Python<'_>, instance: &str) -> PyResult<Self> {
         let instance = self::instance(instance)?;
         let watcher = py
-            .detach(|| Watcher::open(&instance))
+            .detach(|| RowWatcher::open(&instance))
             .map_err(|error| refused(&error))?;
         Ok(Self {
+            dtype: dtype_of(py, watcher.columns())?.unbind(),
             watcher: Mutex::new(watcher),
             instance,
         })
     }
 
-    /// The newest record, as a row of `fcc.RECORD`; older ones are skipped. Waits up to `timeout_s` (0 to 3,600) for one that was not given
+    /// The newest record, as a row; older ones are skipped. Waits up to `timeout_s` (0 to 3,600) for one that was not given
     /// yet, and gives None if none comes.
     #[pyo3(signature = (timeout_s = 1.0))]
     fn latest<'py>(&self, py: Python<'py>, timeout_s: f64) -> PyResult<Option<Bound<'py, PyAny>>> {
         let patience = Duration::from_secs_f64(within("timeout_s", timeout_s, 0.0, 3_600.0)?);
-        let found = self.wait(py, Some(patience), Watcher::latest)?;
-        found.map(|record| row(py, &record)).transpose()
+        let found = self.wait(py, Some(patience), |watcher| {
+            watcher.newest(<[u64]>::to_vec)
+        })?;
+        found.map(|words| self.row(py, words)).transpose()
     }
 
-    /// All records since the last call, oldest first, as a structured array
-    /// (`fcc.RECORD`). Of more than 1,024 the oldest are dropped.
+    /// All records since the last call, oldest first, as a structured array. Of
+    /// more than 1,024 the oldest are dropped.
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let mut rows = Rows::with_room(0);
+        let mut rows = Vec::new();
         let read = py.detach(|| {
             let mut watcher = self.watcher();
-            while let Some(record) = watcher.next_record()? {
-                rows.push(&record);
-            }
+            while let Some(()) = watcher.next(|row| rows.extend_from_slice(row))? {}
             Ok(())
         });
         self.must_live(py, read, rows.is_empty())?;
-        rows.into_array(py)
+        array(py, rows, self.dtype.bind(py))
     }
 
     /// All events since the last call, oldest first.
@@ -97,8 +101,15 @@ impl PyWatcher {
     #[pyo3(signature = (timeout_s = 1.5))]
     fn status<'py>(&self, py: Python<'py>, timeout_s: f64) -> PyResult<Option<Bound<'py, PyDict>>> {
         let patience = Duration::from_secs_f64(within("timeout_s", timeout_s, 0.0, 3_600.0)?);
-        let found = self.wait(py, Some(patience), Watcher::latest_status)?;
+        let found = self.wait(py, Some(patience), RowWatcher::latest_status)?;
         found.map(|status| status_dict(py, &status)).transpose()
+    }
+
+    /// The columns of the records by their names, each as a dict: unit, meaning,
+    /// range, the names of codes, path in the record.
+    #[getter]
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        columns(py, self.watcher().columns())
     }
 
     /// The daemon, as a dict: program, process, loop.
@@ -118,8 +129,8 @@ impl PyWatcher {
     }
 
     fn __next__<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let found = self.wait(py, None, Watcher::next_record)?;
-        found.map(|record| row(py, &record)).transpose()
+        let found = self.wait(py, None, |watcher| watcher.next(<[u64]>::to_vec))?;
+        found.map(|words| self.row(py, words)).transpose()
     }
 
     fn __repr__(&self) -> String {
@@ -128,8 +139,13 @@ impl PyWatcher {
 }
 
 impl PyWatcher {
-    fn watcher(&self) -> MutexGuard<'_, Watcher> {
+    fn watcher(&self) -> MutexGuard<'_, RowWatcher> {
         self.watcher.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// One record as numpy's scalar.
+    fn row<'py>(&self, py: Python<'py>, words: Vec<u64>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, words, self.dtype.bind(py))?.get_item(0)
     }
 
     /// Reads until there is something, the time is over or the daemon has ended.
@@ -137,7 +153,7 @@ impl PyWatcher {
         &self,
         py: Python<'_>,
         patience: Option<Duration>,
-        look: impl Fn(&mut Watcher) -> Result<Option<T>, WatchError> + Sync,
+        look: impl Fn(&mut RowWatcher) -> Result<Option<T>, WatchError> + Sync,
     ) -> PyResult<Option<T>> {
         let began = Instant::now();
         let mut asked = began;
@@ -189,11 +205,6 @@ impl PyWatcher {
         }
         Ok(())
     }
-}
-
-/// One record as numpy's scalar.
-fn row<'py>(py: Python<'py>, record: &FlightRecord) -> PyResult<Bound<'py, PyAny>> {
-    Rows::from_iter([record]).into_array(py)?.get_item(0)
 }
 
 fn event_of(event: &Event) -> PyEvent {

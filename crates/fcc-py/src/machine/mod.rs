@@ -7,9 +7,9 @@ mod class;
 mod flight;
 mod lockstep;
 mod python_io;
-mod replay;
 
 #[cfg(feature = "flight")]
 pub(crate) use flight::PyMachine;
 pub use lockstep::{Lockstep, conditions};
-pub use replay::replay;
+#[cfg(feature = "conformance")]
+pub(crate) use python_io::{HeldFlag, QueuedSensor};

@@ -14,14 +14,14 @@ pub(super) const NAME: &str = "lockstep";
 
 /// A sensor whose measurements Python queues, one sample for each tick; silent
 /// in a tick without one.
-pub(super) struct QueuedSensor<M> {
+pub(crate) struct QueuedSensor<M> {
     samples: Consumer<M>,
     shape: &'static Shape,
 }
 
 impl<M: Schema> QueuedSensor<M> {
     /// The queue and the sensor.
-    pub(super) fn new() -> (Producer<M>, Self) {
+    pub(crate) fn new() -> (Producer<M>, Self) {
         let (queue, samples) = RingBuffer::new(1);
         let shape = Shape::of::<M>();
         (queue, Self { samples, shape })
@@ -43,11 +43,11 @@ impl<M: Schema> Sensor<M> for QueuedSensor<M> {
 
 /// An actuator that stores only whether the loop holds it; the outputs are in
 /// the record of the tick.
-pub(super) struct HeldFlag(Arc<AtomicBool>);
+pub(crate) struct HeldFlag(Arc<AtomicBool>);
 
 impl HeldFlag {
     /// The flag and the actuator.
-    pub(super) fn new() -> (Arc<AtomicBool>, Self) {
+    pub(crate) fn new() -> (Arc<AtomicBool>, Self) {
         let held = Arc::new(AtomicBool::new(false));
         (Arc::clone(&held), Self(held))
     }

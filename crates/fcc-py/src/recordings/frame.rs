@@ -1,26 +1,29 @@
 //! Records as a table of pandas.
 
-use fcc_core::framework::schema::Kind;
-use fcc_telemetry::{FlightRecord, schema};
+use fcc_telemetry::schema::RecordDescription;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// A table of records; values that were never measured are NaN.
-pub(super) fn of<'py>(records: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+pub(super) fn of<'py>(
+    records: &Bound<'py, PyAny>,
+    described: &RecordDescription,
+) -> PyResult<Bound<'py, PyAny>> {
     let py = records.py();
     let pandas = py.import("pandas")?;
     let numpy = py.import("numpy")?;
     let columns = PyDict::new(py);
-    let declared = schema::columns::<FlightRecord>();
     let taken_at = |reading: &str| {
         let path = format!("{reading}.taken");
-        let found = declared.iter().find(|column| column.path == path);
-        found.map_or("", |column| column.name.as_str())
+        let mut columns = described.columns.iter();
+        columns.find(|column| column.path == path)
     };
-    for column in &declared {
-        let mut values = records.get_item(column.name.as_str())?;
-        if let (Some(reading), Kind::Number) = (&column.reading, column.kind) {
-            let taken = records.get_item(taken_at(reading))?;
+    for column in &described.columns {
+        let mut values = records.get_item(&column.name)?;
+        let is_number = column.kind == "f64";
+        let reading = column.reading.as_deref().filter(|_| is_number);
+        if let Some(taken_at) = reading.and_then(taken_at) {
+            let taken = records.get_item(&taken_at.name)?;
             let never = taken.call_method1("__eq__", (i64::MIN,))?;
             values = numpy.call_method1("where", (never, f64::NAN, values))?;
         }

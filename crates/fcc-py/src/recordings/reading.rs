@@ -2,27 +2,28 @@
 
 use std::path::PathBuf;
 
-use fcc_core::flight::Autopilot;
-use fcc_core::framework::Message;
-use fcc_record::{About, Damage, End, Recording};
-use fcc_telemetry::{FlightMessage, FlightRecord};
+use fcc_record::{About, AnyPlantMessage, Damage, End, Recording};
+use fcc_telemetry::schema::RecordDescription;
+use fcc_telemetry::schema::protobuf::RowDecoder;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 
 use super::frame;
+#[cfg(feature = "flight")]
 use crate::config::{PyConfig, refused};
 use crate::errors;
 use crate::events::PyEvent;
 use crate::json;
-use crate::structured::Rows;
+use crate::structured::{array, columns, dtype_of};
 
 /// The largest capacity that is allocated in advance: an hour at 40 Hz. A larger
 /// count in a file is not trusted.
 const ROOM: u64 = 144_000;
 
-/// A recording of a flight, whole or cut off: facts about the flight, its
-/// records as a structured array, its events.
+/// A recording of any plant, whole or cut off: facts about the run, its
+/// records as a structured array, its events. The columns are those that the
+/// file describes.
 ///
 /// Opening reads its two ends; the first use of `records`, `events` or `cut`
 /// reads all of it, with the GIL released. Raises `RecordingError` if a file
@@ -30,6 +31,7 @@ const ROOM: u64 = 144_000;
 #[pyclass(name = "Recording", module = "fcc", frozen)]
 pub(crate) struct PyRecording {
     recording: Recording,
+    described: RecordDescription,
     contents: PyOnceLock<Contents>,
 }
 
@@ -42,7 +44,7 @@ struct Contents {
 
 /// The contents of a file.
 struct Read {
-    rows: Rows<FlightRecord>,
+    rows: Vec<u64>,
     events: Vec<PyEvent>,
     cut: Option<String>,
     damages: Vec<Damage>,
@@ -55,19 +57,34 @@ impl PyRecording {
         let recording = py
             .detach(|| Recording::open(path))
             .map_err(|error| errors::RECORDING.with(error))?;
+        let described = recording
+            .columns()
+            .cloned()
+            .or_else(|| OWN_COLUMNS.map(|of| of()));
         Ok(Self {
+            described: described.ok_or_else(|| {
+                let path = recording.path().display();
+                errors::RECORDING.with(format!("{path}: the description of its columns is damaged"))
+            })?,
             recording,
             contents: PyOnceLock::new(),
         })
     }
 
-    /// All records, oldest first, as a structured array (`fcc.RECORD`): a row
+    /// All records, oldest first, as a structured array (of a flight: `fcc.RECORD`): a row
     /// for each tick, a column for each number, with the unit at the end of its
     /// name. Instants are ns on the loop's clock, the smallest number meaning
     /// never; the value beside such a time means nothing.
     #[getter]
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(self.contents(py)?.records.bind(py).clone())
+    }
+
+    /// The columns of the records by their names, each as a dict: unit, meaning,
+    /// range, the names of codes, path in the record.
+    #[getter]
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        columns(py, &self.described)
     }
 
     /// The events, oldest first.
@@ -96,7 +113,9 @@ impl PyRecording {
         about(py, self.recording.about())
     }
 
-    /// The configuration that was flown, defaults included.
+    /// The configuration that was flown, defaults included; of another plant it is
+    /// a text, `about["config"]`.
+    #[cfg(feature = "flight")]
     #[getter]
     fn config(&self) -> PyResult<PyConfig> {
         let name = format!("{}: config.toml", self.recording.path().display());
@@ -136,7 +155,10 @@ impl PyRecording {
     /// All records as a `pandas.DataFrame`, the index being seconds since the
     /// first record; values that were never measured are NaN. Needs pandas.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        frame::of(self.contents(py)?.records.bind(py).as_any())
+        frame::of(
+            self.contents(py)?.records.bind(py).as_any(),
+            &self.described,
+        )
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
@@ -153,8 +175,9 @@ impl PyRecording {
     fn contents(&self, py: Python<'_>) -> PyResult<&Contents> {
         self.contents.get_or_try_init(py, || {
             let read = py.detach(|| self.read())?;
+            let dtype = dtype_of(py, &self.described)?;
             Ok(Contents {
-                records: read.rows.into_array(py)?.unbind(),
+                records: array(py, read.rows, &dtype)?.unbind(),
                 events: read.events,
                 cut: read.cut,
                 damages: read.damages,
@@ -163,23 +186,31 @@ impl PyRecording {
     }
 
     fn read(&self) -> PyResult<Read> {
-        let about = self.recording.about();
+        let decoder = RowDecoder::new(&self.described);
         let ticks = self.recording.end().map_or(0, |end| end.ticks);
-        let mut rows = Rows::with_room(ticks.min(ROOM) as usize);
+        let mut rows = Vec::with_capacity(ticks.min(ROOM) as usize * decoder.words());
         let mut events = Vec::new();
         let mut messages = self
             .recording
-            .messages::<FlightMessage>()
+            .messages::<AnyPlantMessage>()
             .map_err(|error| errors::RECORDING.with(error))?;
         for message in &mut messages {
             match message {
-                Message::Tick(record) => rows.push(&record),
-                Message::Event(event) => {
-                    events.push(PyEvent::of::<Autopilot>(
-                        &event,
-                        &about.sensors,
-                        &about.actuators,
-                    ));
+                AnyPlantMessage::Record(record, message) => {
+                    let begin = rows.len();
+                    rows.resize(begin + decoder.words(), 0);
+                    let row = rows.get_mut(begin..).unwrap_or_default();
+                    decoder.decode(&message, row).map_err(|error| {
+                        let path = self.recording.path().display();
+                        let tick = record.tick.number;
+                        let words = format!(
+                            "{path}: the record of tick {tick} is not as the columns say: {error}"
+                        );
+                        errors::RECORDING.with(words)
+                    })?;
+                }
+                AnyPlantMessage::Event(event, text) => {
+                    events.push(PyEvent::described(&event, text));
                 }
             }
         }
@@ -191,6 +222,16 @@ impl PyRecording {
         })
     }
 }
+
+/// The columns of this module's own plant, for a file whose description is
+/// damaged.
+const OWN_COLUMNS: Option<fn() -> RecordDescription> = {
+    #[cfg(feature = "flight")]
+    let own: Option<fn() -> _> = Some(RecordDescription::of::<fcc_telemetry::FlightRecord>);
+    #[cfg(not(feature = "flight"))]
+    let own = None;
+    own
+};
 
 fn about<'py>(py: Python<'py>, about: &About) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);

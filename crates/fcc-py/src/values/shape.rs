@@ -28,11 +28,11 @@ pub(crate) struct Leaf {
     pub(crate) column: Column,
     /// The index of the reading that it is a part of.
     pub(crate) reading: Option<usize>,
-    part: Part,
+    part: ReadingPart,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum ReadingPart {
     Value,
     Taken,
     Source,
@@ -42,7 +42,7 @@ impl Leaf {
     /// Whether it is measured or computed, and not the time or sensor of a
     /// reading.
     pub(crate) fn is_value(&self) -> bool {
-        self.part == Part::Value
+        self.part == ReadingPart::Value
     }
 }
 
@@ -71,9 +71,9 @@ impl Shape {
             let end = reading.and(column.path.rsplit('.').next());
             Leaf {
                 part: match (column.kind, end) {
-                    (Kind::Instant, Some("taken")) => Part::Taken,
-                    (Kind::Count(_), Some("source")) => Part::Source,
-                    _ => Part::Value,
+                    (Kind::Instant, Some("taken")) => ReadingPart::Taken,
+                    (Kind::Count(_), Some("source")) => ReadingPart::Source,
+                    _ => ReadingPart::Value,
                 },
                 reading,
                 column,
@@ -99,8 +99,8 @@ impl Shape {
             let name = self.readings.get(leaf.reading?)?;
             match (leaf.part, leaf.column.kind) {
                 _ if without.contains(name) => None,
-                (Part::Taken, _) => Some(Value::Instant(0)),
-                (Part::Value, Kind::Number) => Some(Value::Number(f64::NAN)),
+                (ReadingPart::Taken, _) => Some(Value::Instant(0)),
+                (ReadingPart::Value, Kind::Number) => Some(Value::Number(f64::NAN)),
                 _ => None,
             }
         };
@@ -114,7 +114,7 @@ impl Shape {
         let (values, before) = (flat(from), flat(into));
         let mut taken = [false; MOST];
         for (leaf, value) in self.leaves.iter().zip(values.as_slice()) {
-            if let (Part::Taken, Some(reading)) = (leaf.part, leaf.reading)
+            if let (ReadingPart::Taken, Some(reading)) = (leaf.part, leaf.reading)
                 && let Some(taken) = taken.get_mut(reading)
             {
                 *taken = !value.is_never();
@@ -127,8 +127,8 @@ impl Shape {
         let given = |index: usize| {
             let leaf = self.leaves.get(index).filter(|leaf| is_taken(leaf))?;
             match (leaf.part, now) {
-                (Part::Value, _) => values.as_slice().get(index).copied(),
-                (Part::Taken, Some(now)) => Some(Value::Instant(now.as_nanos())),
+                (ReadingPart::Value, _) => values.as_slice().get(index).copied(),
+                (ReadingPart::Taken, Some(now)) => Some(Value::Instant(now.as_nanos())),
                 _ => before.as_slice().get(index).copied(),
             }
         };
@@ -149,7 +149,7 @@ impl Shape {
         };
         let given = |index: usize| {
             let leaf = self.leaves.get(index)?;
-            let reading = leaf.reading.filter(|_| leaf.part == Part::Taken)?;
+            let reading = leaf.reading.filter(|_| leaf.part == ReadingPart::Taken)?;
             let name = self.readings.get(reading).copied().unwrap_or_default();
             let is_missing = missing(name) || !has_number(reading);
             is_missing.then_some(Value::Instant(Time::NEVER.as_nanos()))

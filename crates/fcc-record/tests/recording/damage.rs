@@ -121,7 +121,7 @@ fn change() -> impl Strategy<Value = Change> {
 
 /// Which part of a file is damaged.
 #[derive(Clone, Copy, Debug)]
-enum Part {
+enum DamagedPart {
     ChunkHeader,
     ChunkData,
     MessageIndex,
@@ -131,42 +131,42 @@ enum Part {
     Footer,
 }
 
-const PARTS: [Part; 7] = [
-    Part::ChunkHeader,
-    Part::ChunkData,
-    Part::MessageIndex,
-    Part::Metadata,
-    Part::DataEnd,
-    Part::Index,
-    Part::Footer,
+const PARTS: [DamagedPart; 7] = [
+    DamagedPart::ChunkHeader,
+    DamagedPart::ChunkData,
+    DamagedPart::MessageIndex,
+    DamagedPart::Metadata,
+    DamagedPart::DataEnd,
+    DamagedPart::Index,
+    DamagedPart::Footer,
 ];
 
 /// Opcode and length of a record; times, lengths, checksum and compression of
 /// a chunk (its specification's fields, with a string of at most 4 bytes).
 const CHUNK_HEADER_BYTES: usize = 9 + 8 + 8 + 8 + 4 + 4 + 4 + 8;
 
-fn place(original: &Original, part: Part, which: prop::sample::Index) -> Range<usize> {
+fn place(original: &Original, part: DamagedPart, which: prop::sample::Index) -> Range<usize> {
     let one_of = |opcode| {
         let all = original.all(opcode);
         all[which.index(all.len())].clone()
     };
     match part {
-        Part::ChunkHeader => {
+        DamagedPart::ChunkHeader => {
             let chunk = one_of(op::CHUNK);
             chunk.start..chunk.start + CHUNK_HEADER_BYTES
         }
-        Part::ChunkData => {
+        DamagedPart::ChunkData => {
             let chunk = one_of(op::CHUNK);
             chunk.start + CHUNK_HEADER_BYTES..chunk.end
         }
-        Part::MessageIndex => one_of(op::MESSAGE_INDEX),
-        Part::Metadata => one_of(op::METADATA),
-        Part::DataEnd => one_of(op::DATA_END),
-        Part::Index => {
+        DamagedPart::MessageIndex => one_of(op::MESSAGE_INDEX),
+        DamagedPart::Metadata => one_of(op::METADATA),
+        DamagedPart::DataEnd => one_of(op::DATA_END),
+        DamagedPart::Index => {
             let from = original.all(op::DATA_END)[0].end;
             from..original.all(op::FOOTER)[0].start
         }
-        Part::Footer => original.all(op::FOOTER)[0].start..original.bytes.len(),
+        DamagedPart::Footer => original.all(op::FOOTER)[0].start..original.bytes.len(),
     }
 }
 
@@ -240,7 +240,7 @@ proptest! {
         let expected: Vec<_> = original.messages.iter().filter(is_there).copied().collect();
         let same = messages == expected;
         prop_assert!(same, "{} messages of {}", messages.len(), expected.len());
-        if !matches!(part, Part::ChunkHeader | Part::ChunkData) {
+        if !matches!(part, DamagedPart::ChunkHeader | DamagedPart::ChunkData) {
             prop_assert_eq!(span(&missing), None);
         }
         let seen = entry(&path).unwrap();

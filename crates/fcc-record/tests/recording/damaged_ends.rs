@@ -74,6 +74,27 @@ fn a_file_whose_beginning_is_overwritten_is_read_from_the_next_record() {
     }
 }
 
+/// What is known of the flight is lost, and its records are identified by their
+/// content.
+#[test]
+fn an_unfinished_file_without_header_and_first_chunk_is_read_and_recovered() {
+    let original = &ORIGINALS[1];
+    let chunks = original.all(op::CHUNK);
+    let mut bytes = original.bytes[..chunks[4].start].to_vec();
+    bytes[..chunks[0].end].fill(0);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.mcap");
+    fs::write(&path, &bytes).unwrap();
+    let rest = ticks_in(original, &(chunks[0].end..chunks[4].start)).len();
+    assert!(rest > 0);
+    assert_eq!(ticks(&read_damaged(&path).0).len(), rest);
+    assert_eq!(entry(&path).unwrap().started, "unknown");
+
+    assert_eq!(recover(&path, |_| {}).unwrap().ticks, rest as u64);
+    assert_eq!(ticks(&read(&path).0).len(), rest);
+    assert_eq!(entry(&path).unwrap().file, Wholeness::Whole);
+}
+
 /// A loss of power can leave zeros in place of data.
 #[test]
 fn zeros_after_the_data_are_reported_and_removed() {

@@ -11,6 +11,8 @@ pub struct Column {
     pub field: &'static str,
     /// Its path in the struct: `measurements.attitude.value.pitch_rad`.
     pub path: String,
+    /// The numbers of the fields of this path, which identify it in a message.
+    pub numbers: Vec<u32>,
     /// The path of the reading that contains it, if there is one.
     pub reading: Option<String>,
     /// Bytes from the struct's beginning.
@@ -119,6 +121,7 @@ impl Around<'_> {
             name: self.name(),
             field: told_by.name,
             path: self.path.clone(),
+            numbers: self.numbers(),
             reading: self.reading(),
             offset: self.offset,
             kind,
@@ -126,6 +129,15 @@ impl Around<'_> {
             unit: named.unit(),
             range: told_by.range,
         }
+    }
+
+    fn numbers(&self) -> Vec<u32> {
+        let Some(outer) = self.outer else {
+            return Vec::new();
+        };
+        let mut numbers = outer.numbers();
+        numbers.push(self.field.number);
+        numbers
     }
 
     fn reading(&self) -> Option<String> {

@@ -70,7 +70,8 @@ pub(crate) fn end_of(value: f64) -> String {
         .map_or_else(|| value.to_string(), |(_, name)| format!("{sign}{name}"))
 }
 
-fn type_of(kind: Kind) -> String {
+/// The type of a value in memory: `f64`.
+pub(super) fn type_of(kind: Kind) -> String {
     match kind {
         Kind::Bool | Kind::Code(_) => "u8".to_owned(),
         Kind::Flags => "u32".to_owned(),

@@ -3,15 +3,17 @@
 //! their description. No field is named here.
 
 mod columns;
+mod description;
 mod layout;
 pub mod protobuf;
 mod row;
 mod words;
 
 pub use columns::{Column, Leaves, columns};
+pub use description::{DescribedColumn, RecordDescription};
 pub use layout::{layout_table, spaced};
 pub use row::{Row, header};
-pub use words::{Words, words, write_words};
+pub use words::{read_words, words, write_words};
 
 /// The first paragraph of a doc comment in one line, without markup.
 pub(crate) fn meaning(lines: &str) -> String {

@@ -1,79 +1,47 @@
 //! A struct as 64-bit words, with no undefined bytes between the fields: equal
 //! structs have equal words.
 
-use std::marker::PhantomData;
-
 use fcc_core::framework::schema::{Field, Kind, Schema, Sink, Source, Type, Unknown, Value};
 
 const WORD: usize = size_of::<u64>();
-
-/// The 64-bit words of `T`. Another process may have written any bits: they are
-/// read as a `T` only if every value is a declared one.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-#[repr(transparent)]
-pub struct Words<T, const N: usize> {
-    words: [u64; N],
-    of: PhantomData<fn() -> T>,
-}
 
 /// The number of words of a `T`.
 pub const fn words<T>() -> usize {
     size_of::<T>().div_ceil(WORD)
 }
 
-impl<T: Schema, const N: usize> Words<T, N> {
-    /// The words of a struct.
-    pub fn of(value: &T) -> Self {
-        const { assert!(N == words::<T>(), "the words of the struct") };
-        let mut words = [0; N];
-        write_words(value, &mut words);
-        Self {
-            words,
-            of: PhantomData,
-        }
-    }
-
-    /// The struct in these words.
-    ///
-    /// # Errors
-    /// When a value is not one of those declared.
-    pub fn get(&self) -> Result<T, Unknown> {
-        T::from_source(&mut Memory {
-            words: &mut self.words.clone(),
-            offset: 0,
-        })
-    }
-
-    /// The words themselves.
-    pub const fn as_words(&self) -> &[u64; N] {
-        &self.words
-    }
-}
-
-/// Writes a struct into words that are 0; those beyond the first
-/// [`words`] stay so.
+/// Writes a struct into words; bytes between its fields, and words beyond the
+/// first [`words`], are left as they are.
 pub fn write_words<T: Schema>(value: &T, words: &mut [u64]) {
-    value.visit(&mut Memory { words, offset: 0 });
+    value.visit(&mut Writer { words, offset: 0 });
 }
 
-struct Memory<'a> {
-    words: &'a mut [u64],
-    /// Offset of the struct being written or read.
-    offset: usize,
+/// The struct in these words, which another process may have written.
+///
+/// # Errors
+/// When a value is not one of those declared.
+pub fn read_words<T: Schema>(words: &[u64]) -> Result<T, Unknown> {
+    T::from_source(&mut Reader { words, offset: 0 })
 }
 
-impl Memory<'_> {
-    /// The word that contains a field, and the bits before it. No field is in
-    /// two words, because each is aligned to its size.
-    fn place(&mut self, field: &Field) -> Option<(&mut u64, usize)> {
-        let at = self.offset + field.offset;
-        let bytes_before = at % WORD;
-        let shift = if cfg!(target_endian = "big") {
-            WORD - bytes_before - kind(field)?.bytes()
-        } else {
-            bytes_before
-        };
-        Some((self.words.get_mut(at / WORD)?, 8 * shift))
+/// Writes the lowest `bytes` bytes of a value at an offset that is a multiple of
+/// them; without effect beyond the end.
+pub(super) fn put(words: &mut [u64], offset: usize, bytes: usize, bits: u64) {
+    let shift = shift(offset, bytes);
+    let mask = u64::MAX >> (8 * (WORD - bytes));
+    if let Some(word) = words.get_mut(offset / WORD) {
+        *word = *word & !(mask << shift) | (bits & mask) << shift;
+    }
+}
+
+/// The bits in the word before a value. No value is in two words, because each
+/// is aligned to its size.
+const fn shift(offset: usize, bytes: usize) -> usize {
+    let before = offset % WORD;
+    8 * if cfg!(target_endian = "big") {
+        WORD - before - bytes
+    } else {
+        before
     }
 }
 
@@ -84,7 +52,13 @@ const fn kind(field: &Field) -> Option<Kind> {
     }
 }
 
-impl Sink for Memory<'_> {
+struct Writer<'a> {
+    words: &'a mut [u64],
+    /// Offset of the struct being written.
+    offset: usize,
+}
+
+impl Sink for Writer<'_> {
     fn begin(&mut self, field: &'static Field) {
         self.offset += field.offset;
     }
@@ -94,21 +68,20 @@ impl Sink for Memory<'_> {
     }
 
     fn value(&mut self, field: &'static Field, value: Value) {
-        let bits = match value {
-            // Sign bits beyond the value's own bytes belong to other fields.
-            Value::Signed(signed) => {
-                let above = 64 - 8 * kind(field).map_or(WORD, |kind| kind.bytes()) as u32;
-                (signed as u64) << above >> above
-            }
-            value => value.bits(),
-        };
-        if let Some((word, shift)) = self.place(field) {
-            *word |= bits << shift;
+        if let Some(kind) = kind(field) {
+            let offset = self.offset + field.offset;
+            put(self.words, offset, kind.bytes(), value.bits());
         }
     }
 }
 
-impl Source for Memory<'_> {
+struct Reader<'a> {
+    words: &'a [u64],
+    /// Offset of the struct being read.
+    offset: usize,
+}
+
+impl Source for Reader<'_> {
     fn begin(&mut self, field: &'static Field) {
         self.offset += field.offset;
     }
@@ -119,8 +92,10 @@ impl Source for Memory<'_> {
 
     fn value(&mut self, field: &'static Field) -> Option<Value> {
         let kind = kind(field)?;
-        let (word, shift) = self.place(field)?;
+        let offset = self.offset + field.offset;
+        let word = self.words.get(offset / WORD)?;
+        let bits = *word >> shift(offset, kind.bytes());
         // Invalid bits give an undeclared code.
-        Some(Value::from_bits(kind, *word >> shift).unwrap_or(Value::Code(u8::MAX)))
+        Some(Value::from_bits(kind, bits).unwrap_or(Value::Code(u8::MAX)))
     }
 }

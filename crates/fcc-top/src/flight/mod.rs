@@ -11,7 +11,7 @@ use fcc_telemetry::units::PA_HPA;
 use serde_json::{Map, Value, json};
 
 use self::table::Quantity;
-use super::watched::{Part, Watched};
+use super::watched::{ScreenPart, Watched};
 
 impl Watched for Autopilot {
     const PROGRAM: &'static str = "fccd";
@@ -21,7 +21,7 @@ impl Watched for Autopilot {
         "surf.", "switch", "plant",
     ];
 
-    fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, Part<Self>)> {
+    fn parts(record: Option<&RecordOf<Self>>) -> Vec<(String, u16, ScreenPart<Self>)> {
         // When engaged, the mode of guidance and its progress; the altimeter
         // setting if it is not the standard one.
         let flown = match record {

@@ -19,8 +19,8 @@ use std::time::{Duration, Instant};
 
 use fcc_core::flight::guidance::{Progress, Targets};
 use fcc_core::flight::{AutopilotCommand, Resume};
-use fcc_core::framework::{EventKind, Message, Reading, State, Switch};
-use fcc_runtime::CommandSender;
+use fcc_core::framework::{EventKind, Message, State, Switch};
+use fcc_runtime::{CommandSender, SwitchOwner};
 use fcc_telemetry::{FlightEvent, FlightMessage};
 
 use crate::config::{Config, RestartMode};
@@ -28,7 +28,7 @@ use boot_clock::BootInstant;
 use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
 use recovery::{Next, Recovery};
-use state_file::{Saved, StateFileError};
+use state_file::{Saved, SavedSwitch, StateFileError};
 
 /// The state is stored at least at this interval.
 const KEEP_EVERY: Duration = Duration::from_secs(1);
@@ -102,7 +102,8 @@ pub(super) struct Restart {
     kept: Option<(Instant, Progress)>,
     engaged_since: Option<Instant>,
     recoveries: u32,
-    switch_on: bool,
+    switch_owner: SwitchOwner,
+    switch: SavedSwitch,
     /// The loop failed: the flight counts as interrupted.
     is_broken: bool,
     recovery: Option<Recovery>,
@@ -137,7 +138,8 @@ impl Restart {
             kept: None,
             engaged_since: None,
             recoveries: 0,
-            switch_on: false,
+            switch_owner: SwitchOwner::default(),
+            switch: SavedSwitch::default(),
             is_broken: false,
             recovery,
             request,
@@ -153,7 +155,13 @@ impl Restart {
         match message {
             Message::Event(event) => self.event(event),
             Message::Tick(record) => {
-                self.switch_on = is_on(record.measurements.engage_switch);
+                let switch = record.measurements.engage_switch;
+                if !switch.is_never() && self.switch_owner.owns(switch.source) {
+                    self.switch = SavedSwitch {
+                        on: switch.value == Switch::On,
+                        source: switch.source,
+                    };
+                }
                 if record.state == State::Engaged {
                     self.keep(Resume {
                         progress: record.setpoints.guidance,
@@ -247,7 +255,7 @@ impl Restart {
         self.keeper.keep(Saved {
             at,
             config: self.request.fingerprint,
-            switch_on: self.switch_on,
+            switch: self.switch,
             recoveries: self.recoveries,
             resume,
         });
@@ -321,10 +329,6 @@ fn evaluate(
     }
     let message = format!("{}: {interrupted}; recovering it", request.path.display());
     (Some(Recovery::new(saved)), Some(message))
-}
-
-fn is_on(switch: Reading<Switch>) -> bool {
-    !switch.is_never() && switch.value == Switch::On
 }
 
 /// Whether the mode differs, or its captured values differ by more than a small

@@ -4,7 +4,8 @@
 //! [`engage_inhibits`](fcc_core::framework::Controller::engage_inhibits) check
 //! before any engagement: all readings fresh, airspeed above the envelope's
 //! floor, no upset. If the engage switch was switched off in the meantime, the
-//! flight is not recovered.
+//! flight is not recovered. Only the sensor to which the switch belonged says
+//! so: another's may deliver first after the start.
 
 use std::time::Duration;
 
@@ -70,7 +71,9 @@ impl Recovery {
                 self.status = Some(LoopStatus {
                     state: record.state.state(),
                     engage_inhibits: record.engage_inhibits,
-                    switched_off: !switch.is_never() && switch.value == Switch::Off,
+                    switched_off: !switch.is_never()
+                        && switch.source == self.saved.switch.source
+                        && switch.value == Switch::Off,
                 });
             }
             Message::Event(event) => {
@@ -94,7 +97,7 @@ impl Recovery {
             (State::Standby, Some(_)) => return Next::Wait,
             _ => return Next::NotRecovered("the interrupted flight is not recovered".to_owned()),
         }
-        if self.saved.switch_on && status.switched_off {
+        if self.saved.switch.on && status.switched_off {
             return Next::NotRecovered(
                 "the interrupted flight is not recovered: it was switched off since".to_owned(),
             );
@@ -165,6 +168,7 @@ mod tests {
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
+    use super::super::state_file::SavedSwitch;
     use super::*;
     use crate::config::Config;
 
@@ -180,7 +184,7 @@ mod tests {
         let saved = Saved {
             at: BootInstant::now().unwrap(),
             config: 0,
-            switch_on: true,
+            switch: SavedSwitch::default(),
             recoveries: 0,
             resume,
         };

@@ -29,12 +29,21 @@ pub(super) struct Saved {
     pub(super) at: BootInstant,
     /// A fingerprint of the configuration.
     pub(super) config: u32,
-    /// Whether the engage switch was on.
-    pub(super) switch_on: bool,
+    /// The engage switch.
+    pub(super) switch: SavedSwitch,
     /// The number of consecutive recoveries of the flight.
     pub(super) recoveries: u32,
     /// What was flown.
     pub(super) resume: Resume,
+}
+
+/// The engage switch as it was last delivered by its owner.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct SavedSwitch {
+    /// Whether it was on.
+    pub(super) on: bool,
+    /// The sensor to which it belongs.
+    pub(super) source: u8,
 }
 
 /// The same as stored in the file.
@@ -45,6 +54,9 @@ struct Page {
     boottime_ns: u64,
     config: u32,
     switch_on: bool,
+    /// Not in the files of earlier versions, which knew one sensor.
+    #[serde(default)]
+    switch_source: u8,
     #[serde(rename = "take_ups")]
     recoveries: u32,
     mode: String,
@@ -122,7 +134,8 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
         boot: saved.at.boot.clone(),
         boottime_ns: saved.at.ns,
         config: saved.config,
-        switch_on: saved.switch_on,
+        switch_on: saved.switch.on,
+        switch_source: saved.switch.source,
         recoveries: saved.recoveries,
         mode: progress.mode.to_string(),
         elapsed_s: progress.elapsed_s,
@@ -176,7 +189,10 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
             ns: page.boottime_ns,
         },
         config: page.config,
-        switch_on: page.switch_on,
+        switch: SavedSwitch {
+            on: page.switch_on,
+            source: page.switch_source,
+        },
         recoveries: page.recoveries,
         resume: Resume {
             progress: Progress {
@@ -213,7 +229,10 @@ mod tests {
                 ns: 12_345_678_901,
             },
             config: 0xfedc_ba98,
-            switch_on: true,
+            switch: SavedSwitch {
+                on: true,
+                source: 1,
+            },
             recoveries: 2,
             resume: Resume {
                 progress: Progress {

@@ -1,8 +1,8 @@
 //! The evaluation of a state file that is found at the start.
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AltitudeReference, Setpoints, Surfaces};
-use fcc_core::framework::{Event, Record, Tick, Time};
+use fcc_core::flight::{AltitudeReference, Measurements, Setpoints, Surfaces};
+use fcc_core::framework::{Event, Reading, Record, Tick, Time};
 use tempfile::TempDir;
 
 use super::*;
@@ -53,7 +53,10 @@ impl Folder {
         let mut saved = Saved {
             at,
             config: 7,
-            switch_on: true,
+            switch: SavedSwitch {
+                on: true,
+                source: 0,
+            },
             recoveries: 0,
             resume: FLOWN,
         };
@@ -174,6 +177,25 @@ fn event(kind: EventKind<AutopilotCommand>) -> FlightMessage {
     })
 }
 
+/// A tick with this switch of a sensor.
+fn switched(tick: &FlightMessage, source: u8, switch: Switch) -> FlightMessage {
+    let Message::Tick(record) = tick else {
+        panic!("no tick")
+    };
+    let engage_switch = Reading::new(switch, Time::from_nanos(0));
+    let engage_switch = Reading {
+        source,
+        ..engage_switch
+    };
+    Message::Tick(Record {
+        measurements: Measurements {
+            engage_switch,
+            ..record.measurements
+        },
+        ..*record
+    })
+}
+
 /// A tick with this state engaged.
 fn engaged(resume: &Resume) -> FlightMessage {
     Message::Tick(Record {
@@ -213,4 +235,38 @@ fn the_recorded_state_is_stored_until_the_flight_ends_regularly() {
         let kept = state_file::read(&folder.request.path).unwrap();
         assert_eq!(kept.map(|saved| saved.resume), is_left.then_some(pattern));
     }
+}
+
+/// With two sensors the other's switch, off, may be delivered while the owner of
+/// the switch is silent: before the interruption, and first after the start.
+#[test]
+fn only_the_owner_of_the_switch_switches_off() {
+    let folder = Folder::new(RestartMode::Warm);
+    let (restart, _) = Restart::begin(folder.request.clone());
+    let mut restart = restart.unwrap();
+    restart.take(&switched(&engaged(&FLOWN), 0, Switch::On));
+    let mut pattern = FLOWN;
+    pattern.progress.mode = Mode::TimedPattern;
+    restart.take(&switched(&engaged(&pattern), 1, Switch::Off));
+    restart.take(&event(EventKind::Panicked));
+    restart.end();
+    let saved = state_file::read(&folder.request.path).unwrap().unwrap();
+    let owners = SavedSwitch {
+        on: true,
+        source: 0,
+    };
+    assert_eq!((saved.switch, saved.resume), (owners, pattern));
+
+    let standby = Message::Tick(Record::new(Tick::default(), State::Standby));
+    let mut recovery = Recovery::new(saved);
+    let mut next = |source, switch| {
+        recovery.take(&switched(&standby, source, switch));
+        recovery.next(BootInstant::now(), Duration::from_secs(60))
+    };
+    assert!(matches!(next(1, Switch::Off), Next::Command(_)));
+    assert!(matches!(next(0, Switch::On), Next::Command(_)));
+    let Next::NotRecovered(why) = next(0, Switch::Off) else {
+        panic!("it was switched off")
+    };
+    assert!(why.contains("it was switched off since"), "{why}");
 }

@@ -33,12 +33,48 @@ pub fn decode<T: Schema>(bytes: &[u8]) -> Result<T, DecodeError> {
     Ok(value?)
 }
 
+/// The value of a field in a message.
 #[derive(Clone, Copy)]
-enum Wire<'a> {
+pub(super) enum Wire<'a> {
     Varint(u64),
     Fixed64(u64),
     Fixed32(u32),
     Bytes(&'a [u8]),
+}
+
+/// Appends the fields of a message, each with its number; none if the bytes are
+/// no message.
+pub(super) fn split<'a>(mut bytes: &'a [u8], fields: &mut Vec<(u32, Wire<'a>)>) -> Option<()> {
+    while !bytes.is_empty() {
+        let (number, wire_type) = decode_key(&mut bytes).ok()?;
+        let wire = match wire_type {
+            WireType::Varint => Wire::Varint(decode_varint(&mut bytes).ok()?),
+            WireType::SixtyFourBit => {
+                let (taken, rest) = bytes.split_first_chunk()?;
+                bytes = rest;
+                Wire::Fixed64(u64::from_le_bytes(*taken))
+            }
+            WireType::ThirtyTwoBit => {
+                let (taken, rest) = bytes.split_first_chunk()?;
+                bytes = rest;
+                Wire::Fixed32(u32::from_le_bytes(*taken))
+            }
+            WireType::LengthDelimited => {
+                let length = usize::try_from(decode_varint(&mut bytes).ok()?).ok()?;
+                let (taken, rest) = bytes.split_at_checked(length)?;
+                bytes = rest;
+                Wire::Bytes(taken)
+            }
+            WireType::StartGroup | WireType::EndGroup => return None,
+        };
+        fields.push((number, wire));
+    }
+    Some(())
+}
+
+/// A signed number from its encoding, in which small numbers are short.
+pub(super) const fn unzigzag(value: u64) -> i64 {
+    (value >> 1) as i64 ^ -((value & 1) as i64)
 }
 
 struct Decoder<'a> {
@@ -58,35 +94,6 @@ impl<'a> Decoder<'a> {
         let found = fields.iter().rfind(|(known, _)| *known == number);
         found.map(|(_, wire)| *wire)
     }
-
-    /// Splits a message into fields.
-    fn take(&mut self, mut bytes: &'a [u8]) -> Option<()> {
-        while !bytes.is_empty() {
-            let (number, wire_type) = decode_key(&mut bytes).ok()?;
-            let wire = match wire_type {
-                WireType::Varint => Wire::Varint(decode_varint(&mut bytes).ok()?),
-                WireType::SixtyFourBit => {
-                    let (taken, rest) = bytes.split_first_chunk()?;
-                    bytes = rest;
-                    Wire::Fixed64(u64::from_le_bytes(*taken))
-                }
-                WireType::ThirtyTwoBit => {
-                    let (taken, rest) = bytes.split_first_chunk()?;
-                    bytes = rest;
-                    Wire::Fixed32(u32::from_le_bytes(*taken))
-                }
-                WireType::LengthDelimited => {
-                    let length = usize::try_from(decode_varint(&mut bytes).ok()?).ok()?;
-                    let (taken, rest) = bytes.split_at_checked(length)?;
-                    bytes = rest;
-                    Wire::Bytes(taken)
-                }
-                WireType::StartGroup | WireType::EndGroup => return None,
-            };
-            self.fields.push((number, wire));
-        }
-        Some(())
-    }
 }
 
 impl Source for Decoder<'_> {
@@ -105,7 +112,7 @@ impl Source for Decoder<'_> {
         };
         let first = self.fields.len();
         self.open.push(bytes.map(|_| first));
-        if bytes.is_some_and(|bytes| self.take(bytes).is_none()) {
+        if bytes.is_some_and(|bytes| split(bytes, &mut self.fields).is_none()) {
             self.damaged = true;
         }
     }
@@ -134,10 +141,7 @@ impl Source for Decoder<'_> {
                 Some(Value::Code(u8::try_from(value).unwrap_or(u8::MAX)))
             }
             (Kind::Count(_), Some(Wire::Varint(value))) => Some(Value::Count(value)),
-            (Kind::Signed(_), Some(Wire::Varint(value))) => {
-                let size = (value >> 1) as i64;
-                Some(Value::Signed(size ^ -((value & 1) as i64)))
-            }
+            (Kind::Signed(_), Some(Wire::Varint(value))) => Some(Value::Signed(unzigzag(value))),
             _ => None,
         };
         self.damaged |= value.is_none();

@@ -9,10 +9,12 @@ mod decode;
 mod describe;
 mod encode;
 mod model;
+mod rows;
 mod text;
 
 pub use decode::{DecodeError, decode};
 pub use describe::describe;
 pub use encode::{append_text, encode};
 pub use model::{Extra, FieldType, File, Message, MessageField};
+pub use rows::RowDecoder;
 pub use text::text;

@@ -3,19 +3,19 @@
 
 use std::collections::VecDeque;
 
-use fcc_core::framework::{Controller, EventKind, EventOf, LoopCommand, State};
-use fcc_live::{AircraftLimits, FlightCommand, InvalidCommand, PendingCommand, Verdict};
-use fcc_runtime::CommandSender;
+use fcc_core::framework::{EventKind, EventOf, LoopCommand, State};
 use fcc_telemetry::describe_event;
 
+use super::{Command, Commandable, InvalidCommand, PendingCommand, PlantLimits, Verdict};
+
 /// Commands that were sent and whose outcome is not known yet, oldest first.
-pub(super) struct Commands<C: Controller> {
-    /// The commands to the loop for one command from outside, in order.
-    for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
-    limits: AircraftLimits,
+#[derive(Debug)]
+pub struct SentCommands<C: Commandable> {
+    limits: PlantLimits,
     waiting: VecDeque<Waiting<C::Command>>,
 }
 
+#[derive(Debug)]
 struct Waiting<R> {
     asked: PendingCommand,
     /// The number of its parts that the loop has not read yet.
@@ -26,36 +26,32 @@ struct Waiting<R> {
     refusal: Option<String>,
 }
 
-impl<C: Controller<Command: PartialEq>> Commands<C> {
-    /// Commands to an aircraft with these limits.
-    pub(super) const fn new(
-        limits: AircraftLimits,
-        for_the_loop: fn(&FlightCommand) -> Vec<LoopCommand<C::Command>>,
-    ) -> Self {
+impl<C: Commandable> SentCommands<C> {
+    /// None yet, for a plant with these limits.
+    pub const fn new(limits: PlantLimits) -> Self {
         Self {
-            for_the_loop,
             limits,
             waiting: VecDeque::new(),
         }
     }
 
-    /// Sends a command to the loop; returns the verdict if it is known at once.
-    pub(super) fn send(
+    /// Sends a command to the loop by `send`, which returns why it could not;
+    /// returns the verdict if it is known at once.
+    pub fn send(
         &mut self,
         asked: PendingCommand,
-        to: &mut CommandSender<C::Command>,
+        mut send: impl FnMut(LoopCommand<C::Command>) -> Result<(), String>,
     ) -> Option<(u64, Verdict)> {
-        if let Err(invalid) = asked.command.check_for(&self.limits) {
-            let verdict = match invalid {
-                InvalidCommand::Outside(outside) => Verdict::Outside(outside),
-                other => Verdict::Refused(other.to_string()),
-            };
-            return Some((asked.id, verdict));
-        }
-        let unread: VecDeque<_> = (self.for_the_loop)(&asked.command).into();
+        let unread = match asked.command.for_the_loop::<C>(&self.limits) {
+            Ok(commands) => VecDeque::from(commands),
+            Err(InvalidCommand::Outside(outside)) => {
+                return Some((asked.id, Verdict::Outside(outside)));
+            }
+            Err(invalid) => return Some((asked.id, Verdict::Refused(invalid.to_string()))),
+        };
         for command in &unread {
-            if let Err(error) = to.send(*command) {
-                return Some((asked.id, Verdict::Refused(error.to_string())));
+            if let Err(why) = send(*command) {
+                return Some((asked.id, Verdict::Refused(why)));
             }
         }
         self.waiting.push_back(Waiting {
@@ -68,7 +64,7 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
     }
 
     /// Processes an event of the loop; it comes before the record of its tick.
-    pub(super) fn event(&mut self, event: &EventOf<C>) {
+    pub fn event(&mut self, event: &EventOf<C>) {
         match event.kind {
             // The loop reads in the order of sending, and another sender's
             // command matches none that waits here.
@@ -84,9 +80,11 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
                 }
             }
             EventKind::EngageRefused { .. } => {
-                for waiting in self.waiting.iter_mut().filter(|w| {
-                    w.read_in == Some(event.tick) && w.asked.command == FlightCommand::Engage
-                }) {
+                for waiting in self
+                    .waiting
+                    .iter_mut()
+                    .filter(|w| w.read_in == Some(event.tick) && w.asked.command == Command::Engage)
+                {
                     waiting.refusal = Some(describe_event::<C>(event, &[], &[]));
                 }
             }
@@ -96,15 +94,15 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
 
     /// Processes the state after a tick; returns the next verdict that it
     /// permits. Call it again until there is none.
-    pub(super) fn verdict(&mut self, now: u64, state: State) -> Option<(u64, Verdict)> {
+    pub fn verdict(&mut self, now: u64, state: State) -> Option<(u64, Verdict)> {
         let first = self.waiting.front()?;
         let tick = first.read_in.filter(|tick| *tick <= now)?;
         let waiting = self.waiting.pop_front()?;
-        let done = match waiting.asked.command {
-            command if command.needs_control() => state == State::Engaged,
-            FlightCommand::Engage | FlightCommand::Set(_) => state != State::Stopped,
-            FlightCommand::Disengage => matches!(state, State::Standby | State::Stopped),
-            FlightCommand::Stop => state == State::Stopped,
+        let done = match &waiting.asked.command {
+            command if command.needs_control::<C>() => state == State::Engaged,
+            Command::Engage | Command::Set(_) => state != State::Stopped,
+            Command::Disengage => matches!(state, State::Standby | State::Stopped),
+            Command::Stop => state == State::Stopped,
         };
         let verdict = if done {
             Verdict::CarriedOut { tick }
@@ -113,7 +111,7 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
                 waiting
                     .refusal
                     .unwrap_or_else(|| match waiting.asked.command {
-                        FlightCommand::Set(_) => {
+                        Command::Set(_) => {
                             format!(
                                 "the state is {state}: set points are accepted only while engaged"
                             )
@@ -126,30 +124,20 @@ impl<C: Controller<Command: PartialEq>> Commands<C> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "flight"))]
 mod tests {
     use fcc_core::flight::{Autopilot, AutopilotCommand, flags};
-    use fcc_core::framework::{Event, Time};
-    use fcc_live::NewSetpoints;
+    use fcc_core::framework::{Controller, Event, Time};
 
     use super::*;
 
-    const HEADING: FlightCommand = FlightCommand::Set(NewSetpoints {
-        airspeed_mps: None,
-        heading_rad: Some(1.0),
-        altitude_m: Some(900.0),
-        pressure_altitude_m: None,
-        height_m: None,
-        altimeter_setting_pa: None,
-    });
+    fn heading() -> Command {
+        Command::set([("heading_rad", 1.0), ("altitude_m", 900.0)])
+    }
 
-    fn waiting(commands: &mut Commands<Autopilot>, id: u64, command: FlightCommand) {
-        commands.waiting.push_back(Waiting {
-            asked: PendingCommand { id, command },
-            unread: command.for_the_loop().into(),
-            read_in: None,
-            refusal: None,
-        });
+    fn waiting(commands: &mut SentCommands<Autopilot>, id: u64, command: Command) {
+        let known = commands.send(PendingCommand { id, command }, |_| Ok(()));
+        assert_eq!(known, None);
     }
 
     fn event(tick: u64, kind: EventKind<AutopilotCommand>) -> EventOf<Autopilot> {
@@ -160,25 +148,16 @@ mod tests {
         }
     }
 
-    fn commands() -> Commands<Autopilot> {
-        let limits = AircraftLimits {
-            airspeeds_mps: 30.0..=60.0,
-            has_field_elevation: false,
-        };
-        Commands::new(limits, FlightCommand::for_the_loop)
+    fn commands() -> SentCommands<Autopilot> {
+        SentCommands::new(vec![("airspeed_mps", Ok(30.0..=60.0))])
     }
 
     #[test]
-    fn the_altimeter_is_set_in_standby_and_a_height_needs_a_field() {
+    fn the_altimeter_is_set_in_standby() {
         let mut commands = commands();
-        let setting = FlightCommand::Set(NewSetpoints {
-            altimeter_setting_pa: Some(102_000.0),
-            ..NewSetpoints::default()
-        });
+        let setting = Command::set([("altimeter_setting_pa", 102_000.0)]);
         waiting(&mut commands, 1, setting);
-        let [command] = setting.for_the_loop()[..] else {
-            panic!("one command");
-        };
+        let command = LoopCommand::Controller(AutopilotCommand::AltimeterSetting(102_000.0));
         commands.event(&event(5, EventKind::CommandReceived(command)));
         assert_eq!(
             commands.verdict(5, State::Standby),
@@ -189,7 +168,7 @@ mod tests {
     #[test]
     fn a_command_is_answered_by_the_record_of_the_tick_that_read_it() {
         let mut commands = commands();
-        waiting(&mut commands, 1, FlightCommand::Engage);
+        waiting(&mut commands, 1, Command::Engage);
         assert_eq!(commands.verdict(4, State::Standby), None);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         assert_eq!(
@@ -202,7 +181,7 @@ mod tests {
     #[test]
     fn a_refusal_names_the_engage_inhibits() {
         let mut commands = commands();
-        waiting(&mut commands, 1, FlightCommand::Engage);
+        waiting(&mut commands, 1, Command::Engage);
         commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
         let engage_inhibits = flags::TOO_SLOW;
         commands.event(&event(5, EventKind::EngageRefused { engage_inhibits }));
@@ -215,9 +194,10 @@ mod tests {
     #[test]
     fn set_points_wait_for_the_last_of_them_and_need_an_engaged_loop() {
         let mut commands = commands();
-        waiting(&mut commands, 1, HEADING);
-        waiting(&mut commands, 2, HEADING);
-        let [heading, altitude] = HEADING.for_the_loop()[..] else {
+        waiting(&mut commands, 1, heading());
+        waiting(&mut commands, 2, heading());
+        let both = heading().for_the_loop::<Autopilot>(&Vec::new()).unwrap();
+        let [heading, altitude] = both[..] else {
             panic!("two commands");
         };
         // Another sender's command is not mistaken for one that waits.
@@ -239,5 +219,23 @@ mod tests {
             words.contains("standby") && words.contains("while engaged"),
             "{words}"
         );
+    }
+
+    #[test]
+    fn what_cannot_be_sent_is_refused_at_once() {
+        let mut commands = commands();
+        let mut known = |command, sent: Result<(), String>| {
+            commands.send(PendingCommand { id: 1, command }, |_| sent.clone())
+        };
+        let full = Err("full".to_owned());
+        let refused = Some((1, Verdict::Refused("full".to_owned())));
+        assert_eq!(known(Command::Stop, full), refused);
+        let fast = known(Command::set([("airspeed_mps", 61.0)]), Ok(()));
+        let Some((1, Verdict::Outside(outside))) = fast else {
+            panic!("not refused");
+        };
+        assert_eq!((outside.value, outside.most), (61.0, 60.0));
+        let other = known(Command::set([("room_c", 21.0)]), Ok(()));
+        assert!(matches!(other, Some((1, Verdict::Refused(_)))));
     }
 }
