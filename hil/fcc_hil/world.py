@@ -168,6 +168,7 @@ class World:
         )
         if clears_overrides:
             self.cockpit.clear_overrides()
+        self.cockpit.set(SIM_SPEED, 1.0)
         self.cockpit.hold(self.plant.trim)
         self.truth = [row(self.plant.state(), self.cockpit.controls())]
 
@@ -267,6 +268,7 @@ class World:
 
     def _set_up(self, plant: Plant) -> None:
         self.plant = plant
+        self.enter(Mode.RUNNING)
         self.surfaces = Controls(throttle=plant.trim.throttle)
         start = plant.state()
         offset = self.settings.origin_offset_deg

@@ -135,10 +135,13 @@ def test_a_reload_in_the_air_stays_there(bench: Bench) -> None:
     bench.client.write(OVERRIDE_JOYSTICK, 1.0)
     bench.frames(2)
     latitude_deg = bench.read(LATITUDE)
+    bench.act("map")
     bench.act("reload-air")
+    assert bench.frames(60)[1] == pytest.approx(1.0, abs=0.02), "no window is open"
     assert bench.read(OVERRIDE_JOYSTICK) == 0.0
     assert bench.read(ON_GROUND) == 0.0
-    assert bench.read(LATITUDE) == pytest.approx(latitude_deg, abs=1e-6)
+    # A second at 54 m/s to the north.
+    assert bench.read(LATITUDE) == pytest.approx(latitude_deg + 0.00049, abs=1e-5)
     bench.client.write(OVERRIDE_JOYSTICK, 1.0)
     bench.frames(2)
     bench.act("relocate")

@@ -101,11 +101,13 @@ def test_a_height_is_above_the_configured_field() -> None:
     flight.autopilot.command(height_m=2_500 * FT_TO_M)
     # 30.2 inHg: 257 ft less.
     assert flight.fly(SETTLED_S).altitude_m / FT_TO_M == pytest.approx(2_943.0, abs=2.0)
-    with pytest.raises(ValueError, match="altimeter.field_elevation_ft"):
+    with pytest.raises(ValueError, match=r"altimeter\.field_elevation_ft"):
         Flight().autopilot.command(height_m=100.0)
     with pytest.raises(ValueError, match="several altitudes"):
         flight.autopilot.command(height_m=100.0, altitude_m=100.0)
-    with pytest.raises(ValueError, match="altimeter_setting_pa is 1013.25: choose 94000 to 106000"):
+    with pytest.raises(
+        ValueError, match=r"altimeter_setting_pa is 1013\.25: choose 94000 to 106000"
+    ):
         flight.autopilot.command(altimeter_setting_pa=1_013.25)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import random
 import socket
 import struct
 
@@ -35,7 +36,9 @@ TIME = "sim/time/total_flight_time_sec"
 
 def pair_of_free_ports() -> int:
     """Return a free port after which the next one is free, too."""
-    for port in range(52_000, 60_000, 7):
+    for _ in range(100):
+        # At random: tests run in several processes.
+        port = random.SystemRandom().randrange(20_000, 32_000)
         with (
             socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as first,
             socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as second,

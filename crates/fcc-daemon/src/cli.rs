@@ -11,12 +11,12 @@ use fcc_flight::config::{CpuChoice, EarlyWakeChoice, GustsChoice};
 use fcc_telemetry::Instance;
 use fcc_timer::TimerKind;
 
-use crate::exit::EXIT_CODES;
+use crate::exit::exit_codes;
 use x_plane::XPlaneArgs;
 
 /// A real-time flight control computer in software.
 #[derive(Parser, Debug)]
-#[command(name = "fccd", version, after_help = EXIT_CODES)]
+#[command(name = "fccd", version, after_help = exit_codes())]
 pub struct Cli {
     /// The command.
     #[command(subcommand)]
@@ -67,29 +67,6 @@ pub enum Action {
         /// The folder
         folder: PathBuf,
     },
-}
-
-impl Action {
-    /// Whether the result is to be JSON.
-    pub fn json(&self) -> bool {
-        match self {
-            Self::Fly(args) => args.json,
-            Self::Run(args) => args.json,
-            Self::List(args) => args.json,
-            Self::Recover(args) => args.json,
-            Self::Timing(args) => args.json,
-            Self::Replay(args) => args.json,
-            #[cfg(feature = "live")]
-            Self::Top(args) => args.json,
-            #[cfg(feature = "live")]
-            Self::Command(args) => args.json,
-            Self::Check(args) => args.json,
-            Self::Doctor(args) => args.json,
-            Self::Report(args) => args.json,
-            Self::XPlane(args) => args.what.json(),
-            Self::ReleaseHelper | Self::Completions { .. } | Self::Man { .. } => false,
-        }
-    }
 }
 
 /// `fccd fly`.

@@ -1,5 +1,5 @@
 //! The Python module `pendulum`: an inverted pendulum under the loop that flies
-//! an aircraft, with no aircraft in it. The plant is Python: one call a tick.
+//! an aircraft, with no aircraft in it. The plant is Python: one call per tick.
 //!
 //! ```python
 //! import pendulum
@@ -52,7 +52,7 @@ fcc::values_class! {
 }
 
 fcc::machine_class! {
-    /// The loop around a pendulum, one call a tick.
+    /// The loop around a pendulum, one call per tick.
     #[pyclass(name = "Machine", module = "pendulum")]
     struct PyMachine(Balance) {}
     setpoints PyWanted;

@@ -28,17 +28,6 @@ pub enum XPlaneCommand {
     Identify(IdentifyArgs),
 }
 
-impl XPlaneCommand {
-    /// Whether the result is printed as JSON.
-    pub const fn json(&self) -> bool {
-        match self {
-            Self::Check(args) => args.json,
-            Self::Steps { json } => *json,
-            Self::Identify(args) => args.json,
-        }
-    }
-}
-
 /// Where X-Plane is.
 #[derive(Args, Debug)]
 pub struct ConnectionArgs {

@@ -35,18 +35,12 @@ use crate::output;
 
 /// Runs the command of the command line.
 pub fn run() -> Exit {
+    let json = std::env::args_os().any(|argument| argument == "--json");
     match Cli::try_parse() {
-        Ok(cli) => {
-            let json = cli.command.json();
-            carry_out(cli.command).unwrap_or_else(|failure| failure.print(json))
-        }
+        Ok(cli) => carry_out(cli.command).unwrap_or_else(|failure| failure.print(json)),
+        Err(error) if error.use_stderr() && json => Failure::usage(error.render()).print(json),
         // Only an error in the command line concerns the terminal.
         Err(error) if error.use_stderr() => {
-            let json = std::env::args_os().any(|argument| argument == "--json");
-            let message = error.render();
-            if json {
-                return Failure::usage(message).print(json);
-            }
             let _ = error.print();
             Exit::Usage
         }

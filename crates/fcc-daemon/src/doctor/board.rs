@@ -1,7 +1,7 @@
 //! The board, and where its kernel's command line is configured.
 
+use super::Finding;
 use super::machine::Machine;
-use super::{Finding, Grade};
 
 /// The board.
 #[derive(Debug)]
@@ -81,9 +81,4 @@ impl Board {
     pub(super) fn is_raspberry_pi(&self) -> bool {
         self.name.contains("Raspberry Pi")
     }
-}
-
-/// A finding that the machine gives no information on.
-pub(super) fn not_known(id: &'static str, name: &'static str, words: &str) -> Finding {
-    Finding::new(id, name, Grade::NotKnown, words)
 }

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::board::{Board, not_known};
+use super::board::Board;
 use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
-use super::{CONFIGURATION, Finding, Grade};
+use super::{CONFIGURATION, Check, Finding};
 
 const FOLDER: &str = "sys/devices/system/cpu";
 /// Longest wake-up from a sleep state that is acceptable, µs: half of what a
@@ -14,8 +14,7 @@ const SLOW_TO_WAKE_US: u64 = 20;
 
 /// Whether the CPUs run at constant speed.
 pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "governor";
-    const NAME: &str = "CPU speed";
+    const CHECK: Check = Check("governor", "CPU speed");
     let mut cpus_of: BTreeMap<String, usize> = BTreeMap::new();
     for cpu in machine.entries(FOLDER, "cpu") {
         if let Some(governor) = machine.text(&format!("{cpu}/cpufreq/scaling_governor")) {
@@ -23,7 +22,7 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
         }
     }
     if cpus_of.is_empty() {
-        return not_known(ID, NAME, "this machine does not change it");
+        return CHECK.not_known("this machine does not change it");
     }
     let words: Vec<String> = cpus_of
         .iter()
@@ -31,9 +30,10 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
         .collect();
     let found = words.join(", ");
     if cpus_of.keys().all(|governor| governor == "performance") {
-        return Finding::new(ID, NAME, Grade::Ok, found);
+        return CHECK.ok(found);
     }
-    Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+    CHECK
+        .could_be_better(found)
         .because("the CPU is slowed down while the loop sleeps")
         .remedy(
             "/etc/tmpfiles.d/fccd.conf",
@@ -43,21 +43,20 @@ pub(super) fn governor(machine: &Machine, _: &Board) -> Finding {
 
 /// Whether a CPU is reserved for the loop.
 pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
-    const ID: &str = "isolated_cpus";
-    const NAME: &str = "Isolated CPUs";
+    const CHECK: Check = Check("isolated_cpus", "Isolated CPUs");
     let cpus = &loop_cpu.cpus;
     if !cpus.isolated.is_empty() {
         let mut found = list(&cpus.isolated);
         if cpus.tickless.is_disjoint(&cpus.isolated) {
             found.push_str(", with the kernel's tick");
         }
-        return Finding::new(ID, NAME, Grade::Ok, found);
+        return CHECK.ok(found);
     }
     match (cpus.online.len(), loop_cpu.cpu) {
-        (1, _) => Finding::new(ID, NAME, Grade::Ok, "none: there is one CPU only"),
+        (1, _) => CHECK.ok("none: there is one CPU only"),
         (several, Some(cpu)) if cpus.online.contains(&cpu) => {
             let found = format!("none of {several}");
-            let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found);
+            let finding = CHECK.could_be_better(found);
             if cpus.online.first() == Some(&cpu) {
                 // It keeps the kernel's time.
                 finding.because(format!(
@@ -69,7 +68,7 @@ pub(super) fn isolation(loop_cpu: &LoopCpu, board: &Board) -> Finding {
                 board.kernel_option(finding, &isolating(cpu, &cpus.online))
             }
         }
-        _ => not_known(ID, NAME, "not reported by the kernel"),
+        _ => CHECK.not_known("not reported by the kernel"),
     }
 }
 
@@ -103,8 +102,7 @@ fn ranges(cpus: &BTreeSet<usize>) -> String {
 
 /// The CPUs' sleep states.
 pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "idle_states";
-    const NAME: &str = "CPU sleep";
+    const CHECK: Check = Check("idle_states", "CPU sleep");
     let deepest = machine
         .entries(&format!("{FOLDER}/cpu0/cpuidle"), "state")
         .iter()
@@ -116,22 +114,15 @@ pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
         })
         .max();
     match deepest {
-        None => Finding::new(ID, NAME, Grade::Ok, "no deep states"),
-        Some((latency_us, name)) if latency_us <= SLOW_TO_WAKE_US => Finding::new(
-            ID,
-            NAME,
-            Grade::Ok,
-            format!("{name}, {latency_us} µs to wake"),
-        ),
+        None => CHECK.ok("no deep states"),
+        Some((latency_us, name)) if latency_us <= SLOW_TO_WAKE_US => {
+            CHECK.ok(format!("{name}, {latency_us} µs to wake"))
+        }
         Some((latency_us, name)) => {
-            let finding = Finding::new(
-                ID,
-                NAME,
-                Grade::CouldBeBetter,
-                format!("{name}, {latency_us} µs to wake"),
-            )
-            .because("a CPU in a deep sleep state wakes late; preventing it costs power")
-            .remedy(CONFIGURATION, "cpu_dma_latency_us = 0");
+            let finding = CHECK
+                .could_be_better(format!("{name}, {latency_us} µs to wake"))
+                .because("a CPU in a deep sleep state wakes late; preventing it costs power")
+                .remedy(CONFIGURATION, "cpu_dma_latency_us = 0");
             if machine.exists("dev/cpu_dma_latency") {
                 finding.remedy(
                     "/etc/udev/rules.d/99-fccd.rules",
@@ -146,16 +137,16 @@ pub(super) fn idle_states(machine: &Machine, _: &Board) -> Finding {
 
 /// Whether two CPUs share a core.
 pub(super) fn hyper_threads(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "hyper_threads";
-    const NAME: &str = "Shared cores";
+    const CHECK: Check = Check("hyper_threads", "Shared cores");
     match machine.text(&format!("{FOLDER}/smt/active")).as_deref() {
         Some("1") => board.kernel_option(
-            Finding::new(ID, NAME, Grade::CouldBeBetter, "two CPUs to a core")
+            CHECK
+                .could_be_better("two CPUs to a core")
                 .because("work on the other one makes ticks up to half longer"),
             "nosmt",
         ),
-        Some("0") | None => Finding::new(ID, NAME, Grade::Ok, "none"),
-        Some(other) => not_known(ID, NAME, other),
+        Some("0") | None => CHECK.ok("none"),
+        Some(other) => CHECK.not_known(other),
     }
 }
 

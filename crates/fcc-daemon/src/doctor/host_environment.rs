@@ -1,9 +1,9 @@
 //! Power, heat, memory, and virtual machines and containers.
 
-use super::board::{Board, not_known};
+use super::board::Board;
 use super::machine::Machine;
 use super::rights::may_lock;
-use super::{Finding, Grade};
+use super::{Check, Finding};
 
 /// Bits of the Raspberry Pi's `get_throttled` (documentation of `vcgencmd`):
 /// the present state, and 16 bits higher what occurred since the start.
@@ -18,8 +18,7 @@ const HOT_C: f64 = 80.0;
 
 /// Whether the power supply suffices.
 pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "power";
-    const NAME: &str = "Power";
+    const CHECK: Check = Check("power", "Power");
     const SUPPLY: &str = "use the board's own power supply, and a short, thick cable";
     // The name of the firmware's folder depends on the board: `soc:firmware` on
     // a Pi 4, with the bus address on a Pi 5.
@@ -38,16 +37,13 @@ pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
         };
         let (now, before) = (named(0), named(16));
         return match (now.as_str(), before.as_str()) {
-            ("", "") => Finding::new(ID, NAME, Grade::Ok, "enough, never throttled"),
-            ("", before) => Finding::new(
-                ID,
-                NAME,
-                Grade::CouldBeBetter,
-                format!("since the start: {before}"),
-            )
-            .because("the CPUs ran slower than they could")
-            .remedy("the board", SUPPLY),
-            (now, _) => Finding::new(ID, NAME, Grade::Lacks, format!("now: {now}"))
+            ("", "") => CHECK.ok("enough, never throttled"),
+            ("", before) => CHECK
+                .could_be_better(format!("since the start: {before}"))
+                .because("the CPUs ran slower than they could")
+                .remedy("the board", SUPPLY),
+            (now, _) => CHECK
+                .lacks(format!("now: {now}"))
                 .because("the CPUs run slower than they could")
                 .remedy("the board", SUPPLY),
         };
@@ -59,19 +55,19 @@ pub(super) fn power(machine: &Machine, board: &Board) -> Finding {
         .find(|sensor| machine.text(&format!("{sensor}/name")).as_deref() == Some("rpi_volt"))
         .and_then(|sensor| machine.number::<u32>(&format!("{sensor}/in0_lcrit_alarm")));
     match alarm {
-        Some(0) => Finding::new(ID, NAME, Grade::Ok, "enough"),
-        Some(_) => Finding::new(ID, NAME, Grade::Lacks, "undervoltage")
+        Some(0) => CHECK.ok("enough"),
+        Some(_) => CHECK
+            .lacks("undervoltage")
             .because("the CPUs run slower than they could")
             .remedy("the board", SUPPLY),
-        None if board.is_raspberry_pi() => not_known(ID, NAME, "not reported by the firmware"),
-        None => not_known(ID, NAME, "no sensor"),
+        None if board.is_raspberry_pi() => CHECK.not_known("not reported by the firmware"),
+        None => CHECK.not_known("no sensor"),
     }
 }
 
 /// Whether it is too hot.
 pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "heat";
-    const NAME: &str = "Heat";
+    const CHECK: Check = Check("heat", "Heat");
     const COOL: &str = "give it a heat sink or a fan";
     let hottest_c = machine
         .entries("sys/class/thermal", "thermal_zone")
@@ -88,7 +84,7 @@ pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
         })
         .fold(0, u64::saturating_add);
     let found = match (hottest_c, slowed) {
-        (None, 0) => return not_known(ID, NAME, "no sensor"),
+        (None, 0) => return CHECK.not_known("no sensor"),
         (None, times) => format!("slowed down {times} times since the start"),
         (Some(degrees), 0) => format!("{degrees:.0} °C"),
         (Some(degrees), times) => {
@@ -96,20 +92,20 @@ pub(super) fn heat(machine: &Machine, _: &Board) -> Finding {
         }
     };
     if slowed > 0 || hottest_c.is_some_and(|degrees| degrees >= HOT_C) {
-        Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+        CHECK
+            .could_be_better(found)
             .because("a hot CPU is slowed down")
             .remedy("the board", COOL)
     } else {
-        Finding::new(ID, NAME, Grade::Ok, found)
+        CHECK.ok(found)
     }
 }
 
 /// Whether memory can be swapped to a disk.
 pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "swap";
-    const NAME: &str = "Swap";
+    const CHECK: Check = Check("swap", "Swap");
     let Some(swaps) = machine.text("proc/swaps") else {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     };
     let files: Vec<&str> = swaps
         .lines()
@@ -117,13 +113,14 @@ pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
         .filter_map(|line| line.split_whitespace().next())
         .collect();
     if files.is_empty() {
-        return Finding::new(ID, NAME, Grade::Ok, "none");
+        return CHECK.ok("none");
     }
     let found = files.join(", ");
     if may_lock(machine) {
-        return Finding::new(ID, NAME, Grade::Ok, format!("{found}; locked memory stays"));
+        return CHECK.ok(format!("{found}; locked memory stays"));
     }
-    let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+    let finding = CHECK
+        .could_be_better(found)
         .because("reading memory that is not locked from a disk takes milliseconds");
     if board.is_raspberry_pi() {
         finding.remedy("shell", "systemctl disable --now dphys-swapfile")
@@ -134,8 +131,7 @@ pub(super) fn swap(machine: &Machine, board: &Board) -> Finding {
 
 /// Whether locked memory keeps its physical addresses.
 pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "compaction";
-    const NAME: &str = "Memory moves";
+    const CHECK: Check = Check("compaction", "Memory moves");
     const FILE: &str = "/etc/sysctl.d/fccd.conf";
     let locked = machine.number::<u32>("proc/sys/vm/compact_unevictable_allowed");
     let balancing = machine.number::<u32>("proc/sys/kernel/numa_balancing");
@@ -148,11 +144,12 @@ pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
     }
     if lines.is_empty() {
         return match (locked, balancing) {
-            (None, None) => not_known(ID, NAME, "not reported by the kernel"),
-            _ => Finding::new(ID, NAME, Grade::Ok, "locked memory stays in its place"),
+            (None, None) => CHECK.not_known("not reported by the kernel"),
+            _ => CHECK.ok("locked memory stays in its place"),
         };
     }
-    let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, "allowed")
+    let finding = CHECK
+        .could_be_better("allowed")
         .because("the kernel may move locked memory, too, which costs a page fault each");
     lines
         .into_iter()
@@ -161,8 +158,7 @@ pub(super) fn compaction(machine: &Machine, _: &Board) -> Finding {
 
 /// Whether this is a virtual machine.
 pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "virtual_machine";
-    const NAME: &str = "Virtual machine";
+    const CHECK: Check = Check("virtual_machine", "Virtual machine");
     // Names that virtual machines' firmware uses (systemd-detect-virt(1) lists
     // more); nearly all of them also set a flag of the CPU.
     const MAKERS: [&str; 9] = [
@@ -188,9 +184,9 @@ pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
         (Some(kind), _) => kind,
         (None, Some(maker)) => maker.to_owned(),
         (None, None) if flag => "yes".to_owned(),
-        (None, None) => return Finding::new(ID, NAME, Grade::Ok, "no"),
+        (None, None) => return CHECK.ok("no"),
     };
-    Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(
+    CHECK.could_be_better(found).because(
         "the host interrupts its CPUs for milliseconds, which cannot be prevented here: \
          suitable for trials, not for flights",
     )
@@ -198,8 +194,7 @@ pub(super) fn virtual_machine(machine: &Machine, board: &Board) -> Finding {
 
 /// Whether this is a container.
 pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "container";
-    const NAME: &str = "Container";
+    const CHECK: Check = Check("container", "Container");
     let groups = machine.text("proc/self/cgroup").unwrap_or_default();
     let of_group = || {
         let names = [
@@ -219,8 +214,9 @@ pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
         machine.text("run/systemd/container").or_else(of_group)
     };
     match found {
-        None => Finding::new(ID, NAME, Grade::Ok, "no"),
-        Some(name) => Finding::new(ID, NAME, Grade::CouldBeBetter, name)
+        None => CHECK.ok("no"),
+        Some(name) => CHECK
+            .could_be_better(name)
             .because("the host determines what the kernel grants")
             .remedy(
                 "docker run",
@@ -231,8 +227,7 @@ pub(super) fn container(machine: &Machine, _: &Board) -> Finding {
 
 /// Whether the program may use all CPUs without a limit.
 pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "cpu_quota";
-    const NAME: &str = "CPU quota";
+    const CHECK: Check = Check("cpu_quota", "CPU quota");
     let groups = machine.text("proc/self/cgroup").unwrap_or_default();
     let own = groups
         .lines()
@@ -256,8 +251,9 @@ pub(super) fn cpu_quota(machine: &Machine, _: &Board) -> Finding {
         }
     }
     match quota {
-        None => Finding::new(ID, NAME, Grade::Ok, "none"),
-        Some(cpus) => Finding::new(ID, NAME, Grade::CouldBeBetter, format!("{cpus:.2} CPUs"))
+        None => CHECK.ok("none"),
+        Some(cpus) => CHECK
+            .could_be_better(format!("{cpus:.2} CPUs"))
             .because("when it is used up, telemetry and recorder stop until the next period")
             .remedy("fccd.service, [Service]", "CPUQuota="),
     }

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::board::not_known;
 use super::busy_devices::{Busy, busy_devices, total};
 use super::loop_cpu::LoopCpu;
 use super::machine::Machine;
-use super::{Finding, Grade};
+use super::{Check, Finding};
 
 /// The most devices named for each CPU.
 const MAX_NAMED: usize = 4;
@@ -17,28 +16,28 @@ const BALANCER: &str = "etc/default/irqbalance";
 
 /// Which CPUs are interrupted.
 pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
-    const ID: &str = "interrupts";
-    const NAME: &str = "Interrupts";
+    const CHECK: Check = Check("interrupts", "Interrupts");
     let cpus = &loop_cpu.cpus;
     let counts = &cpus.device_interrupts;
     if counts.is_empty() {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     }
     if counts.len() == 1 {
-        return Finding::new(ID, NAME, Grade::Ok, "there is one CPU only");
+        return CHECK.ok("there is one CPU only");
     }
     let total = total(cpus);
     if total == 0 {
-        return Finding::new(ID, NAME, Grade::Ok, "no device has interrupted yet");
+        return CHECK.ok("no device has interrupted yet");
     }
     let busy = busy_devices(machine, total);
     let found = description(&busy, total);
     let Some(cpu) = loop_cpu.cpu else {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     };
     let on_it = busy.get(&cpu).map_or(&[][..], Vec::as_slice);
     if on_it.is_empty() {
-        let finding = Finding::new(ID, NAME, Grade::Ok, found)
+        let finding = CHECK
+            .ok(found)
             .because(format!("each delays a loop; CPU {cpu} has none of them"));
         return loop_cpu.remedy(finding);
     }
@@ -50,7 +49,7 @@ pub(super) fn interrupts(machine: &Machine, loop_cpu: &LoopCpu) -> Finding {
     } else {
         &ordinary
     });
-    let mut finding = Finding::new(ID, NAME, Grade::CouldBeBetter, found).because(format!(
+    let mut finding = CHECK.could_be_better(found).because(format!(
         "each delays a loop by some 10 µs: move those of CPU {cpu} away (a disk that refuses has \
          one for each CPU and keeps it)"
     ));

@@ -1,31 +1,25 @@
 //! The kernel: preemption, real-time share, timers and clock.
 
-use super::board::{Board, not_known};
+use super::board::Board;
 use super::machine::Machine;
-use super::{Finding, Grade};
+use super::{Check, Finding};
 
 /// Where a kernel with several preemption modes shows the present one.
 const PREEMPTION_MODE: &str = "sys/kernel/debug/sched/preempt";
 
 /// Whether the kernel is interrupted for a thread that is due.
 pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "preemption";
-    const NAME: &str = "Preemption";
+    const CHECK: Check = Check("preemption", "Preemption");
     const WORST: &str = "published worst cases at 25 ms: 60 µs with PREEMPT_RT, 320 µs without";
     let version = machine.text("proc/sys/kernel/version").unwrap_or_default();
     let has = |word: &str| version.split_whitespace().any(|found| found == word);
     if machine.text("sys/kernel/realtime").as_deref() == Some("1") || has("PREEMPT_RT") {
-        return Finding::new(ID, NAME, Grade::Ok, "PREEMPT_RT");
+        return CHECK.ok("PREEMPT_RT");
     }
     if has("PREEMPT_DYNAMIC") {
         let mode = preemption_mode(machine);
         let mode = mode.as_deref().unwrap_or("unknown");
-        let finding = Finding::new(
-            ID,
-            NAME,
-            Grade::CouldBeBetter,
-            format!("PREEMPT_DYNAMIC, mode: {mode}"),
-        );
+        let finding = CHECK.could_be_better(format!("PREEMPT_DYNAMIC, mode: {mode}"));
         return match mode {
             "full" => with_rt_kernel(finding.because(WORST), board),
             "unknown" if machine.is_forbidden(PREEMPTION_MODE) => board.kernel_option(
@@ -45,14 +39,15 @@ pub(super) fn preemption(machine: &Machine, board: &Board) -> Finding {
         };
     }
     if has("PREEMPT") {
-        let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, "PREEMPT");
+        let finding = CHECK.could_be_better("PREEMPT");
         return with_rt_kernel(finding.because(WORST), board);
     }
     if version.is_empty() {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     }
     with_rt_kernel(
-        Finding::new(ID, NAME, Grade::CouldBeBetter, "none")
+        CHECK
+            .could_be_better("none")
             .because("a system call of another program is not interrupted, however long it takes"),
         board,
     )
@@ -96,33 +91,34 @@ fn with_rt_kernel(finding: Finding, board: &Board) -> Finding {
 
 /// The share of each second that real-time threads may use.
 pub(super) fn realtime_throttling(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "realtime_throttling";
-    const NAME: &str = "Real-time share";
+    const CHECK: Check = Check("realtime_throttling", "Real-time share");
     const FILE: &str = "/etc/sysctl.d/fccd.conf";
     let setting = |name| machine.number::<i64>(&format!("proc/sys/kernel/{name}"));
     let Some(runtime_us) = setting("sched_rt_runtime_us") else {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     };
     let period_us = setting("sched_rt_period_us").unwrap_or(1_000_000).max(1);
     let share = 100.0 * runtime_us as f64 / period_us as f64;
     let found = format!("{share:.0} % of each {:.1} s", period_us as f64 * 1e-6);
     match runtime_us {
-        ..0 => Finding::new(ID, NAME, Grade::Ok, "unlimited")
+        ..0 => CHECK
+            .ok("unlimited")
             .because("a loop that hangs occupies its CPU until it is killed"),
-        0 => Finding::new(ID, NAME, Grade::Lacks, "none")
+        0 => CHECK
+            .lacks("none")
             .because("no real-time thread may run at all")
             .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
-        _ if share < 50.0 => Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+        _ if share < 50.0 => CHECK
+            .could_be_better(found)
             .because("real-time threads that have used their share wait until its end")
             .remedy(FILE, "kernel.sched_rt_runtime_us = 950000"),
-        _ => Finding::new(ID, NAME, Grade::Ok, found),
+        _ => CHECK.ok(found),
     }
 }
 
 /// Whether timers expire when due, or at the kernel's next tick.
 pub(super) fn high_resolution_timers(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "high_resolution_timers";
-    const NAME: &str = "Timers";
+    const CHECK: Check = Check("high_resolution_timers", "Timers");
     let in_force = machine
         .text("proc/timer_list")
         .and_then(|list| Some(super::machine::field_of(&list, ".hres_active")? == "1"));
@@ -136,43 +132,39 @@ pub(super) fn high_resolution_timers(machine: &Machine, board: &Board) -> Findin
         )
     };
     match in_force.or_else(built_in) {
-        Some(true) => Finding::new(ID, NAME, Grade::Ok, "high resolution"),
+        Some(true) => CHECK.ok("high resolution"),
         Some(false) => board.kernel_option(
-            Finding::new(
-                ID,
-                NAME,
-                Grade::Lacks,
-                "the resolution of the kernel's tick",
-            )
-            .because("every wake-up waits for the next tick, 1 to 10 ms"),
+            CHECK
+                .lacks("the resolution of the kernel's tick")
+                .because("every wake-up waits for the next tick, 1 to 10 ms"),
             "highres=on",
         ),
-        None => not_known(ID, NAME, "only root can read it, in /proc/timer_list"),
+        None => CHECK.not_known("only root can read it, in /proc/timer_list"),
     }
 }
 
 /// The clock source.
 pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
-    const ID: &str = "clock_source";
-    const NAME: &str = "Clock";
+    const CHECK: Check = Check("clock_source", "Clock");
     const FOLDER: &str = "sys/devices/system/clocksource/clocksource0";
     let Some(source) = machine.text(&format!("{FOLDER}/current_clocksource")) else {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     };
     match source.as_str() {
         "tsc"
         | "arch_sys_counter"
         | "kvm-clock"
         | "hyperv_clocksource_tsc_page"
-        | "riscv_clocksource" => Finding::new(ID, NAME, Grade::Ok, source),
+        | "riscv_clocksource" => CHECK.ok(source),
         "jiffies" | "refined-jiffies" => {
-            Finding::new(ID, NAME, Grade::Lacks, source).because("it counts the kernel's ticks")
+            CHECK.lacks(source).because("it counts the kernel's ticks")
         }
         _ => {
             let others = machine
                 .text(&format!("{FOLDER}/available_clocksource"))
                 .unwrap_or_default();
-            let finding = Finding::new(ID, NAME, Grade::CouldBeBetter, source)
+            let finding = CHECK
+                .could_be_better(source)
                 .because("each reading is a system call, some ten per tick");
             if others.split_whitespace().any(|other| other == "tsc") {
                 board.kernel_option(finding, "clocksource=tsc tsc=reliable")
@@ -185,15 +177,12 @@ pub(super) fn clock_source(machine: &Machine, board: &Board) -> Finding {
 
 /// The timer slack of ordinary threads.
 pub(super) fn timer_slack(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "timer_slack";
-    const NAME: &str = "Timer slack";
+    const CHECK: Check = Check("timer_slack", "Timer slack");
     match machine.number::<u64>("proc/self/timerslack_ns") {
-        Some(slack_ns) => Finding::new(
-            ID,
-            NAME,
-            Grade::Ok,
-            format!("{:.0} µs; fccd sets its own", slack_ns as f64 * 1e-3),
-        ),
-        None => not_known(ID, NAME, "not reported by the kernel; fccd sets its own"),
+        Some(slack_ns) => CHECK.ok(format!(
+            "{:.0} µs; fccd sets its own",
+            slack_ns as f64 * 1e-3
+        )),
+        None => CHECK.not_known("not reported by the kernel; fccd sets its own"),
     }
 }

@@ -3,10 +3,9 @@
 use fcc_timer::CpuRequest;
 use fcc_timer::realtime::cpus::{BestCpu, Cpus, parse_list};
 
-use super::board::not_known;
 use super::busy_devices::fewest_interrupts;
 use super::machine::Machine;
-use super::{CONFIGURATION, Finding, Grade};
+use super::{CONFIGURATION, Check, Finding};
 
 /// The CPUs of a machine, and the loop's CPU.
 #[derive(Debug)]
@@ -62,37 +61,36 @@ impl LoopCpu {
 
     /// The finding on the loop's CPU.
     pub(super) fn finding(&self) -> Finding {
-        const ID: &str = "loop_cpu";
-        const NAME: &str = "CPU of the loop";
+        const CHECK: Check = Check("loop_cpu", "CPU of the loop");
         let online = &self.cpus.online;
         if online.is_empty() {
-            return not_known(ID, NAME, "the kernel does not list the CPUs");
+            return CHECK.not_known("the kernel does not list the CPUs");
         }
         match (self.request, &self.best) {
             (Some(CpuRequest::Number(cpu)), _) if !online.contains(&cpu) => {
                 let found = format!("CPU {cpu}, as configured, which does not exist");
-                let finding = Finding::new(ID, NAME, Grade::Lacks, found)
+                let finding = CHECK
+                    .lacks(found)
                     .because("the kernel refuses it: the loop would not be bound");
                 finding.remedy(CONFIGURATION, "cpu = \"auto\"")
             }
             (Some(CpuRequest::Number(cpu)), Ok(best)) if best.cpu != cpu => {
                 let found = format!("CPU {cpu}, as configured");
-                Finding::new(ID, NAME, Grade::CouldBeBetter, found)
+                CHECK
+                    .could_be_better(found)
                     .because(format!("CPU {} is better: {}", best.cpu, best.because))
                     .remedy(CONFIGURATION, "cpu = \"auto\"")
             }
-            (Some(CpuRequest::Number(cpu)), _) => {
-                Finding::new(ID, NAME, Grade::Ok, format!("CPU {cpu}, as configured"))
-            }
+            (Some(CpuRequest::Number(cpu)), _) => CHECK.ok(format!("CPU {cpu}, as configured")),
             (Some(CpuRequest::Auto), Ok(best)) => {
                 let found = format!("CPU {}, by cpu = \"auto\": {}", best.cpu, best.because);
-                Finding::new(ID, NAME, Grade::Ok, found)
+                CHECK.ok(found)
             }
             (None, Ok(best)) => {
                 let found = format!("any; by cpu = \"auto\" CPU {}", best.cpu);
-                self.remedy(Finding::new(ID, NAME, Grade::Ok, found).because(best.because.clone()))
+                self.remedy(CHECK.ok(found).because(best.because.clone()))
             }
-            (_, Err(why)) => Finding::new(ID, NAME, Grade::Ok, format!("any: {why}")),
+            (_, Err(why)) => CHECK.ok(format!("any: {why}")),
         }
     }
 }

@@ -80,18 +80,42 @@ pub struct Remedy {
     pub line: String,
 }
 
-impl Finding {
-    fn new(id: &'static str, name: &'static str, grade: Grade, found: impl Into<String>) -> Self {
-        Self {
+/// A check: its identifier for programs, and its name for users.
+#[derive(Clone, Copy)]
+struct Check(&'static str, &'static str);
+
+impl Check {
+    fn ok(self, found: impl Into<String>) -> Finding {
+        self.finding(Grade::Ok, found.into())
+    }
+
+    fn could_be_better(self, found: impl Into<String>) -> Finding {
+        self.finding(Grade::CouldBeBetter, found.into())
+    }
+
+    fn lacks(self, found: impl Into<String>) -> Finding {
+        self.finding(Grade::Lacks, found.into())
+    }
+
+    /// The machine gives no information.
+    fn not_known(self, found: impl Into<String>) -> Finding {
+        self.finding(Grade::NotKnown, found.into())
+    }
+
+    fn finding(self, grade: Grade, found: String) -> Finding {
+        let Self(id, name) = self;
+        Finding {
             id,
             name,
             grade,
-            found: found.into(),
+            found,
             why: String::new(),
             remedies: Vec::new(),
         }
     }
+}
 
+impl Finding {
     fn because(mut self, why: impl Into<String>) -> Self {
         self.why = why.into();
         self

@@ -1,8 +1,8 @@
 //! The program's rights.
 
-use super::board::{Board, not_known};
+use super::board::Board;
 use super::machine::Machine;
-use super::{Finding, Grade};
+use super::{Check, Finding};
 
 /// Bits of the capabilities.
 const CAP_IPC_LOCK: u32 = 14;
@@ -14,17 +14,16 @@ const UNIT: &str = "fccd.service, [Service]";
 
 /// Whether the loop's thread may have a real-time priority.
 pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Finding {
-    const ID: &str = "realtime_priority";
-    const NAME: &str = "Real-time right";
+    const CHECK: Check = Check("realtime_priority", "Real-time right");
     let Some(priority) = priority else {
-        return Finding::new(ID, NAME, Grade::Ok, "not requested: realtime.priority = 0");
+        return CHECK.ok("not requested: realtime.priority = 0");
     };
     if has_capability(machine, CAP_SYS_NICE) {
-        return Finding::new(ID, NAME, Grade::Ok, "CAP_SYS_NICE");
+        return CHECK.ok("CAP_SYS_NICE");
     }
     let limit = limit(machine, "Max realtime priority");
     let Some(limit) = limit else {
-        return not_known(ID, NAME, "not reported by the kernel");
+        return CHECK.not_known("not reported by the kernel");
     };
     let found = match limit {
         Limit::Unlimited => "priorities up to 99".to_owned(),
@@ -32,13 +31,13 @@ pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Find
         Limit::Number(most) => format!("priorities up to {most}"),
     };
     let graded = match limit {
-        Limit::Number(0) => Finding::new(ID, NAME, Grade::Lacks, found)
+        Limit::Number(0) => CHECK
+            .lacks(found)
             .because("the loop would run under the ordinary scheduler, milliseconds late"),
-        Limit::Number(most) if most < u64::from(priority) => {
-            Finding::new(ID, NAME, Grade::CouldBeBetter, found)
-                .because(format!("the loop requests {priority} (realtime.priority)"))
-        }
-        _ => return Finding::new(ID, NAME, Grade::Ok, found),
+        Limit::Number(most) if most < u64::from(priority) => CHECK
+            .could_be_better(found)
+            .because(format!("the loop requests {priority} (realtime.priority)")),
+        _ => return CHECK.ok(found),
     };
     graded
         .remedy(LIMITS, "fccd - rtprio 90")
@@ -47,22 +46,18 @@ pub(super) fn realtime_priority(machine: &Machine, priority: Option<u8>) -> Find
 
 /// Whether memory may be locked.
 pub(super) fn locked_memory(machine: &Machine, _: &Board) -> Finding {
-    const ID: &str = "locked_memory";
-    const NAME: &str = "Locked memory";
+    const CHECK: Check = Check("locked_memory", "Locked memory");
     if has_capability(machine, CAP_IPC_LOCK) {
-        return Finding::new(ID, NAME, Grade::Ok, "CAP_IPC_LOCK");
+        return CHECK.ok("CAP_IPC_LOCK");
     }
     match limit(machine, "Max locked memory") {
-        Some(Limit::Unlimited) => Finding::new(ID, NAME, Grade::Ok, "unlimited"),
-        Some(Limit::Number(bytes)) => {
-            Finding::new(ID, NAME, Grade::Lacks, format!("{} KiB", bytes / 1024))
-                .because(
-                    "fccd locks all of its memory or none: with a limit, allocations fail later",
-                )
-                .remedy(LIMITS, "fccd - memlock unlimited")
-                .remedy(UNIT, "LimitMEMLOCK=infinity")
-        }
-        None => not_known(ID, NAME, "not reported by the kernel"),
+        Some(Limit::Unlimited) => CHECK.ok("unlimited"),
+        Some(Limit::Number(bytes)) => CHECK
+            .lacks(format!("{} KiB", bytes / 1024))
+            .because("fccd locks all of its memory or none: with a limit, allocations fail later")
+            .remedy(LIMITS, "fccd - memlock unlimited")
+            .remedy(UNIT, "LimitMEMLOCK=infinity"),
+        None => CHECK.not_known("not reported by the kernel"),
     }
 }
 

@@ -155,6 +155,8 @@ fn every_command_reports_an_error_as_json() {
         (&["command", "set", "--altitude-ft", "1e6"], 2),
         (&["doctor", "--config", "wrong.toml"], 2),
         (&["report", "none.mcap"], 1),
+        (&["x-plane", "check", "--config", "wrong.toml"], 2),
+        (&["x-plane", "identify", "--config", "wrong.toml"], 2),
     ] {
         let ended = fccd(folder.path(), words).arg("--json").output().unwrap();
         assert_eq!(ended.status.code(), Some(exit), "{words:?}");

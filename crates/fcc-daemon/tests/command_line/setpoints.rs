@@ -1,7 +1,9 @@
 //! `fccd command`: set points out of range are refused, in the units of the
 //! command line.
 
-use super::{Flight, fccd};
+use std::time::Instant;
+
+use super::{Flight, PATIENCE, fccd};
 
 #[test]
 fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
@@ -33,7 +35,12 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
                 .to_owned()
         )
     );
-    let carried_out = command(&["--altimeter-inhg", "30.2", "--altitude-ft", "3200"]);
+    // The flight engages after 2 s.
+    let begun = Instant::now();
+    let mut carried_out = command(&["--altimeter-inhg", "30.2", "--altitude-ft", "3200"]);
+    while carried_out.1.contains("standby") && begun.elapsed() < PATIENCE {
+        carried_out = command(&["--altimeter-inhg", "30.2", "--altitude-ft", "3200"]);
+    }
     assert_eq!(carried_out, (Some(0), String::new()));
     for (words, said) in [
         (
