@@ -249,7 +249,7 @@ impl Held {
     fn write(&self, bench: &Bench<'_>, deflected: Watched, deflection: f64) {
         for (what, value) in self.0 {
             let more = if what == deflected { deflection } else { 0.0 };
-            bench.link.write(bench.link.path(what), value + more);
+            bench.link.write_control(what, value + more);
         }
     }
 }
