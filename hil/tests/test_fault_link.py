@@ -23,7 +23,10 @@ SUCCESS = 0
 FAILSAFE = 3
 MAX_AGE_S = 0.6
 """More than the default, for a busy machine."""
-PATIENT = f"[failsafe]\nhold_s = 1.0\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
+PATIENT = (
+    f"[failsafe]\nhold_s = 1.0\nsensor_max_age_ms = {MAX_AGE_S * 1e3:.0f}\n"
+    f"all_silent_s = {MAX_AGE_S}\n"
+)
 SLOW_FPS = 10.0
 
 

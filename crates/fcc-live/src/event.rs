@@ -75,6 +75,12 @@ pub enum EventCode {
     /// Conditions that the controller reports while control is held changed
     /// (those that began, those that ended).
     ConditionsChanged = 19,
+    /// The controller noticed something (how long it lasted, ns); the index is
+    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost.
+    Noticed = 20,
+    /// Control is given back at once (why, one bit each, as in the flags of a
+    /// state).
+    ReleasedAtOnce = 21,
 }
 
 impl Event {
@@ -170,6 +176,16 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             let values = [began.bits().into(), ended.bits().into(), 0];
             (EventCode::ConditionsChanged, 0, values)
         }
+        EventKind::Noticed(notice) => (
+            EventCode::Noticed,
+            notice.kind.into(),
+            [notice.lasted_ns, 0, 0],
+        ),
+        EventKind::ReleasedAtOnce { conditions } => (
+            EventCode::ReleasedAtOnce,
+            0,
+            [conditions.bits().into(), 0, 0],
+        ),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),
     }

@@ -79,6 +79,8 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::Hung { .. } => "hung",
         EventKind::SourceChanged(_) => "source-changed",
         EventKind::ModeChanged { .. } => "mode-changed",
+        EventKind::Noticed(_) => "noticed",
+        EventKind::ReleasedAtOnce { .. } => "released-at-once",
         EventKind::ConditionsChanged { .. } => "conditions-changed",
         _ => "other",
     }

@@ -16,8 +16,10 @@ impl<C: Controller> Machine<C> {
             self.release(tick, ReleaseReport::OnSuccess);
         }
         let measurements = &self.measurements;
+        let mut release_now = Flags::NONE;
         if before.holds_control() {
-            self.record.faults = self.controller.faults(tick, measurements);
+            release_now = self.controller.must_release(tick, measurements);
+            self.record.faults = self.controller.faults(tick, measurements) | release_now;
         }
         if before != State::Engaged {
             self.record.engage_inhibits = self.controller.engage_inhibits(tick, measurements);
@@ -30,6 +32,10 @@ impl<C: Controller> Machine<C> {
             self.stop_for(Ending::StopFlag, tick);
         } else if command == StateRequest::Stop {
             self.stop_for(Ending::StopCommand, tick);
+        }
+        // Before the switch: what loads a flight may switch it off, too.
+        if self.state.holds_control() && !release_now.is_empty() {
+            self.release_at_once(release_now, tick);
         }
         if edge == Some(SwitchEdge::Off) {
             self.apply_input(Input::SwitchedOff, tick);
@@ -82,6 +88,17 @@ impl<C: Controller> Machine<C> {
         match self.after_failsafe {
             AfterRelease::Standby => self.apply_input(Input::FailsafeEnded, tick),
             AfterRelease::Stop => self.stop_for(Ending::FailsafeEnded, tick),
+        }
+    }
+
+    /// Gives control back without a failsafe; what follows is what follows a
+    /// failsafe.
+    fn release_at_once(&mut self, conditions: Flags, tick: &Tick) {
+        let kind = EventKind::ReleasedAtOnce { conditions };
+        self.telemetry.events.push(tick, kind);
+        match self.after_failsafe {
+            AfterRelease::Standby => self.apply_input(Input::ReleaseNow, tick),
+            AfterRelease::Stop => self.stop_for(Ending::ReleasedAtOnce, tick),
         }
     }
 

@@ -247,6 +247,10 @@ impl<C: Controller> Machine<C> {
         self.record.stages.sensors_ns = stopwatch.lap(&*self.timer);
 
         self.controller.estimate(tick, &self.measurements);
+        if let Some(notice) = self.controller.notice() {
+            let kind = EventKind::Noticed(notice);
+            self.telemetry.events.push(tick, kind);
+        }
         self.record.stages.estimate_ns = stopwatch.lap(&*self.timer);
 
         self.decide(tick, command);
@@ -255,9 +259,11 @@ impl<C: Controller> Machine<C> {
         if let Some(outputs) = self.compute_outputs(tick, &mut stopwatch) {
             self.record.stages.control_ns = stopwatch.lap(&*self.timer);
             self.record.outputs = outputs;
-            self.record.sent = true;
-            self.actuators
-                .apply(tick, &outputs, &mut self.telemetry.events);
+            if !self.controller.withholds_outputs(tick, &self.measurements) {
+                self.record.sent = true;
+                self.actuators
+                    .apply(tick, &outputs, &mut self.telemetry.events);
+            }
             self.record.stages.actuators_ns = stopwatch.lap(&*self.timer);
         } else {
             stopwatch.lap(&*self.timer);

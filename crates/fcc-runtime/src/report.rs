@@ -56,6 +56,9 @@ pub enum Ending {
     SwitchedOff,
     /// Failsafe was over, and that is configured to end the loop.
     FailsafeEnded,
+    /// Control had to be given back at once, and that is configured to end the
+    /// loop, as a failsafe is.
+    ReleasedAtOnce,
     /// A part panicked, with this message.
     Panicked(String),
     /// The timer failed.
@@ -76,6 +79,7 @@ impl fmt::Display for Ending {
             Self::StopFlag => f.write_str("stop requested"),
             Self::SwitchedOff => f.write_str("switched off"),
             Self::FailsafeEnded => f.write_str("failsafe ended"),
+            Self::ReleasedAtOnce => f.write_str("control was given back at once"),
             Self::Panicked(message) => write!(f, "a part panicked: {message}"),
             Self::TimerFailed(error) => write!(f, "the timer failed: {error}"),
             Self::TimerEnded => f.write_str("the timer ended"),

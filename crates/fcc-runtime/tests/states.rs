@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use bench::{Bench, EventKind, PERIOD, RELEASED, change};
 use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
-use fcc_core::framework::{AfterRelease, Cause, Flags, Switch};
-use fcc_runtime::{LoopCommand, LoopConfig};
+use fcc_core::framework::{AfterRelease, Cause, Flags, Notice, Switch};
+use fcc_runtime::{Ending, LoopCommand, LoopConfig};
 
 const LOST: Flags = Flags::bit(1);
+const GONE: Flags = Flags::bit(0);
 const SENSORS_LOST: Cause = Cause::Faults(LOST);
 
 fn config() -> LoopConfig {
@@ -266,6 +267,84 @@ fn failsafe_can_be_left_by_every_command() {
     bench.command(LoopCommand::Stop);
     assert_eq!(bench.tick(|_| {}), Stopped);
     assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn what_must_be_released_is_released_in_the_same_tick_without_a_failsafe() {
+    for from_failsafe in [false, true] {
+        let mut bench = Bench::engaged(&config());
+        if from_failsafe {
+            bench.tick(|s| s.faults = LOST);
+        }
+        let from = bench.machine.state();
+        bench.events();
+        bench.stage.forget();
+        // Engaging in that tick is refused.
+        bench.command(LoopCommand::Engage);
+        assert_eq!(bench.tick(|s| s.must_release = GONE), Standby);
+        assert_eq!(bench.machine.record().faults.bits() & GONE.bits(), 1);
+        let log = bench.stage.log();
+        assert!(log.applied.is_empty());
+        assert_eq!(log.held, [false, false]);
+        let released_at_once = EventKind::ReleasedAtOnce { conditions: GONE };
+        assert_eq!(
+            bench.events(),
+            [
+                released_at_once,
+                change(from, Standby),
+                RELEASED,
+                refused(Flags::NONE)
+            ]
+        );
+        // In standby it has no effect.
+        assert_eq!(bench.tick(|_| {}), Standby);
+        assert_eq!(bench.events(), []);
+        let failsafes = u64::from(from_failsafe);
+        assert_eq!(bench.machine.finish().failsafes, failsafes);
+    }
+}
+
+#[test]
+fn after_a_release_at_once_the_loop_stops_if_configured() {
+    let mut bench = Bench::engaged(&LoopConfig {
+        after_failsafe: AfterRelease::Stop,
+        ..config()
+    });
+    assert_eq!(bench.tick(|s| s.must_release = GONE), Stopped);
+    assert_eq!(bench.stage.log().held, [false, false]);
+    let ending = bench.machine.finish().ending;
+    assert!(matches!(ending, Ending::ReleasedAtOnce));
+}
+
+#[test]
+fn outputs_that_are_withheld_are_recorded_and_not_sent() {
+    let mut bench = Bench::engaged(&config());
+    bench.stage.forget();
+    for _ in 0..100 {
+        assert_eq!(bench.tick(|s| s.withholds = true), Engaged);
+        let record = bench.machine.record();
+        assert_eq!((record.sent, record.outputs), (false, 0.5));
+    }
+    assert!(bench.stage.log().applied.is_empty());
+    assert_eq!(bench.stage.log().held, [true, true]);
+    // In failsafe, too; a command releases all the same.
+    assert_eq!(bench.tick(|s| s.faults = LOST), Failsafe(SENSORS_LOST));
+    assert!(bench.stage.log().applied.is_empty());
+    bench.command(LoopCommand::Disengage);
+    assert_eq!(bench.tick(|_| {}), Standby);
+    assert_eq!(bench.stage.log().held, [false, false]);
+}
+
+#[test]
+fn a_notice_is_an_event() {
+    let mut bench = Bench::new();
+    let notice = Notice {
+        kind: 3,
+        lasted_ns: 7,
+    };
+    bench.tick(|s| s.notice = Some(notice));
+    bench.tick(|s| s.notice = None);
+    assert_eq!(bench.events(), [EventKind::Noticed(notice)]);
 }
 
 #[test]

@@ -259,11 +259,19 @@ impl Reported {
     fn change_of_pace(&mut self, status: &XPlaneStatus) -> Option<String> {
         let now = status.state();
         let text = match now {
-            // The loop reports both itself, one as a sensor and one as a plant.
-            SimulatorState::Silent | SimulatorState::Jumped => return None,
+            // The loop reports these itself.
+            SimulatorState::Silent | SimulatorState::Jumped | SimulatorState::Reloaded => {
+                return None;
+            }
+            SimulatorState::Replaying => {
+                "X-Plane shows a replay: nothing is written to it until that ends"
+            }
             SimulatorState::Running => "X-Plane's time runs again",
             SimulatorState::Paused => "X-Plane is paused",
-            SimulatorState::Stalled => "X-Plane's clock has stopped although it is not paused",
+            SimulatorState::Stalled => {
+                "X-Plane's time has stopped although it is not paused (a map, a menu, loading): \
+                 it is waited for"
+            }
             SimulatorState::Fast => "X-Plane's time runs more than twice as fast as real time",
             SimulatorState::Slow => {
                 "X-Plane is slow: fewer than 20 frames a second, or its time falls behind"

@@ -23,7 +23,7 @@ use crate::axial_load::AxialLoadSign;
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
 use crate::engage_switch::NONEXISTENT_INDEX;
-use crate::link::{SharedState, count};
+use crate::link::{Control, SharedState, count};
 use crate::other_control::OtherControlWatch;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
@@ -63,6 +63,8 @@ pub(crate) struct Inbox {
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
     axial_load: AxialLoadSign,
+    /// Whether both overrides were seen set since control was taken.
+    overridden: bool,
 }
 
 impl Inbox {
@@ -80,6 +82,7 @@ impl Inbox {
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
             axial_load: AxialLoadSign::new(rows.map(|rows| rows.axial_load)),
+            overridden: false,
         }
     }
 
@@ -234,6 +237,7 @@ impl Inbox {
         link.show(quantity, value, now);
         match quantity {
             Quantity::Paused => report.paused = Some(value >= 0.5),
+            Quantity::Replay => report.replaying = Some(value >= 0.5),
             Quantity::FramePeriod => {
                 report.frame_period_s = Some(value);
                 link.set_frame_period_s(value);
@@ -384,6 +388,23 @@ impl Inbox {
         }
     }
 
+    /// Notices that both overrides, which were set, are cleared although control
+    /// is held: X-Plane clears them when it loads an aircraft. One of them alone
+    /// may be another program's doing; it is set again.
+    fn notice_reload(&mut self, link: &SharedState) {
+        let overrides = [Quantity::OverrideJoystick, Quantity::OverrideThrottles];
+        let shown = overrides.map(|of| link.shown(of).map(|(value, _)| value >= 0.5));
+        match shown {
+            _ if link.control() != Control::Held => self.overridden = false,
+            [Some(true), Some(true)] => self.overridden = true,
+            [Some(false), Some(false)] if self.overridden => {
+                self.overridden = false;
+                self.clock.reload();
+            }
+            _ => {}
+        }
+    }
+
     /// The simulator's clock and state: written in every tick in which it sent
     /// something, once its clock is known.
     fn publish_plant(
@@ -392,6 +413,7 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
+        self.notice_reload(link);
         let state = self.clock.state(now);
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);

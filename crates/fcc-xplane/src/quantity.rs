@@ -81,6 +81,7 @@ pub(crate) enum Quantity {
     StabilityHeading,
     EngineMode,
     ThrottleLever,
+    Replay,
 }
 
 impl Quantity {

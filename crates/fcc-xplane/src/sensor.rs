@@ -27,6 +27,9 @@ const BUFFER_BYTES: usize = 8_192;
 /// More than wait in a socket at Linux's default size, 212,992 bytes, of which
 /// the shortest datagram takes 768.
 const DISCARDED_PER_TICK: usize = 300;
+/// After this loop itself stood still for longer, s, what waits in the socket is
+/// old, and its end may be missing: it is discarded.
+const OLD_AFTER_S: f64 = 0.1;
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
 
@@ -176,19 +179,40 @@ impl<P: Port> XPlaneSensor<P> {
                 self.last_values_bytes = length;
             }
         }
-        self.discard_rest();
+        if let Some(length) = self.discard_rest(now) {
+            // Of many that waited, as after a disturbance of the network, the
+            // newest counts.
+            let newest = self.last_values.get(..length).unwrap_or_default();
+            if self.inbox.accept(newest, now, &self.link).is_err() {
+                count(&self.link.counters.malformed);
+                outcome = Err(SensorFault::Malformed);
+            }
+        }
         outcome
     }
 
     /// Left until the next tick, datagrams would be stamped with a time at which
-    /// they did not arrive, and each tick would read older ones.
-    fn discard_rest(&self) {
+    /// they did not arrive, and each tick would read older ones. Returns the
+    /// length of the last one with values, if there was one.
+    fn discard_rest(&mut self, now: Time) -> Option<usize> {
+        let simulator = self.link.simulator().map(|at| at.ip());
+        let mut newest = None;
         for _ in 0..DISCARDED_PER_TICK {
-            let Ok(Some(_)) = self.port.receive(&mut []) else {
-                return;
+            let Ok(Some((length, from))) = self.port.receive(self.buffer.as_mut_slice()) else {
+                break;
             };
             count(&self.link.counters.discarded);
+            let datagram = self.buffer.get(..length).unwrap_or_default();
+            if let Some(kind @ (Kind::Rref | Kind::Data)) = Kind::of(datagram)
+                && Some(from.ip()) == simulator
+                && self.reply_ports.accepts(kind, from.port(), now)
+            {
+                mem::swap(&mut self.buffer, &mut self.last_values);
+                self.last_values_bytes = length;
+                newest = Some(length);
+            }
         }
+        newest
     }
 
     fn send_requests(&mut self, now: Time, simulator: SocketAddr) -> Result<(), Errno> {
@@ -246,7 +270,13 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let simulator = self.link.simulator();
 
         self.inbox.begin();
-        let received = self.receive(now, simulator);
+        let missed_s = tick.dt_s - tick.dt_s / tick.missed.saturating_add(1) as f64;
+        let received = if missed_s > OLD_AFTER_S {
+            self.discard_rest(now);
+            Ok(())
+        } else {
+            self.receive(now, simulator)
+        };
         let state = self.inbox.publish(now, into, &self.link);
         self.link.set_state(state);
         if let Some(missing) = self.subscriptions.missing(now, &self.inbox) {

@@ -16,9 +16,10 @@ const LATE_S: f64 = 1.0;
 /// For this long an older time may belong to a late datagram. None is delayed
 /// longer while newer ones arrive.
 const LATE: Duration = Duration::from_secs(1);
-/// If the simulator's clock gains this much on ours between two datagrams, it
-/// was set forward.
+/// If the simulator's clock gains this much on twice ours between two ticks, it
+/// was set forward: it may run twice as fast.
 const AHEAD_S: f64 = 1.0;
+const AHEAD_OF: f64 = 2.0;
 /// The simulator sends and is not paused, but its clock has not advanced for
 /// this long: five frames at 20 a second.
 const STALLED_AFTER: Duration = Duration::from_millis(250);
@@ -60,6 +61,11 @@ pub enum SimulatorState {
     /// Its time runs more than 2.2 times as fast as ours over 1 to 2 s, until it
     /// is less than 2.1 times as fast.
     Fast = 6,
+    /// It shows a recorded flight.
+    Replaying = 7,
+    /// In this tick it cleared the overrides by itself: an aircraft was loaded.
+    /// This lasts for one tick only.
+    Reloaded = 8,
 }
 
 impl SimulatorState {
@@ -74,6 +80,8 @@ impl SimulatorState {
             Self::Slow => Some(PlantState::Slow),
             Self::Jumped => Some(PlantState::Jumped),
             Self::Fast => Some(PlantState::Fast),
+            Self::Replaying => Some(PlantState::Replaying),
+            Self::Reloaded => Some(PlantState::Reloaded),
         }
     }
 
@@ -86,6 +94,8 @@ impl SimulatorState {
             4 => Self::Slow,
             5 => Self::Jumped,
             6 => Self::Fast,
+            7 => Self::Replaying,
+            8 => Self::Reloaded,
             _ => Self::Silent,
         }
     }
@@ -97,6 +107,7 @@ pub(crate) struct SimulatorReport {
     /// The flight's time, s.
     pub(crate) time_s: Option<f64>,
     pub(crate) paused: Option<bool>,
+    pub(crate) replaying: Option<bool>,
     /// The time a frame takes, s of our time.
     pub(crate) frame_period_s: Option<f64>,
 }
@@ -117,19 +128,27 @@ impl ClockSample {
 
 /// Tracks the simulator's clock.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "separate properties, each set or not"
+)]
 pub(crate) struct SimulatorClock {
     silent_after: Duration,
     received: Time,
     latest: ClockSample,
+    /// The latest before this tick: in one tick many may arrive that waited.
+    before: ClockSample,
     /// When the clock last advanced, or had a reason not to.
     advanced: Time,
     paused: bool,
+    replaying: bool,
     frame_period_s: f64,
     /// The samples from which the pace is measured: the older one, until the
     /// younger is [`PACE_OVER`] old.
     marks: [ClockSample; 2],
     pace: Pace,
     jumped: bool,
+    reloaded: bool,
 }
 
 /// How fast the simulator's time runs.
@@ -146,18 +165,28 @@ impl SimulatorClock {
             silent_after,
             received: Time::NEVER,
             latest: ClockSample::default(),
+            before: ClockSample::default(),
             advanced: Time::NEVER,
             paused: false,
+            replaying: false,
             frame_period_s: 0.0,
             marks: [ClockSample::default(); 2],
             pace: Pace::Even,
             jumped: false,
+            reloaded: false,
         }
     }
 
     /// Begins a tick.
     pub(crate) fn begin(&mut self) {
         self.jumped = false;
+        self.reloaded = false;
+        self.before = self.latest;
+    }
+
+    /// The simulator cleared the overrides.
+    pub(crate) const fn reload(&mut self) {
+        self.reloaded = true;
     }
 
     /// Whether a datagram of this flight time was overtaken by a newer one and
@@ -165,7 +194,9 @@ impl SimulatorClock {
     /// or time does not advance.
     pub(crate) fn is_late(&self, now: Time, time_s: f64) -> bool {
         let back_s = self.latest.time_s - time_s;
-        !self.latest.seen.is_never()
+        // A replay may go backwards.
+        !self.replaying
+            && !self.latest.seen.is_never()
             && back_s > 0.0
             && back_s < LATE_S
             && now.since(self.latest.seen) < LATE
@@ -174,7 +205,11 @@ impl SimulatorClock {
     /// Evaluates the report of an accepted datagram.
     pub(crate) fn receive(&mut self, now: Time, report: SimulatorReport) {
         let was_silent = self.is_silent(now);
+        let was_replaying = self.replaying;
         self.received = now;
+        if let Some(replaying) = report.replaying {
+            self.replaying = replaying;
+        }
         if let Some(paused) = report.paused {
             if self.paused && !paused {
                 self.begin_pace(now);
@@ -185,7 +220,14 @@ impl SimulatorClock {
             self.frame_period_s = period_s;
         }
         if let Some(time_s) = report.time_s {
-            self.read_clock(now, time_s, was_silent);
+            if was_replaying || self.replaying {
+                // The recorded time, or the first after it.
+                self.latest = ClockSample { time_s, seen: now };
+                self.before = self.latest;
+                self.begin_pace(now);
+            } else {
+                self.read_clock(now, time_s, was_silent);
+            }
         }
         self.update_pace(now);
     }
@@ -198,9 +240,12 @@ impl SimulatorClock {
             return;
         }
         let gained_s = time_s - before.time_s;
-        let ours_s = now.since(before.seen).as_secs_f64();
+        let is_ahead = !self.before.seen.is_never() && {
+            let ours_s = now.since(self.before.seen).as_secs_f64();
+            time_s - self.before.time_s - AHEAD_OF * ours_s > AHEAD_S
+        };
         // Late datagrams were dropped, so a time that went back was set back.
-        if gained_s < 0.0 || gained_s - ours_s > AHEAD_S {
+        if gained_s < 0.0 || is_ahead {
             self.jumped = true;
             self.begin_pace(now);
         } else if was_silent {
@@ -278,6 +323,10 @@ impl SimulatorClock {
             SimulatorState::Silent
         } else if self.jumped {
             SimulatorState::Jumped
+        } else if self.reloaded {
+            SimulatorState::Reloaded
+        } else if self.replaying {
+            SimulatorState::Replaying
         } else if self.paused {
             SimulatorState::Paused
         } else if self.has_stopped() {

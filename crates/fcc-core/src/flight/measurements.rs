@@ -307,6 +307,12 @@ schema! {
         Slow = 3,
         /// Its clock jumped: it was restarted, reloaded or repositioned.
         Jumped = 4,
+        /// It shows a recorded flight: what it measures is not its present
+        /// state, and nothing is sent to it.
+        Replaying = 5,
+        /// It took back the controls by itself, as when its aircraft is loaded
+        /// again.
+        Reloaded = 6,
         /// Time runs more than twice as fast as the wall clock.
         Fast = 7,
     }

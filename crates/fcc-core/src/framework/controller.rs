@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::schema::Schema;
-use super::{Flags, Reading, Readings, Tick, Time};
+use super::{Flags, Notice, Reading, Readings, Tick, Time};
 use crate::schema;
 
 schema! {
@@ -112,6 +112,37 @@ pub trait Controller: Send {
     /// Faults that make it unsafe to stay engaged; empty if there are none.
     fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
+    /// Why control must be given back in this tick, without a failsafe: the
+    /// plant is another, or was set to another state. Empty if there is no
+    /// reason; by default there is none.
+    fn must_release(&self, _tick: &Tick, _measurements: &Self::Measurements) -> Flags {
+        Flags::NONE
+    }
+
+    /// Whether this tick's outputs are not to be sent although the loop holds
+    /// control: the plant does not take them at present, and keeps the last.
+    /// The state does not change. By default they are sent.
+    fn withholds_outputs(&self, _tick: &Tick, _measurements: &Self::Measurements) -> bool {
+        false
+    }
+
+    /// What the controller noticed in this tick's
+    /// [`estimate`](Self::estimate), for an event; by default nothing.
+    fn notice(&self) -> Option<Notice> {
+        None
+    }
+
+    /// A notice of this controller, as text for users.
+    ///
+    /// # Errors
+    /// The formatter's error.
+    fn write_notice(_notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result
+    where
+        Self: Sized,
+    {
+        f.write_str("a notice of the controller")
+    }
+
     /// Conditions to report while control is held that need not be faults; empty
     /// if there are none. The loop reports each change as an event.
     fn conditions(&self, _tick: &Tick, _measurements: &Self::Measurements) -> Flags {
@@ -119,8 +150,8 @@ pub trait Controller: Send {
     }
 
     /// The name of one bit of [`engage_inhibits`](Self::engage_inhibits),
-    /// [`faults`](Self::faults) and [`conditions`](Self::conditions), as text for
-    /// users.
+    /// [`faults`](Self::faults), [`must_release`](Self::must_release) and
+    /// [`conditions`](Self::conditions), as text for users.
     fn flag_name(bit: u32) -> &'static str
     where
         Self: Sized;

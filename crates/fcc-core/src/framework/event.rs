@@ -1,7 +1,8 @@
 //! Events of a loop.
 
 use super::{
-    ActuatorFault, Controller, Flags, LoopCommand, SensorFault, SourceChange, Stage, State, Time,
+    ActuatorFault, Controller, Flags, LoopCommand, Notice, SensorFault, SourceChange, Stage, State,
+    Time,
 };
 use crate::schema;
 
@@ -233,6 +234,17 @@ schema! {
             /// The mode now.
             #[field(2)]
             to: u8,
+        },
+        /// The controller noticed something:
+        /// [`Controller::write_notice`] describes it.
+        #[field(29)]
+        Noticed(notice: Notice),
+        /// Control is given back at once, without a failsafe.
+        #[field(30)]
+        ReleasedAtOnce {
+            /// Why: [`Controller::must_release`].
+            #[field(1)]
+            conditions: Flags,
         },
         /// [`Controller::conditions`] began or ended while control is held:
         /// [`Controller::flag_name`] names them.

@@ -109,6 +109,11 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
             EventKind::ModeChanged { from, to } => {
                 write!(f, "mode: {}, was {}", C::mode_name(to), C::mode_name(from))
             }
+            EventKind::Noticed(notice) => C::write_notice(&notice, f),
+            EventKind::ReleasedAtOnce { conditions } => {
+                f.write_str("control is given back at once: ")?;
+                name_flags::<C>(f, conditions)
+            }
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {

@@ -34,7 +34,7 @@ schema! {
         /// The controller's set points.
         #[field(5, column = "desired_*")]
         pub setpoints: S,
-        /// The outputs sent to the actuators; the default if none were.
+        /// The outputs for the actuators; the default if none were computed.
         #[field(6, column = "commanded_*")]
         pub outputs: O,
         /// Failed samples of sensors since the loop's start.

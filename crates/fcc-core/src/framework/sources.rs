@@ -28,6 +28,9 @@ pub trait Readings {
 
     /// Passes each reading's sensor and time to `visit`, in their order.
     fn each_source(&self, _visit: &mut dyn FnMut(u8, Time)) {}
+
+    /// Changes the time of each reading, in their order.
+    fn each_time(&mut self, _change: &mut dyn FnMut(&mut Time)) {}
 }
 
 /// Implements [`Readings`](crate::framework::Readings) for a struct whose
@@ -64,6 +67,10 @@ macro_rules! readings {
             fn each_source(&self, visit: &mut dyn FnMut(u8, $crate::framework::Time)) {
                 $(visit(self.$field.source, self.$field.taken);)*
             }
+
+            fn each_time(&mut self, change: &mut dyn FnMut(&mut $crate::framework::Time)) {
+                $(change(&mut self.$field.taken);)*
+            }
         }
     };
 }
@@ -87,6 +94,10 @@ impl<T: Copy> Readings for Reading<T> {
 
     fn each_source(&self, visit: &mut dyn FnMut(u8, Time)) {
         visit(self.source, self.taken);
+    }
+
+    fn each_time(&mut self, change: &mut dyn FnMut(&mut Time)) {
+        change(&mut self.taken);
     }
 }
 

@@ -9,12 +9,12 @@ use super::Flags;
 /// The complete transition table: rows are states, columns inputs, `·` means no
 /// change.
 ///
-/// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeEnded` | Stop |
-/// |---|---|---|---|---|---|---|
-/// | **Standby** | Engaged | · | · | · | · | Stopped |
-/// | **Engaged** | · | Standby | Standby, or Stopped if configured | Failsafe | · | Stopped |
-/// | **Failsafe** | Engaged | Standby | Standby, or Stopped if configured | · | Standby | Stopped |
-/// | **Stopped** | · | · | · | · | · | · |
+/// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeEnded` | `ReleaseNow` | Stop |
+/// |---|---|---|---|---|---|---|---|
+/// | **Standby** | Engaged | · | · | · | · | · | Stopped |
+/// | **Engaged** | · | Standby | Standby, or Stopped if configured | Failsafe | · | Standby | Stopped |
+/// | **Failsafe** | Engaged | Standby | Standby, or Stopped if configured | · | Standby | Standby | Stopped |
+/// | **Stopped** | · | · | · | · | · | · | · |
 ///
 /// Leaving Engaged or Failsafe for Standby or Stopped releases the actuators.
 /// `Engage` is input only when no engage inhibit is active.
@@ -79,6 +79,9 @@ pub enum Input {
     Fault(Cause),
     /// Failsafe has lasted as long as configured.
     FailsafeEnded,
+    /// Control must be given back at once, without a failsafe: what it was taken
+    /// of is no longer there.
+    ReleaseNow,
     /// End the loop: requested, a signal, or a panic.
     Stop,
 }
@@ -109,7 +112,7 @@ impl State {
         match (self, input) {
             (Self::Stopped, _) | (_, Input::Stop) => Self::Stopped,
             (Self::Standby | Self::Failsafe(_), Input::Engage) => Self::Engaged,
-            (Self::Engaged | Self::Failsafe(_), Input::Disengage)
+            (Self::Engaged | Self::Failsafe(_), Input::Disengage | Input::ReleaseNow)
             | (Self::Failsafe(_), Input::FailsafeEnded) => Self::Standby,
             (Self::Engaged | Self::Failsafe(_), Input::SwitchedOff) => match switch_off {
                 AfterRelease::Standby => Self::Standby,
@@ -142,12 +145,13 @@ mod tests {
     use super::*;
 
     const FAILSAFE: State = State::Failsafe(Cause::InvalidOutput);
-    const INPUTS: [Input; 6] = [
+    const INPUTS: [Input; 7] = [
         Input::Engage,
         Input::Disengage,
         Input::SwitchedOff,
         Input::Fault(Cause::InvalidOutput),
         Input::FailsafeEnded,
+        Input::ReleaseNow,
         Input::Stop,
     ];
 
@@ -158,17 +162,23 @@ mod tests {
         let rows = [
             (
                 Standby,
-                [Engaged, Standby, Standby, Standby, Standby, Stopped],
+                [
+                    Engaged, Standby, Standby, Standby, Standby, Standby, Stopped,
+                ],
             ),
             (
                 Engaged,
-                [Engaged, Standby, Standby, FAILSAFE, Engaged, Stopped],
+                [
+                    Engaged, Standby, Standby, FAILSAFE, Engaged, Standby, Stopped,
+                ],
             ),
             (
                 FAILSAFE,
-                [Engaged, Standby, Standby, FAILSAFE, Standby, Stopped],
+                [
+                    Engaged, Standby, Standby, FAILSAFE, Standby, Standby, Stopped,
+                ],
             ),
-            (Stopped, [Stopped; 6]),
+            (Stopped, [Stopped; 7]),
         ];
         for (state, expected) in rows {
             for (input, after) in INPUTS.into_iter().zip(expected) {

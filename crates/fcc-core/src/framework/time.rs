@@ -54,6 +54,24 @@ impl Time {
     }
 }
 
+impl Time {
+    /// Later by a span, but not later than `latest`, and never earlier than
+    /// this; [`Time::NEVER`] stays [`Time::NEVER`].
+    ///
+    /// ```
+    /// use core::time::Duration;
+    /// use fcc_core::framework::Time;
+    ///
+    /// let (taken, latest) = (Time::from_nanos(5), Time::from_nanos(9));
+    /// assert_eq!(taken.postponed(Duration::from_nanos(2), latest), Time::from_nanos(7));
+    /// assert_eq!(taken.postponed(Duration::from_nanos(8), latest), latest);
+    /// ```
+    #[must_use]
+    pub fn postponed(self, by: Duration, latest: Self) -> Self {
+        (self + by).min(latest).max(self)
+    }
+}
+
 impl Default for Time {
     /// [`Time::NEVER`].
     fn default() -> Self {

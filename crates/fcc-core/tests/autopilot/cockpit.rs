@@ -5,7 +5,7 @@ use core::time::Duration;
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{
     Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, OtherControl, Plant, PlantState,
-    SpecificForce, Surfaces, Suspect, flags,
+    Position, SpecificForce, Surfaces, Suspect, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
@@ -31,6 +31,10 @@ pub(crate) struct Cockpit {
     pub(crate) measurements: Measurements,
     pub(crate) silent: Flags,
     pub(crate) switch: Option<Switch>,
+    /// How much the plant's clock is behind ours, s.
+    pub(crate) stood_s: f64,
+    /// Degrees north of the start.
+    pub(crate) north_deg: f64,
     pub(crate) other_control: OtherControl,
     pub(crate) suspect: Suspect,
 }
@@ -82,6 +86,8 @@ impl Cockpit {
             measurements: Measurements::default(),
             silent: Flags::NONE,
             switch: None,
+            stood_s: 0.0,
+            north_deg: 0.0,
             other_control: OtherControl::default(),
             suspect: Suspect::default(),
         };
@@ -100,10 +106,20 @@ impl Cockpit {
         cockpit
     }
 
-    pub(crate) fn observe(&mut self) {
+    /// A tick in which nothing arrives.
+    pub(crate) fn hear_nothing(&mut self) {
+        self.next_tick();
+        self.autopilot.estimate(&self.tick, &self.measurements);
+    }
+
+    fn next_tick(&mut self) {
         self.tick.number += 1;
         self.tick.woke = self.tick.woke + Duration::from_millis(25);
         self.tick.scheduled = self.tick.woke;
+    }
+
+    pub(crate) fn observe(&mut self) {
+        self.next_tick();
         let (feel, now) = (self.feel, self.tick.woke);
         let before = self.measurements;
         self.measurements = Measurements {
@@ -126,12 +142,19 @@ impl Cockpit {
             airspeed_mps: Reading::new(feel.airspeed_kt * KNOT_MPS, now),
             altitude_m: Reading::new(feel.altitude_m, now),
             surfaces: Reading::new(STANDING, now),
+            position: feel.plant.map_or_else(Reading::default, |_| {
+                let position = Position {
+                    latitude_rad: (47.0 + self.north_deg).to_radians(),
+                    ..Position::default()
+                };
+                Reading::new(position, now)
+            }),
             other_control: Reading::new(self.other_control, now),
             suspect: Reading::new(self.suspect, now),
             plant: feel.plant.map_or_else(Reading::default, |state| {
                 Reading::new(
                     Plant {
-                        time_s: now.as_nanos() as f64 * 1e-9,
+                        time_s: now.as_nanos() as f64 * 1e-9 - self.stood_s,
                         state,
                     },
                     now,
@@ -171,9 +194,7 @@ impl Cockpit {
     /// A tick in which all sensors send, but the plant's clock does not
     /// advance.
     pub(crate) fn pause(&mut self, time_s: f64) {
-        self.tick.number += 1;
-        self.tick.woke = self.tick.woke + Duration::from_millis(25);
-        self.tick.scheduled = self.tick.woke;
+        self.next_tick();
         let now = self.tick.woke;
         let measured = &mut self.measurements;
         measured.attitude.taken = now;
@@ -207,6 +228,15 @@ impl Cockpit {
     pub(crate) fn engage_inhibits(&self) -> Flags {
         self.autopilot
             .engage_inhibits(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn must_release(&self) -> Flags {
+        self.autopilot.must_release(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn withholds(&self) -> bool {
+        self.autopilot
+            .withholds_outputs(&self.tick, &self.measurements)
     }
 
     pub(crate) fn faults(&self) -> Flags {

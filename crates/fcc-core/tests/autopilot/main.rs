@@ -8,3 +8,4 @@ mod faults;
 mod flying;
 mod other_control;
 mod resuming;
+mod silence;

@@ -236,6 +236,7 @@ impl Config {
     pub fn autopilot_config(&self) -> AutopilotConfig {
         AutopilotConfig {
             settling: self.restart.mode.settling(),
+            max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
             permitted: self.engage.permitted(),
             altimeter: (&self.altimeter).into(),
             ..self.autopilot.to_core(

@@ -32,6 +32,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("budget.failsafe_after", 0.0, 1e6),
     ("watchdog.hang_after_ms", 50.0, 60_000.0),
     ("failsafe.sensor_max_age_ms", 10.0, 10_000.0),
+    ("failsafe.all_silent_s", 0.01, 600.0),
     ("failsafe.sensor_frozen_s", 0.0, 60.0),
     ("failsafe.hold_s", 0.0, 600.0),
     ("recording.max_file_mb", 0.0, 1e6),

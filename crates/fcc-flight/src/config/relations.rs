@@ -33,6 +33,14 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
         let message = format!("is {least}: choose less than max_airspeed_kt, {most}");
         report("autopilot.envelope.min_airspeed_kt", message);
     }
+    let (silent_s, max_age_ms) = (
+        config.failsafe.all_silent_s,
+        config.failsafe.sensor_max_age_ms,
+    );
+    if silent_s * 1e3 < max_age_ms as f64 {
+        let message = format!("is {silent_s}: choose at least sensor_max_age_ms, {max_age_ms} ms");
+        report("failsafe.all_silent_s", message);
+    }
     budgets(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
         report(

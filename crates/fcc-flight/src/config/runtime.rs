@@ -212,6 +212,9 @@ impl EngageSection {
 pub struct FailsafeSection {
     /// Readings older than this count as a loss of their sensor.
     pub sensor_max_age_ms: u64,
+    /// If nothing at all arrives from a simulator, it is waited for as long as
+    /// this; it may have stopped for a moment, and the aircraft with it.
+    pub all_silent_s: f64,
     /// Readings that stay the same to the last bit for this long while the
     /// aircraft moves count as a loss of their sensor; 0 for never.
     pub sensor_frozen_s: f64,
@@ -225,6 +228,7 @@ impl Default for FailsafeSection {
     fn default() -> Self {
         Self {
             sensor_max_age_ms: 250,
+            all_silent_s: 30.0,
             sensor_frozen_s: 2.0,
             hold_s: 5.0,
             then: Then::Standby,

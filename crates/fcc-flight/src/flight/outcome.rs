@@ -52,7 +52,8 @@ pub enum Conclusion {
     Completed,
     /// It was flown as planned, but not recorded, or not completely.
     NotRecorded,
-    /// It was not flown as planned: the timer failed, or engaging was refused.
+    /// It was not flown as planned: the timer failed, engaging was refused, or
+    /// control had to be given back at once and that ends the program.
     Failed,
     /// It entered failsafe.
     Failsafe,
@@ -100,7 +101,7 @@ impl Outcome {
             _ if !report.released => Conclusion::NotReleased,
             Ending::Panicked(_) => Conclusion::Panicked,
             Ending::Hung => Conclusion::Hung,
-            Ending::TimerFailed(_) => Conclusion::Failed,
+            Ending::TimerFailed(_) | Ending::ReleasedAtOnce => Conclusion::Failed,
             _ if report.failsafes > 0 => Conclusion::Failsafe,
             _ => Conclusion::Completed,
         };

@@ -5,7 +5,7 @@ use std::fmt;
 
 use fcc_core::flight::navigation::Estimate;
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements, Setpoints, Surfaces};
-use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick};
+use fcc_core::framework::{Controller, Flags, Notice, Reading, Switch, Tick};
 
 use super::control_override::ControlOverride;
 
@@ -50,6 +50,22 @@ impl Controller for Pilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         self.autopilot.conditions(tick, measurements)
+    }
+
+    fn must_release(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.autopilot.must_release(tick, measurements)
+    }
+
+    fn withholds_outputs(&self, tick: &Tick, measurements: &Measurements) -> bool {
+        self.autopilot.withholds_outputs(tick, measurements)
+    }
+
+    fn notice(&self) -> Option<Notice> {
+        self.autopilot.notice()
+    }
+
+    fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Autopilot::write_notice(notice, f)
     }
 
     fn flag_name(bit: u32) -> &'static str {

@@ -220,7 +220,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 20] = [
+    const KINDS: [&str; 22] = [
         "remark",
         "state-changed",
         "command-received",
@@ -241,6 +241,8 @@ fn kind_of(code: u32) -> &'static str {
         "source-changed",
         "mode-changed",
         "conditions-changed",
+        "noticed",
+        "released-at-once",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

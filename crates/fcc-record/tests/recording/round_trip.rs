@@ -3,7 +3,8 @@
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
 use fcc_core::flight::{AltitudeReference, AutopilotCommand, Resume, Surfaces};
 use fcc_core::framework::{
-    ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, SensorFault, Stage, State, Time,
+    ActuatorFault, Cause, EventKind, Flags, LoopCommand, Message, Notice, SensorFault, Stage,
+    State, Time,
 };
 use fcc_record::{Compression, Item, Recorder, RecorderSettings, Recording};
 use fcc_telemetry::FlightMessage;
@@ -103,6 +104,13 @@ fn every_event_is_restored() {
         EventKind::ModeChanged {
             from: 0,
             to: u8::MAX,
+        },
+        EventKind::Noticed(Notice {
+            kind: u8::MAX,
+            lasted_ns: u64::MAX,
+        }),
+        EventKind::ReleasedAtOnce {
+            conditions: Flags::bit(6),
         },
         EventKind::ConditionsChanged {
             began: Flags::from_bits(0x8100_0000),

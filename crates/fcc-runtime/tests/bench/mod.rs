@@ -15,7 +15,9 @@ mod stubs;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use fcc_core::framework::{ActuatorFault, Flags, Reading, SensorFault, State, Switch, Time};
+use fcc_core::framework::{
+    ActuatorFault, Flags, Notice, Reading, SensorFault, State, Switch, Time,
+};
 use fcc_runtime::{Link, LoopConfig, Machine, Message, MessageOf, RecordOf};
 use fcc_timer::Expiry;
 
@@ -33,6 +35,9 @@ pub(crate) struct Script {
     pub(crate) switch: Option<Switch>,
     pub(crate) engage_inhibits: Flags,
     pub(crate) faults: Flags,
+    pub(crate) must_release: Flags,
+    pub(crate) withholds: bool,
+    pub(crate) notice: Option<Notice>,
     pub(crate) conditions: Flags,
     pub(crate) output: f64,
     pub(crate) failsafe_output: f64,
@@ -56,6 +61,9 @@ impl Default for Script {
             switch: None,
             engage_inhibits: Flags::NONE,
             faults: Flags::NONE,
+            must_release: Flags::NONE,
+            withholds: false,
+            notice: None,
             conditions: Flags::NONE,
             output: 0.5,
             failsafe_output: -0.25,

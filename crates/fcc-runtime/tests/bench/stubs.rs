@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use fcc_core::framework::{
-    Actuator, ActuatorFault, Controller, Flags, Reading, Sensor, SensorFault, Switch, Tick,
+    Actuator, ActuatorFault, Controller, Flags, Notice, Reading, Sensor, SensorFault, Switch, Tick,
 };
 use fcc_runtime::Parts;
 use fcc_timer::{Expiry, Timer, TimerError};
@@ -54,6 +54,18 @@ impl Controller for Stub {
     fn faults(&self, _: &Tick, _: &Measured) -> Flags {
         self.stage.perhaps_panic("faults");
         self.stage.script().faults
+    }
+
+    fn must_release(&self, _: &Tick, _: &Measured) -> Flags {
+        self.stage.script().must_release
+    }
+
+    fn withholds_outputs(&self, _: &Tick, _: &Measured) -> bool {
+        self.stage.script().withholds
+    }
+
+    fn notice(&self) -> Option<Notice> {
+        self.stage.script().notice
     }
 
     fn conditions(&self, _: &Tick, _: &Measured) -> Flags {

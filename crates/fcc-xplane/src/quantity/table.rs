@@ -233,4 +233,6 @@ pub(super) const TABLE: &[Entry] = &[
         .is("0 feathered, 1 normal, 2 beta, 3 reverse").instead("reverse thrust is known by a negative throttle only"),
     Entry::new(Quantity::ThrottleLever, Dataref("sim/cockpit2/engine/actuators/throttle_ratio[0]"), Unit::Ratio, [-2.0, 2.0])
         .is("0 idle, 1 full").instead("where the lever is is not said at a release"),
+    Entry::new(Quantity::Replay, Dataref("sim/time/is_in_replay"), Unit::Flag, [0.0, 1.0])
+        .is("shows a recorded flight; nothing is written then").instead(NOT_NOTICED),
 ];

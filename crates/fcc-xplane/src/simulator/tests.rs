@@ -207,3 +207,44 @@ fn a_tenth_of_the_datagrams_lost_changes_nothing() {
         );
     }
 }
+
+/// X-Plane shows what was an hour ago, backwards, and then continues.
+#[test]
+fn a_replay_is_a_state_and_its_clock_is_no_jump() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    let live_s = bench.time_s;
+    let replays = |bench: &mut Bench, time_s, replaying| {
+        bench.receive(SimulatorReport {
+            time_s: Some(time_s),
+            replaying: Some(replaying),
+            ..SimulatorReport::default()
+        })
+    };
+    for tick in 0..400 {
+        let shown_s = live_s - 50.0 - 0.05 * f64::from(tick);
+        let state = replays(&mut bench, shown_s, true);
+        assert_eq!(state, SimulatorState::Replaying);
+    }
+    let state = replays(&mut bench, live_s, false);
+    assert_eq!(state, SimulatorState::Running);
+    assert_eq!(bench.fly(200, 1.0), SimulatorState::Running);
+}
+
+#[test]
+fn datagrams_that_waited_are_no_jump() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    // Two seconds of them, read in one tick; half of them were discarded.
+    bench.now = bench.now + Duration::from_secs(2);
+    bench.clock.begin();
+    for frame in (0..40).chain([80]) {
+        let time_s = Some(bench.time_s + 0.025 * f64::from(frame));
+        let report = SimulatorReport {
+            time_s,
+            ..SimulatorReport::default()
+        };
+        bench.clock.receive(bench.now, report);
+    }
+    assert_eq!(bench.clock.state(bench.now), SimulatorState::Running);
+}

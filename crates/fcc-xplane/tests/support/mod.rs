@@ -72,6 +72,7 @@ impl FakeXPlane {
             (PAUSED, 0.0),
             (FLIGHT_TIME, 100.0),
             ("sim/time/framerate_period", 0.02),
+            ("sim/time/is_in_replay", 0.0),
             (SWITCH, 0.0),
             (OVERRIDE_JOYSTICK, 0.0),
             (OVERRIDE_THROTTLES, 0.0),

@@ -28,6 +28,10 @@ pub struct AutopilotConfig {
     pub reference_airspeed_mps: f64,
     /// Readings older than this count as a loss of their sensor.
     pub max_age: Duration,
+    /// If a simulated plant falls silent, so that none of its readings arrives,
+    /// its time is taken to stand still for as long as this; no shorter than
+    /// `max_age`. Then all of them count as lost.
+    pub max_silence: Duration,
     /// Readings that stay the same to the last bit for this long, while others
     /// show that the aircraft moved, are frozen; zero switches the check off.
     pub frozen_after: Duration,
@@ -60,6 +64,7 @@ impl Default for AutopilotConfig {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
             max_age: Duration::from_millis(250),
+            max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             permitted: Flags::NONE,

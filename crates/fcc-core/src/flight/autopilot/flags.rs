@@ -23,7 +23,7 @@ pub const PLANT_PAUSED: Flags = Flags::bit(7);
 pub const TOO_SLOW: Flags = Flags::bit(8);
 /// Bank or pitch is too large for engaging.
 pub const UPSET: Flags = Flags::bit(9);
-/// The simulator's clock has stopped although it is not paused.
+/// The simulator's clock has stopped, but the aircraft moves.
 pub const PLANT_STALLED: Flags = Flags::bit(10);
 /// The engage switch was read before and is now silent.
 pub const ENGAGE_SWITCH: Flags = Flags::bit(11);
@@ -46,6 +46,17 @@ pub const FROZEN_ALTITUDE: Flags = Flags::bit(18);
 /// range, or too far from the last.
 pub const REJECTED: Flags = Flags::bit(19);
 
+/// Nothing arrives from the simulator.
+pub const PLANT_SILENT: Flags = Flags::bit(20);
+/// The simulator took back the controls by itself: it was reloaded.
+pub const PLANT_RELOADED: Flags = Flags::bit(21);
+/// The aircraft was moved to another place.
+pub const RELOCATED: Flags = Flags::bit(22);
+/// The simulator shows a recorded flight.
+pub const PLANT_REPLAYING: Flags = Flags::bit(23);
+
+/// The quantities that control needs.
+pub(super) const NEEDED: Flags = Flags::from_bits(0x3f);
 /// Another autopilot's servos move the controls.
 pub const OTHER_AUTOPILOT: Flags = Flags::bit(24);
 /// Another autothrottle moves the throttles.

@@ -3,12 +3,15 @@
 mod capture;
 mod command;
 mod config;
+mod failsafe;
 pub mod flags;
+mod observe;
 mod other_control;
 mod plant_clock;
 mod resume;
 mod scale;
 mod sensor_health;
+mod whereabouts;
 
 use core::fmt;
 use core::hint::black_box;
@@ -21,13 +24,14 @@ pub use config::AutopilotConfig;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
+use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
-use crate::framework::{Controller, Flags, Reading, Switch, Tick, Time};
+use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
 
 /// Beyond this bank or pitch the autopilot does not engage, rad.
 const UPSET_RAD: f64 = 1.047;
@@ -87,7 +91,15 @@ pub struct Autopilot {
     airspeed: AirspeedLoop,
     setpoints: Setpoints,
     clock: PlantClock,
+    whereabouts: Whereabouts,
+    /// The previous tick.
+    before: Time,
     watching_since: Time,
+    /// When a plant that was not heard returned, until all that control needs
+    /// has been measured since.
+    renewed_since: Time,
+    /// The last outputs.
+    last: Surfaces,
 }
 
 impl Autopilot {
@@ -107,7 +119,11 @@ impl Autopilot {
             airspeed: AirspeedLoop::new(config.airspeed),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
+            whereabouts: Whereabouts::default(),
+            before: Time::NEVER,
             watching_since: Time::NEVER,
+            renewed_since: Time::NEVER,
+            last: Surfaces::default(),
             config,
         }
     }
@@ -144,6 +160,7 @@ impl Autopilot {
 
     /// Engages the loops with the present throttle and surfaces.
     fn take_over(&mut self, standing: &Surfaces) {
+        self.last = *standing;
         let estimate = *self.navigation.estimate();
         let schedule = self.schedule();
         self.heading
@@ -162,35 +179,15 @@ impl Controller for Autopilot {
     type Command = AutopilotCommand;
 
     fn estimate(&mut self, tick: &Tick, measurements: &Measurements) {
-        plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
-        if self.plant_is(PlantState::Jumped) {
-            // The aircraft was repositioned, so no distance from the last
-            // values is implausible.
-            self.accepted = Measurements::default();
-            plausibility_gate(&mut self.accepted, measurements, self.config.max_age);
-            self.navigation.reset(&self.config.navigation);
-            self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
-            self.clock = PlantClock::default();
-            self.watching_since = Time::NEVER;
-        }
-        self.clock.step(tick, &self.accepted, self.config.max_age);
-        self.navigation
-            .step(tick.woke, &self.accepted, self.clock.step_s());
-        self.frozen.step(
-            tick.woke,
-            &self.accepted,
-            self.navigation.estimate(),
-            self.clock.step_s(),
-        );
-        if self.watching_since.is_never() && self.stale(tick.woke).is_empty() {
-            self.watching_since = tick.woke;
-        }
+        self.observe(tick, measurements);
     }
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        (self.unsafe_to_fly(tick.woke, measurements) | self.not_permitted(measurements))
+        (self.unsafe_with(self.stale(tick.woke), measurements) | self.not_permitted(measurements))
+            .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
             .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+            .with(flags::PLANT_STALLED, self.clock.has_stopped())
             .with(
                 flags::SETTLING,
                 self.watching_since.is_never()
@@ -212,6 +209,30 @@ impl Controller for Autopilot {
 
     fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(measurements)
+    }
+
+    fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
+        self.is_elsewhere()
+    }
+
+    fn withholds_outputs(&self, tick: &Tick, _measurements: &Measurements) -> bool {
+        self.withholds(tick.woke)
+    }
+
+    fn notice(&self) -> Option<Notice> {
+        self.clock.notice()
+    }
+
+    fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lasted_s = notice.lasted_s();
+        match notice.kind {
+            plant_clock::STOOD_STILL => write!(f, "the simulator stood still for {lasted_s:.1} s"),
+            plant_clock::LINK_LOST => write!(
+                f,
+                "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            _ => f.write_str("an unknown notice"),
+        }
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -276,10 +297,14 @@ impl Controller for Autopilot {
             self.targets = targets;
         }
         self.guidance
-            .advance(self.navigation.estimate(), self.clock.step_s());
+            .advance(self.navigation.estimate(), self.clock.passed_s());
     }
 
-    fn control(&mut self, _tick: &Tick, _measurements: &Measurements) -> Surfaces {
+    fn control(&mut self, tick: &Tick, _measurements: &Measurements) -> Surfaces {
+        if self.is_silent(tick.woke) {
+            self.last = self.trims();
+            return self.last;
+        }
         let estimate = *self.navigation.estimate();
         let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
         let envelope = self.config.envelope;
@@ -300,57 +325,18 @@ impl Controller for Autopilot {
             pitch_rad: vertical.pitch_rad,
             ..self.setpoints
         };
-        Surfaces {
+        self.last = Surfaces {
             throttle,
             elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
-        }
+        };
+        self.last
     }
 
-    /// Wings level while the attitude is known, level flight while the climb
-    /// rate is; otherwise the trims that the loops had found; trim throttle,
-    /// idle while thrust is reversed.
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        let unusable = flags::unusable(self.stale(tick.woke), self.frozen());
-        let throttle = if measurements.other_control.value.reverse_thrust {
-            0.0
-        } else {
-            self.config.airspeed.trim_throttle
-        };
-        self.setpoints.roll_rad = 0.0;
-        self.setpoints.climb_rate_mps = 0.0;
-        if unusable.intersects(flags::ATTITUDE | flags::BODY_RATES) {
-            self.setpoints.pitch_rad = 0.0;
-            return Surfaces {
-                throttle,
-                elevator: self.altitude.trim(),
-                aileron: self.heading.aileron_trim(),
-                rudder: self.heading.rudder_trim(),
-            };
-        }
-        let mut estimate = *self.navigation.estimate();
-        if unusable.contains(flags::SPECIFIC_FORCE) {
-            estimate.side_force_mps2 = 0.0;
-        }
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
-        let lateral = self.heading.hold_bank(0.0, &estimate, schedule, dt_s);
-        let vertical = if unusable.intersects(flags::ALTITUDE | flags::SPECIFIC_FORCE) {
-            self.altitude
-                .hold_level_pitch(&estimate, &envelope, schedule, dt_s)
-        } else {
-            self.altitude
-                .hold_climb_rate(0.0, &estimate, &envelope, schedule, dt_s)
-        };
-        self.setpoints.climb_rate_mps = vertical.climb_rate_mps;
-        self.setpoints.pitch_rad = vertical.pitch_rad;
-        Surfaces {
-            throttle,
-            elevator: vertical.elevator,
-            aileron: lateral.aileron,
-            rudder: lateral.rudder,
-        }
+        self.last = self.safest(tick.woke, measurements);
+        self.last
     }
 
     fn disengage(&mut self) {

@@ -1,64 +1,332 @@
-//! The plant's time that passes in a tick.
+//! The plant's time that passes in a tick, and what a gap in it was.
+//!
+//! A simulator that loads scenery stops for some tenths of a second up to
+//! several seconds and falls silent; a link that is cut looks the same while it
+//! lasts. What tells them apart is the plant's own time when it is heard again:
+//! it stood still, or it ran on. Until then its time is taken to stand still.
 
 use core::time::Duration;
 
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Tick, Time};
+use crate::framework::{Notice, Reading, Tick, Time};
 
 /// The longest single step of the plant's time, s: after a gap the loops
 /// continue from the present state, not from an extrapolation.
 const MAX_STEP_S: f64 = 0.2;
+/// A plant whose time does not advance for longer than this while it sends has
+/// stopped: five frames at 20 a second.
+const STOPPED_AFTER: Duration = Duration::from_millis(250);
+/// A gap longer than this, and longer than twice the usual one, is noticed, s:
+/// two frames at 20 a second, and less than the shortest freeze that matters.
+const NOTICED_S: f64 = 0.095;
+/// Less is the rounding of a clock that stands still, s.
+const LEAST_STEP_S: f64 = 1e-6;
+/// Time that goes back by less is that of an overtaken report, s.
+const SET_BACK_S: f64 = 1.0;
+/// The usual gap is the shortest of as many: one freeze does not change it, and
+/// a simulator that stays slow does.
+const USUAL_OF: usize = 4;
+
+/// The kinds of notices.
+pub(super) const STOOD_STILL: u8 = 1;
+pub(super) const LINK_LOST: u8 = 2;
+
+/// Why the plant's time is taken to stand still.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) enum Waiting {
+    /// It is not: it passes, or the next report of it is due.
+    #[default]
+    No,
+    /// Nothing arrives.
+    Silent,
+    /// It is paused.
+    Paused,
+    /// It sends, but its time has stopped.
+    Stopped,
+    /// It shows a recorded flight.
+    Replaying,
+}
+
+/// What is known of a gap in the plant's time when it has ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gap {
+    /// By how much readings have not aged: the plant's time stood still or was
+    /// not heard.
+    pub(super) excused: Duration,
+    /// Whether it was longer than usual: the aircraft may be elsewhere.
+    pub(super) was_long: bool,
+    /// Whether the plant's time ran on.
+    pub(super) ran_on: bool,
+    /// Whether it ran on for so long that what was estimated before is no
+    /// longer true.
+    pub(super) settles_anew: bool,
+}
 
 /// Tracks a simulated plant's clock; a real plant's clock is that of the loop.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct PlantClock {
-    last_s: Option<f64>,
-    stalled_since: Time,
-    is_stalled: bool,
+    time_s: Option<f64>,
+    state: PlantState,
+    /// The ticks in which the plant's time last advanced, something last
+    /// arrived, and its time was last not taken to stand still.
+    advanced: Time,
+    arrived: Time,
+    judged: Time,
+    /// The newest time of a reading.
+    newest: Time,
+    waiting: Waiting,
+    /// The last gaps between two advances, s.
+    gaps_s: [f64; USUAL_OF],
+    /// Periods of ours that were missed in the present gap, s.
+    missed_s: f64,
+    is_ignored: bool,
     step_s: f64,
+    passed_s: f64,
+    gap: Option<Gap>,
+    notice: Option<Notice>,
+}
+
+impl Default for PlantClock {
+    fn default() -> Self {
+        Self {
+            time_s: None,
+            state: PlantState::Running,
+            advanced: Time::NEVER,
+            arrived: Time::NEVER,
+            judged: Time::NEVER,
+            newest: Time::NEVER,
+            waiting: Waiting::No,
+            gaps_s: [0.0; USUAL_OF],
+            missed_s: 0.0,
+            is_ignored: false,
+            step_s: 0.0,
+            passed_s: 0.0,
+            gap: None,
+            notice: None,
+        }
+    }
 }
 
 impl PlantClock {
-    /// Reads the plant's time at a tick. A clock that has been stopped for
-    /// longer than `limit`, on a plant that is not paused, is ignored from then
-    /// on.
-    pub(super) fn step(&mut self, tick: &Tick, measurements: &Measurements, limit: Duration) {
-        let tick_s = tick.dt_s.min(MAX_STEP_S);
-        let plant = measurements.plant;
-        if plant.is_never() {
-            self.step_s = tick_s;
+    /// Reads the plant's time at a tick.
+    pub(super) fn step(&mut self, tick: &Tick, measured: &Measurements) {
+        self.gap = None;
+        self.notice = None;
+        let plant = measured.plant;
+        if plant.is_never() || !plant.value.time_s.is_finite() && self.time_s.is_none() {
+            self.judged = tick.woke;
+            self.pass(tick.dt_s.min(MAX_STEP_S));
             return;
         }
-        let state = plant.value.state;
-        let last_s = self.last_s.replace(plant.value.time_s);
-        let passed_s = last_s.map_or(0.0, |last_s| plant.value.time_s - last_s);
-        // Only the difference of times is used: a wrong state must not freeze
-        // the loops while the aircraft keeps flying.
-        self.step_s = if state == PlantState::Jumped || passed_s <= 0.0 {
-            0.0
-        } else {
-            passed_s.min(MAX_STEP_S)
-        };
-        if state != PlantState::Stalled || self.step_s > 0.0 {
-            self.stalled_since = Time::NEVER;
-        } else if self.stalled_since.is_never() {
-            self.stalled_since = tick.woke;
+        self.pass(0.0);
+        self.missed_s += tick.dt_s - tick.dt_s / (tick.missed.saturating_add(1)) as f64;
+        let newest = newest(measured);
+        let arrives = newest > self.newest;
+        if arrives {
+            self.newest = newest;
+            self.arrived = tick.woke;
+            self.state = plant.value.state;
         }
-        self.is_stalled =
-            !self.stalled_since.is_never() && tick.woke.since(self.stalled_since) > limit;
-        if self.is_stalled {
-            self.step_s = tick_s;
+        let was = self.waiting;
+        self.waiting = match self.state {
+            PlantState::Replaying => {
+                // Its clock may show the recorded time.
+                self.time_s = None;
+                Waiting::Replaying
+            }
+            PlantState::Jumped | PlantState::Reloaded => {
+                self.begin(tick, plant.value.time_s);
+                Waiting::No
+            }
+            state => {
+                let gained_s = self
+                    .time_s
+                    .map_or(0.0, |time_s| plant.value.time_s - time_s);
+                if gained_s < -SET_BACK_S {
+                    self.state = PlantState::Jumped;
+                    self.begin(tick, plant.value.time_s);
+                    Waiting::No
+                } else if arrives && (gained_s > LEAST_STEP_S || self.time_s.is_none()) {
+                    self.advance(tick, gained_s, was);
+                    self.time_s = Some(plant.value.time_s);
+                    Waiting::No
+                } else if !arrives {
+                    Waiting::Silent
+                } else if state == PlantState::Paused {
+                    Waiting::Paused
+                } else if tick.woke.since(self.advanced) > STOPPED_AFTER {
+                    Waiting::Stopped
+                } else {
+                    Waiting::No
+                }
+            }
+        };
+        if self.waiting == Waiting::Stopped && self.is_ignored {
+            self.ignore(tick);
+        }
+        if self.waiting == Waiting::No {
+            self.judged = tick.woke;
         }
     }
 
-    /// Seconds of the plant since the previous tick; 0 if its time did not
-    /// advance.
+    fn pass(&mut self, seconds: f64) {
+        self.step_s = seconds;
+        self.passed_s = seconds;
+    }
+
+    /// Begins anew with a clock that was set.
+    fn begin(&mut self, tick: &Tick, time_s: f64) {
+        *self = Self {
+            state: self.state,
+            newest: self.newest,
+            arrived: self.arrived,
+            time_s: Some(time_s),
+            advanced: tick.woke,
+            ..Self::default()
+        };
+    }
+
+    /// The plant's time advanced, in this tick, for the first time after `was`.
+    fn advance(&mut self, tick: &Tick, gained_s: f64, was: Waiting) {
+        let ours = tick.woke.since(self.advanced);
+        let is_first = self.advanced.is_never();
+        self.advanced = tick.woke;
+        self.is_ignored = false;
+        let missed_s = core::mem::take(&mut self.missed_s);
+        if is_first {
+            return;
+        }
+        let ours_s = ours.as_secs_f64();
+        let usual_s = self.gaps_s.into_iter().fold(f64::INFINITY, f64::min);
+        self.gaps_s.rotate_right(1);
+        self.gaps_s[0] = ours_s;
+        self.step_s = gained_s.min(MAX_STEP_S);
+        self.passed_s = self.step_s;
+
+        let limit_s = NOTICED_S.max(2.0 * usual_s);
+        let was_long = ours_s > limit_s;
+        let settles_anew = was_long && gained_s > MAX_STEP_S;
+        // Half of the gap is far from both: a frame or two, and all of it.
+        let ran_on = settles_anew || was_long && gained_s > 0.5 * ours_s;
+        let stood_s = (ours_s - gained_s).max(0.0);
+        let excused_s = if settles_anew {
+            self.passed_s = gained_s;
+            ours_s
+        } else if stood_s > NOTICED_S {
+            stood_s
+        } else {
+            0.0
+        };
+        if was_long || excused_s > 0.0 {
+            self.gap = Some(Gap {
+                excused: Duration::from_secs_f64(excused_s),
+                was_long,
+                ran_on,
+                settles_anew,
+            });
+        }
+        // A pause, and what this loop itself missed, are reported elsewhere.
+        let is_reported = matches!(was, Waiting::Paused | Waiting::Replaying);
+        if !is_reported && ours_s - missed_s > limit_s {
+            let (kind, lasted_s) = if ran_on {
+                (LINK_LOST, ours_s)
+            } else {
+                (STOOD_STILL, stood_s)
+            };
+            self.notice = Some(Notice {
+                kind,
+                lasted_ns: (lasted_s * 1e9) as u64,
+            });
+        }
+    }
+
+    /// From now on the clock of a plant that moves although its time has
+    /// stopped is ignored, until it advances.
+    pub(super) fn ignore(&mut self, tick: &Tick) {
+        self.is_ignored = true;
+        self.waiting = Waiting::No;
+        self.judged = tick.woke;
+        self.pass(tick.dt_s.min(MAX_STEP_S));
+    }
+
+    /// Seconds of the plant since the previous tick, for the loops: limited,
+    /// and 0 if its time did not advance.
     pub(super) const fn step_s(&self) -> f64 {
         self.step_s
     }
 
-    /// Whether the plant's clock is ignored because it has stopped.
-    pub(super) const fn is_stalled(&self) -> bool {
-        self.is_stalled
+    /// Seconds of the plant since the previous tick, with all of a gap in which
+    /// it was not heard.
+    pub(super) const fn passed_s(&self) -> f64 {
+        self.passed_s
     }
+
+    /// Whether the plant's clock is ignored because it has stopped.
+    pub(super) const fn is_ignored(&self) -> bool {
+        self.is_ignored
+    }
+
+    /// Whether the plant's time advanced in this tick.
+    pub(super) fn advances(&self, now: Time) -> bool {
+        self.advanced == now
+    }
+
+    /// Whether the plant's time has stopped although it sends and is not paused.
+    pub(super) fn has_stopped(&self) -> bool {
+        self.is_ignored || self.waiting == Waiting::Stopped
+    }
+
+    /// Why the plant's time is taken to stand still.
+    pub(super) const fn waiting(&self) -> Waiting {
+        self.waiting
+    }
+
+    /// The gap that ended in this tick.
+    pub(super) const fn gap(&self) -> Option<Gap> {
+        self.gap
+    }
+
+    /// What that gap was, if it is to be reported.
+    pub(super) const fn notice(&self) -> Option<Notice> {
+        self.notice
+    }
+
+    /// The state of a simulated plant; none of a real one.
+    pub(super) fn state(&self) -> Option<PlantState> {
+        (!self.arrived.is_never()).then_some(self.state)
+    }
+
+    /// For how long nothing has arrived.
+    pub(super) fn silent_for(&self, now: Time) -> Duration {
+        if self.arrived.is_never() {
+            Duration::ZERO
+        } else {
+            now.since(self.arrived)
+        }
+    }
+
+    /// The time by which the age of readings is judged: while the plant's time
+    /// stands still, they do not grow older.
+    pub(super) const fn judged(&self) -> Time {
+        self.judged
+    }
+}
+
+/// When the newest of the readings was taken that control needs or that are the
+/// plant's own.
+fn newest(measured: &Measurements) -> Time {
+    fn taken<T>(reading: &Reading<T>) -> Time {
+        reading.taken
+    }
+    [
+        taken(&measured.attitude),
+        taken(&measured.heading_rad),
+        taken(&measured.body_rates),
+        taken(&measured.specific_force),
+        taken(&measured.airspeed_mps),
+        taken(&measured.altitude_m),
+        taken(&measured.plant),
+    ]
+    .into_iter()
+    .fold(Time::NEVER, Time::max)
 }

@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use super::plant_clock::Waiting;
 use super::{Autopilot, flags};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Reading, Time};
@@ -10,9 +11,41 @@ use crate::framework::{Flags, Reading, Time};
 /// lost, since it could not be switched off.
 const SWITCH_MAX_AGE: Duration = Duration::from_secs(1);
 
+/// Longer than this after its readings are too old, nothing is sent to a silent
+/// plant: it has the outputs, and would have to take all that wait for it at
+/// once when it continues, perhaps with another aircraft.
+const SENT_FOR: Duration = Duration::from_millis(250);
+
 impl Autopilot {
+    /// The needed quantities whose readings are too old to be used; all of them
+    /// while a simulated plant is silent.
     pub(super) fn stale(&self, now: Time) -> Flags {
-        self.too_old(&self.accepted, now)
+        if self.is_silent(now) {
+            flags::NEEDED
+        } else {
+            self.too_old(&self.accepted)
+        }
+    }
+
+    /// Whether nothing has arrived from a simulated plant for longer than a
+    /// reading may be old. A paused plant may be silent.
+    pub(super) fn is_silent(&self, now: Time) -> bool {
+        self.silence(now) > self.config.max_age
+    }
+
+    /// For how long a simulated plant that is not paused has been silent.
+    fn silence(&self, now: Time) -> Duration {
+        if self.plant_is(PlantState::Paused) {
+            Duration::ZERO
+        } else {
+            self.clock.silent_for(now)
+        }
+    }
+
+    /// Whether this tick's outputs are not to be sent.
+    pub(super) fn withholds(&self, now: Time) -> bool {
+        self.clock.waiting() == Waiting::Replaying
+            || self.clock.silent_for(now) > self.config.max_age + SENT_FOR
     }
 
     /// The frozen quantities; none while the airspeed is below the floor.
@@ -24,7 +57,9 @@ impl Autopilot {
         }
     }
 
-    fn too_old(&self, measurements: &Measurements, now: Time) -> Flags {
+    /// The readings that are too old, by the plant's time.
+    fn too_old(&self, measurements: &Measurements) -> Flags {
+        let judged = self.clock.judged();
         let taken = [
             (flags::ATTITUDE, measurements.attitude.taken),
             (flags::HEADING, measurements.heading_rad.taken),
@@ -35,28 +70,48 @@ impl Autopilot {
         ];
         taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
             let reading = Reading::new((), taken);
-            old.with(flag, !reading.is_fresh(now, self.config.max_age))
+            old.with(flag, !reading.is_fresh(judged, self.config.max_age))
         })
     }
 
-    /// The faults that prevent both engaging and staying engaged.
+    /// The faults of an engaged flight. A silent plant is waited for.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
+        let lost = self.silence(now) > self.config.max_silence.max(self.config.max_age);
+        let stale = if lost {
+            flags::NEEDED | flags::PLANT_SILENT
+        } else {
+            self.too_old(&self.accepted)
+        };
+        self.unsafe_with(stale, measurements)
+    }
+
+    /// What prevents both engaging and staying engaged, with these readings too
+    /// old.
+    pub(super) fn unsafe_with(&self, stale: Flags, measurements: &Measurements) -> Flags {
         let switch = self.accepted.engage_switch;
-        let stale = self.stale(now);
-        // The raw readings that are not too old although the accepted ones are:
+        // Accepted readings that are too old although the raw ones are not:
         // these were rejected as implausible.
-        let rejected = stale != self.too_old(measurements, now);
-        (stale | self.frozen())
+        let raw = self.too_old(measurements);
+        let rejected = self.too_old(&self.accepted).bits() & !raw.bits() != 0;
+        (stale | self.frozen() | self.is_elsewhere())
             .with(flags::REJECTED, rejected)
-            .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
-            .with(flags::PLANT_STALLED, self.clock.is_stalled())
+            .with(flags::PLANT_STALLED, self.clock.is_ignored())
             .with(
                 flags::ENGAGE_SWITCH,
-                !switch.is_never() && !switch.is_fresh(now, SWITCH_MAX_AGE),
+                !switch.is_never() && !switch.is_fresh(self.clock.judged(), SWITCH_MAX_AGE),
             )
     }
 
+    /// Why what was flown before must not be continued: the plant is no longer
+    /// where it was.
+    pub(super) fn is_elsewhere(&self) -> Flags {
+        Flags::NONE
+            .with(flags::PLANT_JUMPED, self.plant_is(PlantState::Jumped))
+            .with(flags::PLANT_RELOADED, self.plant_is(PlantState::Reloaded))
+            .with(flags::RELOCATED, self.whereabouts.was_relocated())
+    }
+
     pub(super) fn plant_is(&self, state: PlantState) -> bool {
-        !self.accepted.plant.is_never() && self.accepted.plant.value.state == state
+        self.clock.state() == Some(state)
     }
 }

@@ -112,7 +112,25 @@ pub struct HeadingLoop {
     roll_command: RateLimit,
     roll_rate: Pid,
     side_force: Pid,
+    /// While the commanded bank is led from an earlier command to the present
+    /// one.
+    lead: Option<Lead>,
 }
+
+/// A bank command that follows another.
+#[derive(Clone, Copy, Debug)]
+struct Lead {
+    roll_rad: f64,
+    /// How much longer at least, s: what is wanted may itself step.
+    left_s: f64,
+}
+
+/// How fast a bank command is led from an earlier one, rad/s (100 °/s): faster
+/// than any aircraft rolls, and without a step.
+const LED_RADPS: f64 = 1.745;
+/// The longest step of that, s: 4°.
+const LED_STEP_S: f64 = 0.04;
+const LED_FOR_S: f64 = 0.5;
 
 impl HeadingLoop {
     /// A loop that is not engaged.
@@ -130,12 +148,23 @@ impl HeadingLoop {
                 ki: config.side_force_integral_gain,
                 ..SURFACE
             }),
+            lead: None,
         }
+    }
+
+    /// Continues from an earlier bank command (rad), after a time in which the
+    /// loop did not run: the next commands lead from there to what is wanted.
+    pub const fn lead_from(&mut self, roll_rad: f64) {
+        self.lead = Some(Lead {
+            roll_rad,
+            left_s: LED_FOR_S,
+        });
     }
 
     /// Engages with the present surfaces.
     pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
         let roll_rate = estimate.body_rates.roll_radps;
+        self.lead = None;
         self.roll_command.reset(roll_rate);
         self.roll_rate.engage(
             aileron,
@@ -174,7 +203,24 @@ impl HeadingLoop {
             atan(speed / GRAVITY_MPS2 * profile.speed(error)),
             envelope.bank_limit_rad(),
         );
+        let roll_rad = self.led(roll_rad, dt_s);
         self.hold_bank(roll_rad, estimate, schedule, dt_s)
+    }
+
+    /// The bank command on the way from an earlier one to `wanted_rad`.
+    fn led(&mut self, wanted_rad: f64, dt_s: f64) -> f64 {
+        let Some(lead) = &mut self.lead else {
+            return wanted_rad;
+        };
+        let most_rad = LED_RADPS * dt_s.min(LED_STEP_S);
+        let off_rad = wanted_rad - lead.roll_rad;
+        lead.left_s -= dt_s;
+        lead.roll_rad += limit_abs(off_rad, most_rad);
+        let roll_rad = lead.roll_rad;
+        if off_rad.abs() <= most_rad && lead.left_s <= 0.0 {
+            self.lead = None;
+        }
+        roll_rad
     }
 
     /// One step towards a bank (rad), independent of the heading.

@@ -1,5 +1,7 @@
 //! Indicated airspeed from the airspeed sensor and the accelerometers.
 
+use core::time::Duration;
+
 use libm::{asin, cos, sin, sqrt};
 
 use super::attitude::Orientation;
@@ -49,6 +51,14 @@ impl AirspeedChannel {
             airspeed: Complementary::new(tau_s),
             news: SampleTracker::new(),
         }
+    }
+
+    pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
+        self.news.postpone(by, latest);
+    }
+
+    pub(super) const fn adopt_next(&mut self) {
+        self.news.adopts_next = true;
     }
 
     /// Processes the measurements; returns indicated airspeed in m/s.

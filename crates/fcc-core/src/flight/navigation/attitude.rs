@@ -1,5 +1,7 @@
 //! Pitch, roll and heading from gyroscopes and from direct measurements.
 
+use core::time::Duration;
+
 use libm::{cos, sin};
 
 use super::{NewSample, SampleTracker, is_current};
@@ -64,6 +66,16 @@ impl AttitudeChannel {
             attitude_news: SampleTracker::new(),
             heading_news: SampleTracker::new(),
         }
+    }
+
+    pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
+        self.attitude_news.postpone(by, latest);
+        self.heading_news.postpone(by, latest);
+    }
+
+    pub(super) const fn adopt_next(&mut self) {
+        self.attitude_news.adopts_next = true;
+        self.heading_news.adopts_next = true;
     }
 
     /// Processes the measurements; returns the orientation.

@@ -204,6 +204,24 @@ impl Navigation {
         self.vertical.marked_altitude_m()
     }
 
+    /// Nothing arrived for a time that counts as not passed: later readings
+    /// follow the last ones as if those had been taken `by` later, but not later
+    /// than `latest`.
+    pub(crate) fn postpone(&mut self, by: Duration, latest: Time) {
+        self.attitude.postpone(by, latest);
+        self.vertical.postpone(by, latest);
+        self.airspeed.postpone(by, latest);
+    }
+
+    /// The aircraft flew on for `passed_s` unobserved: attitude, heading and
+    /// airspeed are adopted from the next readings; altitude and climb rate are
+    /// predicted, and their uncertainty grows.
+    pub(crate) fn resume(&mut self, passed_s: f64) {
+        self.attitude.adopt_next();
+        self.vertical.coast(passed_s);
+        self.airspeed.adopt_next();
+    }
+
     /// Resets everything, after the plant was repositioned.
     pub fn reset(&mut self, config: &NavigationConfig) {
         *self = Self::new(config);
@@ -223,6 +241,8 @@ fn is_current<T>(reading: &Reading<T>, now: Time) -> bool {
 #[derive(Clone, Copy, Debug, Default)]
 struct SampleTracker {
     taken: Time,
+    /// The next new one is adopted at once, whatever its age.
+    adopts_next: bool,
 }
 
 enum NewSample {
@@ -236,7 +256,14 @@ enum NewSample {
 
 impl SampleTracker {
     const fn new() -> Self {
-        Self { taken: Time::NEVER }
+        Self {
+            taken: Time::NEVER,
+            adopts_next: false,
+        }
+    }
+
+    fn postpone(&mut self, by: Duration, latest: Time) {
+        self.taken = self.taken.postponed(by, latest);
     }
 
     /// `dt_s` is the plant's time since the last tick: while it does not
@@ -247,7 +274,7 @@ impl SampleTracker {
         }
         let gap = reading.taken.since(self.taken);
         self.taken = reading.taken;
-        if gap > CURRENT {
+        if core::mem::take(&mut self.adopts_next) || gap > CURRENT {
             NewSample::First
         } else if dt_s > 0.0 {
             NewSample::Next(gap.as_secs_f64())

@@ -164,11 +164,11 @@ pub(crate) fn plausibility_gate(
         |plant: &Plant| plant.time_s.is_finite(),
         |_, _, _| true,
     );
-    good.engage_switch = new.engage_switch;
-    good.position = new.position;
-    good.velocity = new.velocity;
-    good.other_control = new.other_control;
-    good.suspect = new.suspect;
+    replace(&mut good.engage_switch, &new.engage_switch);
+    replace(&mut good.position, &new.position);
+    replace(&mut good.velocity, &new.velocity);
+    replace(&mut good.other_control, &new.other_control);
+    replace(&mut good.suspect, &new.suspect);
     [
         attitude, heading, rates, force, airspeed, altitude, angle, true, true, surfaces, true,
         plant, true, true,
@@ -198,9 +198,17 @@ fn take<T: Copy>(
     let plausible = can_be_true(&new.value)
         && (gap >= convinced || can_follow(&good.value, &new.value, gap.as_secs_f64()));
     if plausible {
-        *good = *new;
+        replace(good, new);
     }
     plausible
+}
+
+/// Takes a reading that is not older than the present one. One that is older
+/// was accepted before, and its time postponed since.
+fn replace<T: Copy>(good: &mut Reading<T>, new: &Reading<T>) {
+    if new.taken >= good.taken {
+        *good = *new;
+    }
 }
 
 fn turning(r: &BodyRates) -> [f64; 3] {

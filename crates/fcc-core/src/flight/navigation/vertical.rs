@@ -1,5 +1,7 @@
 //! Altitude and climb rate from the barometer and the accelerometers.
 
+use core::time::Duration;
+
 use libm::{cos, sin};
 
 use super::attitude::Orientation;
@@ -109,6 +111,15 @@ impl VerticalChannel {
             NewSample::Next(since_s) => self.correct(measurements.altitude_m.value, since_s),
         }
         self.state
+    }
+
+    pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
+        self.news.postpone(by, latest);
+    }
+
+    /// Predicts over a time in which nothing was measured.
+    pub(super) fn coast(&mut self, passed_s: f64) {
+        self.predict(0.0, false, passed_s);
     }
 
     /// Marks the present altitude.

@@ -1,0 +1,128 @@
+//! From a tick's measurements to the estimate, also after a gap in which a
+//! simulated plant was not heard.
+
+use super::Autopilot;
+use super::plant_clock::Waiting;
+use super::whereabouts::Whereabouts;
+use crate::flight::navigation::{FrozenDetector, plausibility_gate};
+use crate::flight::{Measurements, PlantState};
+use crate::framework::{Readings, Tick, Time};
+
+impl Autopilot {
+    /// Processes a tick's measurements.
+    pub(super) fn observe(&mut self, tick: &Tick, measured: &Measurements) {
+        let now = tick.woke;
+        self.clock.step(tick, measured);
+        if self.clock.waiting() == Waiting::Replaying {
+            // What is measured is not the aircraft's state.
+            self.whereabouts.skip(now);
+            self.before = now;
+            return;
+        }
+        self.follow(measured);
+        if self.is_elsewhere().is_empty() {
+            self.accept(tick, measured);
+        } else {
+            self.start_anew(measured);
+        }
+        if self.clock.waiting() == Waiting::Stopped && self.whereabouts.is_left(&self.accepted) {
+            self.clock.ignore(tick);
+        }
+        if self.clock.advances(now) {
+            self.whereabouts.keep(&self.accepted);
+        }
+        let step_s = self.clock.step_s();
+        self.navigation.step(now, &self.accepted, step_s);
+        self.frozen
+            .step(now, &self.accepted, self.navigation.estimate(), step_s);
+        self.take_over_after_loss(now);
+        if self.watching_since.is_never() && self.stale(now).is_empty() {
+            self.watching_since = now;
+        }
+        self.before = now;
+    }
+
+    /// Follows where the aircraft is.
+    fn follow(&mut self, measured: &Measurements) {
+        if self.plant_is(PlantState::Jumped) || self.plant_is(PlantState::Reloaded) {
+            self.whereabouts = Whereabouts::default();
+        } else if self.clock.state().is_some() {
+            let was_long = self.clock.gap().is_some_and(|gap| gap.was_long);
+            self.whereabouts
+                .step(measured, self.clock.passed_s(), was_long);
+        }
+    }
+
+    /// Accepts the plausible measurements of a tick, after the gap that ended
+    /// in it, if one did.
+    fn accept(&mut self, tick: &Tick, measured: &Measurements) {
+        let max_age = self.config.max_age;
+        let Some(gap) = self.clock.gap() else {
+            plausibility_gate(&mut self.accepted, measured, max_age);
+            return;
+        };
+        // What arrives in this tick is later than all before.
+        let latest = self.before;
+        self.navigation.postpone(gap.excused, latest);
+        if gap.settles_anew {
+            // Nothing that was measured before says where the aircraft is now.
+            self.accepted = Measurements::default();
+            plausibility_gate(&mut self.accepted, measured, max_age);
+        }
+        self.accepted
+            .each_time(&mut |taken| *taken = taken.postponed(gap.excused, latest));
+        if gap.settles_anew {
+            self.settle_anew(tick);
+        } else {
+            plausibility_gate(&mut self.accepted, measured, max_age);
+        }
+        if gap.ran_on {
+            self.heading.lead_from(self.setpoints.roll_rad);
+        }
+    }
+
+    /// Restarts what was estimated, after the aircraft flew on unheard. Targets
+    /// and guidance are kept.
+    fn settle_anew(&mut self, tick: &Tick) {
+        self.navigation.resume(self.clock.passed_s());
+        self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
+        self.watching_since = Time::NEVER;
+        self.renewed_since = tick.woke;
+    }
+
+    /// Takes the loops over, tick by tick, until all that control needs has been
+    /// measured anew: it may arrive in several datagrams.
+    fn take_over_after_loss(&mut self, now: Time) {
+        if self.renewed_since.is_never() {
+            return;
+        }
+        let last = self.last;
+        self.take_over(&last);
+        self.heading.lead_from(self.setpoints.roll_rad);
+        let m = &self.accepted;
+        let renewed = [
+            m.attitude.taken,
+            m.heading_rad.taken,
+            m.body_rates.taken,
+            m.specific_force.taken,
+            m.airspeed_mps.taken,
+            m.altitude_m.taken,
+        ]
+        .into_iter()
+        .all(|taken| taken >= self.renewed_since);
+        // What has not arrived by then is lost.
+        if renewed || now.since(self.renewed_since) > self.config.max_age {
+            self.renewed_since = Time::NEVER;
+        }
+    }
+
+    /// Starts anew with a plant that is another, or elsewhere.
+    fn start_anew(&mut self, measured: &Measurements) {
+        self.accepted = Measurements::default();
+        plausibility_gate(&mut self.accepted, measured, self.config.max_age);
+        self.navigation.reset(&self.config.navigation);
+        self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
+        self.watching_since = Time::NEVER;
+        self.renewed_since = Time::NEVER;
+    }
+}

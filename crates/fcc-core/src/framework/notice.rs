@@ -1,0 +1,33 @@
+//! What a controller notices.
+
+use crate::schema;
+
+schema! {
+    /// Something that a controller noticed, with its duration: for an event.
+    ///
+    /// ```
+    /// use fcc_core::framework::Notice;
+    ///
+    /// // A thermostat's own number for a window that was open for a minute.
+    /// let window = Notice { kind: 1, lasted_ns: 60_000_000_000 };
+    /// assert_eq!(window.lasted_s(), 60.0);
+    /// ```
+    #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+    pub struct Notice {
+        /// Which, by a number of the controller's own:
+        /// [`Controller::write_notice`](super::Controller::write_notice) names
+        /// it.
+        #[field(1)]
+        pub kind: u8,
+        /// How long it lasted, ns.
+        #[field(2)]
+        pub lasted_ns: u64,
+    }
+}
+
+impl Notice {
+    /// How long it lasted, s.
+    pub fn lasted_s(&self) -> f64 {
+        self.lasted_ns as f64 * 1e-9
+    }
+}

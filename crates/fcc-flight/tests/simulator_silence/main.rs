@@ -1,0 +1,243 @@
+//! A simulator that freezes, is cut off, shows a map or a replay, and is loaded
+//! anew: the whole loop on X-Plane's protocol, in lockstep.
+#![cfg(test)]
+
+mod flight;
+mod world;
+
+use fcc_core::framework::State::{Engaged, Standby};
+use fcc_core::framework::{EventKind, Notice};
+use flight::{Flight, PERIOD_NS};
+use world::Manner;
+
+const STOOD_STILL: u8 = 1;
+const LINK_LOST: u8 = 2;
+const GAPS: usize = 30;
+
+/// Lengths of 0.1 to 3 s, and how long is flown before each, s.
+fn gaps(seed: u64) -> impl Iterator<Item = (f64, f64)> {
+    let mut state = seed;
+    let mut draw = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..GAPS).map(move |_| (0.1 + 2.9 * draw(), 1.0 + 5.0 * draw()))
+}
+
+fn notices(flight: &mut Flight) -> Vec<Notice> {
+    flight
+        .events()
+        .into_iter()
+        .filter_map(|kind| match kind {
+            EventKind::Noticed(notice) => Some(notice),
+            _ => None,
+        })
+        .collect()
+}
+
+#[track_caller]
+fn assert_told(flight: &mut Flight, kind: u8, lasted_s: f64) {
+    let noticed = notices(flight);
+    let [notice] = noticed[..] else {
+        panic!("{lasted_s:.3} s: {noticed:?}");
+    };
+    assert_eq!(notice.kind, kind, "{lasted_s:.3} s: {notice:?}");
+    let off_s = notice.lasted_s() - lasted_s;
+    assert!(off_s.abs() < 0.1, "{lasted_s:.3} s: {notice:?}");
+}
+
+/// Frames a second, and the seed of their jitter.
+const FRAMES: [(f64, u64); 4] = [(60.0, 0), (100.0, 3), (31.0, 5), (20.0, 0)];
+
+#[test]
+fn thirty_freezes_are_told_and_the_pattern_is_flown_as_without() {
+    let undisturbed = Flight::engaged(60.0, 0).flown(200.0);
+    for (frame_hz, jitter) in FRAMES {
+        let mut flight = Flight::engaged(frame_hz, jitter);
+        for (length_s, before_s) in gaps(frame_hz as u64) {
+            flight.fly(before_s);
+            flight.during(Manner::Frozen, length_s);
+            flight.fly(0.5);
+            assert_told(&mut flight, STOOD_STILL, length_s);
+        }
+        let frozen = flight.flown(200.0);
+        let pairs = [
+            (frozen.heading_settle_s, undisturbed.heading_settle_s),
+            (frozen.altitude_settle_s, undisturbed.altitude_settle_s),
+        ];
+        for (ours, without) in pairs {
+            assert!(ours.unwrap() < 1.5 * without.unwrap(), "{frozen:?}");
+        }
+        // The suite's limits for a Cessna 172, times 1.5.
+        assert!(frozen.heading_overshoot_deg < 0.75, "{frozen:?}");
+        assert!(frozen.altitude_overshoot_ft < 2.4, "{frozen:?}");
+        assert!(frozen.turn_loss_ft < 2.4, "{frozen:?}");
+        assert!(frozen.altitude_rms_ft < 1.5, "{frozen:?}");
+    }
+}
+
+#[test]
+fn thirty_cuts_are_told_from_freezes_and_the_bank_command_never_steps() {
+    for (index, (frame_hz, jitter)) in FRAMES.into_iter().enumerate() {
+        let hears = index % 2 == 0;
+        let mut flight = Flight::engaged(frame_hz, jitter);
+        for (length_s, before_s) in gaps(frame_hz as u64 + 1) {
+            flight.fly(before_s);
+            flight.cut(hears);
+            flight.fly(length_s);
+            // An aircraft that hears nothing either keeps its last surfaces.
+            let bank_deg = flight.true_bank_deg();
+            assert!(!hears || bank_deg.abs() < 60.0, "{length_s} s: {bank_deg}°");
+            flight.restore();
+            flight.fly(0.5);
+            assert_told(&mut flight, LINK_LOST, length_s);
+        }
+        let step_deg = flight.largest_bank_step_deg();
+        assert!(step_deg <= 5.0, "{step_deg}°");
+        flight.fly(20.0);
+        assert!(flight.true_bank_deg().abs() < 35.0);
+    }
+}
+
+#[test]
+fn maps_pauses_and_replays_at_any_moment_are_waited_out() {
+    let manners = [
+        Manner::Stopped,
+        Manner::StoppedSilently,
+        Manner::Paused,
+        Manner::Replaying,
+    ];
+    let mut flight = Flight::engaged(60.0, 9);
+    for ((length_s, before_s), manner) in gaps(11).zip(manners.into_iter().cycle()) {
+        flight.fly(before_s);
+        flight.wire.world().writes.clear();
+        // Up to 24 s.
+        flight.during(manner, 8.0 * length_s);
+        if manner == Manner::Replaying {
+            let written = flight.wire.world().writes.len();
+            // Of the tick in which it began.
+            assert!(written < 15, "{written} writes");
+        }
+    }
+    assert!(flight.wire.world().is_overridden());
+    let worst = flight.flown(200.0);
+    assert!(worst.heading_overshoot_deg < 0.75, "{worst:?}");
+    assert!(worst.altitude_overshoot_ft < 2.4, "{worst:?}");
+}
+
+#[test]
+fn a_loaded_flight_is_released_at_once_and_its_throttle_is_never_moved() {
+    for (loads_s, engaged_s) in [
+        (0.0, 33.0),
+        (0.3, 40.5),
+        (4.0, 47.0),
+        (25.0, 61.0),
+        (50.0, 70.0),
+    ] {
+        let mut flight = Flight::engaged(60.0, 0);
+        flight.fly(engaged_s);
+        // Loading takes its time, in which nothing is sent.
+        flight.run(Manner::Frozen, loads_s);
+        let loaded_tick = flight.ticks();
+        {
+            let mut world = flight.wire.world();
+            world.load_flight();
+            world.writes.clear();
+        }
+        flight.run(Manner::Flying, 1.0);
+        assert_eq!(flight.state(), Standby);
+        if loads_s < 30.0 {
+            let released = flight.released_in_tick().unwrap();
+            assert!(
+                released <= loaded_tick + 2,
+                "{released} after {loaded_tick}"
+            );
+        }
+        {
+            let mut world = flight.wire.world();
+            assert!(!world.is_overridden());
+            // What was sent before it was loaded, and the release.
+            let positive = world.writes.iter().filter(|(path, value)| {
+                path.contains("throttle") && *value > 0.0 || path.contains("ENGN") && *value > 0.7
+            });
+            assert!(positive.count() <= 60, "{loads_s} s");
+            world.writes.clear();
+        }
+        // Nothing is written afterwards.
+        flight.run(Manner::Flying, 20.0);
+        assert_eq!(flight.wire.world().writes, []);
+        assert_eq!(flight.state(), Standby);
+    }
+}
+
+#[test]
+fn cleared_overrides_and_another_place_are_released_at_once() {
+    for relocates in [false, true] {
+        let mut flight = Flight::engaged(60.0, 0);
+        flight.fly(25.0);
+        if relocates {
+            flight.wire.world().relocate(0.5);
+        } else {
+            flight.wire.world().reload();
+        }
+        let before = flight.ticks();
+        flight.run(Manner::Flying, 1.0);
+        assert_eq!(flight.state(), Standby);
+        assert!(flight.released_in_tick().unwrap() < before + 10);
+        assert!(!flight.wire.world().is_overridden());
+        flight.wire.world().writes.clear();
+        flight.run(Manner::Flying, 20.0);
+        assert_eq!(flight.wire.world().writes, []);
+    }
+}
+
+/// Our process is stopped, and the simulator's datagrams wait in the kernel, the
+/// oldest first; those that no longer fit are lost.
+#[test]
+fn a_stopped_process_flies_on_with_what_arrives_after_it() {
+    for stopped_s in [0.1, 0.2, 0.3, 0.45] {
+        let mut flight = Flight::engaged(144.0, 0);
+        for _ in 0..20 {
+            flight.fly(5.0);
+            flight.miss((stopped_s * 1e9) as i64 / PERIOD_NS);
+            flight.fly(1.0);
+            assert_eq!(flight.state(), Engaged);
+        }
+        let step_deg = flight.largest_bank_step_deg();
+        assert!(step_deg <= 5.0, "{step_deg}°");
+    }
+}
+
+#[test]
+fn freezes_in_a_row_and_in_a_pause_are_flown_through() {
+    let mut flight = Flight::engaged(20.0, 7);
+    for (length_s, _) in gaps(21) {
+        flight.fly(3.0);
+        for _ in 0..4 {
+            flight.during(Manner::Frozen, length_s / 3.0);
+            flight.fly(0.1);
+        }
+        flight.during(Manner::Paused, 1.0);
+        flight.during(Manner::Frozen, length_s);
+        flight.during(Manner::Paused, 1.0);
+        flight.during(Manner::Stopped, 1.0);
+        flight.during(Manner::Frozen, length_s);
+    }
+    let worst = flight.flown(200.0);
+    assert!(worst.heading_overshoot_deg < 0.75, "{worst:?}");
+}
+
+#[test]
+fn in_silence_a_command_still_releases() {
+    let mut flight = Flight::engaged(60.0, 0);
+    flight.fly(21.0);
+    // Only what it sends is lost.
+    flight.cut(true);
+    flight.fly(5.0);
+    flight.disengage();
+    flight.run(Manner::Flying, 0.1);
+    assert_eq!(flight.state(), Standby);
+    assert!(!flight.wire.world().is_overridden());
+}

@@ -1,0 +1,163 @@
+"""A simulator that freezes, is cut off for a moment, shows a map, or is reloaded.
+
+The lockstep flights of `crates/fcc-flight/tests/simulator_silence` have all lengths and frame
+rates; these show the same in the running daemon, side by side.
+"""
+
+from __future__ import annotations
+
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from daemon_under_test import assert_released, engage, flight, start, wait_until, write_config
+from fault_flights import AT_ONCE_S, NS, Flown, assert_flown_again, at_once
+from tampered_link import TamperedLink
+
+from fcc_hil.fly import ENGAGE_SWITCH
+from fcc_hil.process import StandInProcess
+from fcc_hil.standin import Mode, Settings
+
+SUCCESS = 0
+LENGTHS_S = (0.2, 1.5)
+STOOD_STILL = "the simulator stood still for"
+LINK_LOST = "link lost for"
+MAP_S = 3.0
+
+
+def freezes(fccd: Path, scratch: Path) -> Flown:
+    """Let the simulator make no frame for a moment, twice."""
+    scratch.mkdir()
+    with flight(fccd, scratch) as (simulator, daemon):
+        engage(simulator, daemon)
+        for length_s in LENGTHS_S:
+            simulator.set_mode(Mode.FROZEN)
+            time.sleep(length_s)
+            simulator.set_mode(Mode.RUNNING)
+            daemon.wait_for(STOOD_STILL)
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings")
+
+
+def cuts(fccd: Path, scratch: Path) -> Flown:
+    """Lose what the simulator sends for a moment, twice: the aircraft flies on."""
+    scratch.mkdir()
+    with (
+        StandInProcess(Settings(port=0)) as simulator,
+        TamperedLink(simulator.port) as link,
+        start(fccd, scratch, write_config(scratch, link.port)) as daemon,
+    ):
+        engage(simulator, daemon)
+        for length_s in LENGTHS_S:
+            link.cut(from_simulator=True)
+            time.sleep(length_s)
+            link.restore()
+            daemon.wait_for(LINK_LOST)
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings")
+
+
+def waits(fccd: Path, scratch: Path) -> Flown:
+    """Stop the simulator's time although it is not paused, as a map does."""
+    scratch.mkdir()
+    with flight(fccd, scratch) as (simulator, daemon):
+        engage(simulator, daemon)
+        simulator.set_mode(Mode.STALLED)
+        daemon.wait_for("time has stopped although it is not paused")
+        time.sleep(MAP_S)
+        simulator.set_mode(Mode.RUNNING)
+        daemon.wait_for(STOOD_STILL)
+        assert "engaged" in daemon.wait_for("heading")
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings")
+
+
+def reloads(fccd: Path, scratch: Path) -> Flown:
+    """Load the flight again: the clock and the overrides are reset."""
+    scratch.mkdir()
+    with flight(fccd, scratch) as (simulator, daemon):
+        engage(simulator, daemon)
+        reloaded_ns = time.monotonic_ns()
+        simulator.restart_flight()
+        daemon.wait_for("control is given back at once")
+        daemon.wait_for("actuators released")
+        wait_until(lambda: not simulator.progress().overridden, "the overrides are released")
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        for _ in range(3):
+            assert "standby" in daemon.wait_for("heading")
+        assert not simulator.progress().overridden
+        ending = daemon.end(signal.SIGTERM)
+    return Flown.of(ending, scratch / "recordings", reloaded_ns)
+
+
+@pytest.fixture(scope="module")
+def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Flown]:
+    """All flights, side by side."""
+    scratch = tmp_path_factory.mktemp("gaps")
+    return at_once(
+        {
+            "freezes": lambda: freezes(fccd, scratch / "freezes"),
+            "cuts": lambda: cuts(fccd, scratch / "cuts"),
+            "waits": lambda: waits(fccd, scratch / "waits"),
+            "reloads": lambda: reloads(fccd, scratch / "reloads"),
+        }
+    )
+
+
+def assert_engaged_throughout(flown: Flown) -> None:
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.ending.states == ["standby -> engaged", "engaged -> stopped"]
+
+
+def lengths_s(flown: Flown, text: str) -> list[float]:
+    events = [event for event in flown.texts() if event.startswith(text)]
+    return [float(event.removeprefix(text).split()[0]) for event in events]
+
+
+def assert_lengths(flown: Flown, text: str) -> None:
+    """A busy machine makes a gap longer, and may make others."""
+    found = lengths_s(flown, text)
+    for length_s in LENGTHS_S:
+        assert any(length_s - 0.11 < lasted_s < length_s + AT_ONCE_S for lasted_s in found), found
+
+
+def test_a_freeze_is_flown_through(flights: dict[str, Flown]) -> None:
+    flown = flights["freezes"]
+    assert_engaged_throughout(flown)
+    assert_lengths(flown, STOOD_STILL)
+    assert max(lengths_s(flown, LINK_LOST), default=0.0) < 1.0
+
+
+def test_a_cut_is_told_from_a_freeze(flights: dict[str, Flown]) -> None:
+    flown = flights["cuts"]
+    assert_engaged_throughout(flown)
+    assert_lengths(flown, LINK_LOST)
+    assert max(lengths_s(flown, STOOD_STILL), default=0.0) < 1.0
+
+
+def test_a_map_and_a_replay_are_waited_out(flights: dict[str, Flown]) -> None:
+    flown = flights["waits"]
+    assert_engaged_throughout(flown)
+    assert max(lengths_s(flown, STOOD_STILL)) > MAP_S
+
+
+def test_a_reload_is_released_at_once(flights: dict[str, Flown]) -> None:
+    flown = flights["reloads"]
+    assert flown.ending.exit_code == SUCCESS
+    assert flown.failsafes == []
+    assert flown.ending.report["released"] is True
+    (released,) = [
+        event for event in flown.events if event.kind.WhichOneof("kind") == "released_at_once"
+    ]
+    assert 0.0 < (released.time_ns - flown.injected_ns) * NS < AT_ONCE_S
+    later = [record for record in flown.records if record.tick.number >= released.tick]
+    assert not any(record.sent for record in later)
+
+
+@pytest.mark.parametrize("name", ["freezes", "cuts", "waits", "reloads"])
+def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
+    assert_flown_again(fccd, flights[name])
