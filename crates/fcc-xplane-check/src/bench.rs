@@ -16,6 +16,8 @@ use crate::watched::Watched;
 const TURN: Duration = Duration::from_millis(10);
 /// The interval of live lines.
 const LIVE_EVERY: Duration = Duration::from_millis(250);
+/// A cue takes a frame, and a reply the next.
+const AFTER_A_CUE: Duration = Duration::from_millis(100);
 /// How long a person may take to do something.
 const BY_A_PERSON: Duration = Duration::from_secs(300);
 /// How long a stand-in may take that takes a cue for it.
@@ -89,6 +91,8 @@ impl<'a> Bench<'a> {
         self.figures.clear();
         self.notes.clear();
         self.cue("begin");
+        // What is known is of after the last step.
+        self.link.poll(AFTER_A_CUE);
     }
 
     /// A step has ended.

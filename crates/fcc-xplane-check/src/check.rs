@@ -141,8 +141,8 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     let figures = bench.figures.clone();
     let quit = matches!(done, Err(Stop::Quit));
     bench.is_ending = quit;
-    bench.end();
     (step.restore)(bench);
+    bench.end();
     let outside: Vec<String> = figures
         .iter()
         .filter(|figure| !figure.within)
