@@ -37,7 +37,10 @@ def test_a_replay_of_a_flight_is_identical(fccd: Path, tmp_path: Path) -> None:
     recordings = tmp_path / "recordings"
     with StandInProcess(Settings(port=0)) as simulator:
         config = write_config(
-            tmp_path, simulator.port, others="[failsafe]\nhold_s = 1.0\nall_silent_s = 1.0", guidance=QUICK_PATTERN
+            tmp_path,
+            simulator.port,
+            others="[failsafe]\nhold_s = 1.0\nall_silent_s = 1.0",
+            guidance=QUICK_PATTERN,
         )
         words: list[str | Path] = [fccd, "run", "--config", config, "--json"]
         words += ["--recordings", recordings]

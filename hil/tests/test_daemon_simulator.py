@@ -200,7 +200,9 @@ def test_a_pause_is_waited_out(fccd: Path, tmp_path: Path) -> None:
     assert len({str(record.outputs) for record in paused[1:]}) == 1, "they are held"
 
 
-def test_a_simulator_that_hangs_is_a_failsafe_and_one_that_jumps_is_released(fccd: Path, tmp_path: Path) -> None:
+def test_a_simulator_that_hangs_is_a_failsafe_and_one_that_jumps_is_released(
+    fccd: Path, tmp_path: Path
+) -> None:
     with flight(fccd, tmp_path, others=SHORT_FAILSAFE) as (simulator, daemon):
         engage(simulator, daemon)
         simulator.set_mode(Mode.FROZEN)

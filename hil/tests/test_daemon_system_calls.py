@@ -89,11 +89,12 @@ def test_only_the_timers_and_the_sockets_calls(
     # Nothing of the tick is left to do when page faults are counted.
     following = [after for (name, _), (after, _) in itertools.pairwise(calls) if is_count(name)]
     assert set(following) == {clock.waits_by}
-    # Each tick reads until there is nothing left, and writes all controls at one go once
-    # engaged (one by one where the kernel cannot cut them apart).
+    # Each tick reads until there is nothing left, and every second one writes all controls at one
+    # go once engaged (one by one where the kernel cannot cut them apart): X-Plane could not take
+    # more in a long frame.
     emptied = [words for name, words in calls if name == "recvfrom" and "EAGAIN" in words]
     assert len(emptied) == flown
-    assert counts["sendto"] >= ticks
+    assert counts["sendto"] >= ticks / 2
     sockets = {words.partition(",")[0] for name, words in calls if name in ("recvfrom", "sendto")}
     assert len(sockets) == 1
 

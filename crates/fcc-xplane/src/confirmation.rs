@@ -7,7 +7,7 @@
 //! not compared, since the engine model may change it, but its override is.
 //!
 //! Another program that writes the yoke is found by the same comparison: the
-//! override is set, and the yoke is again and again where nobody put it here.
+//! override is set, and the yoke is again and again where it was not put.
 
 use core::time::Duration;
 
@@ -16,6 +16,7 @@ use fcc_core::framework::Time;
 use crate::lasting::Lasting;
 use crate::link::SharedState;
 use crate::quantity::Quantity;
+use crate::written::Written;
 
 /// The longest time for which writing may be unconfirmed.
 pub(crate) const CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
@@ -78,6 +79,7 @@ pub(crate) struct Confirmation {
     /// second: a readback is delayed by the round trip.
     extents: [[Extent; 2]; 3],
     turned: Time,
+    written: Written,
     /// When the yoke was last read where it was not put.
     moved_by_another: Time,
     contested: Lasting,
@@ -91,6 +93,7 @@ impl Confirmation {
             confirmed: now,
             extents: [[Extent::EMPTY; 2]; 3],
             turned: now,
+            written: Written::new(),
             moved_by_another: Time::NEVER,
             contested: Lasting::new(CONTESTED_AFTER, CONTESTED_UNTIL),
         }
@@ -98,6 +101,7 @@ impl Confirmation {
 
     /// Records what was written to elevator, aileron and rudder.
     pub(crate) fn wrote(&mut self, now: Time, yoke: [Option<f32>; 3]) {
+        self.written.add(now, yoke);
         if now.since(self.turned) >= LATELY {
             self.turned = now;
             for [present, before] in &mut self.extents {
@@ -126,11 +130,14 @@ impl Confirmation {
         let overridden = self
             .recent(Quantity::OverrideJoystick, now, link)
             .is_some_and(|(value, _)| value >= 0.5);
-        let elsewhere = YOKE.into_iter().zip(self.extents).any(|(axis, put)| {
+        let mut elsewhere = false;
+        for ((index, axis), put) in YOKE.into_iter().enumerate().zip(self.extents) {
             let [present, before] = put;
-            self.recent(axis, now, link)
-                .is_some_and(|(value, _)| !present.with(before).holds(value))
-        });
+            if let Some((value, _)) = self.recent(axis, now, link) {
+                elsewhere |= !present.with(before).holds(value);
+                elsewhere |= self.written.is_foreign(index, value, now);
+            }
+        }
         if overridden && elsewhere {
             self.moved_by_another = now;
         }
@@ -260,6 +267,12 @@ mod tests {
             ours
         }));
         assert!(contested(100, 1.0, |_, _| 0.7));
+        // Within what was written, but not written.
+        assert!(contested(400, 1.0, |tick, ours| if tick % 3 == 0 {
+            0.1234
+        } else {
+            ours
+        }));
     }
 
     #[test]
@@ -273,5 +286,7 @@ mod tests {
             ours
         }));
         assert!(!contested(400, 1.0, |_, ours| ours));
+        // A simulator that stores hundredths shows nothing as written.
+        assert!(!contested(400, 1.0, |_, ours| (ours * 100.0).round() / 100.0));
     }
 }

@@ -14,33 +14,26 @@
 
 use core::time::Duration;
 
-use fcc_core::flight::{
-    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
-};
+use fcc_core::flight::{BodyRates, Measurements, Plant, Position, Surfaces};
 use fcc_core::framework::{Reading, Switch, Time};
 
-use crate::axial_load::AxialLoadSign;
 use crate::config::DataRows;
 use crate::consistency::ConsistencyCheck;
 use crate::engage_switch::NONEXISTENT_INDEX;
 use crate::link::{Control, SharedState, count};
+use crate::motion::Motion;
 use crate::other_control::OtherControlWatch;
+use crate::pressure_altitude::PressureAltitude;
 use crate::protocol::{Kind, Malformed, data, rpos, rref};
 use crate::quantity::Quantity;
 use crate::rows;
 use crate::simulator::{SimulatorClock, SimulatorReport, SimulatorState};
-use crate::specific_force::specific_force;
 use crate::values::{Group, Values};
 
 /// The engage switch is on from here upwards, and off below [`SWITCH_OFF`]; in
 /// between it stays as it was, at first off. So noise on it does not switch.
 const SWITCH_ON: f64 = 0.75;
 const SWITCH_OFF: f64 = 0.25;
-/// An X-Plane that has true angles sends them in every frame: without one for
-/// this long, two frames at the lowest rate, those of the local axes are used.
-const TRUE_WITHIN: Duration = Duration::from_millis(100);
-/// Below this pitch, headings in the local axes and true ones can be compared.
-const HEADING_UP_TO_PITCH_RAD: f64 = 1.0;
 
 /// Converts datagrams to measurements.
 #[derive(Clone, Debug)]
@@ -50,19 +43,11 @@ pub(crate) struct Inbox {
     clock: SimulatorClock,
     values: Values,
     position: Reading<Position>,
-    /// The last accelerations (east, up, south) and the specific force computed
-    /// from them.
-    accelerations: [f64; 3],
-    force: SpecificForce,
-    /// Pitch and roll from the horizontal below the aircraft, less those from
-    /// that of the local axes.
-    lean: [f64; 2],
-    /// When the former last arrived.
-    true_attitude: Time,
+    motion: Motion,
     switch: Switch,
+    altitude: PressureAltitude,
     other_control: OtherControlWatch,
     consistency: ConsistencyCheck,
-    axial_load: AxialLoadSign,
     /// Whether both overrides were seen set since control was taken.
     overridden: bool,
 }
@@ -74,14 +59,11 @@ impl Inbox {
             clock: SimulatorClock::new(silent_after),
             values: Values::default(),
             position: Reading::default(),
-            accelerations: [f64::NAN; 3],
-            force: SpecificForce::default(),
-            lean: [0.0; 2],
-            true_attitude: Time::NEVER,
+            motion: Motion::new(rows),
             switch: Switch::Off,
+            altitude: PressureAltitude::new(),
             other_control: OtherControlWatch::default(),
             consistency: ConsistencyCheck::default(),
-            axial_load: AxialLoadSign::new(rows.map(|rows| rows.axial_load)),
             overridden: false,
         }
     }
@@ -256,15 +238,13 @@ impl Inbox {
         into: &mut Measurements,
         link: &SharedState,
     ) -> SimulatorState {
-        self.publish_attitude(now, into);
-        self.publish_motion(now, into, link);
+        self.motion.publish(now, &mut self.values, into, link);
+        self.publish_attitude(into);
         let values = &mut self.values;
         if let Some(([airspeed], taken)) = values.whole(Group::Airspeed) {
             into.airspeed_mps = Reading::new(airspeed, taken);
         }
-        if let Some(([altitude], taken)) = values.whole(Group::Altitude) {
-            into.altitude_m = Reading::new(altitude, taken);
-        }
+        self.altitude.publish(values, into);
         if let Some(([angle], taken)) = values.whole(Group::AngleOfAttack) {
             into.angle_of_attack_rad = Reading::new(angle, taken);
         }
@@ -299,35 +279,14 @@ impl Inbox {
         let other = self.other_control.step(now, &self.values, link);
         into.other_control = Reading::new(other, now);
         let accelerates = self.values.recent(Quantity::AccelerationUp, now);
-        let computed = accelerates.map(|_| self.force);
+        let computed = accelerates.map(|_| self.motion.force());
         let suspect = self.consistency.step(now, &self.values, computed);
         into.suspect = Reading::new(suspect, now);
         link.set_loads_differ(suspect.specific_force);
     }
 
-    fn publish_attitude(&mut self, now: Time, into: &mut Measurements) {
+    fn publish_attitude(&mut self, into: &mut Measurements) {
         let values = &mut self.values;
-        let locally = values
-            .whole(Group::Attitude)
-            .filter(|_| now.since(self.true_attitude) > TRUE_WITHIN);
-        // Exactly level to the last bit is the answer of a version without it.
-        let truly = values
-            .whole(Group::TrueAttitude)
-            .filter(|([pitch, roll, _, _], _)| (*pitch, *roll) != (0.0, 0.0));
-        if let Some(([pitch, roll, local_pitch, local_roll], taken)) = truly {
-            self.true_attitude = taken;
-            self.lean = [pitch - local_pitch, roll - local_roll];
-        } else if locally.is_some() {
-            self.lean = [0.0; 2];
-        }
-        let truly = truly.map(|([pitch, roll, _, _], taken)| ([pitch, roll], taken));
-        if let Some(([pitch_rad, roll_rad], taken)) = truly.or(locally) {
-            let attitude = Attitude {
-                pitch_rad,
-                roll_rad,
-            };
-            into.attitude = Reading::new(attitude, taken);
-        }
         if let Some(([heading], taken)) = values.whole(Group::Heading) {
             into.heading_rad = Reading::new(round(heading), taken);
         }
@@ -338,50 +297,6 @@ impl Inbox {
                 yaw_radps,
             };
             into.body_rates = Reading::new(rates, taken);
-        }
-    }
-
-    fn publish_motion(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
-        let values = &mut self.values;
-        if let Some(([east, up, south, heading, pitch, roll], taken)) =
-            values.whole(Group::Acceleration)
-        {
-            // Accelerations that are repeated bit for bit belong to the instant
-            // at which they first arrived. Combined with the present attitude
-            // they would give a force that belongs to no instant, and a frozen
-            // one would seem to change.
-            let accelerations = [east, up, south];
-            if accelerations != self.accelerations {
-                self.accelerations = accelerations;
-                let [lean_pitch, lean_roll] = self.lean;
-                let attitude = Attitude {
-                    pitch_rad: pitch + lean_pitch,
-                    roll_rad: roll + lean_roll,
-                };
-                self.force = specific_force(accelerations, [heading, pitch, roll], attitude);
-            }
-            into.specific_force = Reading::new(self.force, taken);
-        }
-        if let Some(([normal, axial, side], taken)) = values.whole(Group::Loads) {
-            let pitch = values.recent(Quantity::Pitch, now);
-            let airspeed = values.recent(Quantity::Airspeed, now);
-            self.axial_load.step(now, axial, pitch.zip(airspeed));
-            link.set_axial_backwards(self.axial_load.is_backwards());
-            let force = SpecificForce {
-                x_mps2: self.axial_load.forwards(axial),
-                y_mps2: side,
-                z_mps2: -normal,
-            };
-            into.specific_force = Reading::new(force, taken);
-        }
-        if let Some(([east, up, south], taken)) = values.whole(Group::Velocity) {
-            let (sin, cos) = local_north(values, now).sin_cos();
-            let velocity = Velocity {
-                north_mps: -south * cos - east * sin,
-                east_mps: east * cos - south * sin,
-                down_mps: -up,
-            };
-            into.velocity = Reading::new(velocity, taken);
         }
         if self.position.taken > into.position.taken {
             into.position = self.position;
@@ -425,17 +340,6 @@ impl Inbox {
         }
         state
     }
-}
-
-/// The true direction of the local axes' north, rad clockwise from true north;
-/// 0 where it is not known.
-fn local_north(values: &Values, now: Time) -> f64 {
-    let recent = |quantity| values.recent(quantity, now);
-    let level = recent(Quantity::Pitch).filter(|pitch| pitch.abs() < HEADING_UP_TO_PITCH_RAD);
-    recent(Quantity::TrueHeading)
-        .zip(recent(Quantity::LocalHeading))
-        .zip(level)
-        .map_or(0.0, |((truly, locally), _)| truly - locally)
 }
 
 /// Wraps an angle into 0..2π.

@@ -24,9 +24,10 @@
 //! | module | contents |
 //! |---|---|
 //! | [`protocol`] | messages as bytes; no I/O |
-//! | `quantity`, `rows`, `units`, `specific_force` | which dataref or column is what, and in which unit |
+//! | `quantity`, `rows`, `units` | which dataref or column is what, and in which unit |
 //! | `simulator` | the simulator's clock compared with ours: [`SimulatorState`] |
 //! | `inbox`, `values` | from datagrams to measurements |
+//! | `motion`, `specific_force` | attitude, specific force and velocity from the local axes |
 //! | `other_control` | what acts on the controls besides this program |
 //! | `consistency`, `axial_load` | values compared with each other |
 //! | `reply_port` | from which port of the simulator they are accepted |
@@ -65,10 +66,12 @@ mod inbox;
 mod lasting;
 mod link;
 mod missing;
+mod motion;
 mod no_answer;
 mod open;
 mod other_control;
 mod port;
+mod pressure_altitude;
 pub mod protocol;
 mod quantity;
 mod release;
@@ -85,6 +88,7 @@ mod traffic;
 mod udp_port;
 mod units;
 mod values;
+mod written;
 
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};

@@ -5,9 +5,8 @@
 //! longitude and elevation are received by RPOS, since as f32 they lose about a
 //! metre.
 //!
-//! The altitude is what the pilot's altimeter **indicates**, so it is above the
-//! standard pressure level only while the altimeter is set to 29.92 inHg, and
-//! it steps when the setting is changed: do not change it while engaged.
+//! The altitude is X-Plane's pressure altitude, or else what the pilot's
+//! altimeter **indicates**, corrected by its setting (`pressure_altitude`).
 //!
 //! X-Plane's local axes (x east, y up, z south) are those of its scenery's
 //! reference point, which moves with the scenery: up and north at the aircraft
@@ -82,6 +81,8 @@ pub(crate) enum Quantity {
     EngineMode,
     ThrottleLever,
     Replay,
+    PressureAltitude,
+    AltimeterSetting,
 }
 
 impl Quantity {

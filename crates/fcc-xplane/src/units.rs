@@ -1,5 +1,7 @@
 //! X-Plane's units and their conversion to SI.
 
+use fcc_core::units::INHG_PA;
+
 /// One international knot in m/s: 1852 m an hour (BIPM, The International
 /// System of Units, 8th ed. 2006, table 8), exact.
 pub(crate) const KNOT_MPS: f64 = 1852.0 / 3600.0;
@@ -25,6 +27,7 @@ pub(crate) enum Unit {
     Knots,
     Feet,
     Gravities,
+    InchesOfMercury,
 }
 
 impl Unit {
@@ -43,6 +46,7 @@ impl Unit {
             Self::Knots => value * KNOT_MPS,
             Self::Feet => value * FOOT_M,
             Self::Gravities => value * GRAVITY_MPS2,
+            Self::InchesOfMercury => value * INHG_PA,
         }
     }
 }

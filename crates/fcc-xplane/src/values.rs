@@ -24,14 +24,17 @@ pub(crate) enum Group {
     Loads,
     Velocity,
     Airspeed,
-    Altitude,
+    /// X-Plane's own.
+    PressureAltitude,
+    /// What the pilot's altimeter indicates, and its setting.
+    Altimeter,
     AngleOfAttack,
     Surfaces,
     Switch,
 }
 
 impl Group {
-    const COUNT: usize = 12;
+    const COUNT: usize = 13;
 
     /// All of them, in the order of their numbers.
     const ALL: [Self; Self::COUNT] = [
@@ -43,7 +46,8 @@ impl Group {
         Self::Loads,
         Self::Velocity,
         Self::Airspeed,
-        Self::Altitude,
+        Self::PressureAltitude,
+        Self::Altimeter,
         Self::AngleOfAttack,
         Self::Surfaces,
         Self::Switch,
@@ -68,7 +72,8 @@ impl Group {
             Self::Loads => &[Q::LoadNormal, Q::LoadAxial, Q::LoadSide],
             Self::Velocity => &[Q::VelocityEast, Q::VelocityUp, Q::VelocitySouth],
             Self::Airspeed => &[Q::Airspeed],
-            Self::Altitude => &[Q::Altitude],
+            Self::PressureAltitude => &[Q::PressureAltitude],
+            Self::Altimeter => &[Q::Altitude, Q::AltimeterSetting],
             Self::AngleOfAttack => &[Q::AngleOfAttack],
             Self::Surfaces => &[Q::Throttle, Q::YokePitch, Q::YokeRoll, Q::YokeHeading],
             Self::Switch => &[Q::EngageSwitch],

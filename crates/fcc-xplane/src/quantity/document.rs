@@ -32,6 +32,7 @@ fn row(entry: &Entry) -> Option<String> {
         Unit::Degrees => "°",
         Unit::Knots => "kt",
         Unit::Feet => "ft",
+        Unit::InchesOfMercury => "inHg",
         Unit::Gravities => "g",
     };
     let access = if entry.is_written {

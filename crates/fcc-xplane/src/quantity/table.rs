@@ -173,7 +173,7 @@ pub(super) const TABLE: &[Entry] = &[
     Entry::new(Quantity::Airspeed, Position("indicated_airspeed"), Unit::Knots, [-1e3, 1e4]).in_rows()
         .is("indicated").or_else("no airspeed: not engaged"),
     Entry::new(Quantity::Altitude, Dataref("sim/cockpit2/gauges/indicators/altitude_ft_pilot"), Unit::Feet, [-1e4, 1e6]).in_rows()
-        .is("indicated by the pilot's altimeter, so it follows the altimeter's setting").or_else("no altitude: not engaged"),
+        .is("indicated by the pilot's altimeter, so it follows its knob; where X-Plane has no pressure altitude, it is corrected by the setting").or_else("no altitude, where X-Plane has no pressure altitude: not engaged"),
     Entry::new(Quantity::AngleOfAttack, Position("alpha"), Unit::Degrees, [-180.0, 180.0]).in_rows()
         .is("air from below the nose").or_else("no angle of attack, which control does not need"),
     Entry::new(Quantity::OnGround, Dataref("sim/flightmodel/failures/onground_any"), Unit::Flag, [0.0, 1.0])
@@ -235,4 +235,8 @@ pub(super) const TABLE: &[Entry] = &[
         .is("0 idle, 1 full").instead("where the lever is is not said at a release"),
     Entry::new(Quantity::Replay, Dataref("sim/time/is_in_replay"), Unit::Flag, [0.0, 1.0])
         .is("shows a recorded flight; nothing is written then").instead(NOT_NOTICED),
+    Entry::new(Quantity::PressureAltitude, Dataref("sim/flightmodel2/position/pressure_altitude"), Unit::Feet, [-1e4, 1e6]).since("12")
+        .is("in the standard atmosphere; does not follow the pilot's knob").instead("the pilot's altimeter, corrected by its setting"),
+    Entry::new(Quantity::AltimeterSetting, Dataref("sim/cockpit2/gauges/actuators/barometer_setting_in_hg_pilot"), Unit::InchesOfMercury, [22.0, 33.0])
+        .is("the setting of the pilot's altimeter").or_else("no altitude, where X-Plane has no pressure altitude: not engaged"),
 ];

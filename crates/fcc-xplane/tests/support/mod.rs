@@ -80,7 +80,13 @@ impl FakeXPlane {
             (YOKE_ROLL, 0.0),
             (YOKE_HEADING, 0.0),
             (THROTTLE, 0.65),
-            ("sim/cockpit2/gauges/indicators/altitude_ft_pilot", 3_000.0),
+            ("sim/flightmodel2/position/pressure_altitude", 3_000.0),
+            // Set to 29.5 inHg: 392 ft less (FAA-H-8083-25C, figure 11-3).
+            ("sim/cockpit2/gauges/indicators/altitude_ft_pilot", 2_608.0),
+            (
+                "sim/cockpit2/gauges/actuators/barometer_setting_in_hg_pilot",
+                29.5,
+            ),
             ("sim/flightmodel/failures/onground_any", 0.0),
             ("sim/version/xplane_internal_version", 115_501.0),
         ]
