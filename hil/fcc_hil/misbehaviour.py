@@ -153,7 +153,12 @@ MISBEHAVIOURS: dict[int, Misbehaviour] = {
     16: Misbehaviour("hides that its autopilot is on", distorts={SERVOS_ON: lambda *_: 0.0}),
     17: Misbehaviour("runs four times as fast when asked for twice", takes=_run_too_fast),
     18: Misbehaviour(_DROPS, each_frame=_drop_overrides),
-    19: Misbehaviour("keeps the overrides", takes=_keep_overrides, each_frame=_set_overrides_again),
+    19: Misbehaviour(
+        "keeps the overrides",
+        takes=_keep_overrides,
+        each_frame=_set_overrides_again,
+        keeps_overrides=True,
+    ),
     20: Misbehaviour("keeps the overrides", takes=_keep_overrides, keeps_overrides=True),
 }
 """By the number of the step."""
