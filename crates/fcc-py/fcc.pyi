@@ -62,6 +62,14 @@ class Measurements:
         north_mps: float = ...,
         east_mps: float = ...,
         down_mps: float = ...,
+        other_autopilot: bool = ...,
+        other_autothrottle: bool = ...,
+        other_fly_by_wire: bool = ...,
+        other_stability: bool = ...,
+        other_writer: bool = ...,
+        other_reverse_thrust: bool = ...,
+        suspect_airspeed: bool = ...,
+        suspect_specific_force: bool = ...,
     ) -> Measurements: ...
     @property
     def pitch_rad(self) -> float:
@@ -125,7 +133,7 @@ class Measurements:
     def airspeed_mps(self, value: float) -> None: ...
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude in m above the standard pressure level."""
+        """Pressure altitude in m."""
 
     @altitude_m.setter
     def altitude_m(self, value: float) -> None: ...
@@ -171,6 +179,54 @@ class Measurements:
 
     @down_mps.setter
     def down_mps(self, value: float) -> None: ...
+    @property
+    def other_autopilot(self) -> bool:
+        """Another autopilot moves the controls by its servos."""
+
+    @other_autopilot.setter
+    def other_autopilot(self, value: bool) -> None: ...
+    @property
+    def other_autothrottle(self) -> bool:
+        """Another autothrottle moves the throttles."""
+
+    @other_autothrottle.setter
+    def other_autothrottle(self, value: bool) -> None: ...
+    @property
+    def other_fly_by_wire(self) -> bool:
+        """Another flight control computer determines the control surfaces."""
+
+    @other_fly_by_wire.setter
+    def other_fly_by_wire(self, value: bool) -> None: ...
+    @property
+    def other_stability(self) -> bool:
+        """Artificial stability, such as a yaw damper, adds to the controls."""
+
+    @other_stability.setter
+    def other_stability(self, value: bool) -> None: ...
+    @property
+    def other_writer(self) -> bool:
+        """Another program writes the controls that this one writes."""
+
+    @other_writer.setter
+    def other_writer(self, value: bool) -> None: ...
+    @property
+    def other_reverse_thrust(self) -> bool:
+        """Thrust is reversed."""
+
+    @other_reverse_thrust.setter
+    def other_reverse_thrust(self, value: bool) -> None: ...
+    @property
+    def suspect_airspeed(self) -> bool:
+        """Whether the airspeed is contradicted."""
+
+    @suspect_airspeed.setter
+    def suspect_airspeed(self, value: bool) -> None: ...
+    @property
+    def suspect_specific_force(self) -> bool:
+        """Whether the specific force is contradicted."""
+
+    @suspect_specific_force.setter
+    def suspect_specific_force(self, value: bool) -> None: ...
     # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...
@@ -227,7 +283,7 @@ class Setpoints:
 
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m, whatever the set point refers to."""
 
     @property
     def roll_rad(self) -> float:
@@ -263,7 +319,19 @@ class Setpoints:
 
     @property
     def guidance_captured_altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m."""
+
+    @property
+    def altimeter_setting_pa(self) -> float:
+        """The altimeter setting (QNH), Pa; in every state."""
+
+    @property
+    def altitude_reference(self) -> str:
+        """What the altitude refers to."""
+
+    @property
+    def altitude_above_reference_m(self) -> float:
+        """The altitude above what it refers to, m."""
 
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
@@ -308,7 +376,7 @@ class Estimate:
 
     @property
     def altitude_m(self) -> float:
-        """Barometric altitude, m."""
+        """Pressure altitude, m."""
 
     @property
     def climb_rate_mps(self) -> float:
@@ -485,6 +553,9 @@ class Autopilot:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     @property
     def engaged(self) -> bool: ...
@@ -546,6 +617,9 @@ class Machine:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
@@ -862,7 +936,7 @@ class Watcher:
 
 @final
 class Commander:
-    """Gives commands to the loop of any plant on this machine, each carried out on return."""
+    """Sends commands to the loop of any plant on this machine; each waits until carried out."""
 
     def __new__(cls, instance: str = "fccd") -> Commander: ...
     def engage(self) -> int: ...
