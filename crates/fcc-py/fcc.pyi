@@ -553,6 +553,9 @@ class Autopilot:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     @property
     def engaged(self) -> bool: ...
@@ -614,6 +617,9 @@ class Machine:
         airspeed_mps: float | None = None,
         heading_rad: float | None = None,
         altitude_m: float | None = None,
+        pressure_altitude_m: float | None = None,
+        height_m: float | None = None,
+        altimeter_setting_pa: float | None = None,
     ) -> None: ...
     def events(self) -> list[Event]: ...
     def records(self) -> _Records: ...
@@ -930,7 +936,7 @@ class Watcher:
 
 @final
 class Commander:
-    """Gives commands to the loop of any plant on this machine, each carried out on return."""
+    """Sends commands to the loop of any plant on this machine; each waits until carried out."""
 
     def __new__(cls, instance: str = "fccd") -> Commander: ...
     def engage(self) -> int: ...

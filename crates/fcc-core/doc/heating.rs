@@ -1,7 +1,7 @@
 // A controller for the examples in the documentation.
 use fcc_core::framework::{Controller, Flags, Tick};
 
-struct Heating;
+pub struct Heating;
 
 impl Controller for Heating {
     type Measurements = f64;

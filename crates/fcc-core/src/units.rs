@@ -12,7 +12,7 @@ pub const FOOT_M: f64 = 0.304_8;
 /// System of Units, 8th ed. 2006, table 8), exact.
 ///
 /// ```
-/// assert_eq!(fcc_core::units::KNOT_MPS * 3_600.0, 1_852.0);
+/// assert!((fcc_core::units::KNOT_MPS * 3_600.0 - 1_852.0).abs() < 1e-9);
 /// ```
 pub const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
 

@@ -39,7 +39,10 @@ schema! {
 /// The event of a controller's loop.
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
 /// use fcc_core::framework::{EventKind, EventOf, LoopCommand, Time};
 ///
 /// let event: EventOf<Heating> = EventOf::<Heating> {

@@ -17,8 +17,11 @@ impl<O: Copy> EventKind<O> {
 /// An event as text for users; see [`EventKind::description`].
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
-/// use fcc_core::framework::EventKind;
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
+/// use fcc_core::framework::{EventKind, Flags};
 ///
 /// let refused: EventKind<f64> = EventKind::EngageRefused { engage_inhibits: Flags::bit(0) };
 /// assert!(refused.description::<Heating>().to_string().ends_with("the door is open"));

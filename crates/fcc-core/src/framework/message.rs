@@ -24,8 +24,11 @@ pub enum Message<M, E, S, O, R> {
 /// The message type of a controller's loop.
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
-/// use fcc_core::framework::{MessageOf, RecordOf, State};
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
+/// use fcc_core::framework::{MessageOf, RecordOf, State, Tick};
 ///
 /// let record = RecordOf::<Heating>::new(Tick::default(), State::Engaged);
 /// let message: MessageOf<Heating> = MessageOf::<Heating>::Tick(record);

@@ -28,6 +28,6 @@ schema! {
 impl Notice {
     /// How long it lasted, s.
     pub fn lasted_s(&self) -> f64 {
-        self.lasted_ns as f64 * 1e-9
+        self.lasted_ns as f64 / 1e9
     }
 }

@@ -75,8 +75,11 @@ schema! {
 /// The record of a controller's loop.
 ///
 /// ```
-/// # include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
-/// use fcc_core::framework::{RecordOf, State};
+/// # mod heating {
+/// #     include!(concat!(env!("CARGO_MANIFEST_DIR"), "/doc/heating.rs"));
+/// # }
+/// # use heating::Heating;
+/// use fcc_core::framework::{RecordOf, State, Tick};
 ///
 /// let record = RecordOf::<Heating>::new(Tick::default(), State::Standby);
 /// assert_eq!(record.measurements, 0.0);

@@ -18,7 +18,9 @@ values_class! {
     /// NaN means not measured: the last value is kept and becomes older. A value
     /// that no aircraft of this kind can reach is treated in the same way.
     #[pyclass(name = "Measurements", module = "fcc")]
-    struct PyMeasurements(Measurements) without ["surfaces", "engage_switch", "plant"], settable;
+    struct PyMeasurements(Measurements)
+        without ["surfaces", "engage_switch", "plant", "other_control", "suspect"],
+        settable;
 
     #[new]
     #[pyo3(signature = (**values))]
