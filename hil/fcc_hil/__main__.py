@@ -38,7 +38,10 @@ def _fly(options: argparse.Namespace) -> int:
     # A signal ends the daemon and the stand-in, too.
     signal.signal(signal.SIGTERM, _interrupt)
     plan = Plan(
-        command(options.fccd, options.config), simulator_options.settings(options), options.legs
+        command(options.fccd, options.config),
+        simulator_options.settings(options),
+        options.legs,
+        actions=tuple(sorted(options.at)),
     )
     flight = fly(plan, print_progress)
     peer = peer_row(plan)
@@ -199,15 +202,6 @@ def _parser() -> argparse.ArgumentParser:
         help="misbehave in what these steps of that check show",
     )
     serves.add_argument("--seconds", type=float, metavar="S", help="end after so many seconds")
-    serves.add_argument(
-        "--at",
-        type=simulator_options.appointment,
-        action="append",
-        default=[],
-        metavar="S:ACTION",
-        help="S seconds after the start do an action; may be repeated, as in --at 30:pause "
-        "--at 40:run --at 50:freeze:1.5",
-    )
     serves.formatter_class = argparse.RawDescriptionHelpFormatter
     serves.epilog = "actions, for --at:\n" + "\n".join(
         f"  {name + str(action.argument):24}{action.does}"

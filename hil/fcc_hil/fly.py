@@ -49,6 +49,9 @@ class Plan:
     legs: int = 8
     pattern: TimedPattern = field(default_factory=TimedPattern)
     engage_switch: str = ENGAGE_SWITCH
+    actions: tuple[tuple[float, str], ...] = ()
+    """What a person or the simulator does (`actions`), each with its time in s after engaging, in
+    real time; ascending."""
 
 
 @dataclass(frozen=True)
@@ -178,9 +181,15 @@ def _watch(
     notify: Callable[[str], None],
 ) -> None:
     duration_s = plan.pattern.duration_s(plan.legs)
-    give_up_s = time.monotonic() + duration_s * _PATIENCE + _ENGAGE_S
+    began_s = time.monotonic()
+    give_up_s = began_s + duration_s * _PATIENCE + _ENGAGE_S
     next_line_s = engaged_at_s
+    todo = list(plan.actions)
     while True:
+        while todo and time.monotonic() - began_s >= todo[0][0]:
+            _, action = todo.pop(0)
+            notify(action)
+            simulator.act(action)
         progress = simulator.progress()
         if progress.time_s >= next_line_s:
             notify(progress_line(plan, engaged_at_s, progress))

@@ -21,6 +21,8 @@ from .units import STANDARD_INHG
 LARGEST_QUEUE = 140
 """A frame takes about 140 messages (P. Muenzel of Laminar, charlylima/XPlaneUDP pull request 3)."""
 
+_FARTHEST_ORIGIN_DEG = 5.0
+
 
 class Mode(Enum):
     """The simulator's state."""
@@ -71,6 +73,9 @@ class Settings:
     forward (ArduPilot), -1 the other way (px4xplane)."""
     sends_while_stalled: bool = True
     """Whether it sends while a map, a menu or an alert is open: no source says so."""
+    replays_clock: bool = True
+    """Whether the flight time of a replay is that of the past; else it stands still. No source says
+    which."""
     queue: int = LARGEST_QUEUE
     """How many of the datagrams that arrived since the last frame are read; the later ones are
     lost."""
@@ -92,6 +97,24 @@ class Settings:
     """Whether a person sits at it, who does what `fccd x-plane check --yes` asks for (`person`)."""
     misbehaves_in: tuple[int, ...] = ()
     """The steps of that check in which it misbehaves (`misbehaviour`); needs the person."""
+
+    def __post_init__(self) -> None:
+        """Refuse what no simulator has."""
+        for name, least, most in (
+            ("qnh_inhg", 25.0, 32.0),
+            ("surface_rate", 0.01, math.inf),
+            ("queue", 1, 100_000),
+            ("origin_moves_after_s", 0.0, math.inf),
+        ):
+            if not least <= getattr(self, name) <= most:
+                raise ValueError(f"{name} = {getattr(self, name):g}: give {least:g} to {most:g}")
+        if any(not abs(offset) <= _FARTHEST_ORIGIN_DEG for offset in self.origin_offset_deg):
+            raise ValueError(
+                f"origin_offset_deg = {self.origin_offset_deg}: give two of at most "
+                f"{_FARTHEST_ORIGIN_DEG:g} degrees"
+            )
+        if self.axial_sign not in (1.0, -1.0):
+            raise ValueError(f"axial_sign = {self.axial_sign:g}: give 1 or -1")
 
     @classmethod
     def plain(cls, **changes: Any) -> Settings:

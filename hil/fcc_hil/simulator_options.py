@@ -144,6 +144,12 @@ def add(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="as X-Plane reports it: 101500, 115501, 121000 (default %(default)s)",
     )
+    parser.add_argument(
+        "--replay-clock",
+        choices=("past", "still"),
+        default="past",
+        help="what the flight time does in a replay (default %(default)s)",
+    )
     parser.add_argument("--heading", type=float, default=0.0, metavar="DEG", help="initial heading")
     parser.add_argument(
         "--variation",
@@ -166,6 +172,15 @@ def add(parser: argparse.ArgumentParser) -> None:
         choices=range(8),
         metavar="0..7",
         help="severity after MIL-F-8785C: 0 calm, 3 light, 4 moderate",
+    )
+    parser.add_argument(
+        "--at",
+        type=appointment,
+        action="append",
+        default=[],
+        metavar="S:ACTION",
+        help="S seconds after the start do an action (`fcc standin --help` lists them); may be "
+        "repeated, as in --at 30:pause --at 40:run --at 50:freeze:1.5",
     )
     network = parser.add_argument_group("network faults, in both directions")
     for name, what in (
@@ -219,6 +234,7 @@ def settings(options: argparse.Namespace) -> Settings:
         noise=options.noise,
         axial_sign=float(options.axial_sign),
         sends_while_stalled=not options.silent_windows,
+        replays_clock=options.replay_clock == "past",
         inbound=faults,
         outbound=faults,
     )

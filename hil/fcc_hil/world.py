@@ -192,7 +192,8 @@ class World:
     def readout(self, state: State) -> Readout:
         """Return what datarefs are computed from, with a state as it is measured."""
         in_replay = self.mode is Mode.REPLAY and bool(self._history)
-        time_s = self._replayed().time_s if in_replay else self.plant.time_s
+        shows_past = in_replay and self.settings.replays_clock
+        time_s = self._replayed().time_s if shows_past else self.plant.time_s
         return Readout(
             state=state,
             cockpit=self.cockpit,

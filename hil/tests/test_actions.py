@@ -112,6 +112,17 @@ def test_a_replay_shows_the_past_and_the_flight_goes_on_where_it_was(bench: Benc
     assert bench.read(TIME) == pytest.approx(time_s, abs=0.05)
 
 
+def test_the_clock_of_a_replay_may_stand_still() -> None:
+    bench = Bench(replays_clock=False)
+    bench.frames(60)
+    time_s, north_deg = bench.read(TIME), bench.read(LATITUDE)
+    bench.act("replay")
+    bench.frames(10)
+    assert bench.read(TIME) == time_s
+    assert bench.read(LATITUDE) < north_deg
+    bench.close()
+
+
 def test_a_reload_puts_the_aircraft_on_a_runway_and_clears_the_overrides(bench: Bench) -> None:
     bench.client.write(OVERRIDE_JOYSTICK, 1.0)
     bench.client.write(OVERRIDE_THROTTLES, 1.0)

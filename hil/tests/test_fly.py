@@ -7,6 +7,7 @@ import shlex
 import socket
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,16 @@ def test_a_flight_from_switch_to_score(tmp_path: Path) -> None:
     picture = tmp_path / "flight.png"
     plot_flight(picture, flight.truth, SHORT, flight.engaged_at_s, 1, "A short flight")
     assert picture.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_a_flight_with_a_freeze() -> None:
+    lines: list[str] = []
+    flight = fly(replace(plan(), actions=((0.5, "freeze:0.4"), (1.0, "knob:30.5"))), lines.append)
+    assert flight.failures == []
+    assert [line for line in lines if ":" in line and " " not in line] == [
+        "freeze:0.4",
+        "knob:30.5",
+    ]
 
 
 def test_a_daemon_that_ends_is_reported() -> None:

@@ -7,6 +7,7 @@ import math
 import random
 import socket
 import struct
+from typing import Any
 
 import numpy as np
 import pytest
@@ -266,6 +267,21 @@ def test_the_true_attitude_is_not_about_the_local_axes() -> None:
     assert bench.read(P + "phi") - bench.read(P + "true_phi") == pytest.approx(-0.5, abs=0.01)
     assert bench.read("sim/flightmodel2/position/true_theta") == bench.read(P + "true_theta")
     bench.close()
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({"qnh_inhg": 1013.25}, "qnh_inhg = 1013.25: give 25 to 32"),
+        ({"surface_rate": 0.0}, "surface_rate = 0: give 0.01"),
+        ({"queue": 0}, "queue = 0: give 1"),
+        ({"origin_offset_deg": (0.0, 90.0)}, "at most 5 degrees"),
+        ({"axial_sign": 0.5}, "give 1 or -1"),
+    ],
+)
+def test_settings_that_no_simulator_has_are_refused(changes: dict[str, Any], why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        Settings(**changes)
 
 
 def test_the_origin_moves_by_itself_once() -> None:

@@ -33,7 +33,7 @@ pub struct XPlaneConfig {
     /// The port from which X-Plane is expected to answer, 0 if that is not
     /// known. While it is silent, a datagram without effect is sent there each
     /// second, so that a firewall on this side lets the replies in; afterwards
-    /// the port that answers is known. Default: 49001, X-Plane's own.
+    /// to the port that answers, every 20 s. Default: 49001, X-Plane's own.
     pub reply_port: u16,
     /// How measurements are received. Default: [`Input::Rref`].
     pub input: Input,

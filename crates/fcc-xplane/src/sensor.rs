@@ -30,6 +30,10 @@ const DISCARDED_PER_TICK: usize = 300;
 /// After this loop itself stood still for longer, s, what waits in the socket is
 /// old, and its end may be missing: it is discarded.
 const OLD_AFTER_S: f64 = 0.1;
+/// Some address translations forget, after 30 s at the earliest, an address to
+/// which nothing is sent, although datagrams arrive from it (Windows':
+/// github.com/microsoft/WSL, issue 8369).
+const OPEN_EVERY: Duration = Duration::from_secs(20);
 /// X-Plane sends about one beacon a second.
 const BEACONS_PER_TICK: usize = 4;
 
@@ -54,6 +58,8 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     /// The port from which X-Plane is expected to answer; 0 if that is not
     /// known.
     expected_reply_port: u16,
+    /// When a datagram was last sent there.
+    opened: Time,
     engage_switch: Arc<str>,
     rows: Option<DataRows>,
     release_monitor: ReleaseMonitor,
@@ -87,6 +93,7 @@ impl<P: Port> XPlaneSensor<P> {
             reply_ports: ReplyPorts::default(),
             subscriptions: Subscriptions::new(config)?,
             expected_reply_port: config.reply_port,
+            opened: Time::NEVER,
             engage_switch: config.engage_switch.as_str().into(),
             rows,
             release_monitor: ReleaseMonitor::new(Controls::new(config)?),
@@ -221,9 +228,9 @@ impl<P: Port> XPlaneSensor<P> {
             count(&link.counters.requests);
             send(port.as_ref(), link, request, simulator)
         });
-        if self.subscriptions.restarted(now)
-            && let Some(reply_port) = self.reply_address(simulator)
-        {
+        let is_due = self.subscriptions.restarted(now) || now.since(self.opened) >= OPEN_EVERY;
+        if is_due && let Some(reply_port) = self.reply_address(simulator) {
+            self.opened = now;
             // Without it a firewall may drop every reply, and with it nothing
             // is certain: no failure.
             let _ = port.send(self.subscriptions.without_effect(), reply_port);

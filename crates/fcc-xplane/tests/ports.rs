@@ -171,6 +171,28 @@ fn a_datagram_without_effect_lets_answers_through_a_firewall_on_this_side() {
     assert_eq!(openings(there, 49_000, None), []);
 }
 
+#[test]
+fn the_way_through_an_address_translation_is_kept_open() {
+    let simulator = "192.0.2.1:49000".parse().unwrap();
+    let config = XPlaneConfig {
+        simulator: Simulator::At(simulator),
+        ..XPlaneConfig::default()
+    };
+    let wire = Wire::default();
+    let (mut sensor, _actuator) = XPlane::over(&config, wire.clone(), None).unwrap();
+    let (mut ticks, mut measurements) = (Ticks::new(), Measurements::default());
+    let answers = "192.0.2.1:49001".parse().unwrap();
+    for number in 0..1_700_u16 {
+        let mut datagram = b"RREF,\0\0\0\0".to_vec();
+        datagram.extend((f32::from(number) * 0.025).to_le_bytes());
+        wire.arrives(&datagram, answers);
+        let _ = sensor.sample(&ticks.next(), &mut measurements);
+    }
+    let sent = wire.take_sent();
+    // At once, after 20 s and after 40 s of 42.5.
+    assert_eq!(sent.iter().filter(|(_, to)| *to == answers).count(), 3);
+}
+
 /// Rows arrive, and every request is lost.
 #[test]
 fn rows_without_an_answer_show_that_x_plane_does_not_hear() {
