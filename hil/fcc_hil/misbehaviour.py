@@ -20,12 +20,14 @@ from .cockpit import (
     YOKE,
     YOKE_ROLL,
 )
-from .protocol import WriteDataref
+from .protocol import RunCommand, WriteDataref
+from .settings import Mode
 from .units import STANDARD_GRAVITY_MPS2
 
 _P = "sim/flightmodel/position/"
 _OVERRIDES = (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES)
 _FT_PER_INHG = 1_000.0
+REPLAY_TOGGLE = "sim/replay/replay_toggle"
 
 Distortion = Callable[[Any, float], float]
 
@@ -55,6 +57,8 @@ class Misbehaviour:
     """Whether a message to the simulator has its effect."""
     ignores_person: bool = False
     """What the person switches off stays on."""
+    keeps_overrides: bool = False
+    """The overrides stay on, until the step ends."""
     knows_nobody_else: bool = False
     """Only who has subscribed before gets replies."""
 
@@ -78,6 +82,11 @@ def _run_too_fast(world: Any, message: object) -> bool:
         world.cockpit.set(SIM_SPEED, 4.0)
         return False
     return True
+
+
+def _stay_in_replay(world: Any, message: object) -> bool:
+    leaves = isinstance(message, RunCommand) and message.path == REPLAY_TOGGLE
+    return not (leaves and world.mode is Mode.REPLAY)
 
 
 def _keep_overrides(_world: Any, message: object) -> bool:
@@ -133,7 +142,7 @@ MISBEHAVIOURS: dict[int, Misbehaviour] = {
     11: Misbehaviour("keeps its ailerons centred", each_frame=_hold_ailerons),
     12: Misbehaviour(_DROPS, each_frame=_drop_overrides),
     13: Misbehaviour(_DROPS, each_frame=_drop_overrides),
-    14: Misbehaviour(_DROPS, each_frame=_drop_overrides),
+    14: Misbehaviour("stays in the replay", takes=_stay_in_replay),
     15: Misbehaviour(
         "moves every altitude with the altimeter's setting",
         distorts={
@@ -144,7 +153,12 @@ MISBEHAVIOURS: dict[int, Misbehaviour] = {
     16: Misbehaviour("hides that its autopilot is on", distorts={SERVOS_ON: lambda *_: 0.0}),
     17: Misbehaviour("runs four times as fast when asked for twice", takes=_run_too_fast),
     18: Misbehaviour(_DROPS, each_frame=_drop_overrides),
-    19: Misbehaviour("keeps the overrides", takes=_keep_overrides, each_frame=_set_overrides_again),
-    20: Misbehaviour("keeps the overrides", takes=_keep_overrides),
+    19: Misbehaviour(
+        "keeps the overrides",
+        takes=_keep_overrides,
+        each_frame=_set_overrides_again,
+        keeps_overrides=True,
+    ),
+    20: Misbehaviour("keeps the overrides", takes=_keep_overrides, keeps_overrides=True),
 }
 """By the number of the step."""

@@ -222,12 +222,13 @@ class AttendedStandIn(StandIn):
     def _end(self, step: int) -> None:
         if step not in self.settings.misbehaves_in:
             return
+        if self._bad.keeps_overrides:
+            self.cockpit.clear_overrides()
         self._bad = self._replies_to.misbehaviour = Misbehaviour("")
         self._known = None
         self._joystick_is_over = self._firewall_drops = False
         self._incoming_is_on = True
         self.enter(Mode.RUNNING)
-        self.cockpit.clear_overrides()
         self.cockpit.set(SIM_SPEED, 1.0)
 
 

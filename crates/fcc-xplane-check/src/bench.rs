@@ -16,6 +16,8 @@ use crate::watched::Watched;
 const TURN: Duration = Duration::from_millis(10);
 /// The interval of live lines.
 const LIVE_EVERY: Duration = Duration::from_millis(250);
+/// A cue takes a frame, and a reply the next.
+const AFTER_A_CUE: Duration = Duration::from_millis(100);
 /// How long a person may take to do something.
 const BY_A_PERSON: Duration = Duration::from_secs(300);
 /// How long a stand-in may take that takes a cue for it.
@@ -55,7 +57,8 @@ pub(crate) struct Bench<'a> {
     pub(crate) figures: Vec<Figure>,
     pub(crate) notes: Vec<String>,
     pub(crate) step: u8,
-    pub(crate) began: Instant,
+    /// The check was ended: nobody is asked any more.
+    pub(crate) is_ending: bool,
     shown: Instant,
 }
 
@@ -77,7 +80,7 @@ impl<'a> Bench<'a> {
             figures: Vec::new(),
             notes: Vec::new(),
             step: 0,
-            began: Instant::now(),
+            is_ending: false,
             shown: Instant::now(),
         }
     }
@@ -85,10 +88,11 @@ impl<'a> Bench<'a> {
     /// A step begins.
     pub(crate) fn begin(&mut self, step: u8) {
         self.step = step;
-        self.began = Instant::now();
         self.figures.clear();
         self.notes.clear();
         self.cue("begin");
+        // What is known is of after the last step.
+        self.link.poll(AFTER_A_CUE);
     }
 
     /// A step has ended.
@@ -221,6 +225,9 @@ impl<'a> Bench<'a> {
         what: &str,
         mut holds: impl FnMut(&Self) -> bool,
     ) -> Done {
+        if self.is_ending {
+            return Err(Stop::Quit);
+        }
         let limit = if self.is_unattended {
             self.cue(cue);
             BY_A_CUE
@@ -251,6 +258,9 @@ impl<'a> Bench<'a> {
         if self.is_unattended {
             self.cue(cue);
             return Ok(());
+        }
+        if self.is_ending {
+            return Err(Stop::Quit);
         }
         self.screen.instruct(instruction, true);
         let until = Instant::now() + BY_A_PERSON;

@@ -139,8 +139,10 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     let began = Instant::now();
     let done = (step.run)(bench);
     let figures = bench.figures.clone();
-    bench.end();
+    let quit = matches!(done, Err(Stop::Quit));
+    bench.is_ending = quit;
     (step.restore)(bench);
+    bench.end();
     let outside: Vec<String> = figures
         .iter()
         .filter(|figure| !figure.within)
@@ -149,7 +151,6 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
             format!("{} {} ({limit})", figure.name, figure.text())
         })
         .collect();
-    let quit = matches!(done, Err(Stop::Quit));
     let (outcome, why) = match done {
         Ok(()) if outside.is_empty() => (Outcome::Passed, None),
         Ok(()) => (Outcome::Failed, Some(outside.join("; "))),

@@ -1,8 +1,8 @@
 //! How an X-Plane aircraft responds to its controls, and the gains that follow.
 //!
-//! The daemon flies level; for each control it releases, the check holds the
-//! controls where they were, deflects one of them up and down, and the daemon
-//! takes over again. An aircraft that responds half as much as the Cessna 172
+//! The daemon flies level, or a person where the gains are not good enough for
+//! that. For each control both let go, the check holds the controls where they
+//! were, deflects one of them, and gives them back. An aircraft that responds half as much as the Cessna 172
 //! on which the gains were tuned needs gains twice as large:
 //! `[autopilot.scale]`, as a first guess.
 
@@ -144,15 +144,28 @@ pub enum IdentifyError {
     Ended(String),
 }
 
-/// Has the daemon fly level, deflects one control after another, and returns
-/// how the aircraft responds. The aircraft must fly level already, in calm air.
+/// Who flies between the deflections.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FlownBy {
+    /// The daemon: its gains have to be good enough for level flight.
+    Daemon,
+    /// A person, hands off the trimmed aircraft when it is steady.
+    Person,
+}
+
+/// Deflects one control after another in level flight, and returns how the
+/// aircraft responds. It must fly level already, in calm air.
 ///
 /// # Errors
 /// If it could not begin, or if it was ended: by the envelope, by a control
 /// without effect, or by a signal.
-pub fn identify(request: Request, screen: &mut dyn Screen) -> Result<Identified, IdentifyError> {
+pub fn identify(
+    request: Request,
+    by: FlownBy,
+    screen: &mut dyn Screen,
+) -> Result<Identified, IdentifyError> {
     let mut bench = open(request, screen)?;
-    let found = fly(&mut bench).map_err(|stop| {
+    let found = fly(&mut bench, by).map_err(|stop| {
         IdentifyError::Ended(match stop {
             Stop::Failed(why) | Stop::Skipped(why) => why,
             Stop::Quit => "ended by a signal".to_owned(),
@@ -163,11 +176,11 @@ pub fn identify(request: Request, screen: &mut dyn Screen) -> Result<Identified,
     found
 }
 
-fn fly(bench: &mut Bench<'_>) -> Result<Identified, Stop> {
+fn fly(bench: &mut Bench<'_>, by: FlownBy) -> Result<Identified, Stop> {
     let mut responses = Vec::new();
     let mut airspeed_kt = f64::NAN;
     for control in &CONTROLS {
-        steady(bench)?;
+        steady(bench, by)?;
         airspeed_kt = bench.number(Watched::Airspeed);
         let flown = deflect(bench, control);
         release(bench);
@@ -187,8 +200,8 @@ fn fly(bench: &mut Bench<'_>) -> Result<Identified, Stop> {
             scale: ratio,
         });
     }
-    // The daemon leaves the aircraft in steady flight.
-    steady(bench)?;
+    // It leaves the aircraft in steady flight.
+    steady(bench, by)?;
     bench.disengage()?;
     Ok(Identified {
         airspeed_kt,
@@ -196,9 +209,14 @@ fn fly(bench: &mut Bench<'_>) -> Result<Identified, Stop> {
     })
 }
 
-/// Has the daemon fly level until the flight is steady.
-fn steady(bench: &mut Bench<'_>) -> Result<(), Stop> {
-    bench.engage(Guidance::Hold)?;
+/// Waits until the flight is steady.
+fn steady(bench: &mut Bench<'_>, by: FlownBy) -> Result<(), Stop> {
+    match by {
+        FlownBy::Daemon => bench.engage(Guidance::Hold)?,
+        FlownBy::Person => bench.expect("X-Plane answers", STEADY_WITHIN, |b| {
+            b.link.latest().is_some()
+        })?,
+    }
     let mut since = Instant::now();
     let is_steady = bench.until("steady level flight", STEADY_WITHIN, |b| {
         let rates = [Watched::RollRate, Watched::PitchRate, Watched::YawRate];
@@ -213,7 +231,10 @@ fn steady(bench: &mut Bench<'_>) -> Result<(), Stop> {
     if is_steady {
         return Ok(());
     }
-    failed("the flight does not become steady: fly in calm air, trimmed")
+    failed(
+        "the flight does not become steady: fly in calm air, trimmed; if fccd does not hold it \
+         steady, fly yourself, with --by-hand",
+    )
 }
 
 /// The controls, as they were held.
@@ -228,7 +249,7 @@ impl Held {
     fn write(&self, bench: &Bench<'_>, deflected: Watched, deflection: f64) {
         for (what, value) in self.0 {
             let more = if what == deflected { deflection } else { 0.0 };
-            bench.link.write(bench.link.path(what), value + more);
+            bench.link.write_control(what, value + more);
         }
     }
 }

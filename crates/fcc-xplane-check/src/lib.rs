@@ -41,7 +41,7 @@ mod watched;
 pub use check::{CheckError, Request, check};
 pub use configuration::ConfigurationError;
 pub use figure::Figure;
-pub use identify::{Identified, IdentifyError, Response, identify};
+pub use identify::{FlownBy, Identified, IdentifyError, Response, identify};
 pub use report::{Report, Simulator};
 pub use screen::{Answer, Screen};
 pub use step::{Outcome, Step, StepResult};

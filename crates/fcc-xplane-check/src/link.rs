@@ -62,6 +62,7 @@ pub(crate) struct Link {
     engage_switch: String,
     /// Where replies are expected to come from.
     reply_port: u16,
+    engines: u8,
     samples: VecDeque<Sample>,
     requested: Instant,
 }
@@ -83,6 +84,7 @@ impl Link {
             simulator,
             engage_switch: x_plane.engage_switch.clone(),
             reply_port: x_plane.reply_port,
+            engines: x_plane.engines,
             samples: VecDeque::with_capacity(KEPT),
             requested: Instant::now(),
         };
@@ -146,6 +148,17 @@ impl Link {
         let mut datagram = [0; dref::WRITE_BYTES];
         if dref::write(&mut datagram, value as f32, path).is_ok() {
             self.send(&datagram);
+        }
+    }
+
+    /// Sets a control: the throttle of every engine.
+    pub(crate) fn write_control(&self, what: Watched, value: f64) {
+        let path = self.path(what);
+        let Some(array) = path.strip_suffix("[0]") else {
+            return self.write(path, value);
+        };
+        for engine in 0..self.engines {
+            self.write(&format!("{array}[{engine}]"), value);
         }
     }
 

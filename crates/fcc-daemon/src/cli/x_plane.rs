@@ -76,6 +76,10 @@ pub struct IdentifyArgs {
     /// Where X-Plane is
     #[command(flatten)]
     pub connection: ConnectionArgs,
+    /// A person flies between the deflections, and not fccd: for an aircraft
+    /// that its gains do not hold steady
+    #[arg(long)]
+    pub by_hand: bool,
     /// Folder for the recordings of its flights
     #[arg(long, value_name = "DIR", default_value = "x-plane-identify.files")]
     pub files: PathBuf,

@@ -61,5 +61,6 @@ fn altimeter(bench: &mut Bench<'_>) -> Done {
     });
     bench.measure("change of height", change_ft, "ft", Limit::AtMost(MOST_FT));
     bench.link.write(&path, setting);
+    flight.is_held(bench);
     flight.without_failsafe(bench)
 }

@@ -207,17 +207,7 @@ impl Flight {
     /// The flight goes on as it was: watched for a while.
     pub(super) fn continues(&self, bench: &mut Bench<'_>) -> Done {
         bench.wait("the flight continues", bench.waits.watch)?;
-        let dropped = bench
-            .link
-            .since(self.since)
-            .filter(|sample| !sample.is_held())
-            .count();
-        bench.measure(
-            "replies without both overrides",
-            dropped as f64,
-            "",
-            Limit::AtMost(0.0),
-        );
+        self.is_held(bench);
         let bank = extreme(bench, self.since, |sample| {
             (sample.number(Watched::Roll) - self.before.number(Watched::Roll)).abs()
         });
@@ -231,6 +221,18 @@ impl Flight {
             Limit::AtMost(20.0),
         );
         self.without_failsafe(bench)
+    }
+
+    /// The overrides were on throughout.
+    pub(super) fn is_held(&self, bench: &mut Bench<'_>) {
+        let samples = bench.link.since(self.since);
+        let dropped = samples.filter(|sample| !sample.is_held()).count() as f64;
+        bench.measure(
+            "replies without both overrides",
+            dropped,
+            "",
+            Limit::AtMost(0.0),
+        );
     }
 
     /// The daemon has not reported a failsafe.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fcc_xplane_check::{Identified, IdentifyError, identify as carry_out};
+use fcc_xplane_check::{FlownBy, Identified, IdentifyError, identify as carry_out};
 
 use super::terminal::Terminal;
 use super::{Failure, not_begun, request};
@@ -14,7 +14,12 @@ use crate::output;
 pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
     let request = request(&args.connection, args.files.clone())?;
     let mut terminal = Terminal::open(false)?;
-    let result = carry_out(request, &mut terminal);
+    let by = if args.by_hand {
+        FlownBy::Person
+    } else {
+        FlownBy::Daemon
+    };
+    let result = carry_out(request, by, &mut terminal);
     drop(terminal);
     let found = result.map_err(|error| match error {
         IdentifyError::NotBegun(error) => not_begun(&error),
