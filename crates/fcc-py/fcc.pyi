@@ -62,14 +62,6 @@ class Measurements:
         north_mps: float = ...,
         east_mps: float = ...,
         down_mps: float = ...,
-        other_autopilot: bool = ...,
-        other_autothrottle: bool = ...,
-        other_fly_by_wire: bool = ...,
-        other_stability: bool = ...,
-        other_writer: bool = ...,
-        other_reverse_thrust: bool = ...,
-        suspect_airspeed: bool = ...,
-        suspect_specific_force: bool = ...,
     ) -> Measurements: ...
     @property
     def pitch_rad(self) -> float:
@@ -179,54 +171,6 @@ class Measurements:
 
     @down_mps.setter
     def down_mps(self, value: float) -> None: ...
-    @property
-    def other_autopilot(self) -> bool:
-        """Another autopilot moves the controls by its servos."""
-
-    @other_autopilot.setter
-    def other_autopilot(self, value: bool) -> None: ...
-    @property
-    def other_autothrottle(self) -> bool:
-        """Another autothrottle moves the throttles."""
-
-    @other_autothrottle.setter
-    def other_autothrottle(self, value: bool) -> None: ...
-    @property
-    def other_fly_by_wire(self) -> bool:
-        """Another flight control computer determines the control surfaces."""
-
-    @other_fly_by_wire.setter
-    def other_fly_by_wire(self, value: bool) -> None: ...
-    @property
-    def other_stability(self) -> bool:
-        """Artificial stability, such as a yaw damper, adds to the controls."""
-
-    @other_stability.setter
-    def other_stability(self, value: bool) -> None: ...
-    @property
-    def other_writer(self) -> bool:
-        """Another program writes the controls that this one writes."""
-
-    @other_writer.setter
-    def other_writer(self, value: bool) -> None: ...
-    @property
-    def other_reverse_thrust(self) -> bool:
-        """Thrust is reversed."""
-
-    @other_reverse_thrust.setter
-    def other_reverse_thrust(self, value: bool) -> None: ...
-    @property
-    def suspect_airspeed(self) -> bool:
-        """Whether the airspeed is contradicted."""
-
-    @suspect_airspeed.setter
-    def suspect_airspeed(self, value: bool) -> None: ...
-    @property
-    def suspect_specific_force(self) -> bool:
-        """Whether the specific force is contradicted."""
-
-    @suspect_specific_force.setter
-    def suspect_specific_force(self, value: bool) -> None: ...
     # </schema>
     @staticmethod
     def from_array(row: npt.ArrayLike) -> Measurements: ...

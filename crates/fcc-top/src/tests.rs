@@ -1,7 +1,7 @@
 //! The whole screen, drawn from a fixed picture.
 
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{Attitude, Autopilot, Surfaces};
+use fcc_core::flight::{AltitudeReference, Attitude, Autopilot, Surfaces};
 use fcc_core::framework::{Flags, Reading, RecordOf, State, Tick, Time};
 use fcc_live::{Event, EventCode, Info, RecorderState, Status, Text};
 use fcc_telemetry::Instance;
@@ -139,6 +139,24 @@ fn its_end_is_shown() {
     let rows = drawn(&picture, 80, 24);
     assert!(rows[0].contains("ENDED"));
     assert!(rows[23].contains("fccd 'fccd' has ended"));
+}
+
+/// At 30.2 inHg an altitude is 257 ft more than its pressure altitude
+/// (FAA-H-8083-25C, figure 11-3): 3,000 and 3,150 ft.
+#[test]
+fn altitudes_are_shown_above_what_they_refer_to() {
+    let mut picture = picture();
+    let mut record = picture.record.unwrap();
+    record.setpoints.altimeter_setting_pa = 30.2 * 3_386.389;
+    record.setpoints.altitude_reference = AltitudeReference::SeaLevel;
+    picture.record(&record);
+    let rows = drawn(&picture, 80, 24).join("\n");
+    assert!(rows.contains("timed-pattern, QNH 1023"), "{rows}");
+    assert!(rows.contains("altitude  3257 →   3407 ft"), "{rows}");
+    record.setpoints.altitude_reference = AltitudeReference::PressureLevel;
+    picture.record(&record);
+    let rows = drawn(&picture, 80, 24).join("\n");
+    assert!(rows.contains("pressure  3000 →   3150 ft"), "{rows}");
 }
 
 #[test]

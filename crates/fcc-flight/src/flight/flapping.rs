@@ -15,7 +15,7 @@ const OVER_S: f64 = 10.0;
 #[derive(Debug, Default)]
 pub struct Flapping(Vec<FaultSource>);
 
-/// A sensor, an actuator, or readings that change their source.
+/// A sensor, an actuator, readings that change their source, or conditions.
 #[derive(Debug)]
 struct FaultSource {
     name: String,
@@ -35,10 +35,15 @@ impl Flapping {
                 | EventKind::ActuatorFault { .. }
                 | EventKind::ActuatorRecovered { .. }
                 | EventKind::SourceChanged(_)
+                | EventKind::ConditionsChanged { .. }
         ) {
             return true;
         }
-        let (name, _) = line.split_once(": ").unwrap_or((line, ""));
+        let name = match kind {
+            // Each condition by itself.
+            EventKind::ConditionsChanged { .. } => line,
+            _ => line.split_once(": ").map_or(line, |(name, _)| name),
+        };
         let Some(part) = self.0.iter_mut().find(|part| part.name == name) else {
             self.0.push(FaultSource {
                 name: name.to_owned(),

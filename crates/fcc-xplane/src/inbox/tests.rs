@@ -320,3 +320,21 @@ fn a_throttle_in_reverse_does_not_hide_the_controls() {
         assert_eq!(measured.other_control.value.reverse_thrust, throttle < 0.0);
     }
 }
+
+/// With the nose 4° high an accelerometer measures 0.0698 g forwards: a row that
+/// has it negative is positive backwards.
+#[test]
+fn the_sign_of_the_axial_load_is_found_out_in_flight() {
+    let absent = -999.0;
+    let mut bench = Bench::new(Some(DataRows::of(RowsVersion::XPlane12)));
+    for _ in 0..240 {
+        bench.tick(&[rows(&[
+            row(3, [90.0, 90.0, 95.0, 94.0, absent, 0.0, 0.0, 0.0]),
+            row(4, [0.14, absent, 0.0, absent, 1.0, -0.0698, 0.0, absent]),
+            row(17, [4.0, 0.0, 80.0, 90.0, absent, absent, absent, absent]),
+        ])]);
+    }
+    let force = bench.measurements.specific_force.value;
+    assert!((force.x_mps2 - 0.684_5).abs() < 1e-3, "{force:?}");
+    assert!(bench.link.is_axial_backwards());
+}

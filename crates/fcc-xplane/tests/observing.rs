@@ -1,0 +1,91 @@
+//! What the sensor finds out besides measurements, and what is said about it.
+#![cfg(test)]
+
+mod support;
+
+use fcc_core::flight::{OtherControl, Suspect};
+use fcc_core::framework::ControlAuthority;
+use fcc_xplane::XPlaneAuthority;
+use support::bench::Bench;
+use support::{P, SWITCH};
+
+const G_NRML: &str = "sim/flightmodel/forces/g_nrml";
+const LEVER: &str = "sim/cockpit2/engine/actuators/throttle_ratio[0]";
+
+/// All lines that are to be said now.
+fn lines(authority: &XPlaneAuthority) -> Vec<String> {
+    let mut lines = Vec::new();
+    loop {
+        let before = lines.len();
+        authority.report(&mut |text| lines.push(text.to_string()));
+        if lines.len() == before {
+            return lines;
+        }
+    }
+}
+
+/// Accelerations that contain gravity: 1 g more than the load factor says.
+#[test]
+fn accelerations_that_contradict_the_load_factor_are_said_once() {
+    let mut bench = Bench::new();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    bench.simulator.set(G_NRML, 1.0);
+    bench.settle();
+    for _ in 0..200 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.measurements.suspect.value, Suspect::default());
+    lines(&authority);
+    bench.simulator.set(&format!("{P}local_ay"), 9.8);
+    for _ in 0..130 {
+        bench.watch().unwrap();
+    }
+    assert!(bench.measurements.suspect.value.specific_force);
+    let said = lines(&authority);
+    let [line] = &said[..] else {
+        panic!("one line: {said:?}")
+    };
+    assert!(line.contains("contradict its load factor"), "{line}");
+    assert!(line.contains("the accelerations are used"), "{line}");
+    for _ in 0..200 {
+        bench.watch().unwrap();
+    }
+    assert!(lines(&authority).is_empty());
+}
+
+#[test]
+fn a_release_says_where_the_throttle_s_lever_is() {
+    let mut bench = Bench::new();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    bench.simulator.set(LEVER, 0.35);
+    bench.settle();
+    bench.fly().unwrap();
+    lines(&authority);
+    drop(bench.actuator.take());
+    bench.watch().unwrap();
+    let said = lines(&authority);
+    assert!(
+        said.iter()
+            .any(|line| line.contains("its lever again, which is at 35 %")),
+        "{said:?}"
+    );
+}
+
+/// Of a version that has none of these datarefs nothing is missing.
+#[test]
+fn an_x_plane_without_the_optional_datarefs_is_quiet() {
+    let mut bench = Bench::new();
+    bench.settle();
+    for _ in 0..400 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.status.missing(), []);
+    assert_eq!(
+        bench.measurements.other_control.value,
+        OtherControl::default()
+    );
+    assert!(!bench.measurements.attitude.is_never());
+    let subscribed: Vec<_> = bench.simulator.subscribed.values().collect();
+    assert!(subscribed.iter().any(|path| path.ends_with("true_theta")));
+    assert!(subscribed.iter().any(|path| *path == SWITCH));
+}
