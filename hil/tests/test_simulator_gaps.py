@@ -1,6 +1,6 @@
 """A simulator that freezes, is cut off for a moment, shows a map, or is reloaded.
 
-The lockstep flights of `crates/fcc-flight/tests/simulator_silence` have all lengths and frame
+The lockstep flights of `crates/fcc-flight/tests/simulator_silence` have all lengths and two frame
 rates; these show the same in the running daemon, side by side.
 """
 
