@@ -238,7 +238,7 @@ mod tests {
         ];
         assert_eq!(lines, expected.map(Vec::from), "{all}");
         let section = message("[built-in]\n[lop]\n");
-        assert!(section.contains("`sensor` or `actuator`"), "{section}");
+        assert!(section.contains("`sensor`, `actuator`"), "{section}");
         let list = message("sensor = 5\n[built-in]\n");
         assert!(
             list.contains("sensor: is a number: choose a list"),
