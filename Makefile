@@ -71,7 +71,7 @@ test-python: faulty build $(STAMPS)/python-module $(STAMPS)/strace $(STAMPS)/sys
 	FCCD=$(abspath $(FCCD)) FCCD_INJECTION=$(abspath $(FAULTY)) \
 	    $(PYTHON) -m pytest hil --numprocesses auto --dist loadfile
 
-test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (10 minutes)
+test-x-plane: build $(STAMPS)/python-module ## Run all steps of `fccd x-plane check` in full against the stand-in (3 minutes)
 	FCCD_FULL_CHECK=1 FCCD=$(abspath $(FCCD)) $(PYTHON) -m pytest hil/tests/test_x_plane_check.py
 
 faulty: $(STAMPS)/rust

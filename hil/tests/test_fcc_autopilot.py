@@ -114,8 +114,8 @@ def test_a_sensor_that_breaks_leads_to_failsafe_after_its_age() -> None:
 
 
 def test_missing_sensors_are_reported() -> None:
-    loop = fcc.Machine(f"{HOLD}[failsafe]\nall_silent_s = 0.25\n")
-    aircraft = fcc.BuiltInAircraft()
+    config = HOLD + "[failsafe]\nall_silent_s = 0.25\n"
+    loop, aircraft = fcc.Machine(config), fcc.BuiltInAircraft()
     flown(10.0, loop, aircraft)
     for _ in range(10):
         loop.step(None)

@@ -53,7 +53,7 @@ impl Simulator {
     pub fn version_text(&self) -> String {
         match self.version {
             None => "unknown".to_owned(),
-            Some(v) if v >= 120_000 => {
+            Some(v) if v >= 121_000 => {
                 format!("{}.{}.{}", v / 10_000, v / 1_000 % 10, v / 100 % 10)
             }
             Some(v) => format!("{}.{:02}", v / 10_000, v / 100 % 100),
@@ -214,5 +214,69 @@ fn list(items: &[String]) -> String {
         "–".to_owned()
     } else {
         items.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Figure, Limit};
+
+    fn simulator(version: u32) -> Simulator {
+        Simulator {
+            address: "192.0.2.7:49000".to_owned(),
+            replies_from: vec!["192.0.2.7:49001".to_owned()],
+            version: Some(version),
+            frames_per_s: Some(59.94),
+            missing: Vec::new(),
+        }
+    }
+
+    /// As Laminar names its releases.
+    #[test]
+    fn versions_are_written_as_x_plane_does() {
+        for (number, text) in [
+            (104_100, "10.41"),
+            (115_501, "11.55"),
+            (120_800, "12.08"),
+            (121_000, "12.1.0"),
+        ] {
+            assert_eq!(simulator(number).version_text(), text);
+        }
+    }
+
+    #[test]
+    fn a_figure_outside_its_limit_is_marked_and_a_failed_step_fails_the_report() {
+        let step = StepResult {
+            number: 12,
+            title: "a pause of 20 s",
+            outcome: Outcome::Failed,
+            why: Some("a | in it".to_owned()),
+            advice: Some("Send this report."),
+            duration_s: 31.25,
+            figures: vec![Figure::new("change of bank", 7.5, "°", Limit::AtMost(5.0))],
+            notes: vec!["a note".to_owned()],
+            daemon: vec!["12.00 s  engaged -> failsafe".to_owned()],
+        };
+        let report = Report::new(
+            simulator(121_000),
+            vec![step],
+            (true, false),
+            "[x-plane]".into(),
+        );
+        assert!(!report.is_passed());
+        assert_eq!(report.summary(), "0 of 1 steps passed, 1 failed, 0 skipped");
+        let text = report.markdown();
+        for part in [
+            "| replies come from | 192.0.2.7:49001 |",
+            "| waits | shortened",
+            "| 12 | a pause of 20 s | failed | a \\| in it |",
+            "| change of bank | 7.500 ° | at most 5 | outside |",
+            "What to do: Send this report.",
+            "engaged -> failsafe",
+            "```toml\n[x-plane]\n```",
+        ] {
+            assert!(text.contains(part), "no {part} in:\n{text}");
+        }
     }
 }

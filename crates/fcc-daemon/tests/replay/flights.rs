@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use fcc_core::flight::{Autopilot, AutopilotCommand, Measurements};
 use fcc_core::framework::{LoopCommand, Message, Record, Sensor, SensorFault, State, Tick};
-use fcc_flight::config::{BuiltInSection, Config, GustsChoice};
+use fcc_flight::config::{BuiltInSection, Config, FailsafeSection, GustsChoice};
 use fcc_flight::flight::assemble;
 use fcc_flight::replay::replay;
 use fcc_replay::{Identity, Run, run};
@@ -42,6 +42,11 @@ pub(crate) fn rough() -> Config {
             seed: 7,
             ..BuiltInSection::default()
         }),
+        // A silent aircraft is lost as soon as a silent sensor.
+        failsafe: FailsafeSection {
+            all_silent_s: 0.25,
+            ..FailsafeSection::default()
+        },
         ..Config::default()
     }
 }

@@ -82,7 +82,7 @@ fn failsafe_and_back() {
             // One too short to matter, one that ends in time, one that does
             // not.
             silent: vec![300..=305, 400..=440, 600..=800],
-            commands: vec![(450, LoopCommand::Engage), (900, LoopCommand::Engage)],
+            commands: vec![(486, LoopCommand::Engage), (900, LoopCommand::Engage)],
             steps: 1_200,
             ..Happenings::default()
         },

@@ -89,6 +89,8 @@ fn config(rate_hz: u32) -> Config {
         ..Config::default()
     };
     config.tick.rate_hz = f64::from(rate_hz);
+    // A silent aircraft is lost as soon as a silent sensor.
+    config.failsafe.all_silent_s = 0.25;
     config
 }
 

@@ -21,8 +21,8 @@ pub(super) const BANK_DEG: f64 = 5.0;
 pub(super) const LIGHTS: Step = Step {
     number: 8,
     title: "every light switched: only the chosen switch engages",
-    action: "The check switches each generic light and the cockpit's lights on and off, then the \
-             chosen engage switch.",
+    action: "The check switches each generic light and the cockpit's lights on and off (afterwards \
+             they are off), then the chosen engage switch.",
     passes: "No light but the chosen one sets an override.",
     source: "an aircraft may use a generic light for one of its own",
     advice: "This aircraft connects the named light with the engage switch: choose another \
