@@ -97,7 +97,7 @@ def test_commands_are_carried_out_or_refused_with_the_reason(
             commander.set(airspeed_mps=50.0)
         # The altimeter can be set in every state.
         assert commander.set(altimeter_setting_pa=102_000.0) > tick
-        with pytest.raises(fcc.CommandError, match="altimeter.field_elevation_ft"):
+        with pytest.raises(fcc.CommandError, match=r"altimeter\.field_elevation_ft"):
             commander.set(height_m=300.0)
         assert command(fccd, instance, "set", "--altimeter-inhg", "30.12").returncode == 0
         engaged = commander.engage()
