@@ -9,7 +9,7 @@ use fcc_core::framework::{Controller, Flags, Notice};
 use crate::cockpit::{Cockpit, DT_S, SENSORS};
 
 /// Engaged on a simulator, in a turn to the right and a climb.
-fn manoeuvring() -> Cockpit {
+pub(crate) fn manoeuvring() -> Cockpit {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     for _ in 0..60 {
@@ -27,7 +27,7 @@ fn manoeuvring() -> Cockpit {
 
 /// Ticks of a turn by 5 °/s with a climb by 3 m/s; asserts that nothing is
 /// wrong.
-fn fly(cockpit: &mut Cockpit, ticks: u32) {
+pub(crate) fn fly(cockpit: &mut Cockpit, ticks: u32) {
     for _ in 0..ticks {
         move_on(cockpit);
         cockpit.step();
@@ -45,7 +45,7 @@ fn move_on(cockpit: &mut Cockpit) {
 
 /// Ticks without a datagram; in a freeze the aircraft stands still, in a cut it
 /// flies on.
-fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
+pub(crate) fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
     for _ in 0..ticks {
         if flies_on {
             move_on(cockpit);
@@ -58,13 +58,13 @@ fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
     }
 }
 
-fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
+pub(crate) fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
     let notice = cockpit.autopilot.notice()?;
     Some((notice.kind, notice.lasted_s()))
 }
 
 const STOOD_STILL: u8 = 1;
-const LINK_LOST: u8 = 2;
+pub(crate) const LINK_LOST: u8 = 2;
 
 /// To the last digit as if nothing had happened, whatever the length.
 #[test]
