@@ -29,6 +29,7 @@ pub(crate) struct Cockpit {
     pub(crate) period: Duration,
     /// The sensors' readings, stamped at each tick.
     pub(crate) feel: Feel,
+    pub(crate) rates: BodyRates,
     pub(crate) measurements: Measurements,
     pub(crate) silent: Flags,
     pub(crate) switch: Option<Switch>,
@@ -87,6 +88,7 @@ impl Cockpit {
             },
             period: Duration::from_millis(25),
             feel: LEVEL,
+            rates: BodyRates::default(),
             measurements: Measurements::default(),
             silent: Flags::NONE,
             switch: None,
@@ -137,7 +139,7 @@ impl Cockpit {
                 now,
             ),
             heading_rad: Reading::new(feel.heading_deg.to_radians(), now),
-            body_rates: Reading::new(BodyRates::default(), now),
+            body_rates: Reading::new(self.rates, now),
             specific_force: Reading::new(
                 SpecificForce {
                     z_mps2: -9.806_65,
@@ -223,6 +225,10 @@ impl Cockpit {
     pub(crate) fn act(&mut self) -> Surfaces {
         self.autopilot.guide(&self.tick, &self.measurements);
         self.autopilot.control(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn failsafe(&mut self) -> Surfaces {
+        self.autopilot.failsafe(&self.tick, &self.measurements)
     }
 
     pub(crate) fn steps(&mut self, count: u32) -> Surfaces {

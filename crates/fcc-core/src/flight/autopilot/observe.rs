@@ -6,7 +6,7 @@ use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
 use crate::flight::navigation::{FrozenDetector, plausibility_gate};
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Readings, Tick, Time};
+use crate::framework::{Flags, Readings, Tick, Time};
 
 impl Autopilot {
     /// Processes a tick's measurements.
@@ -58,7 +58,7 @@ impl Autopilot {
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
         let max_age = self.config.max_age;
         let Some(gap) = self.clock.gap() else {
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
             return;
         };
         // What arrives in this tick is later than all before.
@@ -67,14 +67,15 @@ impl Autopilot {
         if gap.settles_anew {
             // Nothing that was measured before says where the aircraft is now.
             self.accepted = Measurements::default();
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            self.distrusted = Flags::NONE;
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
         }
         self.accepted
             .each_time(&mut |taken| *taken = taken.postponed(gap.excused, latest));
         if gap.settles_anew {
             self.settle_anew(tick);
         } else {
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
         }
         if gap.ran_on {
             self.heading.lead_from(self.setpoints.roll_rad);
@@ -119,7 +120,9 @@ impl Autopilot {
     /// Starts anew with a plant that is another, or elsewhere.
     fn start_anew(&mut self, measured: &Measurements) {
         self.accepted = Measurements::default();
-        plausibility_gate(&mut self.accepted, measured, self.config.max_age);
+        self.distrusted = Flags::NONE;
+        let max_age = self.config.max_age;
+        plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
         self.watching_since = Time::NEVER;

@@ -119,7 +119,11 @@ impl VerticalChannel {
 
     /// Predicts over a time in which nothing was measured.
     pub(super) fn coast(&mut self, passed_s: f64) {
-        self.predict(0.0, false, passed_s);
+        self.state.altitude_m += self.state.climb_rate_mps * passed_s;
+        self.covariance.coast(passed_s);
+        if let Some(mark) = &mut self.mark {
+            mark.link.predict(false, passed_s);
+        }
     }
 
     /// Marks the present altitude.

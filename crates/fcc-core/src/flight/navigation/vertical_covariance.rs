@@ -105,6 +105,18 @@ impl VerticalCovariance {
         self.bb += self.bias_noise * dt_s;
     }
 
+    /// `passed_s` seconds pass in which nothing was measured, however many. The
+    /// climb rate's random walk has by then also moved the altitude: white
+    /// acceleration of density q adds q T³/3, q T²/2 and q T to the variances
+    /// (Bar-Shalom, Li and Kirubarajan 2001, section 6.2.2). Between two ticks
+    /// only the last of these matters.
+    pub(super) fn coast(&mut self, passed_s: f64) {
+        self.predict(false, passed_s);
+        let noise = UNFELT_NOISE * passed_s * passed_s;
+        self.hh += noise * passed_s / 3.0;
+        self.hv += noise / 2.0;
+    }
+
     /// Corrects by an altitude, `since_s` seconds after the previous one.
     pub(super) fn correct(&mut self, since_s: f64) -> Gains {
         let per_variance = 1.0 / (self.hh + ALTITUDE_NOISE / since_s);
@@ -203,6 +215,34 @@ mod tests {
         let slope = covariance.vv / (ALTITUDE_NOISE / DT_S) / (12.0 / (n * n * n * DT_S * DT_S));
         assert!((0.9..1.1).contains(&end), "{end}");
         assert!((0.9..1.1).contains(&slope), "{slope}");
+    }
+
+    /// After a gap the altitude that returns says what the mean climb rate was,
+    /// and the climb rate at the end is 3/2 of the change of that: a gain of
+    /// 3/(2T) if it was known well before. The same in one step or in many.
+    #[test]
+    fn an_altitude_after_a_gap_corrects_by_the_mean_climb_rate() {
+        for gap_s in [3.0, 12.0, 60.0] {
+            let mut covariance = VerticalCovariance::new(0.7);
+            for _ in 0..4_000 {
+                covariance.predict(true, DT_S);
+                covariance.correct(DT_S);
+            }
+            let mut in_steps = covariance;
+            covariance.coast(gap_s);
+            for _ in 0..600 {
+                in_steps.coast(gap_s / 600.0);
+            }
+            for (one, many) in [
+                (covariance.hh, in_steps.hh),
+                (covariance.hv, in_steps.hv),
+                (covariance.vv, in_steps.vv),
+            ] {
+                assert!((one / many - 1.0).abs() < 1e-9, "{one} or {many}");
+            }
+            let gain = covariance.correct(DT_S).climb_rate_per_s * gap_s;
+            assert!((1.35..1.55).contains(&gain), "{gain} after {gap_s} s");
+        }
     }
 
     #[test]
