@@ -6,6 +6,7 @@ mod altimeter;
 mod cockpit;
 mod faults;
 mod flying;
+mod link_loss;
 mod other_control;
 mod resuming;
 mod silence;

@@ -4,7 +4,7 @@
 use super::Autopilot;
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
-use crate::flight::navigation::{FrozenDetector, plausibility_gate};
+use crate::flight::navigation::{FrozenDetector, airspeed_can_follow, plausibility_gate};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Readings, Tick, Time};
 
@@ -65,9 +65,15 @@ impl Autopilot {
         let latest = self.before;
         self.navigation.postpone(gap.excused, latest);
         if gap.settles_anew {
-            // Nothing that was measured before says where the aircraft is now.
+            // Nothing that was measured before says where the aircraft is now,
+            // but how fast it can be.
+            let airspeed = self.accepted.airspeed_mps;
             self.accepted = Measurements::default();
             plausibility_gate(&mut self.accepted, measured, max_age);
+            let passed_s = self.clock.passed_s();
+            if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
+                self.accepted.airspeed_mps = airspeed;
+            }
         }
         self.accepted
             .each_time(&mut |taken| *taken = taken.postponed(gap.excused, latest));
