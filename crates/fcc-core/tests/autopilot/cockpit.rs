@@ -28,6 +28,7 @@ pub(crate) struct Cockpit {
     pub(crate) tick: Tick,
     /// The sensors' readings, stamped at each tick.
     pub(crate) feel: Feel,
+    pub(crate) rates: BodyRates,
     pub(crate) measurements: Measurements,
     pub(crate) silent: Flags,
     pub(crate) switch: Option<Switch>,
@@ -83,6 +84,7 @@ impl Cockpit {
                 ..Tick::default()
             },
             feel: LEVEL,
+            rates: BodyRates::default(),
             measurements: Measurements::default(),
             silent: Flags::NONE,
             switch: None,
@@ -131,7 +133,7 @@ impl Cockpit {
                 now,
             ),
             heading_rad: Reading::new(feel.heading_deg.to_radians(), now),
-            body_rates: Reading::new(BodyRates::default(), now),
+            body_rates: Reading::new(self.rates, now),
             specific_force: Reading::new(
                 SpecificForce {
                     z_mps2: -9.806_65,
@@ -219,6 +221,10 @@ impl Cockpit {
     pub(crate) fn act(&mut self) -> Surfaces {
         self.autopilot.guide(&self.tick, &self.measurements);
         self.autopilot.control(&self.tick, &self.measurements)
+    }
+
+    pub(crate) fn failsafe(&mut self) -> Surfaces {
+        self.autopilot.failsafe(&self.tick, &self.measurements)
     }
 
     pub(crate) fn steps(&mut self, count: u32) -> Surfaces {

@@ -1,5 +1,7 @@
 //! The autopilot's faults and its failsafe.
 
+use core::time::Duration;
+
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, Surfaces, flags};
 use fcc_core::framework::{Controller, Flags, Switch};
@@ -163,13 +165,116 @@ fn failsafe_levels_the_wings_while_the_attitude_is_known() {
     }
     let out = (0..8).fold(Surfaces::default(), |_, _| {
         cockpit.observe();
-        cockpit
-            .autopilot
-            .failsafe(&cockpit.tick, &cockpit.measurements)
+        cockpit.failsafe()
     });
     assert!(out.aileron < STANDING.aileron - 0.05, "{}", out.aileron);
     let trim = cockpit.autopilot.config().airspeed.trim_throttle;
     assert!((out.throttle - trim).abs() < 1e-12);
+}
+
+/// A step that lasts as long as the failsafe: flown by its value, the aircraft
+/// would bank as far as the reading is wrong.
+#[test]
+fn failsafe_does_not_believe_what_was_rejected() {
+    for (name, wrong) in [
+        (
+            "bank",
+            Feel {
+                roll_deg: 50.0,
+                ..LEVEL
+            },
+        ),
+        (
+            "airspeed",
+            Feel {
+                airspeed_kt: 150.0,
+                ..LEVEL
+            },
+        ),
+        (
+            "altitude",
+            Feel {
+                altitude_m: 1_200.0,
+                ..LEVEL
+            },
+        ),
+    ] {
+        let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
+        let before = cockpit.step();
+        cockpit.feel = wrong;
+        cockpit.steps(11);
+        let cause = cockpit.faults();
+        assert!(cause.contains(flags::REJECTED), "{name}: {cause:?}");
+        for _ in 0..200 {
+            cockpit.observe();
+            let out = cockpit.failsafe();
+            assert!(
+                (out.aileron - before.aileron).abs() < 0.01,
+                "{name}: {out:?}"
+            );
+            assert!(
+                (out.elevator - before.elevator).abs() < 0.01,
+                "{name}: {out:?}"
+            );
+            assert!(cockpit.faults().contains(cause), "{name}");
+        }
+        // It ends: the reading may have been right, and the old value wrong.
+        cockpit.autopilot.disengage();
+        cockpit.observe();
+        assert_eq!(cockpit.engage_inhibits(), Flags::NONE, "{name}");
+    }
+}
+
+#[test]
+fn failsafe_uses_a_rejected_reading_again_when_it_returns_to_where_it_was() {
+    let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
+    cockpit.step();
+    cockpit.feel.roll_deg = 50.0;
+    cockpit.steps(11);
+    for _ in 0..80 {
+        cockpit.observe();
+        cockpit.failsafe();
+    }
+    cockpit.feel.roll_deg = 10.0;
+    let out = (0..8).fold(Surfaces::default(), |_, _| {
+        cockpit.observe();
+        cockpit.failsafe()
+    });
+    assert!(out.aileron < STANDING.aileron - 0.05, "{}", out.aileron);
+}
+
+/// The gyroscopes freeze in a roll; the loops integrate the difference for as
+/// long as it takes to notice.
+#[test]
+fn failsafe_with_frozen_rates_keeps_the_trim_from_before() {
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
+    let config = AutopilotConfig {
+        frozen_after: Duration::from_secs(2),
+        ..*cockpit.autopilot.config()
+    };
+    cockpit.autopilot = Autopilot::new(config);
+    for _ in 0..80 {
+        cockpit.rates.roll_radps = 1e-4 * f64::from(cockpit.tick.number as u32 % 2);
+        cockpit.observe();
+    }
+    cockpit
+        .autopilot
+        .engage(&cockpit.tick, &cockpit.measurements);
+    cockpit.rates.roll_radps = 0.05;
+    // The bank changes by 8°, and the rates say 0.05 rad/s all the time.
+    let mut last = Surfaces::default();
+    for n in 0..200 {
+        cockpit.feel.roll_deg = (8.0 * f64::from(n) / 40.0).min(8.0) * f64::from(n % 2 + 9) / 10.0;
+        last = cockpit.step();
+        if cockpit.faults().contains(flags::FROZEN_BODY_RATES) {
+            break;
+        }
+    }
+    assert!(cockpit.faults().contains(flags::FROZEN_BODY_RATES));
+    assert!((last.aileron - STANDING.aileron).abs() > 0.05, "{last:?}");
+    let out = cockpit.failsafe();
+    assert!((out.aileron - STANDING.aileron).abs() < 0.01, "{out:?}");
+    assert!((out.elevator - STANDING.elevator).abs() < 0.01, "{out:?}");
 }
 
 #[test]
@@ -179,9 +284,7 @@ fn failsafe_without_attitude_keeps_the_trim() {
     cockpit.silent = SENSORS.into_iter().fold(Flags::NONE, |all, one| all | one);
     let out = (0..40).fold(Surfaces::default(), |_, _| {
         cockpit.observe();
-        cockpit
-            .autopilot
-            .failsafe(&cockpit.tick, &cockpit.measurements)
+        cockpit.failsafe()
     });
     assert!((out.elevator - STANDING.elevator).abs() < 0.01, "{out:?}");
     assert!((out.aileron - STANDING.aileron).abs() < 0.01, "{out:?}");
@@ -237,9 +340,7 @@ fn failsafe_flies_level_whatever_the_pitch_was() {
     for _ in 0..400 {
         cockpit.feel.altitude_m += 5.0 * DT_S;
         cockpit.observe();
-        cockpit
-            .autopilot
-            .failsafe(&cockpit.tick, &cockpit.measurements);
+        cockpit.failsafe();
     }
     let aims = cockpit.autopilot.setpoints();
     assert_eq!(aims.climb_rate_mps, 0.0);

@@ -1,16 +1,35 @@
 //! The outputs of the failsafe.
 
 use super::{Autopilot, flags};
-use crate::flight::{Measurements, Surfaces};
+use crate::flight::{BodyRates, Measurements, Surfaces};
 use crate::framework::Time;
 
+/// The trims that the loops had found when the body rates last changed: with
+/// rates that no longer change, the loops' integrals run away.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct KeptTrims {
+    pub(super) found_with: BodyRates,
+    trims: Surfaces,
+}
+
 impl Autopilot {
+    /// Keeps the present trims.
+    pub(super) fn keep_trims(&mut self) {
+        self.kept_trims = KeptTrims {
+            found_with: self.accepted.body_rates.value,
+            trims: self.trims(),
+        };
+    }
+
     /// Wings level while the attitude is known, level flight while the climb
     /// rate is; otherwise the trims that the loops had found; trim throttle,
     /// idle while thrust is reversed. A silent plant keeps its throttle: it may
-    /// return with another aircraft.
+    /// return with another aircraft. What was rejected as implausible is not
+    /// believed again while the failsafe lasts, however long it is repeated.
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
-        let unusable = flags::unusable(self.stale(now), self.frozen());
+        self.distrusted |= self.rejected(measured);
+        let frozen = self.frozen();
+        let unusable = flags::unusable(self.stale(now), frozen);
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
         let throttle = if self.is_silent(now) {
@@ -22,10 +41,12 @@ impl Autopilot {
         };
         if unusable.intersects(flags::ATTITUDE | flags::BODY_RATES) {
             self.setpoints.pitch_rad = 0.0;
-            return Surfaces {
-                throttle,
-                ..self.trims()
+            let trims = if frozen.contains(flags::FROZEN_BODY_RATES) {
+                self.kept_trims.trims
+            } else {
+                self.trims()
             };
+            return Surfaces { throttle, ..trims };
         }
         let mut estimate = *self.navigation.estimate();
         if unusable.contains(flags::SPECIFIC_FORCE) {

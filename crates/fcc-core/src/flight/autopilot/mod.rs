@@ -21,6 +21,7 @@ use libm::cos;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use failsafe::KeptTrims;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -100,6 +101,9 @@ pub struct Autopilot {
     renewed_since: Time,
     /// The last outputs.
     last: Surfaces,
+    kept_trims: KeptTrims,
+    /// The quantities that were rejected as implausible in this failsafe.
+    distrusted: Flags,
 }
 
 impl Autopilot {
@@ -124,6 +128,8 @@ impl Autopilot {
             watching_since: Time::NEVER,
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
+            kept_trims: KeptTrims::default(),
+            distrusted: Flags::NONE,
             config,
         }
     }
@@ -168,6 +174,7 @@ impl Autopilot {
         self.altitude.engage(standing.elevator, &estimate, schedule);
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.keep_trims();
     }
 }
 
@@ -257,6 +264,7 @@ impl Controller for Autopilot {
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
+        self.distrusted = Flags::NONE;
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -308,6 +316,9 @@ impl Controller for Autopilot {
         let estimate = *self.navigation.estimate();
         let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
         let envelope = self.config.envelope;
+        if self.accepted.body_rates.value != self.kept_trims.found_with {
+            self.keep_trims();
+        }
         let to = self.targets;
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);
         let lateral = heading.step(to.heading_rad, &estimate, &envelope, schedule, dt_s);
@@ -340,6 +351,7 @@ impl Controller for Autopilot {
     }
 
     fn disengage(&mut self) {
+        self.distrusted = Flags::NONE;
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.setpoints = Setpoints::default();
@@ -372,6 +384,7 @@ impl Controller for Autopilot {
             &mut self.accepted.clone(),
             measurements,
             self.config.max_age,
+            self.distrusted,
         )
     }
 

@@ -1,12 +1,12 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
-use super::Autopilot;
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
+use super::{Autopilot, flags};
 use crate::flight::navigation::{FrozenDetector, airspeed_can_follow, plausibility_gate};
 use crate::flight::{Measurements, PlantState};
-use crate::framework::{Readings, Tick, Time};
+use crate::framework::{Flags, Readings, Tick, Time};
 
 impl Autopilot {
     /// Processes a tick's measurements.
@@ -58,7 +58,7 @@ impl Autopilot {
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
         let max_age = self.config.max_age;
         let Some(gap) = self.clock.gap() else {
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
             return;
         };
         // What arrives in this tick is later than all before.
@@ -69,10 +69,13 @@ impl Autopilot {
             // but how fast it can be.
             let airspeed = self.accepted.airspeed_mps;
             self.accepted = Measurements::default();
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            let distrusted = core::mem::take(&mut self.distrusted);
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
             let passed_s = self.clock.passed_s();
             if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
                 self.accepted.airspeed_mps = airspeed;
+                let was_distrusted = distrusted.contains(flags::AIRSPEED);
+                self.distrusted = Flags::NONE.with(flags::AIRSPEED, was_distrusted);
             }
         }
         self.accepted
@@ -80,7 +83,7 @@ impl Autopilot {
         if gap.settles_anew {
             self.settle_anew(tick);
         } else {
-            plausibility_gate(&mut self.accepted, measured, max_age);
+            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
         }
         if gap.ran_on {
             self.heading.lead_from(self.setpoints.roll_rad);
@@ -125,7 +128,9 @@ impl Autopilot {
     /// Starts anew with a plant that is another, or elsewhere.
     fn start_anew(&mut self, measured: &Measurements) {
         self.accepted = Measurements::default();
-        plausibility_gate(&mut self.accepted, measured, self.config.max_age);
+        self.distrusted = Flags::NONE;
+        let max_age = self.config.max_age;
+        plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
         self.watching_since = Time::NEVER;

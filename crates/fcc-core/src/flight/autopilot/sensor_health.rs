@@ -74,6 +74,13 @@ impl Autopilot {
         })
     }
 
+    /// The quantities rejected as implausible for so long that the accepted
+    /// readings are too old although the raw ones are not.
+    pub(super) fn rejected(&self, measurements: &Measurements) -> Flags {
+        let raw = self.too_old(measurements);
+        Flags::from_bits(self.too_old(&self.accepted).bits() & !raw.bits())
+    }
+
     /// The faults of an engaged flight. A silent plant is waited for.
     pub(super) fn unsafe_to_fly(&self, now: Time, measurements: &Measurements) -> Flags {
         let lost = self.silence(now) > self.config.max_silence.max(self.config.max_age);
@@ -89,10 +96,7 @@ impl Autopilot {
     /// old.
     pub(super) fn unsafe_with(&self, stale: Flags, measurements: &Measurements) -> Flags {
         let switch = self.accepted.engage_switch;
-        // Accepted readings that are too old although the raw ones are not:
-        // these were rejected as implausible.
-        let raw = self.too_old(measurements);
-        let rejected = self.too_old(&self.accepted).bits() & !raw.bits() != 0;
+        let rejected = !self.rejected(measurements).is_empty();
         (stale | self.frozen() | self.is_elsewhere())
             .with(flags::REJECTED, rejected)
             .with(flags::PLANT_STALLED, self.clock.is_ignored())

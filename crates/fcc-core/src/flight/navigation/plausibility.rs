@@ -92,17 +92,25 @@ impl PlausibilityLimit {
 
 /// Copies the plausible values from `new` into `good`, and returns which they
 /// are: a bit for each, in the order of the measurements. Readings are too old
-/// at `max_age`.
+/// at `max_age`. Of `distrusted`, by the same bits, only a value that can follow
+/// the last good one is accepted, however long that was ago.
 pub(crate) fn plausibility_gate(
     good: &mut Measurements,
     new: &Measurements,
     max_age: Duration,
+    distrusted: Flags,
 ) -> Flags {
-    let convinced = ACCEPTED_AFTER * max_age;
+    let convinced = |bit: u32| {
+        if distrusted.contains(Flags::bit(bit)) {
+            Duration::MAX
+        } else {
+            ACCEPTED_AFTER * max_age
+        }
+    };
     let attitude = take(
         &mut good.attitude,
         &new.attitude,
-        convinced,
+        convinced(0),
         |a: &Attitude| within(a.pitch_rad, MAX_ANGLE_RAD) && within(a.roll_rad, MAX_ANGLE_RAD),
         |a, b, gap_s| {
             ATTITUDE_RAD.holds(b.pitch_rad - a.pitch_rad, gap_s)
@@ -112,21 +120,21 @@ pub(crate) fn plausibility_gate(
     let heading = take(
         &mut good.heading_rad,
         &new.heading_rad,
-        convinced,
+        convinced(1),
         |rad| within(*rad, MAX_ANGLE_RAD),
         |a, b, gap_s| HEADING_RAD.holds(wrap_pi(b - a), gap_s),
     );
     let rates = take(
         &mut good.body_rates,
         &new.body_rates,
-        convinced,
+        convinced(2),
         |r| turning(r).iter().all(|rate| within(*rate, MAX_RATE_RADPS)),
         |a, b, gap_s| near(turning(a), turning(b), &RATES_RADPS, gap_s),
     );
     let force = take(
         &mut good.specific_force,
         &new.specific_force,
-        convinced,
+        convinced(3),
         |f| {
             let within = |force: &f64| within(*force, MAX_SPECIFIC_FORCE_MPS2);
             forces(f).iter().all(within)
@@ -136,14 +144,14 @@ pub(crate) fn plausibility_gate(
     let airspeed = take(
         &mut good.airspeed_mps,
         &new.airspeed_mps,
-        convinced,
+        convinced(4),
         |mps| within(*mps, MAX_AIRSPEED_MPS) && !airspeed_is_suspect(new),
         |a, b, gap_s| AIRSPEED_MPS.holds(b - a, gap_s),
     );
     let altitude = take(
         &mut good.altitude_m,
         &new.altitude_m,
-        convinced,
+        convinced(5),
         |m| ALTITUDE_M.contains(m),
         |a, b, gap_s| HEIGHT_M.holds(b - a, gap_s),
     );
@@ -269,11 +277,11 @@ mod tests {
     fn an_implausible_value_leaves_the_last_good_one() {
         let mut good = Measurements::default();
         let mut new = flying(ms(1));
-        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         for bad in [f64::NAN, f64::INFINITY, -1e9, 1e9] {
             new.airspeed_mps = Reading::new(bad, ms(2));
             new.altitude_m = Reading::new(bad, ms(2));
-            plausibility_gate(&mut good, &new, MAX_AGE);
+            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
             assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(1)));
             assert_eq!(good.altitude_m, Reading::new(914.0, ms(1)));
         }
@@ -285,13 +293,13 @@ mod tests {
         for at_ms in (25..1_000).step_by(25) {
             let mut new = flying(ms(at_ms));
             new.altitude_m.value = 1_200.0;
-            plausibility_gate(&mut good, &new, MAX_AGE);
+            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
             assert_eq!(good.altitude_m, Reading::new(914.0, ms(0)), "{at_ms} ms");
             assert_eq!(good.airspeed_mps.taken, ms(at_ms));
         }
         let mut new = flying(ms(1_000));
         new.altitude_m.value = 1_200.0;
-        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         assert_eq!(good.altitude_m, new.altitude_m);
     }
 
@@ -299,12 +307,15 @@ mod tests {
     fn which_values_are_plausible_is_returned_in_the_order_of_the_measurements() {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
-        assert_eq!(plausibility_gate(&mut good, &new, MAX_AGE).bits(), 0x3fff);
+        assert_eq!(
+            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE).bits(),
+            0x3fff
+        );
         // 30 m in 25 ms, and 400 kt more.
         new.altitude_m = Reading::new(944.0, ms(50));
         new.airspeed_mps = Reading::new(257.0, ms(50));
         new.plant.value.time_s = f64::NAN;
-        let plausible = plausibility_gate(&mut good, &new, MAX_AGE);
+        let plausible = plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         let rejected = (0..14)
             .filter(|bit| !plausible.contains(Flags::bit(*bit)))
             .map(|bit| <Measurements as Readings>::NAMES[bit as usize]);
@@ -316,8 +327,8 @@ mod tests {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
         new.airspeed_mps.value = 90.0;
-        plausibility_gate(&mut good, &new, MAX_AGE);
-        plausibility_gate(&mut good, &flying(ms(50)), MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
+        plausibility_gate(&mut good, &flying(ms(50)), MAX_AGE, Flags::NONE);
         assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(50)));
     }
 
@@ -332,11 +343,11 @@ mod tests {
             },
             ms(25),
         );
-        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         assert_eq!(good.airspeed_mps.taken, ms(0));
         assert_eq!(good.altitude_m.taken, ms(25));
         new.airspeed_mps.source = 1;
-        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         assert_eq!(good.airspeed_mps.taken, ms(25));
     }
 
@@ -345,7 +356,7 @@ mod tests {
         let mut good = flying(ms(0));
         let mut new = flying(ms(25));
         new.heading_rad.value = 0.05;
-        plausibility_gate(&mut good, &new, MAX_AGE);
+        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
         assert_eq!(good.heading_rad, new.heading_rad);
     }
 }
