@@ -3,7 +3,7 @@
 use fcc_core::flight::Autopilot;
 use fcc_core::units::{FOOT_M, HECTOPASCAL_PA, INHG_PA, KNOT_MPS};
 use fcc_live::{Command, CommandError, Commander, PlantLimits};
-use fcc_telemetry::units::AVIATION;
+use fcc_telemetry::units::{AVIATION, Shown};
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -24,10 +24,11 @@ struct Sent {
 /// Sends a command and prints the result.
 pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     let command = Command::from(&args.what);
+    let units = units(&args.what);
     // By the limits for any aircraft; the daemon knows those of its own.
     command
         .for_the_loop::<Autopilot>(&PlantLimits::new())
-        .map_err(|error| Failure::of(Exit::Usage, error.text_in(AVIATION)))?;
+        .map_err(|error| Failure::of(Exit::Usage, error.text_in(&units)))?;
     let result = Commander::open(&args.instance).and_then(|mut daemon| daemon.command(&command));
     let exit = match &result {
         Ok(_) => Exit::Success,
@@ -36,7 +37,7 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     };
     // In the units of the command line.
     let result = result.map_err(|error| match error {
-        CommandError::InvalidCommand(why) => format!("refused: {}", why.text_in(AVIATION)),
+        CommandError::InvalidCommand(why) => format!("refused: {}", why.text_in(&units)),
         other => other.to_string(),
     });
     if args.json {
@@ -58,6 +59,20 @@ pub(super) fn command(args: &CommandArgs) -> Result<Exit, Failure> {
     // A command that was carried out is a success, even if the result cannot be
     // printed.
     Ok(exit)
+}
+
+/// An altimeter setting in inches of mercury.
+const INHG: Shown = Shown {
+    end: "_pa",
+    unit: "inHg",
+    scale: 1.0 / INHG_PA,
+};
+
+/// The units of the command line, for messages.
+fn units(what: &CommandChoice) -> Vec<Shown> {
+    let is_inhg = matches!(what, CommandChoice::Set(set) if set.altimeter_inhg.is_some());
+    let own = is_inhg.then_some(INHG);
+    own.into_iter().chain(AVIATION.iter().copied()).collect()
 }
 
 impl From<&CommandChoice> for Command {

@@ -169,6 +169,34 @@ fn every_command_reports_an_error_as_json() {
     }
 }
 
+/// The report, and the same as JSON beside it, are two files, and neither is
+/// the configuration.
+#[test]
+fn a_report_overwrites_neither_the_configuration_nor_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    for config in ["fly.toml", "fly.json"] {
+        std::fs::write(folder.path().join(config), "[x-plane]\n").unwrap();
+    }
+    std::os::unix::fs::symlink("fly.toml", folder.path().join("link.md")).unwrap();
+    for (config, report, why) in [
+        ("fly.toml", "fly.toml", "overwrite the configuration"),
+        ("fly.toml", "./fly.toml", "overwrite the configuration"),
+        ("fly.toml", "link.md", "overwrite the configuration"),
+        // The report as JSON.
+        ("fly.json", "fly.md", "overwrite the configuration"),
+        ("fly.toml", "x.json", "a name of its own"),
+        ("fly.toml", "x.files", "a name of its own"),
+    ] {
+        let words = ["x-plane", "check", "--yes", "--config", config, "--report"];
+        let ended = fccd(folder.path(), &words).arg(report).output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!(ended.status.code(), Some(2), "{report}: {said}");
+        assert!(said.contains(why), "{report}: {said}");
+        let kept = std::fs::read_to_string(folder.path().join(config)).unwrap();
+        assert_eq!(kept, "[x-plane]\n", "{report}");
+    }
+}
+
 #[test]
 fn a_list_as_json_contains_files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();

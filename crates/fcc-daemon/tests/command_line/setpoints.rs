@@ -45,7 +45,11 @@ fn set_points_beyond_the_limits_are_refused_in_the_units_given() {
     for (words, said) in [
         (
             ["--altimeter-inhg", "1013"],
-            "fccd: altimeter setting is 34304.12 hPa: choose 940 to 1060 hPa",
+            "fccd: altimeter setting is 1013 inHg: choose 27.76 to 31.3 inHg",
+        ),
+        (
+            ["--altimeter-hpa", "29.92"],
+            "fccd: altimeter setting is 29.92 hPa: choose 940 to 1060 hPa",
         ),
         (
             ["--pressure-altitude-ft", "1e6"],

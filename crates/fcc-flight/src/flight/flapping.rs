@@ -15,7 +15,8 @@ const OVER_S: f64 = 10.0;
 #[derive(Debug, Default)]
 pub struct Flapping(Vec<FaultSource>);
 
-/// A sensor, an actuator, readings that change their source, or conditions.
+/// A sensor, an actuator, readings that change their source, conditions, or
+/// what is noticed once it is over.
 #[derive(Debug)]
 struct FaultSource {
     name: String,
@@ -36,12 +37,15 @@ impl Flapping {
                 | EventKind::ActuatorRecovered { .. }
                 | EventKind::SourceChanged(_)
                 | EventKind::ConditionsChanged { .. }
+                | EventKind::Noticed(_)
         ) {
             return true;
         }
         let name = match kind {
             // Each condition by itself.
             EventKind::ConditionsChanged { .. } => line,
+            // All of a kind: `link lost for 0.4 s`.
+            EventKind::Noticed(_) => line.split_once(" for ").map_or(line, |(name, _)| name),
             _ => line.split_once(": ").map_or(line, |(name, _)| name),
         };
         let Some(part) = self.0.iter_mut().find(|part| part.name == name) else {
@@ -88,7 +92,7 @@ impl Flapping {
 
 #[cfg(test)]
 mod tests {
-    use fcc_core::framework::SensorFault;
+    use fcc_core::framework::{Notice, SensorFault};
 
     use super::*;
 
@@ -134,5 +138,30 @@ mod tests {
             );
         }
         assert_eq!(flapping.summaries(61.0, true).count(), 1);
+    }
+    #[test]
+    fn interruptions_of_different_lengths_are_counted_together() {
+        let mut flapping = Flapping::default();
+        let mut shown = 0;
+        // A cut link of another length in each second.
+        for second in 0..20_u32 {
+            let lasted_ns = 300_000_000 + u64::from(second) * 10_000_000;
+            let kind = EventKind::Noticed(Notice { kind: 2, lasted_ns });
+            let line = format!("link lost for 0.{} s", 30 + second);
+            shown += usize::from(flapping.passes::<()>(&kind, &line, second.into()));
+        }
+        assert_eq!(shown, 4);
+        // Another kind is shown at once.
+        let stood_still = EventKind::Noticed(Notice {
+            kind: 1,
+            lasted_ns: 400_000_000,
+        });
+        let line = "simulator stood still for 0.4 s";
+        assert!(flapping.passes::<()>(&stood_still, line, 20.0));
+        let summary: Vec<_> = flapping.summaries(20.0, false).collect();
+        assert_eq!(
+            summary,
+            ["link lost for 0.49 s (the last of 16 such events in 20 s)"]
+        );
     }
 }

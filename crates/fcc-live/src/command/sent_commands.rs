@@ -13,6 +13,8 @@ use super::{Command, Commandable, InvalidCommand, PendingCommand, PlantLimits, V
 pub struct SentCommands<C: Commandable> {
     limits: PlantLimits,
     waiting: VecDeque<Waiting<C::Command>>,
+    /// After the last tick; none before the first.
+    state: Option<State>,
 }
 
 #[derive(Debug)]
@@ -32,6 +34,7 @@ impl<C: Commandable> SentCommands<C> {
         Self {
             limits,
             waiting: VecDeque::new(),
+            state: None,
         }
     }
 
@@ -49,6 +52,14 @@ impl<C: Commandable> SentCommands<C> {
             }
             Err(invalid) => return Some((asked.id, Verdict::Refused(invalid.to_string()))),
         };
+        // Before any part of it is carried out.
+        if let Some(state) = self.state.filter(|state| *state != State::Engaged)
+            && matches!(asked.command, Command::Set(_))
+            && asked.command.needs_control::<C>()
+            && !self.is_to_be_engaged()
+        {
+            return Some((asked.id, Verdict::Refused(only_engaged(state))));
+        }
         for command in &unread {
             if let Err(why) = send(*command) {
                 return Some((asked.id, Verdict::Refused(why)));
@@ -61,6 +72,12 @@ impl<C: Commandable> SentCommands<C> {
             refusal: None,
         });
         None
+    }
+
+    /// Whether a command to engage was sent whose outcome is not known yet.
+    fn is_to_be_engaged(&self) -> bool {
+        let mut waiting = self.waiting.iter();
+        waiting.any(|waiting| waiting.asked.command == Command::Engage)
     }
 
     /// Processes an event of the loop; it comes before the record of its tick.
@@ -95,6 +112,7 @@ impl<C: Commandable> SentCommands<C> {
     /// Processes the state after a tick; returns the next verdict that it
     /// permits. Call it again until there is none.
     pub fn verdict(&mut self, now: u64, state: State) -> Option<(u64, Verdict)> {
+        self.state = Some(state);
         let first = self.waiting.front()?;
         let tick = first.read_in.filter(|tick| *tick <= now)?;
         let waiting = self.waiting.pop_front()?;
@@ -111,17 +129,17 @@ impl<C: Commandable> SentCommands<C> {
                 waiting
                     .refusal
                     .unwrap_or_else(|| match waiting.asked.command {
-                        Command::Set(_) => {
-                            format!(
-                                "the state is {state}: set points are accepted only while engaged"
-                            )
-                        }
+                        Command::Set(_) => only_engaged(state),
                         _ => format!("the state is {state}"),
                     }),
             )
         };
         Some((waiting.asked.id, verdict))
     }
+}
+
+fn only_engaged(state: State) -> String {
+    format!("the state is {state}: set points are accepted only while engaged")
 }
 
 #[cfg(all(test, feature = "flight"))]
@@ -219,6 +237,32 @@ mod tests {
             words.contains("standby") && words.contains("while engaged"),
             "{words}"
         );
+    }
+
+    #[test]
+    fn of_a_command_that_is_refused_no_part_is_sent() {
+        let mut commands = commands();
+        let both = || Command::set([("altimeter_setting_pa", 103_300.0), ("altitude_m", 900.0)]);
+        assert_eq!(commands.verdict(1, State::Standby), None);
+        let mut parts = 0;
+        let mut ask = |commands: &mut SentCommands<Autopilot>, id, command| {
+            let sent = commands.send(PendingCommand { id, command }, |_| {
+                parts += 1;
+                Ok(())
+            });
+            (sent, parts)
+        };
+        let (Some((1, Verdict::Refused(words))), 0) = ask(&mut commands, 1, both()) else {
+            panic!("not refused, or sent");
+        };
+        assert!(words.contains("while engaged"), "{words}");
+        // Once a command to engage was sent, or the loop is engaged, it is sent.
+        assert_eq!(ask(&mut commands, 2, Command::Engage), (None, 1));
+        assert_eq!(ask(&mut commands, 3, both()), (None, 3));
+        commands.event(&event(5, EventKind::CommandReceived(LoopCommand::Engage)));
+        let engaged = Some((2, Verdict::CarriedOut { tick: 5 }));
+        assert_eq!(commands.verdict(5, State::Engaged), engaged);
+        assert_eq!(ask(&mut commands, 4, both()), (None, 5));
     }
 
     #[test]

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, IsTerminal};
-use std::path::Path;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
 
 use fcc_xplane_check::{Report, Request, check as carry_out};
 
@@ -15,7 +16,8 @@ use crate::output;
 
 /// Checks `fccd` against a running X-Plane.
 pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
-    let request = request(&args.connection, args.report.with_extension("files"))?;
+    let files = ReportFiles::of(&args.report, args.connection.config.as_deref())?;
+    let request = request(&args.connection, files.folder.clone())?;
     if !args.yes && !io::stdin().is_terminal() {
         return Err(Failure::usage(
             "fccd: a person is needed, and standard input is no terminal: run it in one, or \
@@ -32,20 +34,65 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
     let result = carry_out(request, &mut terminal);
     drop(terminal);
     let report = result.map_err(|error| not_begun(&error))?;
-    Ok(finish(&report, &args.report, args.json))
+    Ok(finish(&report, &files, args.json))
+}
+
+/// Where the report is written, and the files of the flights.
+struct ReportFiles {
+    markdown: PathBuf,
+    json: PathBuf,
+    folder: PathBuf,
+}
+
+impl ReportFiles {
+    /// Beside the report in Markdown, if these are three names and none is that
+    /// of the configuration, which would be overwritten.
+    fn of(report: &Path, config: Option<&Path>) -> Result<Self, Failure> {
+        let files = Self {
+            markdown: report.to_owned(),
+            json: report.with_extension("json"),
+            folder: report.with_extension("files"),
+        };
+        let wrong = |why: &str| {
+            let report = report.display();
+            Err(Failure::usage(format_args!(
+                "fccd: --report {report}: {why}; give a name such as x-plane-check.md"
+            )))
+        };
+        if files.json == files.markdown || files.folder == files.markdown {
+            return wrong(
+                "the report in Markdown needs a name of its own, beside the endings .json and \
+                 .files",
+            );
+        }
+        let is_config = |file: &Path| config.is_some_and(|config| is_same_file(file, config));
+        if is_config(&files.markdown) || is_config(&files.json) {
+            return wrong("the report would overwrite the configuration");
+        }
+        Ok(files)
+    }
+}
+
+/// Whether both names lead to one file, also over a link.
+fn is_same_file(one: &Path, other: &Path) -> bool {
+    let identity = |path| {
+        let file = fs::metadata(path).ok()?;
+        Some((file.dev(), file.ino()))
+    };
+    identity(one).is_some_and(|one| identity(other) == Some(one))
 }
 
 /// Writes the report and prints the summary.
-fn finish(report: &Report, file: &Path, json: bool) -> Exit {
+fn finish(report: &Report, files: &ReportFiles, json: bool) -> Exit {
     let exit = if report.is_passed() {
         Exit::Success
     } else {
         Exit::StepFailed
     };
-    let beside = file.with_extension("json");
+    let (file, beside) = (&files.markdown, &files.json);
     let written = serde_json::to_string_pretty(report)
         .map_err(io::Error::other)
-        .and_then(|text| fs::write(&beside, text + "\n"))
+        .and_then(|text| fs::write(beside, text + "\n"))
         .and_then(|()| fs::write(file, report.markdown()));
     if let Err(error) = &written {
         output::message(format!("fccd: {}: {error}", file.display()));
