@@ -3,7 +3,9 @@
 #![cfg(feature = "flight")]
 
 mod altimeter;
+mod clocks;
 mod cockpit;
+mod event_texts;
 mod faults;
 mod flying;
 mod link_loss;

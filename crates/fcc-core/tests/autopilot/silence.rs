@@ -58,13 +58,13 @@ pub(crate) fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
     }
 }
 
-fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
+pub(crate) fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
     let notice = cockpit.autopilot.notice()?;
     Some((notice.kind, notice.lasted_s()))
 }
 
 const STOOD_STILL: u8 = 1;
-const LINK_LOST: u8 = 2;
+pub(crate) const LINK_LOST: u8 = 2;
 
 /// To the last digit as if nothing had happened, whatever the length.
 #[test]
