@@ -51,6 +51,27 @@ const STILL_RAD: f64 = 0.052; // 3°
 const STILL_ALTITUDE_M: f64 = 8.0;
 const STILL_POSITION_M: f64 = 30.0;
 
+impl Position {
+    /// Whether an aircraft can have flown here from `before` in this time: 150 m,
+    /// three seconds of a light aircraft's flight, for positions that arrive
+    /// late, and 450 m/s, the speed of sound with a jet stream from behind.
+    /// False if either is no position on the Earth.
+    ///
+    /// ```
+    /// use fcc_core::flight::Position;
+    ///
+    /// let milwaukee = Position { latitude_rad: 0.749, longitude_rad: -1.534, altitude_m: 900.0 };
+    /// let mile = Position { latitude_rad: 0.749 + 1_852.0 / 6_371_009.0, ..milwaukee };
+    /// assert!(!mile.can_be_reached(&milwaukee, 3.0));
+    /// assert!(mile.can_be_reached(&milwaukee, 4.0));
+    /// ```
+    pub fn can_be_reached(&self, before: &Self, passed_s: f64) -> bool {
+        is_possible(before)
+            && is_possible(self)
+            && POSITION_M.holds(distance_m(before, self), passed_s)
+    }
+}
+
 /// The place and attitude of the aircraft when the plant's time last advanced,
 /// and its last known position.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,7 +102,7 @@ impl Whereabouts {
         }
         self.seen = new.taken;
         let is_first = self.position.is_never() || new.source != self.position.source;
-        let is_near = |to: &Position| POSITION_M.holds(distance_m(to, &new.value), self.passed_s);
+        let is_near = |to: &Position| new.value.can_be_reached(to, self.passed_s);
         if is_first || is_near(&self.position.value) {
             self.doubtful = None;
         } else if self.doubtful.as_ref().is_some_and(is_near) {

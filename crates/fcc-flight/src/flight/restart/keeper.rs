@@ -31,7 +31,7 @@ struct Slot {
 }
 
 enum DiskRequest {
-    Keep(Saved),
+    Keep(Box<Saved>),
     Clear,
 }
 
@@ -72,7 +72,7 @@ impl Keeper {
 
     /// Stores this state, replacing the previous one.
     pub(super) fn keep(&self, saved: Saved) {
-        self.desk.request(DiskRequest::Keep(saved));
+        self.desk.request(DiskRequest::Keep(Box::new(saved)));
     }
 
     /// Removes the stored state.

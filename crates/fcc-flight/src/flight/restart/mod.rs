@@ -10,6 +10,7 @@
 mod boot_clock;
 mod keeper;
 mod observer;
+mod place;
 mod recovery;
 mod state_file;
 
@@ -27,6 +28,7 @@ use crate::config::{Config, RestartMode};
 use boot_clock::BootInstant;
 use keeper::Keeper;
 pub(super) use observer::RestartKeeper;
+use place::SavedPlace;
 use recovery::{Next, Recovery};
 use state_file::{Saved, SavedSwitch, StateFileError};
 
@@ -163,12 +165,14 @@ impl Restart {
                     };
                 }
                 if record.state == State::Engaged {
-                    self.keep(Resume {
+                    let resume = Resume {
                         progress: record.setpoints.guidance,
                         surfaces: record.outputs,
                         altimeter_setting_pa: Some(record.setpoints.altimeter_setting_pa),
                         altitude_reference: record.setpoints.altitude_reference,
-                    });
+                    };
+                    let place = SavedPlace::of(&record.measurements, record.tick.woke);
+                    self.keep(resume, place);
                 }
             }
         }
@@ -234,7 +238,7 @@ impl Restart {
         self.keeper.end();
     }
 
-    fn keep(&mut self, resume: Resume) {
+    fn keep(&mut self, resume: Resume, place: SavedPlace) {
         let since = *self.engaged_since.get_or_insert_with(Instant::now);
         if self.recoveries > 0 && since.elapsed() >= STABLE_AFTER {
             self.recoveries = 0;
@@ -257,6 +261,7 @@ impl Restart {
             config: self.request.fingerprint,
             switch: self.switch,
             recoveries: self.recoveries,
+            place,
             resume,
         });
     }

@@ -17,6 +17,7 @@ use fcc_telemetry::FlightMessage;
 use fcc_telemetry::units::{M_FT, MPS_KT};
 
 use super::boot_clock::BootInstant;
+use super::place::{Continuity, PresentPlace};
 use super::state_file::Saved;
 use crate::flight::pilot::Pilot;
 
@@ -25,6 +26,7 @@ use crate::flight::pilot::Pilot;
 pub(super) struct Recovery {
     saved: Saved,
     commanded: Option<Resume>,
+    place: PresentPlace,
     /// The status in the latest tick.
     status: Option<LoopStatus>,
 }
@@ -50,9 +52,10 @@ pub(super) enum Next {
 }
 
 impl Recovery {
-    pub(super) const fn new(saved: Saved) -> Self {
+    pub(super) fn new(saved: Saved) -> Self {
         Self {
             saved,
+            place: PresentPlace::default(),
             commanded: None,
             status: None,
         }
@@ -67,6 +70,7 @@ impl Recovery {
     pub(super) fn take(&mut self, message: &FlightMessage) {
         match message {
             Message::Tick(record) => {
+                self.place.take(&record.measurements);
                 let switch = record.measurements.engage_switch;
                 self.status = Some(LoopStatus {
                     state: record.state.state(),
@@ -115,6 +119,16 @@ impl Recovery {
         }
         if !status.engage_inhibits.is_empty() {
             return Next::Wait;
+        }
+        let why = match self.place.continues(&self.saved.place, age) {
+            Continuity::Given => None,
+            Continuity::Unknown => return Next::Wait,
+            Continuity::SetBack => Some("the simulator's clock was set back since"),
+            Continuity::Moved => Some("the aircraft was moved since"),
+        };
+        if let Some(why) = why {
+            let message = format!("the interrupted flight is not recovered: {why}");
+            return Next::NotRecovered(message);
         }
         // The mode's time continued during the interruption.
         let mut resume = self.saved.resume;
@@ -168,6 +182,7 @@ mod tests {
     use fcc_runtime::{LoopConfig, Machine, Parts};
     use fcc_timer::ManualTimer;
 
+    use super::super::place::SavedPlace;
     use super::super::state_file::SavedSwitch;
     use super::*;
     use crate::config::Config;
@@ -186,6 +201,7 @@ mod tests {
             config: 0,
             switch: SavedSwitch::default(),
             recoveries: 0,
+            place: SavedPlace::default(),
             resume,
         };
         for (room, sent) in [(1, 0), (2, 2), (3, 2)] {

@@ -10,10 +10,11 @@ use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use fcc_core::flight::guidance::{Mode, Progress, Targets};
-use fcc_core::flight::{AltitudeReference, Resume, Surfaces};
+use fcc_core::flight::{AltitudeReference, Position, Resume, Surfaces};
 use serde::{Deserialize, Serialize};
 
 use super::boot_clock::BootInstant;
+use super::place::{SavedPlace, Sourced};
 
 /// The beginning of every state file.
 const NAME: &str = "fccd-flight";
@@ -33,6 +34,8 @@ pub(super) struct Saved {
     pub(super) switch: SavedSwitch,
     /// The number of consecutive recoveries of the flight.
     pub(super) recoveries: u32,
+    /// Where the aircraft was.
+    pub(super) place: SavedPlace,
     /// What was flown.
     pub(super) resume: Resume,
 }
@@ -73,6 +76,35 @@ struct Page {
     elevator: f64,
     aileron: f64,
     rudder: f64,
+    #[serde(default)]
+    plant_time_s: Option<f64>,
+    #[serde(default)]
+    plant_source: u8,
+    #[serde(default)]
+    position_rad: Option<[f64; 2]>,
+    #[serde(default)]
+    position_source: u8,
+}
+
+impl Page {
+    fn place(&self) -> SavedPlace {
+        SavedPlace {
+            plant_time_s: self.plant_time_s.map(|value| Sourced {
+                value,
+                source: self.plant_source,
+            }),
+            position: self
+                .position_rad
+                .map(|[latitude_rad, longitude_rad]| Sourced {
+                    value: Position {
+                        latitude_rad,
+                        longitude_rad,
+                        altitude_m: 0.0,
+                    },
+                    source: self.position_source,
+                }),
+        }
+    }
 }
 
 /// Why a file cannot be used.
@@ -130,6 +162,7 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
         progress, surfaces, ..
     } = saved.resume;
     let targets = progress.captured;
+    let (plant, position) = (saved.place.plant_time_s, saved.place.position);
     let body = serde_json::to_vec(&Page {
         boot: saved.at.boot.clone(),
         boottime_ns: saved.at.ns,
@@ -148,6 +181,10 @@ fn encode(saved: &Saved) -> io::Result<Vec<u8>> {
         elevator: surfaces.elevator,
         aileron: surfaces.aileron,
         rudder: surfaces.rudder,
+        plant_time_s: plant.map(|plant| plant.value),
+        plant_source: plant.map_or(0, |plant| plant.source),
+        position_rad: position.map(|at| [at.value.latitude_rad, at.value.longitude_rad]),
+        position_source: position.map_or(0, |at| at.source),
     })?;
     let mut bytes = format!("{NAME} {VERSION} {:08x}\n", crc32fast::hash(&body)).into_bytes();
     bytes.extend(body);
@@ -184,6 +221,7 @@ fn decode(bytes: &[u8]) -> Result<Saved, StateFileError> {
     let reference = AltitudeReference::from_number(page.altitude_reference);
     let mode = Mode::ALL.into_iter().find(|mode| mode.name() == page.mode);
     Ok(Saved {
+        place: page.place(),
         at: BootInstant {
             boot: page.boot,
             ns: page.boottime_ns,
@@ -234,6 +272,20 @@ mod tests {
                 source: 1,
             },
             recoveries: 2,
+            place: SavedPlace {
+                plant_time_s: Some(Sourced {
+                    value: 65.25,
+                    source: 1,
+                }),
+                position: Some(Sourced {
+                    value: Position {
+                        latitude_rad: 0.75,
+                        longitude_rad: -1.53,
+                        altitude_m: 0.0,
+                    },
+                    source: 2,
+                }),
+            },
             resume: Resume {
                 progress: Progress {
                     mode,
