@@ -49,3 +49,10 @@ def test_what_a_killed_check_has_started_ends_and_releases(fccd: Path, tmp_path:
         check.wait()
         # The engage switch stays on: only the end of the daemon releases the controls.
         wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+
+
+def test_a_deflection_of_a_killed_identification_is_released(fccd: Path, tmp_path: Path) -> None:
+    with holding(fccd, tmp_path, "identify", "--by-hand") as (simulator, identification):
+        identification.kill()
+        identification.wait()
+        wait_until(lambda: are_set(simulator, 0.0), "the controls are released")

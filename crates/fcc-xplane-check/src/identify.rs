@@ -9,9 +9,10 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use fcc_xplane::{PlantId, plant_at};
 use serde::Serialize;
 
-use crate::bench::{Bench, Stop, failed};
+use crate::bench::{Bench, ENGAGES_WITHIN, Stop, failed};
 use crate::check::{CheckError, Request, open};
 use crate::configuration::Guidance;
 use crate::screen::Screen;
@@ -24,6 +25,8 @@ const REST: Duration = Duration::from_millis(300);
 /// How long the daemon makes sure of its release: an override that is set
 /// meanwhile is taken for its own, and cleared.
 const RELEASED: Duration = Duration::from_millis(500);
+/// The interval between two releases.
+const RELEASE_AGAIN_AFTER: Duration = Duration::from_millis(250);
 /// How long level flight may take to become steady.
 const STEADY_WITHIN: Duration = Duration::from_secs(40);
 /// How long it has to be.
@@ -156,6 +159,10 @@ pub enum FlownBy {
 /// Deflects one control after another in level flight, and returns how the
 /// aircraft responds. It must fly level already, in calm air.
 ///
+/// `held` is called with X-Plane before the measurement itself takes its
+/// controls, and with none after X-Plane has confirmed their release: a caller
+/// that is killed between the two needs another process to release them.
+///
 /// # Errors
 /// If it could not begin, or if it was ended: by the envelope, by a control
 /// without effect, or by a signal.
@@ -163,9 +170,10 @@ pub fn identify(
     request: Request,
     by: FlownBy,
     screen: &mut dyn Screen,
+    held: &mut dyn FnMut(Option<PlantId>),
 ) -> Result<Identified, IdentifyError> {
     let mut bench = open(request, screen)?;
-    let found = fly(&mut bench, by).map_err(|stop| {
+    let found = fly(&mut bench, by, held).map_err(|stop| {
         IdentifyError::Ended(match stop {
             Stop::Failed(why) | Stop::Skipped(why) => why,
             Stop::Quit => "ended by a signal".to_owned(),
@@ -176,15 +184,24 @@ pub fn identify(
     found
 }
 
-fn fly(bench: &mut Bench<'_>, by: FlownBy) -> Result<Identified, Stop> {
+fn fly(
+    bench: &mut Bench<'_>,
+    by: FlownBy,
+    held: &mut dyn FnMut(Option<PlantId>),
+) -> Result<Identified, Stop> {
     let mut responses = Vec::new();
     let mut airspeed_kt = f64::NAN;
     for control in &CONTROLS {
         steady(bench, by)?;
         airspeed_kt = bench.number(Watched::Airspeed);
+        held(plant_at(bench.link.simulator()));
         let flown = deflect(bench, control);
-        release(bench);
+        let released = release(bench);
+        if released.is_ok() {
+            held(None);
+        }
         let response = flown? / control.deflection;
+        released?;
         let ratio = control.reference / response;
         if !(LEAST..=MOST).contains(&ratio) {
             return failed(format!(
@@ -304,14 +321,22 @@ fn hold(
     Ok(())
 }
 
-/// Gives the controls back, however it went.
-fn release(bench: &Bench<'_>) {
-    for what in [Watched::YokePitch, Watched::YokeRoll, Watched::YokeHeading] {
-        bench.link.write(bench.link.path(what), 0.0);
+/// Gives the controls back, however it went, until X-Plane confirms it.
+fn release(bench: &mut Bench<'_>) -> Result<(), Stop> {
+    let until = Instant::now() + ENGAGES_WITHIN;
+    while Instant::now() < until {
+        for what in [Watched::YokePitch, Watched::YokeRoll, Watched::YokeHeading] {
+            bench.link.write(bench.link.path(what), 0.0);
+        }
+        for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
+            bench.link.write(bench.link.path(what), 0.0);
+        }
+        bench.link.poll(RELEASE_AGAIN_AFTER);
+        if !bench.is_overridden() && !bench.link.is_silent_for(RELEASE_AGAIN_AFTER) {
+            return Ok(());
+        }
     }
-    for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
-        bench.link.write(bench.link.path(what), 0.0);
-    }
+    failed("X-Plane has not confirmed the release of the controls")
 }
 
 /// Beyond these the aircraft is handed back.

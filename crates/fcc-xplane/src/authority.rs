@@ -58,11 +58,11 @@ impl XPlaneAuthority {
 
 impl ControlAuthority for XPlaneAuthority {
     fn plant(&self) -> Option<PlantId> {
-        self.status.as_ref()?.simulator().and_then(name)
+        self.status.as_ref()?.simulator().and_then(plant_at)
     }
 
     fn held(&self) -> Option<PlantId> {
-        self.status.as_ref()?.held_at().and_then(name)
+        self.status.as_ref()?.held_at().and_then(plant_at)
     }
 
     fn require_permission(&self) {
@@ -82,7 +82,7 @@ impl ControlAuthority for XPlaneAuthority {
     fn unique(&self, plant: &PlantId) -> PlantId {
         address(plant)
             .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator))
-            .and_then(|simulator| name((Ipv4Addr::LOCALHOST, simulator.port()).into()))
+            .and_then(|simulator| plant_at((Ipv4Addr::LOCALHOST, simulator.port()).into()))
             .unwrap_or(*plant)
     }
 
@@ -124,7 +124,8 @@ impl ControlAuthority for XPlaneAuthority {
     }
 }
 
-fn name(simulator: SocketAddr) -> Option<PlantId> {
+/// The X-Plane at an address, as [`XPlaneAuthority`] names it.
+pub fn plant_at(simulator: SocketAddr) -> Option<PlantId> {
     PlantId::new(format_args!("{NAME}{simulator}"))
 }
 

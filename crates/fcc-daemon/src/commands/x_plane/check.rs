@@ -17,7 +17,7 @@ use crate::output;
 /// Checks `fccd` against a running X-Plane.
 pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
     let files = ReportFiles::of(&args.report, args.connection.config.as_deref())?;
-    let request = request(&args.connection, files.folder.clone())?;
+    let (request, _) = request(&args.connection, files.folder.clone())?;
     if !args.yes && !io::stdin().is_terminal() {
         return Err(Failure::usage(
             "fccd: a person is needed, and standard input is no terminal: run it in one, or \
