@@ -15,6 +15,7 @@ use serde::Serialize;
 use crate::bench::{Bench, ENGAGES_WITHIN, Stop, failed};
 use crate::check::{CheckError, Request, open};
 use crate::configuration::Guidance;
+use crate::disturbance::{disturbance, other_time_rate};
 use crate::screen::Screen;
 use crate::watched::Watched;
 
@@ -27,6 +28,8 @@ const REST: Duration = Duration::from_millis(300);
 const RELEASED: Duration = Duration::from_millis(500);
 /// The interval between two releases.
 const RELEASE_AGAIN_AFTER: Duration = Duration::from_millis(250);
+/// How long X-Plane's first answer may take.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(5);
 /// How long level flight may take to become steady.
 const STEADY_WITHIN: Duration = Duration::from_secs(40);
 /// How long it has to be.
@@ -189,6 +192,7 @@ fn fly(
     by: FlownBy,
     held: &mut dyn FnMut(Option<PlantId>),
 ) -> Result<Identified, Stop> {
+    begins(bench)?;
     let mut responses = Vec::new();
     let mut airspeed_kt = f64::NAN;
     for control in &CONTROLS {
@@ -226,20 +230,40 @@ fn fly(
     })
 }
 
+/// Waits until X-Plane answers, and refuses a state in which nothing can be
+/// measured.
+fn begins(bench: &mut Bench<'_>) -> Result<(), Stop> {
+    bench.until("waiting for X-Plane", ANSWERS_WITHIN, |b| {
+        b.link.latest().is_some()
+    })?;
+    if bench.link.latest().is_none() {
+        return failed(format!(
+            "nothing arrives from X-Plane at {}: start it, or check with `fccd x-plane check \
+             --only 1`",
+            bench.link.simulator()
+        ));
+    }
+    // The first frames, with all values.
+    bench.wait("X-Plane answers", REST)?;
+    undisturbed(bench)
+}
+
+fn undisturbed(bench: &Bench<'_>) -> Result<(), Stop> {
+    disturbance(bench.link.latest(), Instant::now()).map_or(Ok(()), failed)
+}
+
 /// Waits until the flight is steady.
 fn steady(bench: &mut Bench<'_>, by: FlownBy) -> Result<(), Stop> {
-    match by {
-        FlownBy::Daemon => bench.engage(Guidance::Hold)?,
-        FlownBy::Person => bench.expect("X-Plane answers", STEADY_WITHIN, |b| {
-            b.link.latest().is_some()
-        })?,
+    if by == FlownBy::Daemon {
+        bench.engage(Guidance::Hold)?;
     }
     let mut since = Instant::now();
     let is_steady = bench.until("steady level flight", STEADY_WITHIN, |b| {
         let rates = [Watched::RollRate, Watched::PitchRate, Watched::YawRate];
         let calm = rates.iter().all(|rate| b.number(*rate).abs() < 0.03)
             && b.number(Watched::Roll).abs() < 3.0
-            && b.number(Watched::ClimbRate).abs() < 150.0;
+            && b.number(Watched::ClimbRate).abs() < 150.0
+            && disturbance(b.link.latest(), Instant::now()).is_none();
         if !calm {
             since = Instant::now();
         }
@@ -248,6 +272,7 @@ fn steady(bench: &mut Bench<'_>, by: FlownBy) -> Result<(), Stop> {
     if is_steady {
         return Ok(());
     }
+    undisturbed(bench)?;
     failed(
         "the flight does not become steady: fly in calm air, trimmed; if fccd does not hold it \
          steady, fly yourself, with --by-hand",
@@ -281,6 +306,7 @@ fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
     for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
         bench.link.write(bench.link.path(what), 1.0);
     }
+    let began = bench.link.latest().copied();
     hold(bench, &held, &limits, (control.written, 0.0), REST)?;
     let mut responses = [0.0; 2];
     for (response, sign) in responses.iter_mut().zip([1.0, -1.0]) {
@@ -295,6 +321,12 @@ fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
         if !control.is_rate {
             break;
         }
+    }
+    if let Some(why) = began
+        .zip(bench.link.latest())
+        .and_then(|(first, last)| other_time_rate(&first, last))
+    {
+        return failed(why);
     }
     let [up, down] = responses;
     Ok(if control.is_rate {
@@ -316,6 +348,7 @@ fn hold(
     while Instant::now() < until {
         held.write(bench, deflected, deflection);
         bench.wait("deflected", WRITE_EVERY)?;
+        undisturbed(bench)?;
         limits.check(bench)?;
     }
     Ok(())
