@@ -261,3 +261,22 @@ def identify_by_hand(fccd: Path, scratch: Path, port: int) -> subprocess.Complet
         check=False,
         timeout=PATIENCE_S,
     )
+
+
+def test_a_report_that_cannot_be_written_is_refused_before_the_steps(
+    fccd: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    # Nobody answers there: a step would fail with another exit code.
+    words = ["x-plane", "check", "--yes", "--only", "1", "--report", tmp_path / "folder"]
+    done = subprocess.run(
+        [fccd, *words],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        timeout=PATIENCE_S,
+    )
+    assert done.returncode == FAILURE
+    assert "the report cannot be written" in done.stderr
