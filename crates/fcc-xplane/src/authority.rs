@@ -335,7 +335,7 @@ mod tests {
     fn another_address_of_this_machine_is_the_same_simulator() {
         let authority = XPlaneAuthority::without_connection(&XPlaneConfig::default());
         let unique = |address: &str| {
-            let plant = name(address.parse().unwrap()).unwrap();
+            let plant = plant_at(address.parse().unwrap()).unwrap();
             authority.unique(&plant).as_str().to_owned()
         };
         for here in ["127.0.0.1:49000", "127.9.9.9:49000", "[::1]:49000"] {
