@@ -243,6 +243,7 @@ fn kind_of(code: u32) -> &'static str {
         "conditions-changed",
         "noticed",
         "released-at-once",
+        "switched-on-unseen",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }
