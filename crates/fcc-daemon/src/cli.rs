@@ -26,7 +26,7 @@ pub struct Cli {
 /// The commands of `fccd`.
 #[derive(Subcommand, Debug)]
 pub enum Action {
-    /// Fly the built-in aircraft through the timed pattern
+    /// Fly the built-in aircraft through the timed pattern; failsafe ends it
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until stopped
     Run(RunArgs),

@@ -35,6 +35,13 @@ pub enum WatchError {
          give another's name with --instance"
     )]
     NotRunning(Instance),
+    /// The daemon runs, but what it publishes did not arrive within so many
+    /// seconds: it is stopped, or hangs.
+    #[error(
+        "fccd '{0}' runs, but did not answer within {1} s: it is stopped (continue it with \
+         `kill -CONT` and its process number), hangs, or the machine is overloaded"
+    )]
+    NoAnswer(Instance, u64),
     /// This user has no daemon of this name, but other users have or had
     /// daemons.
     #[error(

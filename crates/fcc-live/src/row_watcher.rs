@@ -147,7 +147,7 @@ pub(super) fn check_layout(info: &Info, instance: &Instance) -> Result<(), Watch
 
 /// A daemon's information about itself.
 pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
-    find_info(access, instance).map_err(|error| match error {
+    find_info(access, instance, PATIENCE).map_err(|error| match error {
         WatchError::NotRunning(instance) => {
             match Place::of_this_user().other_users().into_iter().next() {
                 Some(user) => WatchError::PerhapsAnothers { instance, user },
@@ -158,16 +158,16 @@ pub(super) fn read_info(access: &Access, instance: &Instance) -> Result<Info, Wa
     })
 }
 
-fn find_info(access: &Access, instance: &Instance) -> Result<Info, WatchError> {
+fn find_info(access: &Access, instance: &Instance, patience: Duration) -> Result<Info, WatchError> {
     let service = INFO.watch::<Info>(access, instance)?;
     let infos = subscribe(&service, instance)?;
-    first(&service, instance, || newest(&infos))
+    first(&service, instance, patience, || newest(&infos))
 }
 
 fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescription, WatchError> {
     let service = COLUMNS.watch_slices::<u8>(access, instance)?;
     let texts = subscribe(&service, instance)?;
-    let text = first(&service, instance, || {
+    let text = first(&service, instance, PATIENCE, || {
         let found = texts.receive().map_err(failed)?;
         Ok(found.map(|sample| String::from_utf8_lossy(&sample).into_owned()))
     })?;
@@ -178,16 +178,20 @@ fn read_columns(access: &Access, instance: &Instance) -> Result<RecordDescriptio
 fn first<T: Debug + IceoryxSend + ?Sized, R>(
     service: &Service<T>,
     instance: &Instance,
+    patience: Duration,
     look: impl Fn() -> Result<Option<R>, WatchError>,
 ) -> Result<R, WatchError> {
-    let deadline = Instant::now() + PATIENCE;
+    let deadline = Instant::now() + patience;
     loop {
         if let Some(found) = look()? {
             return Ok(found);
         }
         // Another watcher may have the service open after the daemon has ended.
-        if Instant::now() > deadline || service.dynamic_config().number_of_publishers() == 0 {
+        if service.dynamic_config().number_of_publishers() == 0 {
             return Err(WatchError::NotRunning(instance.clone()));
+        }
+        if Instant::now() > deadline {
+            return Err(WatchError::NoAnswer(instance.clone(), patience.as_secs()));
         }
         std::thread::sleep(LOOK_EVERY);
     }
@@ -223,4 +227,27 @@ fn newest<T: Debug + ZeroCopySend + Copy>(from: &In<T>) -> Result<Option<T>, Wat
 
 fn failed(error: ReceiveError) -> WatchError {
     WatchError::NoSharedMemory(services::explained(&error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Publisher;
+
+    /// As of a daemon that is stopped: what it publishes does not arrive.
+    #[test]
+    fn a_daemon_that_publishes_nothing_is_running_and_does_not_answer() {
+        let name = format!("test-{}-hangs", std::process::id());
+        let instance: Instance = name.parse().unwrap();
+        let access = services::access().unwrap();
+        let find = || find_info(&access, &instance, Duration::from_millis(100)).unwrap_err();
+        let publisher = Publisher::start(&instance, 2_048).unwrap();
+        let message = find().to_string();
+        assert!(
+            message.contains(&format!("fccd '{name}' runs, but did not answer within")),
+            "{message}"
+        );
+        drop(publisher);
+        assert_eq!(find(), WatchError::NotRunning(instance.clone()));
+    }
 }

@@ -57,11 +57,11 @@ impl Extent {
         self.greatest = self.greatest.max(value);
     }
 
-    fn with(self, other: Self) -> Self {
-        Self {
-            least: self.least.min(other.least),
-            greatest: self.greatest.max(other.greatest),
-        }
+    fn of(periods: [Self; 3]) -> Self {
+        periods.into_iter().fold(Self::EMPTY, |all, period| Self {
+            least: all.least.min(period.least),
+            greatest: all.greatest.max(period.greatest),
+        })
     }
 
     fn holds(self, value: f32) -> bool {
@@ -75,9 +75,9 @@ pub(crate) struct Confirmation {
     /// When control was taken.
     began: Time,
     confirmed: Time,
-    /// What was written to each axis in the current and in the previous half
-    /// second: a readback is delayed by the round trip.
-    extents: [[Extent; 2]; 3],
+    /// What was written to each axis in the current and in the two previous
+    /// half seconds: a readback is delayed by the round trip, up to a second.
+    extents: [[Extent; 3]; 3],
     turned: Time,
     written: Written,
     /// When the yoke was last read where it was not put.
@@ -91,7 +91,7 @@ impl Confirmation {
         Self {
             began: now,
             confirmed: now,
-            extents: [[Extent::EMPTY; 2]; 3],
+            extents: [[Extent::EMPTY; 3]; 3],
             turned: now,
             written: Written::new(),
             moved_by_another: Time::NEVER,
@@ -104,12 +104,13 @@ impl Confirmation {
         self.written.add(now, yoke);
         if now.since(self.turned) >= LATELY {
             self.turned = now;
-            for [present, before] in &mut self.extents {
+            for [present, before, earliest] in &mut self.extents {
+                *earliest = *before;
                 *before = *present;
                 *present = Extent::EMPTY;
             }
         }
-        for ([present, _], value) in self.extents.iter_mut().zip(yoke) {
+        for ([present, ..], value) in self.extents.iter_mut().zip(yoke) {
             if let Some(value) = value {
                 present.add(value);
             }
@@ -132,10 +133,9 @@ impl Confirmation {
             .is_some_and(|(value, _)| value >= 0.5);
         let mut elsewhere = false;
         for ((index, axis), put) in YOKE.into_iter().enumerate().zip(self.extents) {
-            let [present, before] = put;
-            if let Some((value, _)) = self.recent(axis, now, link) {
-                elsewhere |= !present.with(before).holds(value);
-                elsewhere |= self.written.is_foreign(index, value, now);
+            if let Some((value, at)) = self.recent(axis, now, link) {
+                elsewhere |= !Extent::of(put).holds(value);
+                elsewhere |= self.written.is_foreign(index, value, at);
             }
         }
         if overridden && elsewhere {
@@ -162,9 +162,9 @@ impl Confirmation {
                 newest = newest.max(Some(at));
             }
         }
-        for (quantity, [present, before]) in YOKE.into_iter().zip(self.extents) {
+        for (quantity, put) in YOKE.into_iter().zip(self.extents) {
             if let Some((value, at)) = self.recent(quantity, now, link) {
-                if !present.with(before).holds(value) {
+                if !Extent::of(put).holds(value) {
                     return None;
                 }
                 newest = newest.max(Some(at));
@@ -273,6 +273,28 @@ mod tests {
         } else {
             ours
         }));
+    }
+
+    /// 0.4 s each way, and a network that lets through a readback every 0.4 s.
+    #[test]
+    fn a_slow_or_lossy_network_is_not_another_program() {
+        let written = |tick: u32| (f64::from(tick) * 0.1).sin() as f32 * 0.2;
+        let delayed = |ticks: u32| move |tick: u32, _| written(tick.saturating_sub(ticks));
+        assert!(!contested(400, 1.0, delayed(32)));
+        assert!(!contested(400, 1.0, delayed(38)));
+        let link = SharedState::new(None);
+        let mut now = Time::from_nanos(1_000_000_000);
+        let mut confirmation = Confirmation::begin(now);
+        for tick in 0..400 {
+            now = now + TICK;
+            confirmation.wrote(now, [Some(written(tick)), Some(0.0), Some(0.0)]);
+            if tick % 16 == 0 {
+                link.show(Quantity::OverrideJoystick, 1.0, now);
+                let shown = written(tick.saturating_sub(30));
+                link.show(Quantity::YokePitch, shown.into(), now);
+            }
+            assert!(!confirmation.is_contested(now, &link), "tick {tick}");
+        }
     }
 
     #[test]

@@ -195,7 +195,7 @@ impl Inbox {
         Ok(self.rows.is_none())
     }
 
-    fn is_late(&self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
+    fn is_late(&mut self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
         let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s));
         if late {
             count(&link.counters.late);
@@ -231,12 +231,14 @@ impl Inbox {
     }
 
     /// Publishes the measurements completed since the last call, and returns
-    /// the simulator's state.
+    /// the simulator's state. `writing` is the connection over which this
+    /// program writes.
     pub(crate) fn publish(
         &mut self,
         now: Time,
         into: &mut Measurements,
         link: &SharedState,
+        writing: &SharedState,
     ) -> SimulatorState {
         self.motion.publish(now, &mut self.values, into, link);
         self.publish_attitude(into);
@@ -268,15 +270,21 @@ impl Inbox {
             into.engage_switch = Reading::new(self.switch, taken);
         }
         if self.clock.last_received() == now {
-            self.publish_observations(now, into, link);
+            self.publish_observations(now, into, link, writing);
         }
         self.publish_plant(now, into, link)
     }
 
     /// What is known about the aircraft besides its measurements: in every tick
     /// in which something arrived.
-    fn publish_observations(&mut self, now: Time, into: &mut Measurements, link: &SharedState) {
-        let other = self.other_control.step(now, &self.values, link);
+    fn publish_observations(
+        &mut self,
+        now: Time,
+        into: &mut Measurements,
+        link: &SharedState,
+        writing: &SharedState,
+    ) {
+        let other = self.other_control.step(now, &self.values, writing);
         into.other_control = Reading::new(other, now);
         let accelerates = self.values.recent(Quantity::AccelerationUp, now);
         let computed = accelerates.map(|_| self.motion.force());

@@ -74,8 +74,14 @@ impl Default for OtherControlWatch {
 }
 
 impl OtherControlWatch {
-    /// Evaluates the latest values; what is not known counts as off.
-    pub(crate) fn step(&mut self, now: Time, values: &Values, link: &SharedState) -> OtherControl {
+    /// Evaluates the latest values; what is not known counts as off. `writing`
+    /// is the connection over which this program writes.
+    pub(crate) fn step(
+        &mut self,
+        now: Time,
+        values: &Values,
+        writing: &SharedState,
+    ) -> OtherControl {
         let recent = |quantity| values.recent(quantity, now);
         let is_set = |quantity| recent(quantity).is_some_and(|value| value >= 0.5);
         let augmented = STABILITY
@@ -88,13 +94,13 @@ impl OtherControlWatch {
             autothrottle: is_set(Quantity::Autothrottle),
             fly_by_wire: PLUGINS.into_iter().any(is_set),
             stability: self.stability.step(now, augmented),
-            writer: link.has_other_writer() || self.is_written(now, values, link),
+            writer: writing.has_other_writer() || self.is_written(now, values, writing),
             reverse_thrust: reversed,
         }
     }
 
     /// Whether another program writes the yoke while this one does not.
-    fn is_written(&mut self, now: Time, values: &Values, link: &SharedState) -> bool {
+    fn is_written(&mut self, now: Time, values: &Values, writing: &SharedState) -> bool {
         let overridden = values
             .recent(Quantity::OverrideJoystick, now)
             .is_some_and(|value| value >= 0.5);
@@ -106,7 +112,7 @@ impl OtherControlWatch {
             }
         }
         let moves = !self.moved.is_never() && now.since(self.moved) < MOVES_WITHIN;
-        let free = link.control() == Control::Free;
+        let free = writing.control() == Control::Free;
         self.writer.step(now, free && overridden && moves)
     }
 }

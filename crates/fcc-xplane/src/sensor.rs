@@ -52,6 +52,9 @@ pub struct XPlaneSensor<P: Port = UdpPort> {
     /// Where beacons are received, if the simulator is found by its beacon.
     beacons: Option<P>,
     link: Arc<SharedState>,
+    /// The connection whose actuator writes: this one, unless the sensor is
+    /// [beside](Self::beside) another.
+    writing: Arc<SharedState>,
     inbox: Inbox,
     reply_ports: ReplyPorts,
     subscriptions: Subscriptions,
@@ -88,6 +91,7 @@ impl<P: Port> XPlaneSensor<P> {
         Ok(Self {
             port,
             beacons,
+            writing: Arc::clone(&link),
             link,
             inbox: Inbox::new(rows, config.silent_after),
             reply_ports: ReplyPorts::default(),
@@ -112,6 +116,15 @@ impl<P: Port> XPlaneSensor<P> {
     pub fn status(&self) -> XPlaneStatus {
         let engage_switch = Arc::clone(&self.engage_switch);
         XPlaneStatus::new(Arc::clone(&self.link), engage_switch, self.rows)
+    }
+
+    /// For a second connection to the simulator that is flown over another one,
+    /// of which this is the status: what is written there is not another
+    /// program's.
+    #[must_use]
+    pub fn beside(mut self, flown: &XPlaneStatus) -> Self {
+        self.writing = flown.link();
+        self
     }
 
     pub(crate) fn set_local_port(&self, port: u16) {
@@ -284,7 +297,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         } else {
             self.receive(now, simulator)
         };
-        let state = self.inbox.publish(now, into, &self.link);
+        let state = self.inbox.publish(now, into, &self.link, &self.writing);
         self.link.set_state(state);
         if let Some(missing) = self.subscriptions.missing(now, &self.inbox) {
             self.link.set_missing(missing);
@@ -320,7 +333,7 @@ impl<P: Port> Sensor<Measurements> for XPlaneSensor<P> {
         let datagram = self.last_values.get(..self.last_values_bytes);
         inbox.begin();
         let _ = inbox.accept(datagram.unwrap_or_default(), tick.woke, &link);
-        inbox.publish(tick.woke, &mut measurements, &link);
+        inbox.publish(tick.woke, &mut measurements, &link, &link);
         black_box((&inbox, &measurements, &link));
         self.subscriptions.warm_up();
     }

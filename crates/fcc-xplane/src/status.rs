@@ -64,6 +64,10 @@ impl XPlaneStatus {
         }
     }
 
+    pub(crate) fn link(&self) -> Arc<SharedState> {
+        Arc::clone(&self.link)
+    }
+
     /// Where the simulator is; `None` until a beacon has arrived.
     pub fn simulator(&self) -> Option<SocketAddr> {
         self.link.simulator()

@@ -1,12 +1,13 @@
-//! The values written to the yoke in the last second, to recognise them when
+//! The values written to the yoke in the last one and a half seconds, to recognise them when
 //! they are read back.
 
 use core::time::Duration;
 
 use fcc_core::framework::Time;
 
-/// A second at 128 Hz; at a higher rate less, which is still some frames.
-const MOST: usize = 128;
+/// One and a half seconds at 128 Hz; at a higher rate less, which is still some
+/// frames.
+const MOST: usize = 192;
 /// A value is read back at most this long after it was written.
 const READ_BACK_WITHIN: Duration = Duration::from_secs(1);
 /// X-Plane stores what was written as f32, as it was sent.
@@ -54,11 +55,11 @@ impl Written {
         self.next = (self.next + 1) % MOST;
     }
 
-    /// Whether a value read back was not written, by a simulator that shows
-    /// what is written.
-    pub(crate) fn is_foreign(&mut self, axis: usize, value: f32, now: Time) -> bool {
+    /// Whether a value read back at `at` was not written, by a simulator that
+    /// shows what is written.
+    pub(crate) fn is_foreign(&mut self, axis: usize, value: f32, at: Time) -> bool {
         let ours = self.entries.iter().any(|entry| {
-            now.since(entry.at) <= READ_BACK_WITHIN
+            at.since(entry.at) <= READ_BACK_WITHIN
                 && entry
                     .yoke
                     .get(axis)

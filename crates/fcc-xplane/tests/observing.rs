@@ -3,11 +3,11 @@
 
 mod support;
 
-use fcc_core::flight::{OtherControl, Suspect};
-use fcc_core::framework::ControlAuthority;
-use fcc_xplane::XPlaneAuthority;
-use support::bench::Bench;
-use support::{P, SWITCH};
+use fcc_core::flight::{Measurements, OtherControl, Surfaces, Suspect};
+use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
+use fcc_xplane::{XPlane, XPlaneAuthority};
+use support::bench::{Bench, SURFACES};
+use support::{P, SWITCH, Wire, YOKE_PITCH};
 
 const G_NRML: &str = "sim/flightmodel/forces/g_nrml";
 const LEVER: &str = "sim/cockpit2/engine/actuators/throttle_ratio[0]";
@@ -88,4 +88,47 @@ fn an_x_plane_without_the_optional_datarefs_is_quiet() {
     let subscribed: Vec<_> = bench.simulator.subscribed.values().collect();
     assert!(subscribed.iter().any(|path| path.ends_with("true_theta")));
     assert!(subscribed.iter().any(|path| *path == SWITCH));
+}
+
+/// A second connection to the simulator that is flown, as for Data Output: what
+/// the first one's actuator writes is not another program's, and what is
+/// another's is seen over both.
+#[test]
+fn a_connection_beside_the_one_that_flies_sees_only_another_program() {
+    let mut bench = Bench::new();
+    bench.settle();
+    let config = bench.simulator.config();
+    let from = bench.simulator.sender.local_addr().unwrap();
+    let wire = Wire::default();
+    let (second, _) = XPlane::over(&config, wire.clone(), None).unwrap();
+    let mut second = second.beside(&bench.status);
+    let mut measured = Measurements::default();
+    let mut fly = |bench: &mut Bench, other: Option<f32>| {
+        bench.simulator.listen();
+        if let Some(pitch) = other {
+            bench.simulator.set(YOKE_PITCH, pitch);
+        }
+        bench.simulator.send_next_frame(0.025);
+        wire.arrives(&bench.simulator.frame(), from);
+        let tick = bench.ticks.next();
+        bench.sensor.sample(&tick, &mut bench.measurements).unwrap();
+        second.sample(&tick, &mut measured).unwrap();
+        let surfaces = Surfaces {
+            elevator: 0.2 * (tick.number as f64 * 0.1).sin(),
+            ..SURFACES
+        };
+        let actuator = bench.actuator.as_mut().unwrap();
+        actuator.apply(&tick, &surfaces).unwrap();
+        (
+            bench.measurements.other_control.value,
+            measured.other_control.value,
+        )
+    };
+    for _ in 0..200 {
+        let alone = OtherControl::default();
+        assert_eq!(fly(&mut bench, None), (alone, alone));
+    }
+    let found = (0..80).map(|tick| fly(&mut bench, (tick % 3 == 0).then_some(0.7)));
+    let (first, second) = found.last().unwrap();
+    assert!(first.writer && second.writer, "{first:?} {second:?}");
 }

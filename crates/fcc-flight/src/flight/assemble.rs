@@ -11,7 +11,7 @@ use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 use fcc_live::{PlantLimits, SentCommands};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
-use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig};
+use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
@@ -84,6 +84,7 @@ struct Plant {
     truth: Option<TruthReceiver>,
     true_now: Option<TruthHandle>,
     authority: Option<Arc<dyn ControlAuthority>>,
+    x_plane: Option<XPlaneStatus>,
 }
 
 /// Assembles a flight.
@@ -103,7 +104,10 @@ pub fn assemble(config: &Config) -> Result<Assembly, AssemblyError> {
             SensorEntry::Simulator(_) => sensors.append(&mut plant.sensors),
             SensorEntry::XPlane(section) => {
                 let (sensor, _) = XPlane::open(&XPlaneConfig::from(section.as_ref()))?;
-                sensors.push(Box::new(sensor));
+                sensors.push(Box::new(match &plant.x_plane {
+                    Some(flown) => sensor.beside(flown),
+                    None => sensor,
+                }));
             }
         }
     }
@@ -139,19 +143,22 @@ fn built_in(section: &BuiltInSection, ticks: usize) -> Result<Plant, AssemblyErr
         truth: Some(truth),
         true_now: Some(simulation.truth),
         authority: None,
+        x_plane: None,
     })
 }
 
 fn x_plane(section: &XPlaneSection) -> Result<Plant, AssemblyError> {
     let config = XPlaneConfig::from(section);
     let (sensor, actuator) = XPlane::open(&config)?;
-    let authority = XPlaneAuthority::of(sensor.status(), &config);
+    let status = sensor.status();
+    let authority = XPlaneAuthority::of(status.clone(), &config);
     Ok(Plant {
         sensors: vec![Box::new(sensor)],
         actuators: vec![Box::new(actuator)],
         truth: None,
         true_now: None,
         authority: Some(Arc::new(authority)),
+        x_plane: Some(status),
     })
 }
 

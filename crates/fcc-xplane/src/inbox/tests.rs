@@ -31,7 +31,7 @@ impl Bench {
             self.inbox.accept(datagram, self.now, &self.link).unwrap();
         }
         self.inbox
-            .publish(self.now, &mut self.measurements, &self.link)
+            .publish(self.now, &mut self.measurements, &self.link, &self.link)
     }
 }
 
