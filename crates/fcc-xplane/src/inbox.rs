@@ -195,7 +195,7 @@ impl Inbox {
         Ok(self.rows.is_none())
     }
 
-    fn is_late(&self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
+    fn is_late(&mut self, now: Time, time_s: Option<f64>, link: &SharedState) -> bool {
         let late = time_s.is_some_and(|time_s| self.clock.is_late(now, time_s));
         if late {
             count(&link.counters.late);

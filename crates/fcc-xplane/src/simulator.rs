@@ -13,8 +13,9 @@ use fcc_core::framework::Time;
 /// Two datagrams of one flight are less than this apart when one overtakes
 /// the other; time that goes back further was set back.
 const LATE_S: f64 = 1.0;
-/// For this long an older time may belong to a late datagram. None is delayed
-/// longer while newer ones arrive.
+/// For this long, from the first one on, older times may belong to late
+/// datagrams: also after a silence, as those may arrive first that were on their
+/// way when it began.
 const LATE: Duration = Duration::from_secs(1);
 /// If the simulator's clock gains this much on twice ours between two ticks, it
 /// was set forward: it may run twice as fast.
@@ -33,10 +34,18 @@ const PACE_REGAINED: f64 = 0.95;
 /// our time, which is flown, plus the jitter of the measurement.
 const PACE_FAST: f64 = 2.2;
 const PACE_SLOWED: f64 = 2.1;
-/// Slow above this frame period (20 frames a second, where X-Plane begins to
-/// slow its time), until it is below [`FRAME_REGAINED_S`] (22 a second).
+/// Above this frame period (20 frames a second, where X-Plane begins to slow its
+/// time) it is slow already below [`PACE_REGAINED`], and until the period is
+/// below [`FRAME_REGAINED_S`] (22 a second). The period alone says nothing: it
+/// is smoothed, and long for seconds after a single freeze.
 const FRAME_LOST_S: f64 = 1.0 / 20.0;
 const FRAME_REGAINED_S: f64 = 1.0 / 22.0;
+
+/// A frame in which the clock fell behind ours by more than this was a freeze.
+/// The pace is measured anew after it, unless the last freeze was less than
+/// [`FREEZE_ALONE`] ago: then the simulator is slow.
+const FREEZE_S: f64 = 0.05;
+const FREEZE_ALONE: Duration = Duration::from_secs(2);
 
 /// The simulator's state.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -52,8 +61,9 @@ pub enum SimulatorState {
     /// It sends and is not paused, but its clock has not advanced for 250 ms: a
     /// dialog, or loading.
     Stalled = 3,
-    /// Its time runs at less than 90 % of ours over 1 to 2 s, or its frames
-    /// take more than 50 ms; until 95 % and 45 ms are regained.
+    /// Its time runs at less than 90 % of ours over 1 to 2 s, or at less than
+    /// 95 % in frames of more than 50 ms; until 95 % and 45 ms are regained.
+    /// A single freeze is not counted.
     Slow = 4,
     /// In this tick its clock went back by a second or more, or gained a second
     /// on ours: a flight was loaded. This lasts for one tick only.
@@ -138,11 +148,16 @@ pub(crate) struct SimulatorClock {
     latest: ClockSample,
     /// The latest before this tick: in one tick many may arrive that waited.
     before: ClockSample,
+    /// When the first of the older times arrived that were taken for late ones
+    /// since the latest; never if there was none.
+    late_since: Time,
     /// When the clock last advanced, or had a reason not to.
     advanced: Time,
     paused: bool,
     replaying: bool,
     frame_period_s: f64,
+    /// When the last freeze ended.
+    froze: Time,
     /// The samples from which the pace is measured: the older one, until the
     /// younger is [`PACE_OVER`] old.
     marks: [ClockSample; 2],
@@ -166,10 +181,12 @@ impl SimulatorClock {
             received: Time::NEVER,
             latest: ClockSample::default(),
             before: ClockSample::default(),
+            late_since: Time::NEVER,
             advanced: Time::NEVER,
             paused: false,
             replaying: false,
             frame_period_s: 0.0,
+            froze: Time::NEVER,
             marks: [ClockSample::default(); 2],
             pace: Pace::Even,
             jumped: false,
@@ -192,14 +209,17 @@ impl SimulatorClock {
     /// Whether a datagram of this flight time was overtaken by a newer one and
     /// is to be dropped. An equal time is not late: it is the same frame again,
     /// or time does not advance.
-    pub(crate) fn is_late(&self, now: Time, time_s: f64) -> bool {
+    pub(crate) fn is_late(&mut self, now: Time, time_s: f64) -> bool {
         let back_s = self.latest.time_s - time_s;
         // A replay may go backwards.
-        !self.replaying
-            && !self.latest.seen.is_never()
-            && back_s > 0.0
-            && back_s < LATE_S
-            && now.since(self.latest.seen) < LATE
+        let is_older = back_s > 0.0 && back_s < LATE_S;
+        if self.replaying || self.latest.seen.is_never() || !is_older {
+            return false;
+        }
+        if self.late_since.is_never() {
+            self.late_since = now;
+        }
+        now.since(self.late_since) < LATE
     }
 
     /// Evaluates the report of an accepted datagram.
@@ -235,6 +255,7 @@ impl SimulatorClock {
     fn read_clock(&mut self, now: Time, time_s: f64, was_silent: bool) {
         let (before, had_stopped) = (self.latest, self.has_stopped());
         self.latest = ClockSample { time_s, seen: now };
+        self.late_since = Time::NEVER;
         if before.seen.is_never() {
             self.begin_pace(now);
             return;
@@ -251,9 +272,15 @@ impl SimulatorClock {
         } else if was_silent {
             self.begin_pace(now);
         } else if gained_s > 0.0 {
+            let freezes = now.since(before.seen).as_secs_f64() - gained_s > FREEZE_S;
             // Frames that are far apart are slow, and no stop.
             if had_stopped {
                 self.begin_pace(now);
+            } else if freezes && now.since(self.froze) >= FREEZE_ALONE {
+                self.marks = [self.latest; 2];
+            }
+            if freezes {
+                self.froze = now;
             }
             self.advanced = now;
         }
@@ -280,7 +307,8 @@ impl SimulatorClock {
         } else {
             1.0
         };
-        if pace < PACE_LOST || self.frame_period_s > FRAME_LOST_S {
+        let in_slow_frames = self.frame_period_s > FRAME_LOST_S && pace < PACE_REGAINED;
+        if pace < PACE_LOST || in_slow_frames {
             self.pace = Pace::Slow;
         } else if pace > PACE_FAST {
             self.pace = Pace::Fast;

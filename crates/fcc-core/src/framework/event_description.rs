@@ -77,12 +77,7 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 took_ns,
                 budget_ns,
                 ..
-            } => write!(
-                f,
-                "the timer woke {:.1} ms late: periods of {:.1} ms were missed",
-                ms(took_ns),
-                ms(budget_ns)
-            ),
+            } => late_timer(f, took_ns, budget_ns),
             EventKind::Overrun {
                 of,
                 took_ns,
@@ -100,10 +95,7 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 }
                 Ok(())
             }
-            EventKind::OverrunsOver { count, last, .. } => write!(
-                f,
-                "{count} ticks overran or were missed up to tick {last}; none for a second"
-            ),
+            EventKind::OverrunsOver { count, last, .. } => overruns_over(f, count, last),
             EventKind::Hung { silent_ns } => write!(
                 f,
                 "the loop hung: no progress for {:.1} s",
@@ -117,6 +109,10 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 f.write_str("control is given back at once: ")?;
                 name_flags::<C>(f, conditions)
             }
+            EventKind::SwitchedOnUnseen => f.write_str(
+                "not engaged: the engage switch was switched on while nothing arrived from it; \
+                 switch it off and on again",
+            ),
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {
@@ -144,6 +140,34 @@ fn state_change<C: Controller>(f: &mut fmt::Formatter<'_>, from: State, to: Stat
         }
         _ => Ok(()),
     }
+}
+
+/// The periods missed from the first deadline that was, to the tick after it.
+fn late_timer(f: &mut fmt::Formatter<'_>, late_ns: u64, period_ns: u64) -> fmt::Result {
+    let missed = late_ns.checked_div(period_ns).unwrap_or_default();
+    let (periods, were) = if missed == 1 {
+        ("period", "was")
+    } else {
+        ("periods", "were")
+    };
+    write!(
+        f,
+        "the timer woke {:.1} ms late: {missed} {periods} of {:.1} ms {were} missed",
+        ms(late_ns),
+        ms(period_ns)
+    )
+}
+
+fn overruns_over(f: &mut fmt::Formatter<'_>, count: u64, last: u64) -> fmt::Result {
+    let ticks = if count == 1 {
+        "tick overran or was"
+    } else {
+        "ticks overran or were"
+    };
+    write!(
+        f,
+        "{count} {ticks} missed up to tick {last}; none for a second"
+    )
 }
 
 /// The conditions that began, then those that ended.

@@ -26,6 +26,7 @@ pub(crate) const KNOT_MPS: f64 = 1_852.0 / 3_600.0;
 pub(crate) struct Cockpit {
     pub(crate) autopilot: Autopilot,
     pub(crate) tick: Tick,
+    pub(crate) period: Duration,
     /// The sensors' readings, stamped at each tick.
     pub(crate) feel: Feel,
     pub(crate) rates: BodyRates,
@@ -34,6 +35,8 @@ pub(crate) struct Cockpit {
     pub(crate) switch: Option<Switch>,
     /// How much the plant's clock is behind ours, s.
     pub(crate) stood_s: f64,
+    /// The sensor from which the plant's clock comes.
+    pub(crate) plant_source: u8,
     /// Degrees north of the start.
     pub(crate) north_deg: f64,
     pub(crate) other_control: OtherControl,
@@ -83,12 +86,14 @@ impl Cockpit {
                 woke: Time::from_nanos(0),
                 ..Tick::default()
             },
+            period: Duration::from_millis(25),
             feel: LEVEL,
             rates: BodyRates::default(),
             measurements: Measurements::default(),
             silent: Flags::NONE,
             switch: None,
             stood_s: 0.0,
+            plant_source: 0,
             north_deg: 0.0,
             other_control: OtherControl::default(),
             suspect: Suspect::default(),
@@ -116,7 +121,8 @@ impl Cockpit {
 
     fn next_tick(&mut self) {
         self.tick.number += 1;
-        self.tick.woke = self.tick.woke + Duration::from_millis(25);
+        self.tick.woke = self.tick.woke + self.period;
+        self.tick.dt_s = self.period.as_secs_f64();
         self.tick.scheduled = self.tick.woke;
     }
 
@@ -154,13 +160,11 @@ impl Cockpit {
             other_control: Reading::new(self.other_control, now),
             suspect: Reading::new(self.suspect, now),
             plant: feel.plant.map_or_else(Reading::default, |state| {
-                Reading::new(
-                    Plant {
-                        time_s: now.as_nanos() as f64 * 1e-9 - self.stood_s,
-                        state,
-                    },
-                    now,
-                )
+                let time_s = now.as_nanos() as f64 * 1e-9 - self.stood_s;
+                Reading {
+                    source: self.plant_source,
+                    ..Reading::new(Plant { time_s, state }, now)
+                }
             }),
             engage_switch: self
                 .switch

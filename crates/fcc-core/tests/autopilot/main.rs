@@ -3,9 +3,12 @@
 #![cfg(feature = "flight")]
 
 mod altimeter;
+mod clocks;
 mod cockpit;
+mod event_texts;
 mod faults;
 mod flying;
+mod link_loss;
 mod other_control;
 mod resuming;
 mod silence;

@@ -9,7 +9,7 @@ use fcc_core::framework::{Controller, Flags, Notice};
 use crate::cockpit::{Cockpit, DT_S, SENSORS};
 
 /// Engaged on a simulator, in a turn to the right and a climb.
-fn manoeuvring() -> Cockpit {
+pub(crate) fn manoeuvring() -> Cockpit {
     let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
     cockpit.feel.plant = Some(PlantState::Running);
     for _ in 0..60 {
@@ -27,7 +27,7 @@ fn manoeuvring() -> Cockpit {
 
 /// Ticks of a turn by 5 °/s with a climb by 3 m/s; asserts that nothing is
 /// wrong.
-fn fly(cockpit: &mut Cockpit, ticks: u32) {
+pub(crate) fn fly(cockpit: &mut Cockpit, ticks: u32) {
     for _ in 0..ticks {
         move_on(cockpit);
         cockpit.step();
@@ -36,7 +36,7 @@ fn fly(cockpit: &mut Cockpit, ticks: u32) {
     }
 }
 
-fn move_on(cockpit: &mut Cockpit) {
+pub(crate) fn move_on(cockpit: &mut Cockpit) {
     cockpit.feel.roll_deg += (20.0 - cockpit.feel.roll_deg) * DT_S;
     cockpit.feel.heading_deg += 5.0 * DT_S;
     cockpit.feel.altitude_m += 3.0 * DT_S;
@@ -45,7 +45,7 @@ fn move_on(cockpit: &mut Cockpit) {
 
 /// Ticks without a datagram; in a freeze the aircraft stands still, in a cut it
 /// flies on.
-fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
+pub(crate) fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
     for _ in 0..ticks {
         if flies_on {
             move_on(cockpit);
@@ -58,13 +58,13 @@ fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
     }
 }
 
-fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
+pub(crate) fn noticed(cockpit: &Cockpit) -> Option<(u8, f64)> {
     let notice = cockpit.autopilot.notice()?;
     Some((notice.kind, notice.lasted_s()))
 }
 
 const STOOD_STILL: u8 = 1;
-const LINK_LOST: u8 = 2;
+pub(crate) const LINK_LOST: u8 = 2;
 
 /// To the last digit as if nothing had happened, whatever the length.
 #[test]
@@ -131,38 +131,6 @@ fn after_a_cut_the_estimate_is_that_of_the_aircraft_at_once() {
         let off_deg = estimated.heading_rad.to_degrees() - cockpit.feel.heading_deg;
         assert!(off_deg.abs() < 10.0, "{off_deg}°");
         assert!((estimated.climb_rate_mps - 3.0).abs() < 1.0);
-        assert!((estimated.altitude_m - cockpit.feel.altitude_m).abs() < 1.0);
-    }
-}
-
-/// Climbing by 3 m/s until the cut, sinking by 1 m/s from then on: the altitude
-/// that returns is lower by up to 120 m than predicted.
-#[test]
-fn after_a_long_cut_neither_a_dive_nor_a_climb_is_estimated() {
-    for seconds in [3, 12, 29] {
-        let mut cockpit = manoeuvring();
-        fly(&mut cockpit, 400);
-        let sink = |cockpit: &mut Cockpit| {
-            cockpit.feel.altitude_m -= DT_S;
-            cockpit.north_deg += 50.0 * DT_S / 111_120.0;
-        };
-        for _ in 0..seconds * 40 {
-            sink(&mut cockpit);
-            cockpit.hear_nothing();
-            cockpit.act();
-        }
-        for tick in 0..200 {
-            sink(&mut cockpit);
-            cockpit.step();
-            assert_eq!(cockpit.faults(), Flags::NONE);
-            let climb_rate_mps = cockpit.autopilot.estimated().climb_rate_mps;
-            assert!(
-                (-4.0..2.0).contains(&climb_rate_mps),
-                "{climb_rate_mps} m/s in tick {tick} after {seconds} s"
-            );
-        }
-        let estimated = cockpit.autopilot.estimated();
-        assert!((estimated.climb_rate_mps + 1.0).abs() < 0.5);
         assert!((estimated.altitude_m - cockpit.feel.altitude_m).abs() < 1.0);
     }
 }

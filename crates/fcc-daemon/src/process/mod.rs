@@ -26,8 +26,8 @@ use crate::output;
 use instance_lock::InstanceLock;
 use release_helper::ReleaseHelper;
 pub(crate) use release_helper::run_release_helper;
-pub(crate) use signals::tolerate;
 use signals::{BlockedSignals, Caught};
+pub(crate) use signals::{end_with_parent, tolerate};
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it; a check is one refused

@@ -1,7 +1,7 @@
 //! `[built-in]`: the aircraft is the built-in one.
 
 use fcc_core::units::{FOOT_M, KNOT_MPS};
-use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, Wind};
+use fcc_sim::{Channels, SensorConfig, Severity, SimConfig, SwitchScript, TrimError, Wind, trim};
 use serde::{Deserialize, Serialize};
 
 /// `[built-in]`.
@@ -69,6 +69,29 @@ impl Default for BuiltInSection {
             engage_at_s: 2.0,
             seed: 1,
         }
+    }
+}
+
+impl BuiltInSection {
+    /// Why the aircraft cannot begin in level flight at this airspeed and
+    /// altitude, if it cannot.
+    pub(super) fn why_not_level(&self) -> Option<String> {
+        let start = SimConfig::from(self);
+        let error = trim(
+            &start.airframe,
+            start.indicated_airspeed_mps,
+            start.altitude_m,
+        )
+        .err()?;
+        let (airspeed_kt, altitude_ft) = (self.airspeed_kt, self.altitude_ft);
+        let why = match error {
+            TrimError::Throttle { throttle, .. } => format!(
+                "at {altitude_ft} ft level flight takes a throttle of {throttle:.2}, and there is \
+                 0 to 1: choose a lower airspeed or altitude"
+            ),
+            other => other.to_string(),
+        };
+        Some(format!("is {airspeed_kt}: {why}"))
     }
 }
 

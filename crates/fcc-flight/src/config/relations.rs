@@ -1,5 +1,6 @@
 //! Constraints between the values of a configuration, and on its lists.
 
+use super::ranges::range_of;
 use super::{Config, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
@@ -42,6 +43,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
         report("failsafe.all_silent_s", message);
     }
     budgets(config, report);
+    built_in(config, report);
     if config.x_plane.is_some() && config.built_in.is_some() {
         report(
             "built-in",
@@ -81,6 +83,24 @@ fn connections(config: &Config, report: &mut impl FnMut(&str, String)) {
         } else if port != 0 {
             ports.push((port, format!("{at}.local_port")));
         }
+    }
+}
+
+/// Of the start of the built-in aircraft.
+fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
+    let Some(section) = &config.built_in else {
+        return;
+    };
+    let is_in_range = |key: &str, value: f64| {
+        range_of(key).is_some_and(|(least, most)| (least..=most).contains(&value))
+    };
+    let airspeed = "built-in.airspeed_kt";
+    // One that is out of its range is reported as such.
+    if is_in_range(airspeed, section.airspeed_kt)
+        && is_in_range("built-in.altitude_ft", section.altitude_ft)
+        && let Some(message) = section.why_not_level()
+    {
+        report(airspeed, message);
     }
 }
 

@@ -97,26 +97,48 @@ fn accelerated_time_is_neither_slow_nor_a_jump() {
     assert_eq!(bench.fly(400, 2.0), SimulatorState::Running);
 }
 
-#[test]
-fn frames_longer_than_a_twentieth_of_a_second_are_slow() {
-    let mut bench = Bench::new();
-    bench.fly(80, 1.0);
-    let frames = |bench: &mut Bench, period_s| {
-        bench.time_s += 0.025;
-        bench.receive(SimulatorReport {
+/// Ticks with this frame period, in which the simulator's time runs at this pace.
+fn frames(bench: &mut Bench, ticks: u32, period_s: f64, pace: f64) -> SimulatorState {
+    let mut state = SimulatorState::Silent;
+    for _ in 0..ticks {
+        bench.time_s += 0.025 * pace;
+        state = bench.receive(SimulatorReport {
             time_s: Some(bench.time_s),
             frame_period_s: Some(period_s),
             ..SimulatorReport::default()
-        })
-    };
-    assert_eq!(frames(&mut bench, 0.049), SimulatorState::Running);
-    assert_eq!(frames(&mut bench, 0.051), SimulatorState::Slow);
-    assert_eq!(
-        frames(&mut bench, 0.048),
-        SimulatorState::Slow,
-        "hysteresis"
-    );
-    assert_eq!(frames(&mut bench, 0.030), SimulatorState::Running);
+        });
+    }
+    state
+}
+
+#[test]
+fn frames_longer_than_a_twentieth_of_a_second_are_slow_from_a_smaller_loss_on() {
+    use SimulatorState::{Running, Slow};
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    assert_eq!(frames(&mut bench, 160, 0.049, 0.93), Running);
+    bench.fly(160, 1.0);
+    assert_eq!(frames(&mut bench, 160, 0.051, 0.97), Running);
+    assert_eq!(frames(&mut bench, 160, 0.051, 0.93), Slow);
+    assert_eq!(frames(&mut bench, 160, 0.048, 1.0), Slow, "hysteresis");
+    assert_eq!(frames(&mut bench, 1, 0.030, 1.0), Running);
+}
+
+/// The frame period that X-Plane shows is smoothed, here over 0.5 s.
+#[test]
+fn a_single_freeze_is_not_slow() {
+    for freeze_ticks in [3, 5, 9, 15, 19, 40, 160] {
+        let mut bench = Bench::new();
+        bench.fly(80, 1.0);
+        let mut smoothed_s = f64::from(freeze_ticks) * 0.025;
+        bench.now = bench.now + freeze_ticks * Bench::TICK;
+        for tick in 0..240 {
+            let state = frames(&mut bench, 1, smoothed_s, 1.0);
+            let running = SimulatorState::Running;
+            assert_eq!(state, running, "tick {tick} after {freeze_ticks}");
+            smoothed_s += (0.017 - smoothed_s) * 0.05;
+        }
+    }
 }
 
 /// X-Plane makes no step longer than a twentieth of a second.
@@ -132,7 +154,7 @@ fn three_frames_a_second_are_slow_also_without_a_frame_period() {
                 time_s: Some(bench.time_s),
                 ..SimulatorReport::default()
             });
-            let expected = if before < 1.0 || frame >= 2 {
+            let expected = if before < 1.0 || frame >= 4 {
                 SimulatorState::Slow
             } else {
                 state
@@ -171,6 +193,27 @@ fn a_datagram_overtaken_by_less_than_a_second_is_late() {
     // as late for ever.
     let later = now + LATE;
     assert!(!bench.clock.is_late(later, time_s - 0.5));
+}
+
+/// What was on its way when the silence began may arrive first after it.
+#[test]
+fn an_overtaken_datagram_after_a_silence_is_late_and_no_jump() {
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    let time_s = bench.time_s;
+    bench.now = bench.now + Duration::from_millis(1_200);
+    assert!(bench.clock.is_late(bench.now, time_s - 0.05));
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    // A flight loaded in the silence, less than a second back, and paused.
+    let time_s = bench.time_s - 0.5;
+    bench.now = bench.now + Duration::from_secs(10);
+    for _ in 0..40 {
+        assert!(bench.clock.is_late(bench.now, time_s));
+        bench.now = bench.now + Bench::TICK;
+    }
+    assert!(!bench.clock.is_late(bench.now, time_s));
+    bench.time_s = time_s;
+    assert_eq!(bench.fly(1, 0.0), SimulatorState::Jumped);
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
-use super::Autopilot;
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
-use crate::flight::navigation::{FrozenDetector, plausibility_gate};
+use super::{Autopilot, flags};
+use crate::flight::navigation::{FrozenDetector, airspeed_can_follow, plausibility_gate};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Readings, Tick, Time};
 
@@ -65,10 +65,18 @@ impl Autopilot {
         let latest = self.before;
         self.navigation.postpone(gap.excused, latest);
         if gap.settles_anew {
-            // Nothing that was measured before says where the aircraft is now.
+            // Nothing that was measured before says where the aircraft is now,
+            // but how fast it can be.
+            let airspeed = self.accepted.airspeed_mps;
             self.accepted = Measurements::default();
-            self.distrusted = Flags::NONE;
+            let distrusted = core::mem::take(&mut self.distrusted);
             plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
+            let passed_s = self.clock.passed_s();
+            if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
+                self.accepted.airspeed_mps = airspeed;
+                let was_distrusted = distrusted.contains(flags::AIRSPEED);
+                self.distrusted = Flags::NONE.with(flags::AIRSPEED, was_distrusted);
+            }
         }
         self.accepted
             .each_time(&mut |taken| *taken = taken.postponed(gap.excused, latest));

@@ -7,7 +7,7 @@
 
 use core::time::Duration;
 
-use crate::flight::{Measurements, PlantState};
+use crate::flight::{Measurements, Plant, PlantState};
 use crate::framework::{Notice, Reading, Tick, Time};
 
 /// The longest single step of the plant's time, s: after a gap the loops
@@ -16,8 +16,9 @@ const MAX_STEP_S: f64 = 0.2;
 /// A plant whose time does not advance for longer than this while it sends has
 /// stopped: five frames at 20 a second.
 const STOPPED_AFTER: Duration = Duration::from_millis(250);
-/// A gap longer than this, and longer than twice the usual one, is noticed, s:
-/// two frames at 20 a second, and less than the shortest freeze that matters.
+/// A gap longer than this, longer than twice the usual one and than two periods
+/// of the loop, is noticed, s: two frames at 20 a second, and less than the
+/// shortest freeze that matters.
 const NOTICED_S: f64 = 0.095;
 /// Less is the rounding of a clock that stands still, s.
 const LEAST_STEP_S: f64 = 1e-6;
@@ -67,6 +68,9 @@ pub(super) struct Gap {
 pub(super) struct PlantClock {
     time_s: Option<f64>,
     state: PlantState,
+    /// The sensor from which that time came, and when it was taken.
+    source: u8,
+    told: Time,
     /// The ticks in which the plant's time last advanced, something last
     /// arrived, and its time was last not taken to stand still.
     advanced: Time,
@@ -77,7 +81,8 @@ pub(super) struct PlantClock {
     waiting: Waiting,
     /// The last gaps between two advances, s.
     gaps_s: [f64; USUAL_OF],
-    /// Periods of ours that were missed in the present gap, s.
+    /// Time of the present gap in which this loop itself did not run, up to the
+    /// tick after it, s.
     missed_s: f64,
     is_ignored: bool,
     step_s: f64,
@@ -91,6 +96,8 @@ impl Default for PlantClock {
         Self {
             time_s: None,
             state: PlantState::Running,
+            source: 0,
+            told: Time::NEVER,
             advanced: Time::NEVER,
             arrived: Time::NEVER,
             judged: Time::NEVER,
@@ -119,7 +126,10 @@ impl PlantClock {
             return;
         }
         self.pass(0.0);
-        self.missed_s += tick.dt_s - tick.dt_s / (tick.missed.saturating_add(1)) as f64;
+        if tick.missed > 0 {
+            // What waited meanwhile is old, and may not have been read.
+            self.missed_s += tick.dt_s;
+        }
         let newest = newest(measured);
         let arrives = newest > self.newest;
         if arrives {
@@ -127,6 +137,7 @@ impl PlantClock {
             self.arrived = tick.woke;
             self.state = plant.value.state;
         }
+        self.follow_source(&plant);
         let was = self.waiting;
         self.waiting = match self.state {
             PlantState::Replaying => {
@@ -174,10 +185,25 @@ impl PlantClock {
         self.passed_s = seconds;
     }
 
+    /// Clocks of two sensors cannot be compared. When the plant's time comes
+    /// from another one, as much of it has passed as of ours since it last came.
+    fn follow_source(&mut self, plant: &Reading<Plant>) {
+        if plant.source != self.source {
+            let passed = plant.taken.since(self.told);
+            self.time_s = self
+                .time_s
+                .map(|_| plant.value.time_s - passed.as_secs_f64());
+        }
+        self.source = plant.source;
+        self.told = plant.taken;
+    }
+
     /// Begins anew with a clock that was set.
     fn begin(&mut self, tick: &Tick, time_s: f64) {
         *self = Self {
             state: self.state,
+            source: self.source,
+            told: self.told,
             newest: self.newest,
             arrived: self.arrived,
             time_s: Some(time_s),
@@ -203,7 +229,8 @@ impl PlantClock {
         self.step_s = gained_s.min(MAX_STEP_S);
         self.passed_s = self.step_s;
 
-        let limit_s = NOTICED_S.max(2.0 * usual_s);
+        let period_s = tick.dt_s / (tick.missed.saturating_add(1)) as f64;
+        let limit_s = NOTICED_S.max(2.0 * usual_s.max(period_s));
         let was_long = ours_s > limit_s;
         let settles_anew = was_long && gained_s > MAX_STEP_S;
         // Half of the gap is far from both: a frame or two, and all of it.
@@ -227,7 +254,8 @@ impl PlantClock {
         }
         // A pause, and what this loop itself missed, are reported elsewhere.
         let is_reported = matches!(was, Waiting::Paused | Waiting::Replaying);
-        if !is_reported && ours_s - missed_s > limit_s {
+        let heard_s = ours_s - missed_s;
+        if !is_reported && heard_s > limit_s {
             let (kind, lasted_s) = if ran_on {
                 (LINK_LOST, ours_s)
             } else {
@@ -235,7 +263,7 @@ impl PlantClock {
             };
             self.notice = Some(Notice {
                 kind,
-                lasted_ns: (lasted_s * 1e9) as u64,
+                lasted_ns: (lasted_s.min(heard_s) * 1e9) as u64,
             });
         }
     }

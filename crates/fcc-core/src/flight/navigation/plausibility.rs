@@ -74,6 +74,11 @@ const HEIGHT_M: PlausibilityLimit = PlausibilityLimit {
 /// detected.
 const GROWS_FOR_S: f64 = 0.1;
 
+/// The time for which the limit of the airspeed grows over a gap in which the
+/// aircraft flew on unheard, s: with the controls at their trims the airspeed
+/// swings about the trimmed one, so a longer gap permits no larger change.
+const AIRSPEED_GROWS_FOR_S: f64 = 1.0;
+
 /// After this many times the age at which a reading is too old, a source's new
 /// value is accepted: either the old value was wrong, or the aircraft was
 /// repositioned. By then its loss was detected.
@@ -186,6 +191,17 @@ pub(crate) fn plausibility_gate(
     .fold(Flags::NONE, |all, (plausible, bit)| {
         all.with(Flags::bit(bit), plausible)
     })
+}
+
+/// Whether an airspeed can be that of an aircraft which had another one before it
+/// flew on unheard for `passed_s`; none is, if none is plausible by itself.
+pub(crate) fn airspeed_can_follow(
+    before: &Reading<f64>,
+    new: &Reading<f64>,
+    passed_s: f64,
+) -> bool {
+    let most = AIRSPEED_MPS.at_once + AIRSPEED_MPS.per_s * passed_s.min(AIRSPEED_GROWS_FOR_S);
+    before.is_never() || !new.is_never() && within(new.value - before.value, most)
 }
 
 /// Whether the source of the airspeed contradicts it: only that of the airspeed

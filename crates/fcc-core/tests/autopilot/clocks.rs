@@ -1,0 +1,97 @@
+//! The plant's clock: that of another simulator, and compared with a loop that
+//! is slow or was stopped.
+
+use core::time::Duration;
+
+use fcc_core::flight::guidance::GuidanceConfig;
+use fcc_core::flight::{PlantState, flags};
+use fcc_core::framework::{Controller, Flags};
+
+use crate::cockpit::{Cockpit, DT_S};
+use crate::silence::{LINK_LOST, fly, manoeuvring, noticed, silence};
+
+fn elapsed_s(cockpit: &Cockpit) -> f64 {
+    cockpit.autopilot.setpoints().guidance.elapsed_s
+}
+
+/// The second simulator's clock may be far before or behind the first one's.
+#[test]
+fn another_simulators_clock_is_not_compared_with_the_first() {
+    for behind_s in [-3_600.0, -0.5, 0.2, 0.5, 5.0, 3_600.0] {
+        let mut cockpit = manoeuvring();
+        silence(&mut cockpit, 11, true);
+        cockpit.plant_source = 1;
+        cockpit.stood_s += behind_s;
+        for _ in 0..80 {
+            fly(&mut cockpit, 1);
+            assert!(!cockpit.withholds());
+            assert!(!cockpit.engage_inhibits().contains(flags::PLANT_STALLED));
+        }
+        // And back, without a gap.
+        let before_s = elapsed_s(&cockpit);
+        cockpit.plant_source = 0;
+        cockpit.stood_s -= behind_s;
+        for _ in 0..80 {
+            fly(&mut cockpit, 1);
+            assert_eq!(noticed(&cockpit), None);
+        }
+        assert!((elapsed_s(&cockpit) - before_s - 80.0 * DT_S).abs() < 1e-6);
+    }
+}
+
+/// A pause of the first simulator is no time that the second flew.
+#[test]
+fn a_pause_before_another_simulators_clock_is_no_time() {
+    let mut cockpit = manoeuvring();
+    let (before_s, time_s) = (elapsed_s(&cockpit), cockpit.measurements.plant.value.time_s);
+    for _ in 0..400 {
+        cockpit.pause(time_s);
+        cockpit.act();
+    }
+    cockpit.plant_source = 1;
+    fly(&mut cockpit, 1);
+    assert!(elapsed_s(&cockpit) - before_s < 0.1);
+}
+
+/// This program was stopped for 0.4 s; what waited meanwhile was not read, and
+/// the next tick followed at once.
+#[test]
+fn periods_that_this_loop_missed_are_not_the_link_s() {
+    for (later_ticks, expected) in [(0, None), (8, Some(LINK_LOST))] {
+        let mut cockpit = manoeuvring();
+        cockpit.hear_nothing();
+        cockpit.tick.missed = 15;
+        cockpit.period = Duration::from_millis(400);
+        cockpit.tick.woke = cockpit.tick.woke + Duration::from_micros(24_900);
+        cockpit.hear_nothing();
+        cockpit.tick.missed = 0;
+        cockpit.period = Duration::from_micros(100);
+        cockpit.hear_nothing();
+        cockpit.period = Duration::from_millis(25);
+        for _ in 0..later_ticks {
+            cockpit.hear_nothing();
+        }
+        cockpit.observe();
+        assert_eq!(noticed(&cockpit).map(|(kind, _)| kind), expected);
+        // Of 0.675 s the 0.4 s are not counted.
+        let lasted_s = noticed(&cockpit).map_or(0.275, |(_, lasted_s)| lasted_s);
+        assert!((lasted_s - 0.275).abs() < 1e-3, "{lasted_s}");
+    }
+}
+
+/// At 10 ticks a second each tick is a gap of a tenth of a second.
+#[test]
+fn a_slow_loop_is_no_lost_link() {
+    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
+    cockpit.feel.plant = Some(PlantState::Running);
+    cockpit.period = Duration::from_millis(100);
+    for _ in 0..20 {
+        cockpit.observe();
+        assert_eq!(noticed(&cockpit), None);
+    }
+    assert_eq!(cockpit.engage_inhibits(), Flags::NONE);
+    cockpit.hear_nothing();
+    cockpit.hear_nothing();
+    cockpit.observe();
+    assert_eq!(noticed(&cockpit).map(|(kind, _)| kind), Some(LINK_LOST));
+}
