@@ -122,6 +122,9 @@ pub struct RunArgs {
     /// Print no status lines
     #[arg(long, short)]
     pub quiet: bool,
+    /// End when the process that started this one ends, which has this number
+    #[arg(long, value_name = "PID", hide = true)]
+    pub end_with: Option<u32>,
 }
 
 /// Where a flight is recorded.

@@ -58,11 +58,11 @@ impl XPlaneAuthority {
 
 impl ControlAuthority for XPlaneAuthority {
     fn plant(&self) -> Option<PlantId> {
-        self.status.as_ref()?.simulator().and_then(name)
+        self.status.as_ref()?.simulator().and_then(plant_at)
     }
 
     fn held(&self) -> Option<PlantId> {
-        self.status.as_ref()?.held_at().and_then(name)
+        self.status.as_ref()?.held_at().and_then(plant_at)
     }
 
     fn require_permission(&self) {
@@ -82,7 +82,7 @@ impl ControlAuthority for XPlaneAuthority {
     fn unique(&self, plant: &PlantId) -> PlantId {
         address(plant)
             .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator))
-            .and_then(|simulator| name((Ipv4Addr::LOCALHOST, simulator.port()).into()))
+            .and_then(|simulator| plant_at((Ipv4Addr::LOCALHOST, simulator.port()).into()))
             .unwrap_or(*plant)
     }
 
@@ -119,12 +119,19 @@ impl ControlAuthority for XPlaneAuthority {
             })
     }
 
+    fn release_left(&self) {
+        if let Some(status) = &self.status {
+            status.release_left();
+        }
+    }
+
     fn by_hand(&self) -> &'static str {
         "switch off override_joystick and override_throttles there"
     }
 }
 
-fn name(simulator: SocketAddr) -> Option<PlantId> {
+/// The X-Plane at an address, as [`XPlaneAuthority`] names it.
+pub fn plant_at(simulator: SocketAddr) -> Option<PlantId> {
     PlantId::new(format_args!("{NAME}{simulator}"))
 }
 
@@ -146,6 +153,7 @@ struct Reported {
     control: Control,
     loads_differ: bool,
     axial_backwards: bool,
+    left_overridden: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -167,6 +175,7 @@ impl Default for Reported {
             control: Control::Free,
             loads_differ: false,
             axial_backwards: false,
+            left_overridden: false,
         }
     }
 }
@@ -195,6 +204,7 @@ impl Reported {
             None => self
                 .recovery(status)
                 .or_else(|| self.change_of_control(status))
+                .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
                 .or_else(|| self.change_of_loads(status))
                 .or_else(|| self.change_of_missing(status)),
@@ -292,6 +302,19 @@ impl Reported {
         ))
     }
 
+    /// That overrides are set which no program seems to use.
+    fn change_of_overrides(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let left = status.is_left_overridden();
+        let begins = left && !self.left_overridden;
+        self.left_overridden = left;
+        begins.then(|| {
+            "X-Plane's controls are still overridden, by a program that has ended or another one: \
+             the joystick there has no effect. If none flies, engage and disengage, or switch off \
+             override_joystick and override_throttles there"
+                .to_owned()
+        })
+    }
+
     /// That X-Plane's loads contradict each other, and which are used; each
     /// once.
     fn change_of_loads(&mut self, status: &XPlaneStatus) -> Option<String> {
@@ -334,7 +357,7 @@ mod tests {
     fn another_address_of_this_machine_is_the_same_simulator() {
         let authority = XPlaneAuthority::without_connection(&XPlaneConfig::default());
         let unique = |address: &str| {
-            let plant = name(address.parse().unwrap()).unwrap();
+            let plant = plant_at(address.parse().unwrap()).unwrap();
             authority.unique(&plant).as_str().to_owned()
         };
         for here in ["127.0.0.1:49000", "127.9.9.9:49000", "[::1]:49000"] {

@@ -29,7 +29,7 @@ const FREE: &str = "free";
 const RELEASE_FOR: Duration = Duration::from_secs(120);
 
 /// The release helper, as seen by the process that started it.
-pub(super) struct ReleaseHelper {
+pub(crate) struct ReleaseHelper {
     child: Child,
     held: Option<PlantId>,
 }
@@ -55,8 +55,8 @@ impl ReleaseHelper {
     }
 
     /// Reports where control is held, if it is. A helper that has ended is no
-    /// reason to stop.
-    pub(super) fn report(&mut self, held: Option<PlantId>) {
+    /// reason to stop: [`has_ended`](Self::has_ended) tells.
+    pub(crate) fn report(&mut self, held: Option<PlantId>) {
         if self.held == held {
             return;
         }
@@ -67,6 +67,11 @@ impl ReleaseHelper {
                 None => writeln!(pipe, "{FREE}"),
             };
         }
+    }
+
+    /// Whether it has ended by itself, or was killed; never waits.
+    pub(super) fn has_ended(&mut self) -> bool {
+        matches!(self.child.try_wait(), Ok(Some(_)))
     }
 
     /// Ends the helper, and waits until it has ended.
