@@ -23,8 +23,7 @@ const AHEAD_OF: f64 = 2.0;
 /// What a network held back may arrive in several ticks: for this long after a
 /// gap of this length the clock is compared with that before the gap, too.
 const HELD_BACK: Duration = Duration::from_millis(500);
-/// The simulator sends and is not paused, but its clock has not advanced for
-/// this long: five frames at 20 a second.
+/// Stalled if its clock has not advanced for this long: five frames at 20 a second.
 const STALLED_AFTER: Duration = Duration::from_millis(250);
 /// The simulator's pace is measured over at least this long, at most twice this
 /// long: 25 ms of jitter at its end are then at most 2.5 %.
