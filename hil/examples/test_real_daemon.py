@@ -12,7 +12,9 @@ from fcc_hil.sensor_faults import Faults
 
 
 @pytest.mark.realtime
-@pytest.mark.autopilot(hold_s=2, leg_s=12, turn_deg=20, climb_ft=30, failsafe_hold_s=1)
+@pytest.mark.autopilot(
+    hold_s=2, leg_s=12, turn_deg=20, climb_ft=30, failsafe_hold_s=1, all_silent_s=0.5
+)
 def test_a_link_that_breaks_in_flight(flight: Flight, faults: Faults) -> None:
     """The limits are wide, because a busy machine is late now and then."""
     flight.engages(by=5)

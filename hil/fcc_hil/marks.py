@@ -77,6 +77,8 @@ class AutopilotMark:
     """None to hold the captured state."""
     failsafe_hold_s: float
     """How long failsafe holds the wings level before the controls are released."""
+    all_silent_s: float
+    """How long a simulator from which nothing arrives is waited for."""
     config: str
     """More sections of a configuration."""
 
@@ -90,7 +92,9 @@ class AutopilotMark:
                 f'mode = "timed-pattern"\nhold_s = {pattern.hold_s!r}\nleg_s = {pattern.leg_s!r}\n'
                 f"turn_deg = {pattern.turn_deg!r}\nclimb_ft = {pattern.climb_ft!r}"
             )
-        failsafe = f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}"
+        failsafe = (
+            f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}\nall_silent_s = {self.all_silent_s!r}"
+        )
         return f"[guidance]\n{flown}\n{failsafe}\n{self.config}\n"
 
 
@@ -102,6 +106,7 @@ def autopilot_mark(
     turn_deg: float = 90.0,
     climb_ft: float = 150.0,
     failsafe_hold_s: float = 5.0,
+    all_silent_s: float = 30.0,
     config: str = "",
 ) -> AutopilotMark:
     """Return the autopilot of the mark; raise ValueError or TypeError for a wrong argument.
@@ -123,5 +128,6 @@ def autopilot_mark(
     return AutopilotMark(
         pattern=pattern if mode == MODES[0] else None,
         failsafe_hold_s=_within("failsafe_hold_s", failsafe_hold_s, 0.0, 600.0, "s"),
+        all_silent_s=_within("all_silent_s", all_silent_s, 0.25, 600.0, "s"),
         config=config,
     )

@@ -98,7 +98,9 @@ class Plant:
         fdm["ic/terrain-elevation-ft"] = runway_elevation_ft or 0.0
         fdm["ic/lat-geod-deg"] = latitude_deg
         fdm["ic/long-gc-deg"] = longitude_deg
-        self.set_qnh(qnh_pa)
+        if qnh_pa != SEA_LEVEL_PRESSURE_PA:
+            # Even setting what it is changes JSBSim's turbulence.
+            self.set_qnh(qnh_pa)
         flies = runway_elevation_ft is None
         if flies:
             fdm["ic/h-sl-ft"] = self.aircraft.altitude_ft

@@ -96,6 +96,11 @@ class DaemonUnderTest:
     def is_running(self) -> bool:
         return self._process.poll() is None
 
+    def children(self) -> list[int]:
+        """Return the process numbers of the programs that it started, from any thread."""
+        tasks = Path(f"/proc/{self.pid}/task").iterdir()
+        return [int(pid) for task in tasks for pid in (task / "children").read_text().split()]
+
     @property
     def log(self) -> str:
         """Return its messages so far."""

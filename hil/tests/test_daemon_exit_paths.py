@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import signal
 import time
 from pathlib import Path
@@ -91,6 +92,12 @@ def test_a_killed_daemon_leaves_a_helper_that_centres_and_releases(
 ) -> None:
     with flight(fccd, tmp_path) as (simulator, daemon):
         engage(simulator, daemon)
+        # A helper that is killed is replaced, and the new one knows what is held.
+        (helper,) = daemon.children()
+        os.kill(helper, signal.SIGKILL)
+        daemon.wait_for("the release helper had ended, and was started again")
+        (again,) = daemon.children()
+        assert again != helper
         killed_at_s = simulator.progress().time_s
         ending = daemon.end(signal.SIGKILL)
         assert_released(simulator)

@@ -20,7 +20,7 @@ FLIES = """
 import pytest
 from fcc_hil import altitude, heading
 
-@pytest.mark.autopilot("hold", failsafe_hold_s=1)
+@pytest.mark.autopilot("hold", failsafe_hold_s=1, all_silent_s=0.5)
 def test_it(flight, faults):
     flight.engages(by=5)
     flight.flies(1)
@@ -53,7 +53,7 @@ def test_the_same_test_with_a_daemon_started_separately(
 ) -> None:
     """It was started by somebody else, and is only known by what it does."""
     port = _free_port()
-    config = write_config(tmp_path, port, others="[failsafe]\nhold_s = 1.0\n")
+    config = write_config(tmp_path, port, others="[failsafe]\nhold_s = 1.0\nall_silent_s = 0.5\n")
     with start(fccd, tmp_path, config) as there:
         options = ("--fccd", "127.0.0.1", "--fccd-listen", f"127.0.0.1:{port}")
         _run(pytester, FLIES, *options).assert_outcomes(passed=1)

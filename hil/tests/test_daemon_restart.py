@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
 import signal
 import socket
@@ -80,7 +81,9 @@ class Cockpit:
         with start(self.fccd, scratch, config) as daemon:
             yield daemon
 
-    def fly_and_kill(self, others: str, guidance: str = PATTERN) -> Aims:
+    def fly_and_kill(
+        self, others: str, guidance: str = PATTERN, *, with_helper: bool = False
+    ) -> Aims:
         """Fly into the first turn, and kill the daemon; return its set points."""
         with self.daemon(others, guidance) as daemon:
             captured = self.engage(daemon)
@@ -91,6 +94,11 @@ class Cockpit:
             # It is kept each second.
             Aims.of(daemon.wait_for("engaged "))
             aims = Aims.of(daemon.wait_for("engaged "))
+            if with_helper:
+                # Stopped, it does not replace the helper.
+                os.kill(daemon.pid, signal.SIGSTOP)
+                for helper in daemon.children():
+                    os.kill(helper, signal.SIGKILL)
             daemon.end(signal.SIGKILL)
         return aims
 
@@ -193,10 +201,13 @@ def test_another_configuration_is_a_cold_restart(cockpit: Cockpit) -> None:
 
 
 def test_a_switch_that_went_off_since_prevents_recovery(cockpit: Cockpit) -> None:
-    cockpit.fly_and_kill(WARM)
+    # The release helper is killed, too, as if the machine had lost power.
+    cockpit.fly_and_kill(WARM, with_helper=True)
     cockpit.simulator.write(ENGAGE_SWITCH, 0.0)
+    assert cockpit.simulator.progress().overridden
     with cockpit.daemon(WARM) as again:
         again.wait_for("it was switched off since")
+        wait_until(lambda: not cockpit.simulator.progress().overridden, "the pilot has control")
         again.wait_until_ready()
         assert again.end(signal.SIGTERM).states == ["standby -> stopped"]
 

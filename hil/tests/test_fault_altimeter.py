@@ -34,8 +34,13 @@ def turn_at_random(simulator: StandInProcess, seed: int) -> None:
             for _ in range(pick.randint(2, 10)):
                 setting += click
                 simulator.act(f"knob:{setting:.2f}")
-        until_s = simulator.progress().time_s + pick.uniform(0.02, 0.6)
-        wait_until(lambda until_s=until_s: simulator.progress().time_s >= until_s, "time passes")
+        fly_on(simulator, pick.uniform(0.02, 0.6))
+
+
+def fly_on(simulator: StandInProcess, seconds: float) -> None:
+    """Wait until this time of the flight has passed."""
+    until_s = simulator.progress().time_s + seconds
+    wait_until(lambda: simulator.progress().time_s >= until_s, "time passes")
 
 
 def held(simulator: StandInProcess, daemon: DaemonUnderTest, seed: int) -> float:

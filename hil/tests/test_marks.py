@@ -36,6 +36,7 @@ def test_the_autopilot_of_a_mark() -> None:
     turn_deg=st.floats(-179.0, 179.0),
     climb_ft=st.floats(-5_000.0, 5_000.0),
     failsafe_hold_s=st.floats(0.0, 600.0),
+    all_silent_s=st.floats(0.25, 600.0),
 )
 def test_the_daemon_accepts_what_a_mark_accepts(mode: str, **others: float) -> None:
     fcc.Machine(autopilot_mark(mode, **others).toml())  # type: ignore[arg-type]
@@ -47,7 +48,10 @@ BAD: st.SearchStrategy[Any] = st.sampled_from(
 
 
 @given(
-    name=st.sampled_from(["hold_s", "leg_s", "turn_deg", "climb_ft", "failsafe_hold_s"]), value=BAD
+    name=st.sampled_from(
+        ["hold_s", "leg_s", "turn_deg", "climb_ft", "failsafe_hold_s", "all_silent_s"]
+    ),
+    value=BAD,
 )
 def test_an_impossible_autopilot_is_refused_by_name(name: str, value: float) -> None:
     with pytest.raises((TypeError, ValueError), match=f"^{name} is "):

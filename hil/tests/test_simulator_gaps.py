@@ -11,13 +11,14 @@ import time
 from pathlib import Path
 
 import pytest
-from daemon_under_test import assert_released, engage, flight, wait_until
+from daemon_under_test import ENGAGE_SWITCH, assert_released, engage, flight, wait_until
 from fault_flights import AT_ONCE_S, NS, Flown, assert_flown_again, at_once
 
 SUCCESS = 0
 LENGTHS_S = (0.2, 1.5)
 STOOD_STILL = "the simulator stood still for"
 LINK_LOST = "link lost for"
+UNSEEN = "not engaged: the engage switch was switched on while nothing arrived"
 MAP_S = 3.0
 
 
@@ -78,6 +79,23 @@ def reloads(fccd: Path, scratch: Path, action: str) -> Flown:
     return Flown.of(ending, scratch / "recordings", reloaded_ns)
 
 
+def switched(fccd: Path, scratch: Path) -> Flown:
+    """Switch on in a silence, which does not engage; then off and on again."""
+    scratch.mkdir()
+    with flight(fccd, scratch) as (simulator, daemon):
+        daemon.wait_until_ready()
+        simulator.act("cut:2")
+        time.sleep(0.5)
+        simulator.write(ENGAGE_SWITCH, 1.0)
+        daemon.wait_for(UNSEEN)
+        simulator.write(ENGAGE_SWITCH, 0.0)
+        time.sleep(0.5)
+        engage(simulator, daemon)
+        ending = daemon.end(signal.SIGTERM)
+        assert_released(simulator)
+    return Flown.of(ending, scratch / "recordings")
+
+
 RELOADS = ("reload", "reload-air", "relocate")
 
 
@@ -89,6 +107,7 @@ def flights(fccd: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, F
         {
             "freezes": lambda: gaps(fccd, scratch / "freezes", "freeze", STOOD_STILL),
             "cuts": lambda: gaps(fccd, scratch / "cuts", "cut", LINK_LOST),
+            "switched": lambda: switched(fccd, scratch / "switched"),
             "waits": lambda: waits(fccd, scratch / "waits"),
             "reload": lambda: reloads(fccd, scratch / "reload", "reload"),
             "reload-air": lambda: reloads(fccd, scratch / "reload-air", "reload-air"),
@@ -134,6 +153,12 @@ def test_a_map_and_a_replay_are_waited_out(flights: dict[str, Flown]) -> None:
     assert max(lengths_s(flown, STOOD_STILL)) > MAP_S - 0.11
 
 
+def test_a_switch_moved_in_a_silence_is_reported(flights: dict[str, Flown]) -> None:
+    flown = flights["switched"]
+    assert_engaged_throughout(flown)
+    assert [event.startswith(UNSEEN) for event in flown.texts()].count(True) == 1
+
+
 @pytest.mark.parametrize("action", RELOADS)
 def test_a_reload_is_released_at_once(flights: dict[str, Flown], action: str) -> None:
     flown = flights[action]
@@ -148,6 +173,6 @@ def test_a_reload_is_released_at_once(flights: dict[str, Flown], action: str) ->
     assert not any(record.sent for record in later)
 
 
-@pytest.mark.parametrize("name", ["freezes", "cuts", "waits", *RELOADS])
+@pytest.mark.parametrize("name", ["freezes", "cuts", "switched", "waits", *RELOADS])
 def test_a_replay_is_identical(fccd: Path, flights: dict[str, Flown], name: str) -> None:
     assert_flown_again(fccd, flights[name])

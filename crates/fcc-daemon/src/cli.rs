@@ -26,7 +26,7 @@ pub struct Cli {
 /// The commands of `fccd`.
 #[derive(Subcommand, Debug)]
 pub enum Action {
-    /// Fly the built-in aircraft through the timed pattern
+    /// Fly the built-in aircraft through the timed pattern; failsafe ends it
     Fly(FlyArgs),
     /// Fly the aircraft of a configuration file until stopped
     Run(RunArgs),
@@ -122,6 +122,9 @@ pub struct RunArgs {
     /// Print no status lines
     #[arg(long, short)]
     pub quiet: bool,
+    /// End when the process that started this one ends, which has this number
+    #[arg(long, value_name = "PID", hide = true)]
+    pub end_with: Option<u32>,
 }
 
 /// Where a flight is recorded.

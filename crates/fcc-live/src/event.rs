@@ -81,6 +81,9 @@ pub enum EventCode {
     /// Control is given back at once (why, one bit each, as in the flags of a
     /// state).
     ReleasedAtOnce = 21,
+    /// The engage switch was switched on while none of its readings arrived,
+    /// and control is not taken.
+    SwitchedOnUnseen = 22,
 }
 
 impl Event {
@@ -186,6 +189,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             0,
             [conditions.bits().into(), 0, 0],
         ),
+        EventKind::SwitchedOnUnseen => (EventCode::SwitchedOnUnseen, 0, NONE),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),
     }

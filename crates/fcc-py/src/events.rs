@@ -81,6 +81,7 @@ fn kind_of<T>(kind: &EventKind<T>) -> &'static str {
         EventKind::ModeChanged { .. } => "mode-changed",
         EventKind::Noticed(_) => "noticed",
         EventKind::ReleasedAtOnce { .. } => "released-at-once",
+        EventKind::SwitchedOnUnseen => "switched-on-unseen",
         EventKind::ConditionsChanged { .. } => "conditions-changed",
         _ => "other",
     }

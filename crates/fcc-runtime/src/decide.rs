@@ -63,6 +63,12 @@ impl<C: Controller> Machine<C> {
         if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
             self.attempt_to_engage(tick, lost_control);
         }
+        let is_free = matches!(self.state, State::Standby | State::Failsafe(_));
+        if edge == Some(SwitchEdge::OnUnseen) && is_free {
+            self.telemetry
+                .events
+                .push(tick, EventKind::SwitchedOnUnseen);
+        }
     }
 
     fn attempt_to_engage(&mut self, tick: &Tick, lost_control: bool) {

@@ -9,6 +9,8 @@ use fcc_core::framework::{Reading, Switch, Time};
 pub(crate) enum SwitchEdge {
     On,
     Off,
+    /// It was switched on in a gap of the readings: it does not engage.
+    OnUnseen,
 }
 
 /// After the switch went off, an on counts only once this time has passed and
@@ -90,7 +92,11 @@ impl EngageSwitch {
                 })
             }
             Switch::On => {
-                self.on_is_due |= before == Some(Switch::Off) && self.off_since_gap;
+                let was_off = before == Some(Switch::Off);
+                if was_off && !self.off_since_gap {
+                    return Some(SwitchEdge::OnUnseen);
+                }
+                self.on_is_due |= was_off;
                 let counts = self.on_is_due && now.since(self.switched_off) >= LOCK_OUT;
                 self.on_is_due &= !counts;
                 counts.then_some(SwitchEdge::On)
@@ -148,14 +154,20 @@ mod tests {
 
     #[test]
     fn after_a_gap_an_off_is_required_again() {
-        assert_eq!(watched([OFF, None, None, ON]), [None; 4]);
+        const UNSEEN: Option<SwitchEdge> = Some(SwitchEdge::OnUnseen);
+        assert_eq!(
+            watched([OFF, None, None, ON, ON]),
+            [None, None, None, UNSEEN, None]
+        );
+        // On before and after it: not moved, as far as is known.
+        assert_eq!(watched([ON, None, None, ON]), [None; 4]);
         assert_eq!(
             watched([OFF, None, None, ON, OFF, ON]),
             [
                 None,
                 None,
                 None,
-                None,
+                UNSEEN,
                 Some(SwitchEdge::Off),
                 Some(SwitchEdge::On)
             ]

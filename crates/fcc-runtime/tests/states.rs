@@ -133,6 +133,8 @@ fn after_a_silence_the_switch_must_be_seen_off_again() {
         bench.tick(|s| s.switch = None);
     }
     assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    bench.tick(|_| {});
+    assert_eq!(bench.events(), [EventKind::SwitchedOnUnseen], "once");
     bench.tick(|s| s.switch = Some(Switch::Off));
     assert_eq!(steadily_on(&mut bench), Engaged);
 }

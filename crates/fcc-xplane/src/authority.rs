@@ -119,6 +119,12 @@ impl ControlAuthority for XPlaneAuthority {
             })
     }
 
+    fn release_left(&self) {
+        if let Some(status) = &self.status {
+            status.release_left();
+        }
+    }
+
     fn by_hand(&self) -> &'static str {
         "switch off override_joystick and override_throttles there"
     }
@@ -146,6 +152,7 @@ struct Reported {
     control: Control,
     loads_differ: bool,
     axial_backwards: bool,
+    left_overridden: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -167,6 +174,7 @@ impl Default for Reported {
             control: Control::Free,
             loads_differ: false,
             axial_backwards: false,
+            left_overridden: false,
         }
     }
 }
@@ -195,6 +203,7 @@ impl Reported {
             None => self
                 .recovery(status)
                 .or_else(|| self.change_of_control(status))
+                .or_else(|| self.change_of_overrides(status))
                 .or_else(|| self.change_of_pace(status))
                 .or_else(|| self.change_of_loads(status))
                 .or_else(|| self.change_of_missing(status)),
@@ -290,6 +299,19 @@ impl Reported {
         Some(format!(
             "the throttle follows its lever again, which is at {percent:.0} %"
         ))
+    }
+
+    /// That overrides are set which no program seems to use.
+    fn change_of_overrides(&mut self, status: &XPlaneStatus) -> Option<String> {
+        let left = status.is_left_overridden();
+        let begins = left && !self.left_overridden;
+        self.left_overridden = left;
+        begins.then(|| {
+            "X-Plane's controls are still overridden, by a program that has ended or another one: \
+             the joystick there has no effect. If none flies, engage and disengage, or switch off \
+             override_joystick and override_throttles there"
+                .to_owned()
+        })
     }
 
     /// That X-Plane's loads contradict each other, and which are used; each

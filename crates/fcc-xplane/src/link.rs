@@ -103,6 +103,8 @@ pub(crate) struct SharedState {
     unconfirmed: AtomicBool,
     /// Another program writes the held controls, too.
     other_writer: AtomicBool,
+    /// An override is set, not by this program, and nothing moves the yoke.
+    left_overridden: AtomicBool,
     loads_differ: AtomicBool,
     axial_backwards: AtomicBool,
     answers_anything: AtomicBool,
@@ -129,6 +131,7 @@ impl SharedState {
             control: AtomicU8::new(Control::Free as u8),
             unconfirmed: AtomicBool::new(false),
             other_writer: AtomicBool::new(false),
+            left_overridden: AtomicBool::new(false),
             loads_differ: AtomicBool::new(false),
             axial_backwards: AtomicBool::new(false),
             answers_anything: AtomicBool::new(false),
@@ -210,15 +213,22 @@ impl SharedState {
         self.control.store(control as u8, Ordering::Release);
     }
 
+    /// `Free` becomes `ReleaseMonitor`: another program's overrides are cleared.
+    pub(crate) fn set_releasing_if_free(&self) {
+        self.change_control(Control::Free, Control::ReleaseMonitor);
+    }
+
     /// `ReleaseMonitor` becomes `Free`, unless control was taken again meanwhile.
     pub(crate) fn set_free_if_releasing(&self) {
+        self.change_control(Control::ReleaseMonitor, Control::Free);
+    }
+
+    fn change_control(&self, from: Control, to: Control) {
+        let (from, to) = (from as u8, to as u8);
         // If the exchange fails, there is nothing to do.
-        let _ = self.control.compare_exchange(
-            Control::ReleaseMonitor as u8,
-            Control::Free as u8,
-            Ordering::AcqRel,
-            Ordering::Acquire,
-        );
+        let _ = self
+            .control
+            .compare_exchange(from, to, Ordering::AcqRel, Ordering::Acquire);
     }
 
     pub(crate) fn is_unconfirmed(&self) -> bool {
@@ -236,6 +246,16 @@ impl SharedState {
 
     pub(crate) fn set_other_writer(&self, writes: bool) {
         self.other_writer.store(writes, Ordering::Relaxed);
+    }
+
+    /// Whether an override is set, not by this program, and nothing moves the
+    /// yoke.
+    pub(crate) fn is_left_overridden(&self) -> bool {
+        self.left_overridden.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn set_left_overridden(&self, left: bool) {
+        self.left_overridden.store(left, Ordering::Relaxed);
     }
 
     /// Whether the local accelerations contradict the load factor.

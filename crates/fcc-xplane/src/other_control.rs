@@ -47,11 +47,14 @@ const MODE_REVERSE: f64 = 3.0;
 
 /// A yoke that is overridden by another program moves by more than this, at
 /// intervals of less than [`MOVES_WITHIN`], for [`WRITER_BEGINS`]. One that
-/// stands still was left overridden by a program that has ended.
+/// stands still was left overridden by a program that has ended; that is
+/// reported after [`LEFT_AFTER`], in which the release helper of a daemon that
+/// was killed has usually released it.
 const MOVED: f64 = 0.005;
 const MOVES_WITHIN: Duration = Duration::from_millis(500);
 const WRITER_BEGINS: Duration = Duration::from_secs(1);
 const WRITER_ENDS: Duration = Duration::from_secs(2);
+const LEFT_AFTER: Duration = Duration::from_secs(3);
 
 /// Finds out what acts on the controls besides this program.
 #[derive(Clone, Debug)]
@@ -60,6 +63,7 @@ pub(crate) struct OtherControlWatch {
     yoke: [f64; 3],
     moved: Time,
     writer: Lasting,
+    left: Lasting,
 }
 
 impl Default for OtherControlWatch {
@@ -69,6 +73,7 @@ impl Default for OtherControlWatch {
             yoke: [0.0; 3],
             moved: Time::NEVER,
             writer: Lasting::new(WRITER_BEGINS, WRITER_ENDS),
+            left: Lasting::new(LEFT_AFTER, Duration::ZERO),
         }
     }
 }
@@ -94,16 +99,19 @@ impl OtherControlWatch {
             autothrottle: is_set(Quantity::Autothrottle),
             fly_by_wire: PLUGINS.into_iter().any(is_set),
             stability: self.stability.step(now, augmented),
-            writer: writing.has_other_writer() || self.is_written(now, values, writing),
+            writer: self.is_written(now, values, writing) || writing.has_other_writer(),
             reverse_thrust: reversed,
         }
     }
 
     /// Whether another program writes the yoke while this one does not.
     fn is_written(&mut self, now: Time, values: &Values, writing: &SharedState) -> bool {
-        let overridden = values
-            .recent(Quantity::OverrideJoystick, now)
-            .is_some_and(|value| value >= 0.5);
+        let is_set = |quantity| {
+            values
+                .recent(quantity, now)
+                .is_some_and(|value| value >= 0.5)
+        };
+        let overridden = is_set(Quantity::OverrideJoystick);
         for (was, axis) in self.yoke.iter_mut().zip(YOKE) {
             let is = values.recent(axis, now).unwrap_or(*was);
             if (is - *was).abs() > MOVED {
@@ -113,6 +121,8 @@ impl OtherControlWatch {
         }
         let moves = !self.moved.is_never() && now.since(self.moved) < MOVES_WITHIN;
         let free = writing.control() == Control::Free;
+        let stands = (overridden || is_set(Quantity::OverrideThrottles)) && !moves;
+        writing.set_left_overridden(self.left.step(now, free && stands));
         self.writer.step(now, free && overridden && moves)
     }
 }

@@ -107,6 +107,18 @@ impl XPlaneStatus {
         self.link.control()
     }
 
+    /// The overrides that a program that has ended left set are cleared, until
+    /// X-Plane confirms it; no effect while this program controls X-Plane.
+    pub fn release_left(&self) {
+        self.link.set_releasing_if_free();
+    }
+
+    /// Whether an override is set that is not this program's, while nothing
+    /// moves the yoke.
+    pub fn is_left_overridden(&self) -> bool {
+        self.link.is_left_overridden()
+    }
+
     /// Where the controls are held, or their release is not yet confirmed.
     pub fn held_at(&self) -> Option<SocketAddr> {
         let allowed = |at: &SocketAddr| self.link.is_allowed(*at);

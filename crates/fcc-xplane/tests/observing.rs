@@ -5,9 +5,9 @@ mod support;
 
 use fcc_core::flight::{Measurements, OtherControl, Surfaces, Suspect};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
-use fcc_xplane::{XPlane, XPlaneAuthority};
+use fcc_xplane::{Control, XPlane, XPlaneAuthority};
 use support::bench::{Bench, SURFACES};
-use support::{P, SWITCH, Wire, YOKE_PITCH};
+use support::{OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, P, SWITCH, Wire, YOKE_PITCH};
 
 const G_NRML: &str = "sim/flightmodel/forces/g_nrml";
 const LEVER: &str = "sim/cockpit2/engine/actuators/throttle_ratio[0]";
@@ -131,4 +131,51 @@ fn a_connection_beside_the_one_that_flies_sees_only_another_program() {
     let found = (0..80).map(|tick| fly(&mut bench, (tick % 3 == 0).then_some(0.7)));
     let (first, second) = found.last().unwrap();
     assert!(first.writer && second.writer, "{first:?} {second:?}");
+}
+
+/// A daemon and its release helper were both killed: nothing moves the yoke.
+#[test]
+fn overrides_that_were_left_set_are_said_once_and_released_when_asked() {
+    let mut bench = Bench::new();
+    let authority = XPlaneAuthority::of(bench.status.clone(), &bench.simulator.config());
+    for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES] {
+        bench.simulator.set(path, 1.0);
+    }
+    bench.simulator.set(YOKE_PITCH, 0.3);
+    bench.settle();
+    lines(&authority);
+    for _ in 0..100 {
+        bench.watch().unwrap();
+    }
+    assert!(lines(&authority).is_empty(), "for 3 s");
+    for _ in 0..40 {
+        bench.watch().unwrap();
+    }
+    let said = lines(&authority).concat();
+    assert!(said.contains("controls are still overridden"), "{said}");
+    assert_eq!(bench.simulator.writes, [], "it may be another program's");
+    assert_eq!(authority.held(), None);
+
+    authority.release_left();
+    assert!(authority.held().is_some(), "until it is confirmed");
+    for _ in 0..40 {
+        bench.watch().unwrap();
+    }
+    for path in [OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, YOKE_PITCH] {
+        bench.simulator.assert_shows(path, 0.0);
+    }
+    assert_eq!(authority.held(), None);
+    let writes = bench.simulator.writes.len();
+    authority.release_left();
+    for _ in 0..40 {
+        bench.watch().unwrap();
+    }
+    assert_eq!(bench.simulator.writes.len(), writes, "nothing is held");
+    assert_eq!(authority.held(), None);
+
+    // Not while this program flies.
+    bench.fly().unwrap();
+    authority.release_left();
+    bench.fly().unwrap();
+    assert_eq!(bench.status.control(), Control::Held);
 }

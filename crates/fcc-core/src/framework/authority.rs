@@ -49,6 +49,12 @@ pub trait ControlAuthority: Send + Sync {
         is_cancelled: &mut dyn FnMut() -> bool,
     ) -> Result<Released, ActuatorFault>;
 
+    /// Controls that a program that has ended left held are released by the
+    /// loop's own sensors, as after a flight, until the plant confirms it:
+    /// nothing is sent unless they are held. No effect while this program
+    /// controls the plant.
+    fn release_left(&self) {}
+
     /// What a user does at the plant to take control back manually.
     fn by_hand(&self) -> &'static str;
 }

@@ -260,5 +260,9 @@ schema! {
             #[field(2)]
             ended: Flags,
         },
+        /// The engage switch was switched on while none of its readings
+        /// arrived, and control is not taken: it must go off and on again.
+        #[field(32)]
+        SwitchedOnUnseen,
     }
 }

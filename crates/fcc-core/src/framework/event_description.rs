@@ -109,6 +109,10 @@ impl<C: Controller> fmt::Display for EventDescription<C> {
                 f.write_str("control is given back at once: ")?;
                 name_flags::<C>(f, conditions)
             }
+            EventKind::SwitchedOnUnseen => f.write_str(
+                "not engaged: the engage switch was switched on while nothing arrived from it; \
+                 switch it off and on again",
+            ),
             EventKind::ConditionsChanged { began, ended } => condition_change::<C>(f, began, ended),
             EventKind::SourceChanged(SourceChange { readings, from, to }) => {
                 for (n, bit) in readings.iter().enumerate() {

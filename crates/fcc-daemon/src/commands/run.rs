@@ -4,11 +4,17 @@ use super::failure::Failure;
 use super::fly::{conduct, direct};
 use crate::cli::RunArgs;
 use crate::exit::Exit;
+use crate::process::end_with_parent;
 use fcc_flight::config::Config;
 use fcc_flight::flight::{Length, Pace, Plan};
 
 /// Flies a configuration until stopped.
 pub(super) fn run(args: &RunArgs) -> Result<Exit, Failure> {
+    if let Some(parent) = args.end_with {
+        end_with_parent(parent).map_err(|error| {
+            Failure::new(format_args!("cannot end with process {parent}: {error}"))
+        })?;
+    }
     let (mut config, text) = Config::load_with_text(&args.config)?;
     direct(&mut config, &args.recording);
     if let Some(instance) = &args.instance {

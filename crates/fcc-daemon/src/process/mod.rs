@@ -26,13 +26,15 @@ use crate::output;
 use instance_lock::InstanceLock;
 use release_helper::ReleaseHelper;
 pub(crate) use release_helper::run_release_helper;
-pub(crate) use signals::tolerate;
 use signals::{BlockedSignals, Caught};
+pub(crate) use signals::{end_with_parent, tolerate};
 
 /// While control is held, this is the interval of checks for a release helper
 /// of an earlier daemon, which would release it; a check is one refused
 /// connection.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
+/// A release helper that has ended is started again this often.
+const HELPERS_AGAIN: u32 = 5;
 
 /// This process, as the host of one flight.
 pub(crate) struct Process<'a> {
@@ -47,7 +49,9 @@ struct Plant {
     authority: Arc<dyn ControlAuthority>,
     lock: InstanceLock,
     helper: Option<ReleaseHelper>,
-    /// When an earlier helper was last checked for.
+    /// How often it may still be started again.
+    helpers_again: u32,
+    /// When the helpers, this daemon's and an earlier one's, were last checked.
     checked: Instant,
 }
 
@@ -76,6 +80,7 @@ impl Host for Process<'_> {
                 .then(|| start_helper(self.config))
                 .flatten(),
             lock,
+            helpers_again: HELPERS_AGAIN,
             checked: Instant::now(),
         });
         Ok(())
@@ -97,8 +102,12 @@ impl Host for Process<'_> {
         if let Some(plant) = &mut self.plant {
             plant.lock.follow();
             let held = plant.authority.held();
-            if held.is_some() && plant.checked.elapsed() >= CHECK_EVERY {
-                plant.end_earlier_helper();
+            if plant.checked.elapsed() >= CHECK_EVERY {
+                plant.checked = Instant::now();
+                if held.is_some() {
+                    plant.end_earlier_helper();
+                }
+                plant.replace_helper(self.config);
             }
             if let Some(helper) = &mut plant.helper {
                 helper.report(held);
@@ -111,7 +120,7 @@ impl Host for Process<'_> {
     }
 
     fn before_control(&mut self) {
-        if let Some(plant) = &mut self.plant {
+        if let Some(plant) = &self.plant {
             plant.end_earlier_helper();
         }
     }
@@ -155,22 +164,40 @@ impl Host for Process<'_> {
 impl Plant {
     /// Ends the helper of a daemon that was killed, if it still releases the
     /// controls that are, or are to be, held here.
-    fn end_earlier_helper(&mut self) {
-        self.checked = Instant::now();
+    fn end_earlier_helper(&self) {
         if let Some(plant) = self.authority.plant() {
             release_handover::end_helper(&plant);
         }
     }
+
+    /// Starts the helper again if it has ended: it was killed, for example for
+    /// want of memory.
+    fn replace_helper(&mut self, config: &Config) {
+        if !self.helper.as_mut().is_some_and(ReleaseHelper::has_ended) {
+            return;
+        }
+        self.helper = None;
+        if self.helpers_again == 0 {
+            output::message(format!(
+                "the release helper has ended again, and is not started any more: {BY_HAND}"
+            ));
+            return;
+        }
+        self.helpers_again -= 1;
+        self.helper = start_helper(config);
+        if self.helper.is_some() {
+            output::message("the release helper had ended, and was started again");
+        }
+    }
 }
+
+const BY_HAND: &str = "if this process is killed, release the controls by hand";
 
 /// Without a helper the flight continues, and this is reported.
 fn start_helper(config: &Config) -> Option<ReleaseHelper> {
     ReleaseHelper::start(config)
         .inspect_err(|error| {
-            output::message(format!(
-                "no release helper ({error}): if this process is killed, release the controls by \
-                 hand"
-            ));
+            output::message(format!("no release helper ({error}): {BY_HAND}"));
         })
         .ok()
 }

@@ -55,7 +55,7 @@ impl ReleaseHelper {
     }
 
     /// Reports where control is held, if it is. A helper that has ended is no
-    /// reason to stop.
+    /// reason to stop: [`has_ended`](Self::has_ended) tells.
     pub(super) fn report(&mut self, held: Option<PlantId>) {
         if self.held == held {
             return;
@@ -67,6 +67,11 @@ impl ReleaseHelper {
                 None => writeln!(pipe, "{FREE}"),
             };
         }
+    }
+
+    /// Whether it has ended by itself, or was killed; never waits.
+    pub(super) fn has_ended(&mut self) -> bool {
+        matches!(self.child.try_wait(), Ok(Some(_)))
     }
 
     /// Ends the helper, and waits until it has ended.

@@ -3,10 +3,12 @@
 
 use std::fs;
 use std::io;
+use std::os::unix::process::parent_id;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fcc_runtime::StopHandle;
+use nix::sys::prctl;
 use nix::sys::signal::{SigSet, Signal};
 
 const ENDING: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
@@ -27,6 +29,23 @@ pub(crate) fn tolerate() -> io::Result<()> {
     // accepts what is written. A handler would be called again and again.
     SigSet::from_iter(BACKGROUND).thread_block()?;
     Ok(())
+}
+
+/// From here on this process gets SIGTERM when `parent`, which started it,
+/// ends for any reason (`PR_SET_PDEATHSIG`, prctl(2)).
+///
+/// # Errors
+/// When `parent` has ended already, or is not what started this process.
+pub(crate) fn end_with_parent(parent: u32) -> io::Result<()> {
+    prctl::set_pdeathsig(Signal::SIGTERM)?;
+    // An end before that call sends nothing.
+    if parent_id() == parent {
+        Ok(())
+    } else {
+        Err(io::Error::other(
+            "it has ended, or has not started this one",
+        ))
+    }
 }
 
 /// What the signals have done.

@@ -24,6 +24,21 @@ fn a_flight_that_moves_nothing_says_so() {
     assert!(flown.contains(WORDS), "{flown}");
 }
 
+/// In these gusts the aircraft stalls, and falls faster than its altimeter is
+/// believed; failsafe's time does not pass.
+#[test]
+fn a_flight_that_failsafe_ends_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let gusts = ["fly", "--lockstep", "--gusts", "severe", "--seed", "1"];
+    let (exit, flown) = printed(folder.path(), &[&gusts[..], &["--no-recording"]].concat());
+    assert_eq!(exit, Some(3), "{flown}");
+    assert!(
+        flown.contains("ended: it entered failsafe, which ends a flight of a given length"),
+        "{flown}"
+    );
+    assert!(!flown.contains("failsafe -> standby"), "{flown}");
+}
+
 #[test]
 fn a_machine_without_a_folder_is_not_checked() {
     let (exit, words) = printed(".".as_ref(), &["doctor", "--root", "/no/such/folder"]);

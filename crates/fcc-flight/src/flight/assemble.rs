@@ -185,7 +185,10 @@ impl Assembly {
     ) -> Vec<Box<dyn Observer<Autopilot>>> {
         let mut observers: Vec<Box<dyn Observer<Autopilot>>> = Vec::new();
         if let Some(request) = self.restart.take() {
-            observers.push(Box::new(RestartKeeper::new(request)));
+            observers.push(Box::new(RestartKeeper::new(
+                request,
+                self.authority.clone(),
+            )));
         }
         if let Some(request) = recording {
             observers.push(Box::new(FlightRecorder::<Autopilot>::new(request)));

@@ -190,7 +190,7 @@ mod tests {
             let request = RecordingRequest::of(&config, None).unwrap();
             Box::new(FlightRecorder::<Autopilot>::new(request))
         });
-        observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config))));
+        observer_conforms(|| Box::new(RestartKeeper::new(RestartRequest::of(&config), None)));
         #[cfg(feature = "live")]
         observer_conforms(|| {
             let commands = SentCommands::new(vec![("airspeed_mps", Ok(30.0..=80.0))]);

@@ -141,7 +141,9 @@ impl Outcome {
         self.ending = match (interrupted_by, over) {
             (Some(by), _) => format!("interrupted by {by}"),
             (None, Some(Over::Time)) => "the time to fly is over".to_owned(),
-            (None, Some(Over::Failsafe)) => "entered failsafe".to_owned(),
+            (None, Some(Over::Failsafe)) => {
+                "it entered failsafe, which ends a flight of a given length".to_owned()
+            }
             (None, Some(Over::Refused)) => {
                 if self.conclusion == Conclusion::Completed {
                     self.conclusion = Conclusion::Failed;

@@ -220,7 +220,7 @@ fn event_of(event: &Event) -> PyEvent {
 
 /// The numbers of `fcc_live::EventCode`.
 fn kind_of(code: u32) -> &'static str {
-    const KINDS: [&str; 22] = [
+    const KINDS: [&str; 23] = [
         "remark",
         "state-changed",
         "command-received",
@@ -243,6 +243,7 @@ fn kind_of(code: u32) -> &'static str {
         "conditions-changed",
         "noticed",
         "released-at-once",
+        "switched-on-unseen",
     ];
     KINDS.get(code as usize).copied().unwrap_or("other")
 }

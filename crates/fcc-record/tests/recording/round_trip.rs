@@ -97,6 +97,7 @@ fn every_event_is_restored() {
         EventKind::Panicked,
         EventKind::TimerFailed,
         EventKind::StopRequested,
+        EventKind::SwitchedOnUnseen,
         EventKind::OverrunsOver { count, first, last },
         EventKind::Hung {
             silent_ns: u64::MAX,

@@ -107,6 +107,8 @@ pub(super) struct Restart {
     /// The loop failed: the flight counts as interrupted.
     is_broken: bool,
     recovery: Option<Recovery>,
+    /// The interrupted flight is not recovered: what it held is to be released.
+    left: bool,
 }
 
 impl Restart {
@@ -127,6 +129,7 @@ impl Restart {
             Err(error) => return (None, Some(format!("no thread for the state file: {error}"))),
         };
         let now = BootInstant::now();
+        let of_this_plant = matches!(&read, Ok(Some(saved)) if saved.config == request.fingerprint);
         let (recovery, message) = evaluate(&request, read, now.as_ref());
         if recovery.is_none() {
             keeper.clear();
@@ -141,10 +144,17 @@ impl Restart {
             switch_owner: SwitchOwner::default(),
             switch: SavedSwitch::default(),
             is_broken: false,
+            left: of_this_plant && recovery.is_none(),
             recovery,
             request,
         };
         (Some(this), message)
+    }
+
+    /// Whether an interrupted flight was found not to be recovered since the
+    /// last call: it may have left the controls held.
+    pub(super) const fn takes_over_release(&mut self) -> bool {
+        std::mem::replace(&mut self.left, false)
     }
 
     /// Processes a message of the loop.
@@ -223,6 +233,7 @@ impl Restart {
             }
             Next::NotRecovered(message) => {
                 self.recovery = None;
+                self.left = true;
                 self.keeper.clear();
                 Some(message)
             }

@@ -1,7 +1,9 @@
 //! In-flight recovery as an observer of the flight.
 
+use std::sync::Arc;
+
 use fcc_core::flight::{Autopilot, AutopilotCommand};
-use fcc_core::framework::Message;
+use fcc_core::framework::{ControlAuthority, Message};
 use fcc_telemetry::{FlightEvent, FlightRecord};
 
 use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
@@ -13,13 +15,28 @@ use super::{Restart, RestartRequest};
 pub(in crate::flight) struct RestartKeeper {
     request: Option<RestartRequest>,
     restart: Option<Restart>,
+    authority: Option<Arc<dyn ControlAuthority>>,
 }
 
 impl RestartKeeper {
-    pub(in crate::flight) const fn new(request: RestartRequest) -> Self {
+    pub(in crate::flight) const fn new(
+        request: RestartRequest,
+        authority: Option<Arc<dyn ControlAuthority>>,
+    ) -> Self {
         Self {
             request: Some(request),
             restart: None,
+            authority,
+        }
+    }
+
+    /// Releases what an interrupted flight left held, once it is known not to
+    /// be recovered.
+    fn release_left(&mut self) {
+        if let Some((restart, authority)) = self.restart.as_mut().zip(self.authority.as_ref())
+            && restart.takes_over_release()
+        {
+            authority.release_left();
         }
     }
 }
@@ -33,6 +50,7 @@ impl Observer<Autopilot> for RestartKeeper {
                 reports.remark(words);
             }
         }
+        self.release_left();
     }
 
     fn record(&mut self, record: &FlightRecord, _: &FlightTime) {
@@ -53,6 +71,7 @@ impl Observer<Autopilot> for RestartKeeper {
         {
             access.reports.remark(words);
         }
+        self.release_left();
     }
 
     fn end(&mut self, _: &str, _: &mut Outcome, _: &mut Reports) {

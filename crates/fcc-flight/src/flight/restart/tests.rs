@@ -1,10 +1,19 @@
 //! The evaluation of a state file that is found at the start.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use fcc_core::flight::guidance::Mode;
-use fcc_core::flight::{AltitudeReference, Measurements, Setpoints, Surfaces};
-use fcc_core::framework::{Event, Reading, Record, Tick, Time};
+use fcc_core::flight::{AltitudeReference, Autopilot, Measurements, Setpoints, Surfaces};
+use fcc_core::framework::{
+    ActuatorFault, ControlAuthority, Event, PlantId, Reading, Record, Released, Tick, Time,
+};
+use fcc_runtime::{LoopConfig, Machine, Parts};
+use fcc_timer::ManualTimer;
 use tempfile::TempDir;
 
+use super::super::observer::{Access, Facts, FlightTime, Observer, Reports};
+use super::super::plan::Pace;
 use super::*;
 
 const FLOWN: Resume = Resume {
@@ -214,6 +223,104 @@ const ENDS: EventKind<AutopilotCommand> = EventKind::StateChanged {
     from: State::Engaged,
     to: State::Stopped,
 };
+
+/// Counts how often it is asked to release what was left held.
+#[derive(Default)]
+struct Authority(AtomicU32);
+
+impl ControlAuthority for Authority {
+    fn plant(&self) -> Option<PlantId> {
+        None
+    }
+
+    fn held(&self) -> Option<PlantId> {
+        None
+    }
+
+    fn require_permission(&self) {}
+
+    fn permit(&self, _: &PlantId) {}
+
+    fn report(&self, _: &mut dyn FnMut(std::fmt::Arguments<'_>)) {}
+
+    fn release(
+        &self,
+        _: &PlantId,
+        _: Duration,
+        _: &mut dyn FnMut() -> bool,
+    ) -> Result<Released, ActuatorFault> {
+        Ok(Released::Confirmed)
+    }
+
+    fn release_left(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn by_hand(&self) -> &'static str {
+        ""
+    }
+}
+
+/// How often the release of what was left held is asked for with this file, at
+/// the beginning and once the first tick has come, in which the switch is off.
+fn releases(folder: &Folder) -> [u32; 2] {
+    let authority = Arc::new(Authority::default());
+    let held: Arc<dyn ControlAuthority> = Arc::<Authority>::clone(&authority);
+    let mut keeper = RestartKeeper::new(folder.request.clone(), Some(held));
+    let facts = Facts {
+        rate_hz: 40.0,
+        timer: "",
+        sensors: &[],
+        actuators: &[],
+        started_unix_ns: 0,
+        clock_offset_ns: 0,
+        pace: Pace::Lockstep,
+        granted: None,
+    };
+    let mut reports = Reports::default();
+    keeper.begin(&facts, &mut reports);
+    let begun = authority.0.load(Ordering::Relaxed);
+    let standby = Message::Tick(Record::new(Tick::default(), State::Standby));
+    if let Message::Tick(record) = switched(&standby, 0, Switch::Off) {
+        keeper.record(&record, &FlightTime::default());
+    }
+    let parts = Parts {
+        timer: Box::new(ManualTimer::new(Duration::from_millis(25)).unwrap()),
+        sensors: Vec::new(),
+        controller: Autopilot::new(Config::default().autopilot_config()),
+        actuators: Vec::new(),
+    };
+    let (_machine, mut link) = Machine::new(parts, &LoopConfig::default()).unwrap();
+    for _ in 0..3 {
+        keeper.poll(&mut Access {
+            commands: &mut link.commands,
+            reports: &mut reports,
+            before_control: &mut || panic!("takes control"),
+        });
+    }
+    [begun, authority.0.load(Ordering::Relaxed)]
+}
+
+/// Both the daemon and its release helper may have been killed.
+#[test]
+fn what_a_flight_that_is_not_recovered_left_held_is_released() {
+    type Change = fn(&mut Saved);
+    let unchanged: Change = |_| {};
+    let another: Change = |saved| saved.config = 8;
+    for (mode, seconds_ago, change, expected) in [
+        (RestartMode::Cold, 2, unchanged, [1, 1]),
+        (RestartMode::Warm, 61, unchanged, [1, 1]),
+        // It waits for the first tick; then it was switched off.
+        (RestartMode::Warm, 2, unchanged, [0, 1]),
+        // Perhaps of another simulator.
+        (RestartMode::Warm, 2, another, [0, 0]),
+    ] {
+        let folder = Folder::new(mode);
+        folder.leave(seconds_ago, change);
+        assert_eq!(releases(&folder), expected, "{mode:?} {seconds_ago}");
+    }
+    assert_eq!(releases(&Folder::new(RestartMode::Warm)), [0, 0]);
+}
 
 /// Mode and progress come from the record; the file has the last ones.
 #[test]

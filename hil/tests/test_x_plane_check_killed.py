@@ -1,0 +1,51 @@
+"""`fccd x-plane check` and `identify`, killed or stopped while X-Plane's controls are held."""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+from daemon_under_test import wait_until, write_config
+
+from fcc_hil.cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES
+from fcc_hil.process import StandInProcess
+from fcc_hil.settings import Settings
+
+PATIENCE_S = 60.0
+
+
+@contextlib.contextmanager
+def holding(
+    fccd: Path, scratch: Path, *words: str
+) -> Iterator[tuple[StandInProcess, subprocess.Popen[bytes]]]:
+    """Run `fccd x-plane ...` until both overrides are set."""
+    with StandInProcess(Settings(port=0, version=121_000, person=True)) as simulator:
+        config = write_config(scratch, simulator.port)
+        with (scratch / "err").open("wb") as err:
+            process = subprocess.Popen(
+                [str(fccd), "x-plane", *words, "--config", str(config)],
+                cwd=scratch,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=err,
+            )
+        try:
+            wait_until(lambda: are_set(simulator, 1.0), "the overrides are set", PATIENCE_S)
+            yield simulator, process
+        finally:
+            process.kill()
+            process.wait()
+
+
+def are_set(simulator: StandInProcess, value: float) -> bool:
+    return all(simulator.read(path) == value for path in (OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES))
+
+
+def test_what_a_killed_check_has_started_ends_and_releases(fccd: Path, tmp_path: Path) -> None:
+    with holding(fccd, tmp_path, "check", "--yes", "--only", "11") as (simulator, check):
+        check.kill()
+        check.wait()
+        # The engage switch stays on: only the end of the daemon releases the controls.
+        wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
