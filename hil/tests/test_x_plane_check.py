@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import socket
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,7 @@ from fcc_hil.settings import Settings
 STEPS = tuple(range(1, 21))
 IS_FULL = os.environ.get("FCCD_FULL_CHECK") == "1"
 PATIENCE_S = 1_800.0 if IS_FULL else 240.0
-SUCCESS, USAGE, STEP_FAILED = 0, 2, 15
+SUCCESS, FAILURE, USAGE, STEP_FAILED = 0, 1, 2, 15
 # In parts of about the same duration.
 PARTS = ((1, 2, 3, 4, 5, 6, 7, 8), (9, 10, 11, 20), (12, 13, 14, 15, 16, 17, 18, 19))
 
@@ -226,3 +227,56 @@ def test_the_page_has_every_step_by_its_title(fccd: Path) -> None:
     assert [step["number"] for step in steps] == list(STEPS)
     for step in steps:
         assert f"| {step['number']} {step['title']} |" in page
+
+
+@pytest.mark.parametrize(
+    ("action", "why"), [("pause", "X-Plane is paused"), ("servos", "X-Plane's own autopilot")]
+)
+def test_identification_is_refused_where_it_would_measure_something_else(
+    fccd: Path, tmp_path: Path, action: str, why: str
+) -> None:
+    with StandInProcess(Settings(port=0, version=121_000, person=True)) as simulator:
+        simulator.act(action)
+        done = identify_by_hand(fccd, tmp_path, simulator.port)
+    assert done.returncode == FAILURE
+    assert why in done.stderr
+
+
+def test_identification_without_x_plane_says_so(fccd: Path, tmp_path: Path) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        port = nobody.getsockname()[1]
+        done = identify_by_hand(fccd, tmp_path, port)
+    assert done.returncode == FAILURE
+    assert f"nothing arrives from X-Plane at 127.0.0.1:{port}" in done.stderr
+
+
+def identify_by_hand(fccd: Path, scratch: Path, port: int) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [fccd, "x-plane", "identify", "--by-hand", "--config", write_config(scratch, port)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        cwd=scratch,
+        check=False,
+        timeout=PATIENCE_S,
+    )
+
+
+def test_a_report_that_cannot_be_written_is_refused_before_the_steps(
+    fccd: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "folder").mkdir()
+    # Nobody answers there: a step would fail with another exit code.
+    words = ["x-plane", "check", "--yes", "--only", "1", "--report", tmp_path / "folder"]
+    done = subprocess.run(
+        [fccd, *words],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+        timeout=PATIENCE_S,
+    )
+    assert done.returncode == FAILURE
+    assert "the report cannot be written" in done.stderr

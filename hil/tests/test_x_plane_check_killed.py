@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -49,3 +50,19 @@ def test_what_a_killed_check_has_started_ends_and_releases(fccd: Path, tmp_path:
         check.wait()
         # The engage switch stays on: only the end of the daemon releases the controls.
         wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+
+
+def test_a_deflection_of_a_killed_identification_is_released(fccd: Path, tmp_path: Path) -> None:
+    with holding(fccd, tmp_path, "identify", "--by-hand") as (simulator, identification):
+        identification.kill()
+        identification.wait()
+        wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+
+
+def test_ctrl_z_does_not_stop_a_deflection(fccd: Path, tmp_path: Path) -> None:
+    with holding(fccd, tmp_path, "identify", "--by-hand") as (simulator, identification):
+        identification.send_signal(signal.SIGTSTP)
+        wait_until(lambda: are_set(simulator, 0.0), "the controls are released")
+        wait_until(lambda: "Ctrl-Z does not stop" in (tmp_path / "err").read_text(), "its message")
+        identification.send_signal(signal.SIGINT)
+        assert identification.wait(PATIENCE_S) == 1

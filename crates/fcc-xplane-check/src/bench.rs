@@ -45,6 +45,13 @@ pub(crate) fn failed<T>(why: impl Into<String>) -> Result<T, Stop> {
     Err(Stop::Failed(why.into()))
 }
 
+fn did_not_happen(what: &str, within: Duration) -> String {
+    format!(
+        "did not happen within {:.0} s: {what}",
+        within.as_secs_f64()
+    )
+}
+
 /// What a step works with.
 pub(crate) struct Bench<'a> {
     pub(crate) link: Link,
@@ -213,7 +220,7 @@ impl<'a> Bench<'a> {
         if self.until(what, limit, holds)? {
             return Ok(());
         }
-        failed(format!("not within {:.0} s: {what}", limit.as_secs_f64()))
+        failed(did_not_happen(what, limit))
     }
 
     /// Has a person do something, or a stand-in by a cue, and waits until it is
@@ -246,7 +253,7 @@ impl<'a> Bench<'a> {
                 }
             }
             if Instant::now() >= until {
-                return failed(format!("not within {:.0} s: {what}", limit.as_secs_f64()));
+                return failed(did_not_happen(what, limit));
             }
         }
         Ok(())
@@ -325,7 +332,11 @@ impl<'a> Bench<'a> {
         let last = self.daemon.status().map(|line| line.text.as_str());
         failed(match last.and_then(|line| line.split_once("not ready: ")) {
             Some((_, inhibits)) => format!("fccd is not ready to engage: {inhibits}"),
-            None => "fccd is not ready to engage, and does not say why".to_owned(),
+            None => format!(
+                "fccd did not become ready to engage within {:.0} s; its last message: {}",
+                READY_WITHIN.as_secs_f64(),
+                self.daemon.last_message().unwrap_or("none")
+            ),
         })
     }
 

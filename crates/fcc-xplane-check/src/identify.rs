@@ -9,11 +9,13 @@
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
+use fcc_xplane::{PlantId, plant_at};
 use serde::Serialize;
 
-use crate::bench::{Bench, Stop, failed};
+use crate::bench::{Bench, ENGAGES_WITHIN, Stop, failed};
 use crate::check::{CheckError, Request, open};
 use crate::configuration::Guidance;
+use crate::disturbance::{disturbance, other_time_rate};
 use crate::screen::Screen;
 use crate::watched::Watched;
 
@@ -24,6 +26,10 @@ const REST: Duration = Duration::from_millis(300);
 /// How long the daemon makes sure of its release: an override that is set
 /// meanwhile is taken for its own, and cleared.
 const RELEASED: Duration = Duration::from_millis(500);
+/// The interval between two releases.
+const RELEASE_AGAIN_AFTER: Duration = Duration::from_millis(250);
+/// How long X-Plane's first answer may take.
+const ANSWERS_WITHIN: Duration = Duration::from_secs(5);
 /// How long level flight may take to become steady.
 const STEADY_WITHIN: Duration = Duration::from_secs(40);
 /// How long it has to be.
@@ -156,6 +162,10 @@ pub enum FlownBy {
 /// Deflects one control after another in level flight, and returns how the
 /// aircraft responds. It must fly level already, in calm air.
 ///
+/// `held` is called with X-Plane before the measurement itself takes its
+/// controls, and with none after X-Plane has confirmed their release: a caller
+/// that is killed between the two needs another process to release them.
+///
 /// # Errors
 /// If it could not begin, or if it was ended: by the envelope, by a control
 /// without effect, or by a signal.
@@ -163,9 +173,10 @@ pub fn identify(
     request: Request,
     by: FlownBy,
     screen: &mut dyn Screen,
+    held: &mut dyn FnMut(Option<PlantId>),
 ) -> Result<Identified, IdentifyError> {
     let mut bench = open(request, screen)?;
-    let found = fly(&mut bench, by).map_err(|stop| {
+    let found = fly(&mut bench, by, held).map_err(|stop| {
         IdentifyError::Ended(match stop {
             Stop::Failed(why) | Stop::Skipped(why) => why,
             Stop::Quit => "ended by a signal".to_owned(),
@@ -176,15 +187,25 @@ pub fn identify(
     found
 }
 
-fn fly(bench: &mut Bench<'_>, by: FlownBy) -> Result<Identified, Stop> {
+fn fly(
+    bench: &mut Bench<'_>,
+    by: FlownBy,
+    held: &mut dyn FnMut(Option<PlantId>),
+) -> Result<Identified, Stop> {
+    begins(bench)?;
     let mut responses = Vec::new();
     let mut airspeed_kt = f64::NAN;
     for control in &CONTROLS {
         steady(bench, by)?;
         airspeed_kt = bench.number(Watched::Airspeed);
+        held(plant_at(bench.link.simulator()));
         let flown = deflect(bench, control);
-        release(bench);
+        let released = release(bench);
+        if released.is_ok() {
+            held(None);
+        }
         let response = flown? / control.deflection;
+        released?;
         let ratio = control.reference / response;
         if !(LEAST..=MOST).contains(&ratio) {
             return failed(format!(
@@ -209,20 +230,40 @@ fn fly(bench: &mut Bench<'_>, by: FlownBy) -> Result<Identified, Stop> {
     })
 }
 
+/// Waits until X-Plane answers, and refuses a state in which nothing can be
+/// measured.
+fn begins(bench: &mut Bench<'_>) -> Result<(), Stop> {
+    bench.until("waiting for X-Plane", ANSWERS_WITHIN, |b| {
+        b.link.latest().is_some()
+    })?;
+    if bench.link.latest().is_none() {
+        return failed(format!(
+            "nothing arrives from X-Plane at {}: start it, or check with `fccd x-plane check \
+             --only 1`",
+            bench.link.simulator()
+        ));
+    }
+    // The first frames, with all values.
+    bench.wait("X-Plane answers", REST)?;
+    undisturbed(bench)
+}
+
+fn undisturbed(bench: &Bench<'_>) -> Result<(), Stop> {
+    disturbance(bench.link.latest(), Instant::now()).map_or(Ok(()), failed)
+}
+
 /// Waits until the flight is steady.
 fn steady(bench: &mut Bench<'_>, by: FlownBy) -> Result<(), Stop> {
-    match by {
-        FlownBy::Daemon => bench.engage(Guidance::Hold)?,
-        FlownBy::Person => bench.expect("X-Plane answers", STEADY_WITHIN, |b| {
-            b.link.latest().is_some()
-        })?,
+    if by == FlownBy::Daemon {
+        bench.engage(Guidance::Hold)?;
     }
     let mut since = Instant::now();
     let is_steady = bench.until("steady level flight", STEADY_WITHIN, |b| {
         let rates = [Watched::RollRate, Watched::PitchRate, Watched::YawRate];
         let calm = rates.iter().all(|rate| b.number(*rate).abs() < 0.03)
             && b.number(Watched::Roll).abs() < 3.0
-            && b.number(Watched::ClimbRate).abs() < 150.0;
+            && b.number(Watched::ClimbRate).abs() < 150.0
+            && disturbance(b.link.latest(), Instant::now()).is_none();
         if !calm {
             since = Instant::now();
         }
@@ -231,6 +272,7 @@ fn steady(bench: &mut Bench<'_>, by: FlownBy) -> Result<(), Stop> {
     if is_steady {
         return Ok(());
     }
+    undisturbed(bench)?;
     failed(
         "the flight does not become steady: fly in calm air, trimmed; if fccd does not hold it \
          steady, fly yourself, with --by-hand",
@@ -264,6 +306,7 @@ fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
     for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
         bench.link.write(bench.link.path(what), 1.0);
     }
+    let began = bench.link.latest().copied();
     hold(bench, &held, &limits, (control.written, 0.0), REST)?;
     let mut responses = [0.0; 2];
     for (response, sign) in responses.iter_mut().zip([1.0, -1.0]) {
@@ -278,6 +321,12 @@ fn deflect(bench: &mut Bench<'_>, control: &Control) -> Result<f64, Stop> {
         if !control.is_rate {
             break;
         }
+    }
+    if let Some(why) = began
+        .zip(bench.link.latest())
+        .and_then(|(first, last)| other_time_rate(&first, last))
+    {
+        return failed(why);
     }
     let [up, down] = responses;
     Ok(if control.is_rate {
@@ -299,19 +348,28 @@ fn hold(
     while Instant::now() < until {
         held.write(bench, deflected, deflection);
         bench.wait("deflected", WRITE_EVERY)?;
+        undisturbed(bench)?;
         limits.check(bench)?;
     }
     Ok(())
 }
 
-/// Gives the controls back, however it went.
-fn release(bench: &Bench<'_>) {
-    for what in [Watched::YokePitch, Watched::YokeRoll, Watched::YokeHeading] {
-        bench.link.write(bench.link.path(what), 0.0);
+/// Gives the controls back, however it went, until X-Plane confirms it.
+fn release(bench: &mut Bench<'_>) -> Result<(), Stop> {
+    let until = Instant::now() + ENGAGES_WITHIN;
+    while Instant::now() < until {
+        for what in [Watched::YokePitch, Watched::YokeRoll, Watched::YokeHeading] {
+            bench.link.write(bench.link.path(what), 0.0);
+        }
+        for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
+            bench.link.write(bench.link.path(what), 0.0);
+        }
+        bench.link.poll(RELEASE_AGAIN_AFTER);
+        if !bench.is_overridden() && !bench.link.is_silent_for(RELEASE_AGAIN_AFTER) {
+            return Ok(());
+        }
     }
-    for what in [Watched::OverrideJoystick, Watched::OverrideThrottles] {
-        bench.link.write(bench.link.path(what), 0.0);
-    }
+    failed("X-Plane has not confirmed the release of the controls")
 }
 
 /// Beyond these the aircraft is handed back.

@@ -12,6 +12,7 @@
 //! | `bench` | what a step works with: waits, figures, the person or the cues |
 //! | `link`, `watched` | the connection to X-Plane and the datarefs read over it |
 //! | `daemon`, `configuration` | the daemon's process and its configuration |
+//! | `disturbance` | what makes a measured response wrong |
 //! | `identify` | how an aircraft responds to its controls |
 //! | `waits` | how long each part takes, in full and shortened |
 //! | `screen` | what a program that runs the check has to provide |
@@ -28,6 +29,7 @@ mod bench;
 mod check;
 mod configuration;
 mod daemon;
+mod disturbance;
 mod figure;
 mod identify;
 mod link;

@@ -21,6 +21,10 @@ const AGAIN_AFTER: Duration = Duration::from_secs(1);
 const KEPT: usize = 18_000;
 const LARGEST: usize = 2_048;
 
+/// A frame's values come in several datagrams: right after a replay some are
+/// still of it.
+const AFTER_A_REPLAY: Duration = Duration::from_millis(150);
+
 /// One datagram, and what was known after it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
@@ -30,6 +34,22 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
+    /// With these values.
+    #[cfg(test)]
+    pub(crate) fn of(at: Instant, known: &[(Watched, f32)]) -> Self {
+        let mut values = [None; Watched::COUNT];
+        for (what, value) in known {
+            if let Some(slot) = values.get_mut(what.place()) {
+                *slot = Some(*value);
+            }
+        }
+        Self {
+            at,
+            from: (Ipv4Addr::LOCALHOST, 0).into(),
+            values,
+        }
+    }
+
     /// A value in X-Plane's unit; none before it arrived.
     pub(crate) fn get(&self, what: Watched) -> Option<f64> {
         let value = self.values.get(what.place()).copied().flatten();
@@ -52,6 +72,19 @@ impl Sample {
         self.number(Watched::OverrideJoystick) >= 0.5
             && self.number(Watched::OverrideThrottles) >= 0.5
     }
+}
+
+/// Those of the flight: not those of a replay, which shows an earlier time.
+pub(crate) fn flown<'a>(
+    samples: impl Iterator<Item = &'a Sample>,
+) -> impl Iterator<Item = &'a Sample> {
+    let mut replayed: Option<Instant> = None;
+    samples.filter(move |sample| {
+        if sample.number(Watched::InReplay) >= 0.5 {
+            replayed = Some(sample.at);
+        }
+        replayed.is_none_or(|at| sample.at.saturating_duration_since(at) > AFTER_A_REPLAY)
+    })
 }
 
 /// A client of X-Plane.
@@ -255,5 +288,32 @@ impl Link {
 impl Drop for Link {
     fn drop(&mut self) {
         self.subscribe(0, |_| true);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_of_a_replay_and_right_after_it_are_not_of_the_flight() {
+        let began = Instant::now();
+        let samples: Vec<Sample> = [(0, 0.0), (20, 1.0), (40, 1.0), (60, 0.0), (400, 0.0)]
+            .into_iter()
+            .map(|(ms, in_replay)| {
+                let at = began + Duration::from_millis(ms);
+                Sample::of(at, &[(Watched::InReplay, in_replay)])
+            })
+            .collect();
+        let times: Vec<u128> = flown(samples.iter())
+            .map(|sample| (sample.at - began).as_millis())
+            .collect();
+        assert_eq!(times, [0, 400]);
+    }
+
+    #[test]
+    fn without_the_dataref_all_samples_are_of_the_flight() {
+        let samples = [Sample::of(Instant::now(), &[])];
+        assert_eq!(flown(samples.iter()).count(), 1);
     }
 }

@@ -58,11 +58,11 @@ impl XPlaneAuthority {
 
 impl ControlAuthority for XPlaneAuthority {
     fn plant(&self) -> Option<PlantId> {
-        self.status.as_ref()?.simulator().and_then(name)
+        self.status.as_ref()?.simulator().and_then(plant_at)
     }
 
     fn held(&self) -> Option<PlantId> {
-        self.status.as_ref()?.held_at().and_then(name)
+        self.status.as_ref()?.held_at().and_then(plant_at)
     }
 
     fn require_permission(&self) {
@@ -82,7 +82,7 @@ impl ControlAuthority for XPlaneAuthority {
     fn unique(&self, plant: &PlantId) -> PlantId {
         address(plant)
             .filter(|simulator| simulator.ip().is_loopback() || is_of_this_machine(*simulator))
-            .and_then(|simulator| name((Ipv4Addr::LOCALHOST, simulator.port()).into()))
+            .and_then(|simulator| plant_at((Ipv4Addr::LOCALHOST, simulator.port()).into()))
             .unwrap_or(*plant)
     }
 
@@ -130,7 +130,8 @@ impl ControlAuthority for XPlaneAuthority {
     }
 }
 
-fn name(simulator: SocketAddr) -> Option<PlantId> {
+/// The X-Plane at an address, as [`XPlaneAuthority`] names it.
+pub fn plant_at(simulator: SocketAddr) -> Option<PlantId> {
     PlantId::new(format_args!("{NAME}{simulator}"))
 }
 
@@ -356,7 +357,7 @@ mod tests {
     fn another_address_of_this_machine_is_the_same_simulator() {
         let authority = XPlaneAuthority::without_connection(&XPlaneConfig::default());
         let unique = |address: &str| {
-            let plant = name(address.parse().unwrap()).unwrap();
+            let plant = plant_at(address.parse().unwrap()).unwrap();
             authority.unique(&plant).as_str().to_owned()
         };
         for here in ["127.0.0.1:49000", "127.9.9.9:49000", "[::1]:49000"] {

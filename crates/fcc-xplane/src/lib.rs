@@ -92,12 +92,12 @@ mod written;
 
 pub use actuator::XPlaneActuator;
 pub use address::{AddressError, HostName, Simulator, USUAL_LOCAL_PORT, XPLANE_PORT};
-pub use authority::XPlaneAuthority;
+pub use authority::{XPlaneAuthority, plant_at};
 pub use config::{
     AxialLoad, DataRows, Input, Output, RowsVersion, XPlaneConfig, XPlaneConfigError,
 };
 pub use discovery::{DiscoverError, Found, discover};
-pub use fcc_core::framework::Released;
+pub use fcc_core::framework::{PlantId, Released};
 pub use link::Control;
 pub use missing::Missing;
 pub use open::{OpenError, XPlane};

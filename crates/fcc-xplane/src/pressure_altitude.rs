@@ -26,9 +26,12 @@ use fcc_core::framework::{Reading, Time};
 
 use crate::values::{Group, Values};
 
-/// After this long without X-Plane's own pressure altitude, the altimeter is
-/// used. The requests for all datarefs take seven ticks.
+/// After this long without X-Plane's own pressure altitude at first, the
+/// altimeter is used. The requests for all datarefs take seven ticks.
 const OWN_WITHIN: Duration = Duration::from_millis(300);
+/// The same once it has arrived: before the altitude is too old to be flown by.
+/// Both come in one datagram as a rule, so that slow frames do not matter.
+const OWN_LOST: Duration = Duration::from_millis(150);
 /// A setting that was changed may still be in the indicated altitude for this
 /// long: five frames at the lowest rate that is not slow.
 const SETTLES: Duration = Duration::from_millis(250);
@@ -150,7 +153,8 @@ impl PressureAltitude {
             self.indicated_since = taken;
         }
         self.set(setting_pa, taken);
-        if taken.since(self.own.max(self.indicated_since)) < OWN_WITHIN {
+        let is_awaited = taken.since(self.indicated_since) < OWN_WITHIN;
+        if is_awaited || taken.since(self.own) < OWN_LOST {
             self.track = None;
             return None;
         }
@@ -341,11 +345,13 @@ mod tests {
             let indicated = altitude.indicated(914.0, 29.92 * INHG_PA, now);
             assert_eq!(indicated.is_some(), (12..100).contains(&n), "{n}");
         }
-        // It stops: the altimeter is used instead.
+        // It stops: the altimeter is used instead, before the last one is too old
+        // for control (`failsafe.sensor_max_age_ms`).
         let used = (200..300).find(|n| {
             let now = at(n * FRAME_MS);
             altitude.indicated(914.0, 29.92 * INHG_PA, now).is_some()
         });
-        assert_eq!(used, Some(211));
+        let used = used.unwrap();
+        assert!((used - 199) * FRAME_MS + FRAME_MS < 250, "{used}");
     }
 }

@@ -77,8 +77,12 @@ impl Silence {
     pub(crate) fn look(&mut self, status: &XPlaneStatus) -> Why {
         self.read_beacons();
         self.probe();
-        match (self.announced, self.refusal) {
-            (Some(port), _) if port != self.simulator.port() => Why::Announced(port),
+        let own = self.simulator.port();
+        // If one answered here before, another port is that of another X-Plane.
+        let announced = self.announced;
+        let announced = announced.filter(|port| *port == own || !self.had_answered);
+        match (announced, self.refusal) {
+            (Some(port), _) if port != own => Why::Announced(port),
             (_, Some(refusal)) => refusal,
             (Some(port), None) => Why::Announced(port),
             _ if self.had_answered => Why::Stopped,
@@ -212,5 +216,12 @@ mod tests {
         let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
         sender.send_to(&beacon, there).unwrap();
         assert_eq!(silence.look(&status), Why::Announced(49_010));
+        // Another X-Plane on that machine, if this one answered before.
+        silence.had_answered = true;
+        (silence.probe, silence.refusal) = (None, None);
+        silence.probed = Some(Instant::now());
+        assert_eq!(silence.look(&status), Why::Stopped);
+        silence.refusal = Some(Why::PortClosed);
+        assert_eq!(silence.look(&status), Why::PortClosed);
     }
 }

@@ -24,8 +24,7 @@ use fcc_runtime::StopHandle;
 use crate::exit::Exit;
 use crate::output;
 use instance_lock::InstanceLock;
-use release_helper::ReleaseHelper;
-pub(crate) use release_helper::run_release_helper;
+pub(crate) use release_helper::{ReleaseHelper, run_release_helper};
 use signals::{BlockedSignals, Caught};
 pub(crate) use signals::{end_with_parent, tolerate};
 
@@ -194,7 +193,7 @@ impl Plant {
 const BY_HAND: &str = "if this process is killed, release the controls by hand";
 
 /// Without a helper the flight continues, and this is reported.
-fn start_helper(config: &Config) -> Option<ReleaseHelper> {
+pub(crate) fn start_helper(config: &Config) -> Option<ReleaseHelper> {
     ReleaseHelper::start(config)
         .inspect_err(|error| {
             output::message(format!("no release helper ({error}): {BY_HAND}"));

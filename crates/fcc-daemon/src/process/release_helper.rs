@@ -29,7 +29,7 @@ const FREE: &str = "free";
 const RELEASE_FOR: Duration = Duration::from_secs(120);
 
 /// The release helper, as seen by the process that started it.
-pub(super) struct ReleaseHelper {
+pub(crate) struct ReleaseHelper {
     child: Child,
     held: Option<PlantId>,
 }
@@ -56,7 +56,7 @@ impl ReleaseHelper {
 
     /// Reports where control is held, if it is. A helper that has ended is no
     /// reason to stop: [`has_ended`](Self::has_ended) tells.
-    pub(super) fn report(&mut self, held: Option<PlantId>) {
+    pub(crate) fn report(&mut self, held: Option<PlantId>) {
         if self.held == held {
             return;
         }

@@ -6,7 +6,7 @@ use super::paths;
 use crate::bench::{Bench, Done, failed};
 use crate::configuration::Guidance;
 use crate::figure::Limit;
-use crate::link::Sample;
+use crate::link::{Sample, flown};
 use crate::step::Step;
 use crate::watched::Watched;
 
@@ -189,7 +189,7 @@ fn joystick(bench: &mut Bench<'_>) -> Done {
     Ok(())
 }
 
-/// The largest of a number over the samples since a time.
+/// The largest of a number over the samples of the flight since a time.
 pub(super) fn extreme(bench: &Bench<'_>, since: Instant, of: impl Fn(&Sample) -> f64) -> f64 {
-    bench.link.since(since).map(of).fold(0.0, f64::max)
+    flown(bench.link.since(since)).map(of).fold(0.0, f64::max)
 }

@@ -1,7 +1,7 @@
 //! `fccd x-plane check`: the twenty steps against a running X-Plane.
 
 use std::fmt::Write as _;
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::io::{self, IsTerminal};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::output;
 /// Checks `fccd` against a running X-Plane.
 pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
     let files = ReportFiles::of(&args.report, args.connection.config.as_deref())?;
-    let request = request(&args.connection, files.folder.clone())?;
+    let (request, _) = request(&args.connection, files.folder.clone())?;
     if !args.yes && !io::stdin().is_terminal() {
         return Err(Failure::usage(
             "fccd: a person is needed, and standard input is no terminal: run it in one, or \
@@ -30,6 +30,7 @@ pub(super) fn check(args: &XPlaneCheckArgs) -> Result<Exit, Failure> {
         is_short: args.quick,
         ..request
     };
+    files.open()?;
     let mut terminal = Terminal::open(!args.yes)?;
     let result = carry_out(request, &mut terminal);
     drop(terminal);
@@ -70,6 +71,24 @@ impl ReportFiles {
             return wrong("the report would overwrite the configuration");
         }
         Ok(files)
+    }
+
+    /// Whether both can be written, before the steps are done. Leaves as it is
+    /// what is there.
+    fn open(&self) -> Result<(), Failure> {
+        for file in [&self.markdown, &self.json] {
+            OpenOptions::new()
+                .append(true)
+                .create(true)
+                .open(file)
+                .map_err(|error| {
+                    Failure::new(format_args!(
+                        "the report cannot be written: {}: {error}",
+                        file.display()
+                    ))
+                })?;
+        }
+        Ok(())
     }
 }
 

@@ -9,17 +9,26 @@ use super::{Failure, not_begun, request};
 use crate::cli::x_plane::IdentifyArgs;
 use crate::exit::Exit;
 use crate::output;
+use crate::process::start_helper;
 
 /// Measures the responses, and prints gains.
 pub(super) fn identify(args: &IdentifyArgs) -> Result<Exit, Failure> {
-    let request = request(&args.connection, args.files.clone())?;
+    let (request, config) = request(&args.connection, args.files.clone())?;
     let mut terminal = Terminal::open(false)?;
     let by = if args.by_hand {
         FlownBy::Person
     } else {
         FlownBy::Daemon
     };
-    let result = carry_out(request, by, &mut terminal);
+    // It releases the controls that the measurement itself has taken if this
+    // process is killed, or X-Plane has not confirmed their release.
+    let mut helper = start_helper(&config);
+    let mut held = |plant| {
+        if let Some(helper) = &mut helper {
+            helper.report(plant);
+        }
+    };
+    let result = carry_out(request, by, &mut terminal, &mut held);
     drop(terminal);
     let found = result.map_err(|error| match error {
         IdentifyError::NotBegun(error) => not_begun(&error),

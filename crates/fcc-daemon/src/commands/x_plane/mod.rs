@@ -27,27 +27,28 @@ pub(super) fn x_plane(args: &XPlaneArgs) -> Result<Exit, Failure> {
     }
 }
 
-/// What the commands begin with.
-fn request(connection: &ConnectionArgs, folder: PathBuf) -> Result<Request, Failure> {
+/// What the commands begin with, and its configuration.
+fn request(connection: &ConnectionArgs, folder: PathBuf) -> Result<(Request, Config), Failure> {
     let program = env::current_exe()
         .map_err(|error| Failure::new(format_args!("its own program cannot be found: {error}")))?;
     let (config, text) = configuration(connection)?;
-    let section = config.x_plane.ok_or_else(|| {
+    let section = config.x_plane.as_ref().ok_or_else(|| {
         Failure::usage(
             "fccd x-plane is for X-Plane: give a file with a section [x-plane], such as \
              config/x-plane.toml",
         )
     })?;
-    Ok(Request {
+    let request = Request {
         program,
         config: text,
-        x_plane: (&section).into(),
+        x_plane: section.into(),
         folder,
         only: Vec::new(),
         is_unattended: false,
         is_short: false,
         local_port: connection.local_port,
-    })
+    };
+    Ok((request, config))
 }
 
 fn configuration(connection: &ConnectionArgs) -> Result<(Config, String), ConfigError> {

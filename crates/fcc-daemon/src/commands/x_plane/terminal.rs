@@ -8,10 +8,11 @@ use std::thread;
 
 use fcc_xplane_check::{Answer, Outcome, Screen, Step, StepResult};
 use indicatif::ProgressBar;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGTSTP};
 
 use super::Failure;
 use crate::output;
+use crate::process::tolerate;
 
 /// The keys, once.
 const KEYS: &str = "Enter: done; s, Enter: leave this step out; q, Enter: end the check.";
@@ -22,21 +23,31 @@ pub(super) struct Terminal {
     live: ProgressBar,
     answers: Option<Receiver<Answer>>,
     stopped: Arc<AtomicBool>,
+    /// Ctrl-Z was pressed, and had no effect.
+    suspended: Arc<AtomicBool>,
 }
 
 impl Terminal {
     /// Catches signals, so that the daemon is ended properly, and reads answers
-    /// if there is a person.
+    /// if there is a person. Ctrl-Z has no effect: a process that is stopped
+    /// does not release the controls.
     pub(super) fn open(has_person: bool) -> Result<Self, Failure> {
-        let stopped = Arc::<AtomicBool>::default();
-        for signal in [SIGINT, SIGTERM, SIGHUP] {
-            signal_hook::flag::register(signal, Arc::clone(&stopped))
-                .map_err(|error| Failure::new(format_args!("signals cannot be caught: {error}")))?;
+        let [stopped, suspended] = <[Arc<AtomicBool>; 2]>::default();
+        let uncaught = |error| Failure::new(format_args!("signals cannot be caught: {error}"));
+        tolerate().map_err(uncaught)?;
+        for (signal, flag) in [
+            (SIGINT, &stopped),
+            (SIGTERM, &stopped),
+            (SIGHUP, &stopped),
+            (SIGTSTP, &suspended),
+        ] {
+            signal_hook::flag::register(signal, Arc::clone(flag)).map_err(uncaught)?;
         }
         let terminal = Self {
             live: ProgressBar::new_spinner(),
             answers: has_person.then(read_answers),
             stopped,
+            suspended,
         };
         if has_person {
             terminal.say(KEYS);
@@ -97,6 +108,9 @@ impl Screen for Terminal {
     }
 
     fn live(&mut self, text: &str) {
+        if self.suspended.swap(false, Ordering::Relaxed) {
+            self.say("Ctrl-Z does not stop this; Ctrl-C ends it");
+        }
         self.live.set_message(text.to_owned());
         self.live.tick();
     }
