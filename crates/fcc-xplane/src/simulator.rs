@@ -10,19 +10,20 @@ use core::time::Duration;
 use fcc_core::flight::PlantState;
 use fcc_core::framework::Time;
 
-/// Two datagrams of one flight are less than this apart when one overtakes
-/// the other; time that goes back further was set back.
+/// Two datagrams of one flight are mostly less than this apart when one overtakes
+/// the other; time that goes back further and continues there was set back.
 const LATE_S: f64 = 1.0;
-/// For this long, from the first one on, older times may belong to late
-/// datagrams: also after a silence, as those may arrive first that were on their
-/// way when it began.
+/// For this long, from the first one on, older times may belong to late datagrams,
+/// also after a silence: those may arrive first that were sent before it.
 const LATE: Duration = Duration::from_secs(1);
 /// If the simulator's clock gains this much on twice ours between two ticks, it
 /// was set forward: it may run twice as fast.
 const AHEAD_S: f64 = 1.0;
 const AHEAD_OF: f64 = 2.0;
-/// The simulator sends and is not paused, but its clock has not advanced for
-/// this long: five frames at 20 a second.
+/// What a network held back may arrive in several ticks: for this long after a
+/// gap of this length the clock is compared with that before the gap, too.
+const HELD_BACK: Duration = Duration::from_millis(500);
+/// Stalled if its clock has not advanced for this long: five frames at 20 a second.
 const STALLED_AFTER: Duration = Duration::from_millis(250);
 /// The simulator's pace is measured over at least this long, at most twice this
 /// long: 25 ms of jitter at its end are then at most 2.5 %.
@@ -65,8 +66,8 @@ pub enum SimulatorState {
     /// 95 % in frames of more than 50 ms; until 95 % and 45 ms are regained.
     /// A single freeze is not counted.
     Slow = 4,
-    /// In this tick its clock went back by a second or more, or gained a second
-    /// on ours: a flight was loaded. This lasts for one tick only.
+    /// Its clock went back by a second or more and continued there, or gained a
+    /// second on ours: a flight was loaded. This lasts for one tick only.
     Jumped = 5,
     /// Its time runs more than 2.2 times as fast as ours over 1 to 2 s, until it
     /// is less than 2.1 times as fast.
@@ -134,6 +135,12 @@ impl ClockSample {
     fn pace_since(self, earlier: Self) -> f64 {
         (self.time_s - earlier.time_s) / self.seen.since(earlier.seen).as_secs_f64()
     }
+
+    /// Whether its time is further from an earlier sample's than it can have run.
+    fn is_ahead_of(self, earlier: Self) -> bool {
+        let ours_s = self.seen.since(earlier.seen).as_secs_f64();
+        !earlier.seen.is_never() && self.time_s - earlier.time_s - AHEAD_OF * ours_s > AHEAD_S
+    }
 }
 
 /// Tracks the simulator's clock.
@@ -151,6 +158,11 @@ pub(crate) struct SimulatorClock {
     /// When the first of the older times arrived that were taken for late ones
     /// since the latest; never if there was none.
     late_since: Time,
+    /// A time that is earlier by [`LATE_S`] or more, until a newer one arrives.
+    set_back: Option<ClockSample>,
+    /// The latest before the last gap, and when that ended.
+    before_gap: ClockSample,
+    gap_ended: Time,
     /// When the clock last advanced, or had a reason not to.
     advanced: Time,
     paused: bool,
@@ -182,6 +194,9 @@ impl SimulatorClock {
             latest: ClockSample::default(),
             before: ClockSample::default(),
             late_since: Time::NEVER,
+            set_back: None,
+            before_gap: ClockSample::default(),
+            gap_ended: Time::NEVER,
             advanced: Time::NEVER,
             paused: false,
             replaying: false,
@@ -206,20 +221,29 @@ impl SimulatorClock {
         self.reloaded = true;
     }
 
-    /// Whether a datagram of this flight time was overtaken by a newer one and
-    /// is to be dropped. An equal time is not late: it is the same frame again,
-    /// or time does not advance.
+    /// Whether a datagram of this flight time was overtaken by a newer one and is to
+    /// be dropped; not if the time is equal: the same frame, or time stands still.
     pub(crate) fn is_late(&mut self, now: Time, time_s: f64) -> bool {
         let back_s = self.latest.time_s - time_s;
         // A replay may go backwards.
-        let is_older = back_s > 0.0 && back_s < LATE_S;
-        if self.replaying || self.latest.seen.is_never() || !is_older {
+        if self.replaying || self.latest.seen.is_never() || back_s <= 0.0 {
             return false;
+        }
+        if back_s >= LATE_S {
+            return !self.is_set_back(ClockSample { time_s, seen: now });
         }
         if self.late_since.is_never() {
             self.late_since = now;
         }
         now.since(self.late_since) < LATE
+    }
+
+    /// Whether a much earlier time continues one of an earlier tick.
+    fn is_set_back(&mut self, sample: ClockSample) -> bool {
+        let follows = |at: &ClockSample| sample.time_s >= at.time_s && !sample.is_ahead_of(*at);
+        let first = self.set_back.filter(follows);
+        self.set_back = first.or(Some(sample));
+        first.is_some_and(|first| sample.seen > first.seen)
     }
 
     /// Evaluates the report of an accepted datagram.
@@ -256,20 +280,23 @@ impl SimulatorClock {
         let (before, had_stopped) = (self.latest, self.has_stopped());
         self.latest = ClockSample { time_s, seen: now };
         self.late_since = Time::NEVER;
+        self.set_back = None;
         if before.seen.is_never() {
             self.begin_pace(now);
             return;
         }
         let gained_s = time_s - before.time_s;
-        let is_ahead = !self.before.seen.is_never() && {
-            let ours_s = now.since(self.before.seen).as_secs_f64();
-            time_s - self.before.time_s - AHEAD_OF * ours_s > AHEAD_S
-        };
+        if now.since(before.seen) >= HELD_BACK {
+            (self.before_gap, self.gap_ended) = (before, now);
+        }
+        let gains = self.latest.is_ahead_of(self.before);
+        let is_ahead = gains
+            && (now.since(self.gap_ended) >= HELD_BACK || self.latest.is_ahead_of(self.before_gap));
         // Late datagrams were dropped, so a time that went back was set back.
         if gained_s < 0.0 || is_ahead {
             self.jumped = true;
             self.begin_pace(now);
-        } else if was_silent {
+        } else if was_silent || gains {
             self.begin_pace(now);
         } else if gained_s > 0.0 {
             let freezes = now.since(before.seen).as_secs_f64() - gained_s > FREEZE_S;

@@ -3,6 +3,7 @@ use super::*;
 const SILENT_AFTER: Duration = Duration::from_millis(500);
 
 /// A clock and our time, fed at 40 Hz.
+#[derive(Clone)]
 struct Bench {
     clock: SimulatorClock,
     now: Time,
@@ -188,7 +189,6 @@ fn a_datagram_overtaken_by_less_than_a_second_is_late() {
     assert!(bench.clock.is_late(now, time_s - 0.99));
     assert!(!bench.clock.is_late(now, time_s), "the same frame again");
     assert!(!bench.clock.is_late(now, time_s + 0.01));
-    assert!(!bench.clock.is_late(now, time_s - 1.0), "that is a jump");
     // A flight loaded within its first second and paused there must not count
     // as late for ever.
     let later = now + LATE;
@@ -214,6 +214,59 @@ fn an_overtaken_datagram_after_a_silence_is_late_and_no_jump() {
     assert!(!bench.clock.is_late(bench.now, time_s));
     bench.time_s = time_s;
     assert_eq!(bench.fly(1, 0.0), SimulatorState::Jumped);
+}
+
+/// One that was overtaken by more than a second is dropped, too, and so are all
+/// that arrive with it.
+#[test]
+fn a_jump_back_is_believed_with_a_second_time_that_continues_it() {
+    for back_s in [1.2, 3.0, 100.0] {
+        let mut bench = Bench::new();
+        bench.fly(80, 1.0);
+        for _ in 0..3 {
+            let time_s = bench.time_s - back_s;
+            assert!(bench.clock.is_late(bench.now, time_s));
+            assert!(bench.clock.is_late(bench.now, time_s + 0.01));
+            assert_eq!(bench.fly(100, 1.0), SimulatorState::Running);
+        }
+        // The flight loaded there is paused, or runs; or another is loaded.
+        for runs_s in [0.0, 0.025] {
+            let mut bench = bench.clone();
+            let time_s = bench.time_s - back_s;
+            assert!(bench.clock.is_late(bench.now, time_s));
+            let later = bench.now + Bench::TICK;
+            assert!(bench.clock.is_late(later, time_s - 2.0));
+            let later = later + Bench::TICK;
+            assert!(!bench.clock.is_late(later, time_s - 2.0 + runs_s));
+        }
+    }
+}
+
+/// A network holds all back and delivers it in two ticks.
+#[test]
+fn a_backlog_that_arrives_in_two_ticks_is_neither_a_jump_nor_fast() {
+    for held_s in [1.5, 4.0, 10.0] {
+        let mut bench = Bench::new();
+        bench.fly(80, 1.0);
+        bench.now = bench.now + Duration::from_secs_f64(held_s);
+        for _ in 0..2 {
+            bench.time_s += 0.5 * held_s;
+            assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+        }
+        for _ in 0..200 {
+            assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+        }
+        // Afterwards a jump is one.
+        bench.time_s += 1.1;
+        assert_eq!(bench.fly(1, 1.0), SimulatorState::Jumped);
+    }
+    // Set forward in the gap.
+    let mut bench = Bench::new();
+    bench.fly(80, 1.0);
+    bench.now = bench.now + Duration::from_secs(2);
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Running);
+    bench.time_s += 6.0;
+    assert_eq!(bench.fly(1, 1.0), SimulatorState::Jumped);
 }
 
 #[test]
