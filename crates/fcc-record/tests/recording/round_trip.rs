@@ -76,6 +76,34 @@ proptest! {
     }
 }
 
+fn commands() -> impl Iterator<Item = LoopCommand<AutopilotCommand>> {
+    [
+        LoopCommand::Engage,
+        LoopCommand::Disengage,
+        LoopCommand::Stop,
+        LoopCommand::Controller(AutopilotCommand::Airspeed(-0.0)),
+        LoopCommand::Controller(AutopilotCommand::Heading(6.1)),
+        LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
+        LoopCommand::Controller(AutopilotCommand::PressureAltitude(1_000.0)),
+        LoopCommand::Controller(AutopilotCommand::Height(-3.0)),
+        LoopCommand::Controller(AutopilotCommand::AltimeterSetting(99_999.9)),
+        LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
+        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
+            altimeter_setting_pa: None,
+            ..RESUME
+        })),
+        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
+            progress: Progress {
+                mode: Mode::Hold,
+                elapsed_s: 0.0,
+                ..RESUME.progress
+            },
+            ..RESUME
+        })),
+    ]
+    .into_iter()
+}
+
 #[test]
 fn every_event_is_restored() {
     let gap = (3, 5, 1 << 60);
@@ -136,32 +164,7 @@ fn every_event_is_restored() {
             longest: Stage::Control,
         });
     }
-    for command in [
-        LoopCommand::Engage,
-        LoopCommand::Disengage,
-        LoopCommand::Stop,
-        LoopCommand::Controller(AutopilotCommand::Airspeed(-0.0)),
-        LoopCommand::Controller(AutopilotCommand::Heading(6.1)),
-        LoopCommand::Controller(AutopilotCommand::Altitude(f64::INFINITY)),
-        LoopCommand::Controller(AutopilotCommand::PressureAltitude(1_000.0)),
-        LoopCommand::Controller(AutopilotCommand::Height(-3.0)),
-        LoopCommand::Controller(AutopilotCommand::AltimeterSetting(99_999.9)),
-        LoopCommand::Controller(AutopilotCommand::Resume(RESUME)),
-        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
-            altimeter_setting_pa: None,
-            ..RESUME
-        })),
-        LoopCommand::Controller(AutopilotCommand::Resume(Resume {
-            progress: Progress {
-                mode: Mode::Hold,
-                elapsed_s: 0.0,
-                ..RESUME.progress
-            },
-            ..RESUME
-        })),
-    ] {
-        kinds.push(EventKind::CommandReceived(command));
-    }
+    kinds.extend(commands().map(EventKind::CommandReceived));
     for fault in [
         SensorFault::Silent,
         SensorFault::Malformed,
