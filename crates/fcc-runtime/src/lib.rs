@@ -96,6 +96,7 @@
 //! ```
 
 mod actuators;
+mod changes;
 mod commands;
 mod config;
 mod decide;

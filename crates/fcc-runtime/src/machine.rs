@@ -47,9 +47,9 @@ pub struct Machine<C: Controller> {
     pub(crate) state: State,
     pub(crate) switch: EngageSwitch,
     /// The controller's mode in the last tick.
-    mode: u8,
+    pub(crate) mode: u8,
     /// The conditions reported last.
-    conditions: Flags,
+    pub(crate) conditions: Flags,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
     pub(crate) record: RecordOf<C>,
@@ -273,34 +273,6 @@ impl<C: Controller> Machine<C> {
         self.record.setpoints = self.controller.setpoints();
         self.report_mode(tick);
         self.report_conditions(tick);
-    }
-
-    fn report_mode(&mut self, tick: &Tick) {
-        let (from, to) = (self.mode, self.controller.mode());
-        if from != to {
-            self.mode = to;
-            let kind = EventKind::ModeChanged { from, to };
-            self.telemetry.events.push(tick, kind);
-        }
-    }
-
-    /// Reports the controller's conditions while control is held; those that
-    /// hold at engagement, too.
-    fn report_conditions(&mut self, tick: &Tick) {
-        let before = self.conditions;
-        self.conditions = if self.state.holds_control() {
-            self.controller.conditions(tick, &self.measurements)
-        } else {
-            Flags::NONE
-        };
-        if self.state.holds_control() && self.conditions != before {
-            let [now, before] = [self.conditions.bits(), before.bits()];
-            let kind = EventKind::ConditionsChanged {
-                began: Flags::from_bits(now & !before),
-                ended: Flags::from_bits(before & !now),
-            };
-            self.telemetry.events.push(tick, kind);
-        }
     }
 
     /// Computes the outputs for the present state; never returns invalid ones.

@@ -34,6 +34,8 @@ pub(crate) const ENGAGES_WITHIN: Duration = Duration::from_secs(3);
 #[derive(Debug)]
 pub(crate) enum Stop {
     Failed(String),
+    /// What the step needs first was not there: its own advice would not help.
+    NotReady(String),
     Skipped(String),
     Quit,
 }
@@ -324,20 +326,22 @@ impl<'a> Bench<'a> {
         })?;
         if self.daemon.has_ended() {
             let last = self.daemon.last_message().unwrap_or("it said nothing");
-            return failed(format!("fccd ended: {last}"));
+            return Err(Stop::NotReady(format!("fccd ended: {last}")));
         }
         if self.is_ready(since, false) {
             return Ok(());
         }
         let last = self.daemon.status().map(|line| line.text.as_str());
-        failed(match last.and_then(|line| line.split_once("not ready: ")) {
-            Some((_, inhibits)) => format!("fccd is not ready to engage: {inhibits}"),
-            None => format!(
-                "fccd did not become ready to engage within {:.0} s; its last message: {}",
-                READY_WITHIN.as_secs_f64(),
-                self.daemon.last_message().unwrap_or("none")
-            ),
-        })
+        Err(Stop::NotReady(
+            match last.and_then(|line| line.split_once("not ready: ")) {
+                Some((_, inhibits)) => format!("fccd is not ready to engage: {inhibits}"),
+                None => format!(
+                    "fccd did not become ready to engage within {:.0} s; its last message: {}",
+                    READY_WITHIN.as_secs_f64(),
+                    self.daemon.last_message().unwrap_or("none")
+                ),
+            },
+        ))
     }
 
     /// Engages by the switch, unless it is engaged.
@@ -355,10 +359,10 @@ impl<'a> Bench<'a> {
         }
         let said = self.daemon.since(since);
         let refusal = said.iter().find(|line| line.text.contains("not engaged"));
-        failed(match refusal {
-            Some(line) => line.text.trim().to_owned(),
-            None => "both overrides are not on within 3 s of the engage switch".to_owned(),
-        })
+        match refusal {
+            Some(line) => Err(Stop::NotReady(line.text.trim().to_owned())),
+            None => failed("both overrides are not on within 3 s of the engage switch"),
+        }
     }
 
     /// Moves the engage switch.

@@ -132,6 +132,10 @@ fn not_done(step: &Step) -> StepResult {
     }
 }
 
+/// What to do about a step that could not begin.
+const NOT_READY: &str = "The step could not begin. docs/troubleshooting.md says what to do about the \
+                         reason; then repeat this step with --only.";
+
 /// Does one step. Returns its result, and whether the check shall end.
 fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     bench.screen.begin(step);
@@ -140,6 +144,10 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     let done = (step.run)(bench);
     let figures = bench.figures.clone();
     let quit = matches!(done, Err(Stop::Quit));
+    let advice = match done {
+        Err(Stop::NotReady(_)) => NOT_READY,
+        _ => step.advice,
+    };
     bench.is_ending = quit;
     (step.restore)(bench);
     bench.end();
@@ -154,7 +162,7 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
     let (outcome, why) = match done {
         Ok(()) if outside.is_empty() => (Outcome::Passed, None),
         Ok(()) => (Outcome::Failed, Some(outside.join("; "))),
-        Err(Stop::Failed(why)) => {
+        Err(Stop::Failed(why) | Stop::NotReady(why)) => {
             let all = std::iter::once(why).chain(outside);
             (Outcome::Failed, Some(all.collect::<Vec<_>>().join("; ")))
         }
@@ -168,7 +176,7 @@ fn carry_out(step: &Step, bench: &mut Bench<'_>) -> (StepResult, bool) {
         title: step.title,
         outcome,
         why,
-        advice: (outcome == Outcome::Failed).then_some(step.advice),
+        advice: (outcome == Outcome::Failed).then_some(advice),
         duration_s: began.elapsed().as_secs_f64(),
         figures,
         notes: bench.notes.clone(),

@@ -16,6 +16,7 @@ use crate::bench::{Bench, ENGAGES_WITHIN, Stop, failed};
 use crate::check::{CheckError, Request, open};
 use crate::configuration::Guidance;
 use crate::disturbance::{disturbance, other_time_rate};
+use crate::envelope::Envelope;
 use crate::screen::Screen;
 use crate::watched::Watched;
 
@@ -178,7 +179,7 @@ pub fn identify(
     let mut bench = open(request, screen)?;
     let found = fly(&mut bench, by, held).map_err(|stop| {
         IdentifyError::Ended(match stop {
-            Stop::Failed(why) | Stop::Skipped(why) => why,
+            Stop::Failed(why) | Stop::NotReady(why) | Stop::Skipped(why) => why,
             Stop::Quit => "ended by a signal".to_owned(),
         })
     });
@@ -370,42 +371,4 @@ fn release(bench: &mut Bench<'_>) -> Result<(), Stop> {
         }
     }
     failed("X-Plane has not confirmed the release of the controls")
-}
-
-/// Beyond these the aircraft is handed back.
-struct Envelope {
-    pitch_deg: f64,
-    airspeed_kt: f64,
-}
-
-const MOST_BANK_DEG: f64 = 25.0;
-const MOST_PITCH_DEG: f64 = 8.0;
-const LOADS_G: std::ops::RangeInclusive<f64> = 0.4..=1.7;
-const LEAST_AIRSPEED: f64 = 0.85;
-
-impl Envelope {
-    fn now(bench: &Bench<'_>) -> Self {
-        Self {
-            pitch_deg: bench.number(Watched::Pitch),
-            airspeed_kt: bench.number(Watched::Airspeed),
-        }
-    }
-
-    fn check(&self, bench: &Bench<'_>) -> Result<(), Stop> {
-        let bank = bench.number(Watched::Roll).abs();
-        let pitch = (bench.number(Watched::Pitch) - self.pitch_deg).abs();
-        let airspeed = bench.number(Watched::Airspeed);
-        let load = bench.number(Watched::LoadNormal);
-        let within = bank <= MOST_BANK_DEG
-            && pitch <= MOST_PITCH_DEG
-            && airspeed >= LEAST_AIRSPEED * self.airspeed_kt
-            && (load.is_nan() || LOADS_G.contains(&load));
-        if within {
-            return Ok(());
-        }
-        failed(format!(
-            "ended outside the envelope: bank {bank:.0}°, pitch changed by {pitch:.0}°, \
-             {airspeed:.0} kt, load {load:.1} g"
-        ))
-    }
 }

@@ -30,6 +30,7 @@ mod check;
 mod configuration;
 mod daemon;
 mod disturbance;
+mod envelope;
 mod figure;
 mod identify;
 mod link;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
-use crate::bench::{Bench, Done, failed};
+use crate::bench::{Bench, Done, Stop, failed};
 use crate::configuration::Guidance;
 use crate::figure::Limit;
 use crate::step::Step;
@@ -67,8 +67,12 @@ fn ready(bench: &mut Bench<'_>) -> Done {
     let since = Instant::now();
     bench.start(Guidance::Hold)?;
     let is_ready = bench.until("fccd is ready", Duration::from_secs(20), |b| {
-        b.is_ready(since, true)
+        b.is_ready(since, true) || b.daemon.has_ended()
     })?;
+    if bench.daemon.has_ended() {
+        let last = bench.daemon.last_message().unwrap_or("it said nothing");
+        return Err(Stop::NotReady(format!("fccd ended: {last}")));
+    }
     bench.measure(
         "from the start of fccd until it is ready",
         since.elapsed().as_secs_f64(),
@@ -231,7 +235,7 @@ fn incoming(bench: &mut Bench<'_>) -> Done {
 }
 
 /// Whether a light that is written is read back with that value.
-fn light_follows(bench: &mut Bench<'_>, value: f64) -> Result<bool, crate::bench::Stop> {
+fn light_follows(bench: &mut Bench<'_>, value: f64) -> Result<bool, Stop> {
     // From the other value, or it would follow without having been written.
     let other = if value >= 0.5 { 0.0 } else { 1.0 };
     let path = bench.link.path(Watched::SpareLight).to_owned();

@@ -1,0 +1,93 @@
+//! What the engage switch does, and what it does not.
+
+mod bench;
+
+use bench::{Bench, EventKind, PERIOD, RELEASED, change};
+use fcc_core::framework::State::{Engaged, Standby};
+use fcc_core::framework::{Flags, State, Switch};
+use fcc_runtime::{LoopCommand, LoopConfig};
+
+const LOST: Flags = Flags::bit(1);
+
+fn config() -> LoopConfig {
+    LoopConfig {
+        switch_max_age: 2 * PERIOD,
+        ..LoopConfig::default()
+    }
+}
+
+fn steadily_on(bench: &mut Bench) -> State {
+    let states = [(); 20].map(|()| bench.tick(|s| s.switch = Some(Switch::On)));
+    assert_eq!(states[18], Standby, "not before");
+    states[19]
+}
+
+#[test]
+fn the_switch_engages_on_its_rising_edge_only() {
+    let mut bench = Bench::with(&config());
+    // On from the start, as it was left.
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(steadily_on(&mut bench), Engaged);
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+    assert_eq!(
+        bench.events(),
+        [change(Standby, Engaged), change(Engaged, Standby), RELEASED]
+    );
+}
+
+#[test]
+fn an_inhibited_switch_must_be_switched_on_again() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| {
+        s.switch = Some(Switch::On);
+        s.engage_inhibits = LOST;
+    });
+    assert_eq!(bench.tick(|s| s.engage_inhibits = Flags::NONE), Standby);
+    assert_eq!(
+        bench.events(),
+        [EventKind::EngageRefused {
+            engage_inhibits: LOST
+        }]
+    );
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    assert_eq!(steadily_on(&mut bench), Engaged);
+}
+
+#[test]
+fn after_a_silence_the_switch_must_be_seen_off_again() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    // Fresh for two periods, silent in the third.
+    for _ in 0..3 {
+        bench.tick(|s| s.switch = None);
+    }
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::On)), Standby);
+    bench.tick(|_| {});
+    assert_eq!(bench.events(), [EventKind::SwitchedOnUnseen], "once");
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    assert_eq!(steadily_on(&mut bench), Engaged);
+}
+
+#[test]
+fn a_stale_switch_does_not_disengage() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.tick(|s| s.switch = Some(Switch::On));
+    for _ in 0..50 {
+        assert_eq!(bench.tick(|s| s.switch = None), Engaged);
+    }
+    // It was switched off during the gap, and is off now.
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Standby);
+}
+
+#[test]
+fn a_switch_that_is_off_does_not_undo_a_command() {
+    let mut bench = Bench::with(&config());
+    bench.tick(|s| s.switch = Some(Switch::Off));
+    bench.command(LoopCommand::Engage);
+    for _ in 0..10 {
+        assert_eq!(bench.tick(|_| {}), Engaged);
+    }
+}
