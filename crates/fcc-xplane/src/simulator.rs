@@ -14,8 +14,9 @@ use fcc_core::framework::Time;
 /// the other; time that goes back further and continues there was set back.
 const LATE_S: f64 = 1.0;
 /// For this long, from the first one on, older times may belong to late datagrams,
-/// also after a silence: those may arrive first that were sent before it.
-const LATE: Duration = Duration::from_secs(1);
+/// also after a silence: those may arrive first that were sent before it. A newer
+/// one follows within the network's jitter; without one, another flight runs.
+const LATE: Duration = Duration::from_millis(400);
 /// If the simulator's clock gains this much on twice ours between two ticks, it
 /// was set forward: it may run twice as fast.
 const AHEAD_S: f64 = 1.0;
