@@ -3,7 +3,8 @@
 //!
 //! Requests get lost, and a restarted X-Plane has lost its subscriptions, so
 //! each dataref that does not arrive is requested again. While the simulator is
-//! silent, everything is requested each second. While it answers, a dataref that
+//! silent, everything is requested each second, and once more as soon as it is
+//! heard again. While it answers, a dataref that
 //! does not arrive is requested again after one second a few times, since a
 //! single request was lost, and then (it may not have it) every
 //! [`XPlaneConfig::resubscribe`](crate::XPlaneConfig::resubscribe).
@@ -89,6 +90,9 @@ pub(crate) struct Subscriptions {
     list: Vec<Subscription>,
     resubscribe: Duration,
     restarted: Time,
+    /// Whether everything was requested in vain: then some of the requests that
+    /// are on their way when the simulator starts again are lost.
+    in_vain: bool,
     without_effect: Box<[u8; rref::REQUEST_BYTES]>,
     pace: RequestPace,
     missing_values: MissingValues,
@@ -131,6 +135,7 @@ impl Subscriptions {
             list,
             resubscribe: config.resubscribe,
             restarted: Time::NEVER,
+            in_vain: false,
             without_effect,
             pace: RequestPace::begin(),
             missing_values: MissingValues::new(expected, config.resubscribe),
@@ -157,6 +162,7 @@ impl Subscriptions {
     /// Requests everything again, at most once a second.
     fn restart(&mut self, now: Time) {
         if now.since(self.restarted) >= LOST_AFTER {
+            self.in_vain = !self.restarted.is_never();
             self.restarted = now;
             for subscription in &mut self.list {
                 subscription.anew = true;
@@ -186,6 +192,11 @@ impl Subscriptions {
         let resubscribe = self.resubscribe;
         if now.since(inbox.last_received()) >= LOST_AFTER {
             self.restart(now);
+        } else if self.in_vain {
+            self.in_vain = false;
+            for subscription in &mut self.list {
+                subscription.anew = true;
+            }
         }
         let mut outcome = Ok(());
         if !self.pace.is_due(now) {
