@@ -14,10 +14,14 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     let heading = compass(measured.heading_rad.value);
     let shown = ShownAltitude::of(record);
     let name = shown.name;
-    let altitude = (measured.altitude_m.value - shown.datum_m) * M_FT;
-    let by = shown
+    let altitude = if measured.altitude_m.is_never() {
+        "    –".to_owned()
+    } else {
+        format!("{:5.0}", (measured.altitude_m.value - shown.datum_m) * M_FT)
+    };
+    let qnh = shown
         .setting_hpa
-        .map_or_else(String::new, |hpa| format!(" by {hpa:.1} hPa"));
+        .map_or_else(String::new, |hpa| format!("  QNH {hpa:.1} hPa"));
     let airspeed = measured.airspeed_mps.value * MPS_KT;
     // Plus zero, because a rounded -0 looks like an error.
     let bank = measured.attitude.value.roll_rad.to_degrees().round() + 0.0;
@@ -25,7 +29,7 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
     Some(if record.state == State::Engaged {
         format!(
             "{}  heading {heading:3.0}° → {:3.0}°  bank {bank:3.0}°  \
-             {name} {altitude:5.0} → {:5.0} ft{by}  airspeed {airspeed:5.1} → {:5.1} kt  \
+             {name} {altitude} → {:5.0} ft{qnh}  airspeed {airspeed:5.1} → {:5.1} kt  \
              throttle {:3.0} %",
             desired.guidance,
             compass(desired.heading_rad),
@@ -35,7 +39,7 @@ pub(crate) fn describe(record: &FlightRecord) -> Option<String> {
         )
     } else {
         format!(
-            "heading {heading:3.0}°  bank {bank:3.0}°  {name} {altitude:5.0} ft{by}  \
+            "heading {heading:3.0}°  bank {bank:3.0}°  {name} {altitude} ft{qnh}  \
              airspeed {airspeed:5.1} kt"
         )
     })
