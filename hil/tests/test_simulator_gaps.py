@@ -11,8 +11,10 @@ import time
 from pathlib import Path
 
 import pytest
-from daemon_under_test import ENGAGE_SWITCH, assert_released, engage, flight, wait_until
+from daemon_under_test import assert_released, engage, flight, wait_until
 from fault_flights import AT_ONCE_S, NS, Flown, assert_flown_again, at_once
+
+from fcc_hil.fly import ENGAGE_SWITCH
 
 SUCCESS = 0
 LENGTHS_S = (0.2, 1.5)

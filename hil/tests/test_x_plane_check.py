@@ -268,7 +268,7 @@ def test_a_report_that_cannot_be_written_is_refused_before_the_steps(
 ) -> None:
     (tmp_path / "folder").mkdir()
     # Nobody answers there: a step would fail with another exit code.
-    words = ["x-plane", "check", "--yes", "--only", "1", "--report", tmp_path / "folder"]
+    words = ["x-plane", "check", "--yes", "--only", "1", "--report", str(tmp_path / "folder")]
     done = subprocess.run(
         [fccd, *words],
         stdin=subprocess.DEVNULL,
