@@ -11,6 +11,7 @@ mod plant_clock;
 mod resume;
 mod scale;
 mod sensor_health;
+mod upset;
 mod whereabouts;
 
 use core::fmt;
@@ -27,7 +28,9 @@ pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
+use super::control::{
+    AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand,
+};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
@@ -90,6 +93,7 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -121,6 +125,7 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -318,6 +323,10 @@ impl Controller for Autopilot {
         let envelope = self.config.envelope;
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
+        }
+        if let Some(recovering) = self.recover(tick.woke) {
+            self.last = recovering;
+            return self.last;
         }
         let to = self.targets;
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);

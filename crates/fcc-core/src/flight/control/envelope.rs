@@ -66,6 +66,11 @@ impl Envelope {
             .min(acos(1.0 / self.max_load_factor.max(1.0)))
     }
 
+    /// The stalling airspeed, m/s: the lowest is 1.3 times that.
+    pub fn stall_airspeed_mps(&self) -> f64 {
+        (self.min_airspeed_mps / 1.3).max(1.0)
+    }
+
     /// Climb limits at an indicated airspeed: they are reduced near the lowest
     /// airspeed (below it only a descent is permitted) and near the highest.
     pub fn climb_limits(&self, airspeed_mps: f64) -> ClimbLimits {

@@ -17,13 +17,17 @@ mod airspeed;
 mod altitude;
 mod envelope;
 mod heading;
+mod recovery;
 mod schedule;
+mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
 pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
+pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
+pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.
 const MAX_TURN_BANK_RAD: f64 = 1.05;

@@ -18,6 +18,7 @@ use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
 use crate::schema;
+use crate::units::GRAVITY_MPS2;
 
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
@@ -103,8 +104,16 @@ schema! {
         /// Specific force to the right, m/s²: 0 in a coordinated turn.
         #[field(9)]
         pub side_force_mps2: f64,
+        /// Load factor, g: specific force up through the cabin's roof; 1 in level
+        /// flight.
+        #[field(10)]
+        pub load_factor: f64,
     }
 }
+
+/// The time constant of the load factor, s: below that in which the load follows
+/// the elevator.
+const LOAD_TAU_S: f64 = 0.08;
 
 /// Computes an [`Estimate`] from measurements.
 ///
@@ -131,6 +140,7 @@ pub struct Navigation {
     vertical: VerticalChannel,
     airspeed: AirspeedChannel,
     side_force: LowPass,
+    load: LowPass,
     estimate: Estimate,
 }
 
@@ -142,6 +152,7 @@ impl Navigation {
             vertical: VerticalChannel::new(config.vertical_bandwidth_radps),
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
             side_force: LowPass::new(config.side_force_tau_s),
+            load: LowPass::new(LOAD_TAU_S),
             estimate: Estimate {
                 roll_rad: 0.0,
                 pitch_rad: 0.0,
@@ -156,6 +167,7 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                load_factor: 0.0,
             },
         }
     }
@@ -171,6 +183,7 @@ impl Navigation {
             .step(now, measurements, &attitude, &vertical, dt_s);
         if is_current(&force, now) {
             self.side_force.step(force.value.y_mps2, dt_s);
+            self.load.step(-force.value.z_mps2 / GRAVITY_MPS2, dt_s);
         }
         self.estimate = Estimate {
             roll_rad: attitude.roll_rad,
@@ -185,6 +198,7 @@ impl Navigation {
             altitude_m: vertical.altitude_m,
             climb_rate_mps: vertical.climb_rate_mps,
             side_force_mps2: self.side_force.output(),
+            load_factor: self.load.output(),
         };
     }
 
@@ -196,6 +210,12 @@ impl Navigation {
     /// Marks the present altitude.
     pub const fn mark_altitude(&mut self) {
         self.vertical.mark();
+    }
+
+    /// Counts the full turns of the heading so that it is the nearest to
+    /// `near_rad`: after an upset they say nothing of the turn that was flown.
+    pub(crate) fn count_heading_near(&mut self, near_rad: f64) {
+        self.estimate.heading_rad = self.attitude.count_near(near_rad);
     }
 
     /// The present estimate of the altitude at the mark, m; none if nothing was
