@@ -12,7 +12,7 @@ const LATE_S: f64 = 1.0;
 /// For this long, from the first one on, older times may belong to late datagrams,
 /// also after a silence: those may arrive first that were sent before it. A newer
 /// one follows within the network's jitter; without one, another flight runs.
-const LATE: Duration = Duration::from_millis(400);
+pub(super) const LATE: Duration = Duration::from_millis(400);
 
 /// Tells older times of late datagrams from those of a clock that was set back.
 /// It starts anew with each newer time.
