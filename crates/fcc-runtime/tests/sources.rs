@@ -164,7 +164,7 @@ impl Bench {
     }
 }
 
-fn changed(readings: u32, from: u8, to: u8) -> EventKind<u32> {
+fn changed(readings: u64, from: u8, to: u8) -> EventKind<u32> {
     EventKind::SourceChanged(SourceChange {
         readings: Flags::from_bits(readings),
         from,
@@ -179,8 +179,8 @@ fn fault(index: u16) -> EventKind<u32> {
     }
 }
 
-const DEPTH: u32 = 0b01;
-const SPEED: u32 = 0b10;
+const DEPTH: u64 = 0b01;
+const SPEED: u64 = 0b10;
 
 /// 100 ms by default: four ticks of 25 ms are borne, in the fifth the next
 /// sensor is taken.
