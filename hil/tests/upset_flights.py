@@ -110,12 +110,14 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
         flight.tick(None)
     before_ft = flight.plant.state().altitude_m / FT_TO_M
     began_s = flight.plant.time_s
+    seized: list[tuple[float, ...]] = []
     while True:
         taken = script(flight.plant.time_s - began_s, flight.plant.state(), flight.wanted)
         if taken is None:
             break
         flight.tick(taken)
-    recovery = Recovery(flight.plant.state(), flight.events, before_ft=before_ft)
+        seized.append(_row(flight.plant.time_s - began_s - 100.0, flight.plant.state(), flight.flown))
+    recovery = Recovery(flight.plant.state(), flight.events, before_ft=before_ft, rows=seized)
     given_back_s = flight.plant.time_s
     while flight.plant.time_s - given_back_s < seconds:
         flight.tick(None)
@@ -212,35 +214,36 @@ def full_aileron_by_a_pilot(time_s: float, _state: State, _wanted: Controls) -> 
 
 
 def to_attitude(
-    roll_deg: float, pitch_deg: float, airspeed_kt: float | None = None, *, throttle: float
+    roll_deg: float, pitch_deg: float | None, airspeed_kt: float = 0.0, *, throttle: float
 ) -> Script:
-    """Return a script that flies to an attitude, and gives back there or below an airspeed.
+    """Return a script that flies to an attitude, and gives back there.
 
-    Roll first with the nose held, then pitch; a simple pilot with the true state.
+    It rolls first, with a little of up elevator, then pitches; a simple pilot who sees the true
+    state. With an airspeed it gives back when that is passed in the attitude.
     """
-    held = {"level": False, "for_s": 0.0}
+    was: list[float] = []
 
     def script(time_s: float, state: State, _wanted: Controls) -> Controls | None:
         roll, pitch = math.degrees(state.roll_rad), math.degrees(state.pitch_rad)
+        airspeed = state.airspeed_mps / KT_TO_MPS
         roll_off = (roll_deg - roll + 180.0) % 360.0 - 180.0
-        pitch_off = pitch_deg - pitch
-        there = abs(roll_off) < 5.0 and abs(pitch_off) < 4.0
-        if airspeed_kt is not None:
-            airspeed = state.airspeed_mps / KT_TO_MPS
-            there = there and abs(airspeed - airspeed_kt) < 4.0
-        if there or time_s > 20.0:
+        pitch_off = 0.0 if pitch_deg is None else pitch_deg - pitch
+        passed = not airspeed_kt or bool(was) and (was[-1] - airspeed_kt) * (
+            airspeed - airspeed_kt
+        ) <= 0.0
+        was.append(airspeed)
+        if abs(roll_off) < 8.0 and abs(pitch_off) < 8.0 and passed:
             return None
-        rolls = max(-60.0, min(60.0, 2.0 * roll_off))
-        upright = math.cos(state.roll_rad)
-        pitches = max(-40.0, min(40.0, 1.5 * pitch_off)) * upright
-        # The stick that turns: rates in degrees a second.
-        aileron = 0.015 * rolls + 0.01 * (rolls - math.degrees(state.roll_rate_radps))
-        elevator = 0.012 * pitches + 0.03 * (pitches - math.degrees(state.pitch_rate_radps))
-        if abs(roll_off) > 20.0 and not held["level"]:
-            elevator = 0.0
-        else:
-            held["level"] = True
-        return Controls(elevator=elevator, aileron=aileron, throttle=throttle)
+        assert time_s < 20.0, f"not reached: roll {roll:.0f}, pitch {pitch:.0f}, {airspeed:.0f} kt"
+        rolls = max(-90.0, min(90.0, 3.0 * roll_off))
+        pitches = max(-30.0, min(35.0, 1.5 * pitch_off)) * math.cos(state.roll_rad)
+        if abs(roll_off) > 20.0 or pitch_deg is None:
+            pitches = 0.0
+        return Controls(
+            elevator=0.012 * pitches + 0.03 * (pitches - math.degrees(state.pitch_rate_radps)),
+            aileron=0.01 * rolls + 0.012 * (rolls - math.degrees(state.roll_rate_radps)),
+            throttle=throttle,
+        )
 
     return script
 

@@ -28,9 +28,7 @@ pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{
-    AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand,
-};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};

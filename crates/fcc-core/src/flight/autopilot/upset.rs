@@ -22,7 +22,10 @@ impl Autopilot {
             dt_s: self.clock.step_s(),
         };
         let trims = self.trims();
-        match self.recovery.observe(&self.last, &trims, &estimate, &inputs) {
+        match self
+            .recovery
+            .observe(&self.last, &trims, &estimate, &inputs)
+        {
             Change::Ends => {
                 let last = self.last;
                 self.navigation.count_heading_near(self.targets.heading_rad);

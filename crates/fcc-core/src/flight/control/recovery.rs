@@ -48,7 +48,7 @@ const ROLL_STOPS_S: f64 = 0.2;
 /// Beyond this bank the side once chosen is kept, rad (140°).
 const KEEPS_SIDE_RAD: f64 = 2.44;
 /// Pitch rate per load error, rad/s per g.
-const LOAD_GAIN_RADPS: f64 = 0.12;
+const LOAD_GAIN_RADPS: f64 = 0.25;
 /// The largest commanded pitch rate, rad/s.
 const MAX_PITCH_RATE_RADPS: f64 = 0.9;
 /// The angle of attack that is not exceeded while slow, rad (11°), the gain to it
@@ -227,7 +227,11 @@ impl Recovery {
         } else if self.side == 0.0 {
             let ahead = bank + ROLL_STOPS_S * estimate.body_rates.roll_radps;
             let passes = ahead.abs() > core::f64::consts::PI;
-            self.side = if passes { bank.signum() } else { -bank.signum() };
+            self.side = if passes {
+                bank.signum()
+            } else {
+                -bank.signum()
+            };
         }
         let error = if self.side == 0.0 {
             -bank
@@ -252,14 +256,18 @@ impl Recovery {
         let path_rate = -PATH_GAIN_PER_S * motion.path_rad;
         let wanted = (cos(motion.path_rad) + speed / GRAVITY_MPS2 * path_rate)
             / limit(upright, FULL_LIFT, 1.0);
-        let rolls = motion.bank_rad.abs() > LEVEL_RAD
-            || estimate.body_rates.roll_radps.abs() > ROLLS_RADPS;
+        let rolls =
+            motion.bank_rad.abs() > LEVEL_RAD || estimate.body_rates.roll_radps.abs() > ROLLS_RADPS;
         let ratio = estimate.airspeed_mps / envelope.stall_airspeed_mps();
-        let strength = OVER_OUTER_LOOPS * envelope.max_load_factor * if rolls { ROLLING } else { 1.0 };
+        let strength =
+            OVER_OUTER_LOOPS * envelope.max_load_factor * if rolls { ROLLING } else { 1.0 };
         let most = strength.min(OF_STALL_LOAD * ratio * ratio).max(UNLOADED);
         let pull = limit(wanted, UNLOADED, most);
-        let share = limit(upright / FULL_LIFT, 0.0, 1.0)
-            .max(limit((forward - STEEP) / (1.0 - STEEP), 0.0, 1.0));
+        let share = limit(upright / FULL_LIFT, 0.0, 1.0).max(limit(
+            (forward - STEEP) / (1.0 - STEEP),
+            0.0,
+            1.0,
+        ));
         UNLOADED + share * (pull - UNLOADED)
     }
 
@@ -277,11 +285,14 @@ impl Recovery {
         // The pitch rate of a path that is curved by a load n: g/V (n - cos θ cos
         // φ).
         let turning = |n: f64| GRAVITY_MPS2 / speed * (n - down);
-        let mut pitch_rate = turning(load) + LOAD_GAIN_RADPS * (load - estimate.load_factor);
+        let by_load = LOAD_GAIN_RADPS * (load - estimate.load_factor);
+        let mut pitch_rate = turning(load) + by_load;
+        let mut at_limit = false;
         if estimate.airspeed_mps < ALPHA_BELOW * stall_mps {
             // The angle of attack changes by the pitch rate less that of the path.
             let most = turning(estimate.load_factor)
                 + ALPHA_GAIN_PER_S * (MAX_ALPHA_RAD - motion.angle_of_attack_rad);
+            at_limit = pitch_rate > most;
             pitch_rate = pitch_rate.min(most);
         }
         let pitch_rate = limit_abs(pitch_rate, MAX_PITCH_RATE_RADPS);
@@ -293,8 +304,13 @@ impl Recovery {
             self.trims.elevator + self.correction,
             inputs.schedule,
         );
+        // While the aircraft rolls, its path turns by sideslip, too: so what is
+        // integrated is the load.
+        let drift = if at_limit { error } else { by_load };
         if inputs.followed && (surface.abs() < 1.0 || surface * error < 0.0) {
-            let increment = inputs.altitude.elevator_increment(error, inputs.schedule, inputs.dt_s);
+            let increment = inputs
+                .altitude
+                .elevator_increment(drift, inputs.schedule, inputs.dt_s);
             self.correction = limit_abs(self.correction + increment, MAX_CORRECTION);
         }
         limit_abs(surface, 1.0)
@@ -309,8 +325,7 @@ impl Recovery {
         inputs: &RecoveryInputs<'_>,
     ) -> f64 {
         let envelope = inputs.envelope;
-        let ahead =
-            estimate.airspeed_mps - SPEED_AHEAD_S * GRAVITY_MPS2 * sin(motion.path_rad);
+        let ahead = estimate.airspeed_mps - SPEED_AHEAD_S * GRAVITY_MPS2 * sin(motion.path_rad);
         let slow = envelope.min_airspeed_mps + envelope.airspeed_margin_mps;
         let fast = 0.35 * envelope.min_airspeed_mps + 0.65 * envelope.max_airspeed_mps;
         let wanted = limit((fast - ahead) / (fast - slow).max(1.0), 0.0, 1.0);

@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn it_is_right_through_all_attitudes() {
         for rates in [
-            [0.0, 45.0, 0.0],
+            [0.0, 47.0, 0.0],
             [120.0, 0.0, 0.0],
             [60.0, 20.0, 150.0],
             [30.0, 50.0, -20.0],
