@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use super::paths;
 use crate::bench::{Bench, Done, ENGAGES_WITHIN, failed};
 use crate::configuration::Guidance;
-use crate::figure::Limit;
 use crate::step::Step;
 use crate::watched::Watched;
 
