@@ -26,6 +26,7 @@ use failsafe::KeptTrims;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
+use upset::is_far_from_level;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
@@ -34,9 +35,6 @@ use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate}
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
-
-/// Beyond this bank or pitch the autopilot does not engage, rad.
-const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
 ///
@@ -205,11 +203,12 @@ impl Controller for Autopilot {
             )
             .with(
                 flags::TOO_SLOW,
-                estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+                estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                    && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
             )
             .with(
                 flags::UPSET,
-                estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+                is_far_from_level(estimate) && !self.may_engage_in_upset(),
             )
     }
 
@@ -219,6 +218,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(measurements)
+            .with(flags::RECOVERING, self.recovery.is_active())
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -287,6 +287,7 @@ impl Controller for Autopilot {
                 ..Surfaces::default()
             });
         self.take_over(&standing);
+        self.begin_watching_for_upsets();
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
@@ -361,6 +362,7 @@ impl Controller for Autopilot {
         self.distrusted = Flags::NONE;
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
+        self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();
     }
 

@@ -1,14 +1,40 @@
 //! Recovery from an upset, between the outer loops.
 
-use super::Autopilot;
-use crate::flight::control::{Change, RecoveryInputs};
+use super::{Autopilot, flags};
+use crate::flight::control::{Change, Recovery, RecoveryInputs};
+use crate::flight::navigation::Estimate;
 use crate::flight::{Setpoints, Surfaces};
 use crate::framework::Time;
 
 /// The surfaces follow the outputs if they differ by no more than this.
 const FOLLOWS: f64 = 0.15;
 
+/// Beyond this bank or pitch the autopilot does not engage, unless configured,
+/// rad.
+const UPSET_RAD: f64 = 1.047;
+
+/// Whether bank or pitch is beyond 60°.
+pub(super) fn is_far_from_level(estimate: &Estimate) -> bool {
+    estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD
+}
+
 impl Autopilot {
+    /// Whether it may engage in an upset, to recover the aircraft from it.
+    pub(super) const fn may_engage_in_upset(&self) -> bool {
+        self.config.permitted.contains(flags::UPSET)
+    }
+
+    /// Begins to watch for upsets, with the trims of the present flight unless it
+    /// is one.
+    pub(super) fn begin_watching_for_upsets(&mut self) {
+        let trims = if is_far_from_level(self.navigation.estimate()) {
+            Surfaces::default()
+        } else {
+            self.trims()
+        };
+        self.recovery = Recovery::trimmed(&trims, self.schedule());
+    }
+
     /// The outputs while the aircraft is upset; none otherwise. When it no longer
     /// is, the loops take over from them.
     pub(super) fn recover(&mut self, now: Time) -> Option<Surfaces> {

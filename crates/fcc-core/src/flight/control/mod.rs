@@ -7,6 +7,9 @@
 //!   compensated for bank;
 //! - [`AirspeedLoop`]: airspeed → throttle, compensated for climb and bank.
 //!
+//! In an upset the recovery flies instead of them, until the aircraft is
+//! level again.
+//!
 //! An [`Envelope`] limits the outer loops' commands to the inner ones. Gains
 //! apply at a reference airspeed; a surface's effect grows with dynamic
 //! pressure, so they are scaled by [`Schedule`].
@@ -17,6 +20,7 @@ mod airspeed;
 mod altitude;
 mod envelope;
 mod heading;
+mod load;
 mod recovery;
 mod schedule;
 mod upset;

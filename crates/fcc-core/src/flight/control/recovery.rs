@@ -7,8 +7,9 @@
 //! chapter 5, spin recovery; Bowman, NASA TP-2939, 1989). Neither heading nor
 //! altitude is followed meanwhile.
 
-use libm::{cos, sin, sqrt};
+use libm::sin;
 
+use super::load::LoadLoop;
 use super::upset::{Motion, UpsetDetector};
 use super::{AltitudeLoop, Envelope, HeadingLoop, Schedule};
 use crate::blocks::{RateLimit, limit, limit_abs};
@@ -16,28 +17,10 @@ use crate::flight::Surfaces;
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
-/// The load while the lift would not raise the path, g: between the 0 and 0.5
-/// in which light aircraft's engines run and the wing does not stall.
-const UNLOADED: f64 = 0.3;
-/// How much of the load at which the wing stalls is used: (V/Vs)² times this.
-const OF_STALL_LOAD: f64 = 0.75;
-/// How much of the load is used while rolling: two thirds (14 CFR 23.349(b), in
-/// its form before 2017).
-const ROLLING: f64 = 2.0 / 3.0;
-/// The most load of the recovery over the outer loops' largest.
-const OVER_OUTER_LOOPS: f64 = 1.5;
-/// Below this bank the lift is used in full, and beyond 90° not at all: cos 50°.
-const FULL_LIFT: f64 = 0.643;
 /// Wings level enough for the full load: bank, rad (25°), and roll rate, rad/s
 /// (30 °/s).
 const LEVEL_RAD: f64 = 0.436;
 const ROLLS_RADPS: f64 = 0.524;
-/// With the nose this far down any pull raises it, whatever the bank: sin 65°.
-const STEEP: f64 = 0.906;
-/// How fast the commanded load grows, g/s.
-const LOAD_RATE_PER_S: f64 = 4.0;
-/// Path rate per path error, 1/s.
-const PATH_GAIN_PER_S: f64 = 1.2;
 /// Roll rate per bank, 1/s, and the largest, rad/s: beyond what ailerons of
 /// light aircraft give, so that they are fully used.
 const ROLL_GAIN_PER_S: f64 = 2.6;
@@ -47,18 +30,6 @@ const MAX_ROLL_RATE_RADPS: f64 = 2.6;
 const ROLL_STOPS_S: f64 = 0.2;
 /// Beyond this bank the side once chosen is kept, rad (140°).
 const KEEPS_SIDE_RAD: f64 = 2.44;
-/// Pitch rate per load error, rad/s per g.
-const LOAD_GAIN_RADPS: f64 = 0.25;
-/// The largest commanded pitch rate, rad/s.
-const MAX_PITCH_RATE_RADPS: f64 = 0.9;
-/// The angle of attack that is not exceeded while slow, rad (11°), the gain to it
-/// 1/s, and the multiple of the stalling airspeed up to which it is looked at:
-/// above, load bounds it.
-const MAX_ALPHA_RAD: f64 = 0.192;
-const ALPHA_GAIN_PER_S: f64 = 2.0;
-const ALPHA_BELOW: f64 = 1.6;
-/// The largest correction of the elevator by integration.
-const MAX_CORRECTION: f64 = 0.5;
 /// The ailerons' share while the wing is stalled: they drop the wing they raise.
 const STALLED_AILERON: f64 = 0.3;
 /// How far ahead the airspeed is extrapolated for the throttle, s.
@@ -67,6 +38,8 @@ const SPEED_AHEAD_S: f64 = 2.0;
 const RUDDER_FIRST_S: f64 = 0.3;
 /// The elevator in a spin, less than all of it: more load would turn negative.
 const SPIN_ELEVATOR: f64 = -0.7;
+/// How fast the throttle moves, 1/s.
+const THROTTLE_RATE_PER_S: f64 = 1.0;
 /// The time constant with which the trims of undisturbed flight are followed, s.
 const TRIM_TAU_S: f64 = 2.0;
 
@@ -91,10 +64,8 @@ pub(crate) struct Recovery {
     trims: Surfaces,
     /// The schedule at which they were found.
     trimmed_at: f64,
-    load: RateLimit,
+    load: LoadLoop,
     throttle: RateLimit,
-    /// The elevator's correction by integration.
-    correction: f64,
     /// The side of the roll, 1 right and -1 left, while it is kept.
     side: f64,
     spinning_s: f64,
@@ -111,11 +82,19 @@ impl Recovery {
                 rudder: 0.0,
             },
             trimmed_at: 1.0,
-            load: RateLimit::new(LOAD_RATE_PER_S),
-            throttle: RateLimit::new(1.0),
-            correction: 0.0,
+            load: LoadLoop::new(),
+            throttle: RateLimit::new(THROTTLE_RATE_PER_S),
             side: 0.0,
             spinning_s: 0.0,
+        }
+    }
+
+    /// Begins with trims found at a schedule.
+    pub(crate) const fn trimmed(trims: &Surfaces, schedule: Schedule) -> Self {
+        Self {
+            trims: *trims,
+            trimmed_at: schedule.moment,
+            ..Self::new()
         }
     }
 
@@ -137,9 +116,9 @@ impl Recovery {
         let is = self.upset.step(estimate, inputs.envelope, inputs.dt_s);
         match (was, is) {
             (false, true) => {
-                self.load.reset(estimate.load_factor);
+                self.load.begin(estimate);
                 self.throttle.reset(last.throttle);
-                (self.correction, self.side, self.spinning_s) = (0.0, 0.0, 0.0);
+                (self.side, self.spinning_s) = (0.0, 0.0);
                 Change::Begins
             }
             (true, false) => Change::Ends,
@@ -186,9 +165,12 @@ impl Recovery {
         } else {
             lateral.aileron
         };
+        let rolls =
+            motion.bank_rad.abs() > LEVEL_RAD || estimate.body_rates.roll_radps.abs() > ROLLS_RADPS;
+        let trim = [self.trims.elevator, self.trimmed_at];
         Surfaces {
             throttle: self.throttle(&motion, estimate, inputs),
-            elevator: self.elevator(&motion, estimate, inputs),
+            elevator: self.load.step(&motion, estimate, inputs, trim, rolls),
             aileron,
             rudder: lateral.rudder,
         }
@@ -198,8 +180,7 @@ impl Recovery {
     /// forward.
     fn stop_the_spin(&mut self, estimate: &Estimate, dt_s: f64) -> Surfaces {
         self.spinning_s += dt_s;
-        self.correction = 0.0;
-        self.load.reset(UNLOADED);
+        self.load.begin(estimate);
         let elevator = if self.spinning_s < RUDDER_FIRST_S {
             0.0
         } else {
@@ -245,75 +226,6 @@ impl Recovery {
         let over = estimate.airspeed_mps / inputs.envelope.max_airspeed_mps.max(1.0) - 1.0;
         let most = MAX_ROLL_RATE_RADPS * limit(1.0 - over / 0.6, 0.33, 1.0);
         level * limit_abs(ROLL_GAIN_PER_S * error, most)
-    }
-
-    /// The load that turns the path to the horizon, as far as the lift raises it,
-    /// g.
-    fn wanted_load(&self, motion: &Motion, estimate: &Estimate, envelope: &Envelope) -> f64 {
-        let [forward, right, down] = motion.down;
-        let upright = down / sqrt(right * right + down * down).max(1e-6);
-        let speed = estimate.true_airspeed_mps.max(1.0);
-        let path_rate = -PATH_GAIN_PER_S * motion.path_rad;
-        let wanted = (cos(motion.path_rad) + speed / GRAVITY_MPS2 * path_rate)
-            / limit(upright, FULL_LIFT, 1.0);
-        let rolls =
-            motion.bank_rad.abs() > LEVEL_RAD || estimate.body_rates.roll_radps.abs() > ROLLS_RADPS;
-        let ratio = estimate.airspeed_mps / envelope.stall_airspeed_mps();
-        let strength =
-            OVER_OUTER_LOOPS * envelope.max_load_factor * if rolls { ROLLING } else { 1.0 };
-        let most = strength.min(OF_STALL_LOAD * ratio * ratio).max(UNLOADED);
-        let pull = limit(wanted, UNLOADED, most);
-        let share = limit(upright / FULL_LIFT, 0.0, 1.0).max(limit(
-            (forward - STEEP) / (1.0 - STEEP),
-            0.0,
-            1.0,
-        ));
-        UNLOADED + share * (pull - UNLOADED)
-    }
-
-    fn elevator(
-        &mut self,
-        motion: &Motion,
-        estimate: &Estimate,
-        inputs: &RecoveryInputs<'_>,
-    ) -> f64 {
-        let wanted = self.wanted_load(motion, estimate, inputs.envelope);
-        let load = self.load.step(wanted, inputs.dt_s);
-        let stall_mps = inputs.envelope.stall_airspeed_mps();
-        let speed = estimate.true_airspeed_mps.max(0.6 * stall_mps);
-        let [_, _, down] = motion.down;
-        // The pitch rate of a path that is curved by a load n: g/V (n - cos θ cos
-        // φ).
-        let turning = |n: f64| GRAVITY_MPS2 / speed * (n - down);
-        let by_load = LOAD_GAIN_RADPS * (load - estimate.load_factor);
-        let mut pitch_rate = turning(load) + by_load;
-        let mut at_limit = false;
-        if estimate.airspeed_mps < ALPHA_BELOW * stall_mps {
-            // The angle of attack changes by the pitch rate less that of the path.
-            let most = turning(estimate.load_factor)
-                + ALPHA_GAIN_PER_S * (MAX_ALPHA_RAD - motion.angle_of_attack_rad);
-            at_limit = pitch_rate > most;
-            pitch_rate = pitch_rate.min(most);
-        }
-        let pitch_rate = limit_abs(pitch_rate, MAX_PITCH_RATE_RADPS);
-        let moment = inputs.schedule.moment;
-        let error = pitch_rate - estimate.body_rates.pitch_radps;
-        let surface = inputs.altitude.elevator_for(
-            error,
-            load * moment - self.trimmed_at,
-            self.trims.elevator + self.correction,
-            inputs.schedule,
-        );
-        // While the aircraft rolls, its path turns by sideslip, too: so what is
-        // integrated is the load.
-        let drift = if at_limit { error } else { by_load };
-        if inputs.followed && (surface.abs() < 1.0 || surface * error < 0.0) {
-            let increment = inputs
-                .altitude
-                .elevator_increment(drift, inputs.schedule, inputs.dt_s);
-            self.correction = limit_abs(self.correction + increment, MAX_CORRECTION);
-        }
-        limit_abs(surface, 1.0)
     }
 
     /// The throttle by the airspeed to which the path leads: full a margin above
