@@ -330,6 +330,10 @@ class Estimate:
     def side_force_mps2(self) -> float:
         """Specific force to the right, m/s²: 0 in a coordinated turn."""
 
+    @property
+    def load_factor(self) -> float:
+        """Load factor, g: specific force up through the cabin's roof; 1 in level flight."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -23,6 +23,8 @@ HOLD = '[guidance]\nmode = "hold"\n'
 _TICK_STEPS = 3
 _SETTLING_S = 2.0
 _GRAVITY_MPS2 = 9.80665
+_SCRIPTS_LOAD_S = 0.3
+"""For this long after the controls were given back the load is that which the script left."""
 
 Script = Callable[[float, State, Controls], Controls | None]
 """From the time since it began, the state and the autopilot's outputs to the controls; None gives
@@ -68,7 +70,6 @@ class Recovery:
     level_after_s: float | None = None
     """When bank, pitch and rates were small for the rest of the flight."""
     end: State | None = None
-    rows: list[tuple[float, ...]] = field(default_factory=list)
 
     @property
     def lost_ft(self) -> float:
@@ -82,8 +83,9 @@ class Recovery:
         self.least_ft = min(self.least_ft, state.altitude_m / FT_TO_M)
         self.greatest_kt = max(self.greatest_kt, airspeed_kt)
         self.least_kt = min(self.least_kt, airspeed_kt)
-        self.greatest_load = max(self.greatest_load, load)
-        self.least_load = min(self.least_load, load)
+        if time_s > _SCRIPTS_LOAD_S:
+            self.greatest_load = max(self.greatest_load, load)
+            self.least_load = min(self.least_load, load)
         self.greatest_alpha_deg = max(
             self.greatest_alpha_deg, math.degrees(state.angle_of_attack_rad)
         )
@@ -110,20 +112,17 @@ def fly(script: Script, conditions: Conditions | None = None, seconds: float = 2
         flight.tick(None)
     before_ft = flight.plant.state().altitude_m / FT_TO_M
     began_s = flight.plant.time_s
-    seized: list[tuple[float, ...]] = []
     while True:
         taken = script(flight.plant.time_s - began_s, flight.plant.state(), flight.wanted)
         if taken is None:
             break
         flight.tick(taken)
-        seized.append(_row(flight.plant.time_s - began_s - 100.0, flight.plant.state(), flight.flown))
-    recovery = Recovery(flight.plant.state(), flight.events, before_ft=before_ft, rows=seized)
+    recovery = Recovery(flight.plant.state(), flight.events, before_ft=before_ft)
     given_back_s = flight.plant.time_s
     while flight.plant.time_s - given_back_s < seconds:
         flight.tick(None)
         state = flight.plant.state()
         recovery.see(flight.plant.time_s - given_back_s, state)
-        recovery.rows.append(_row(flight.plant.time_s - given_back_s, state, flight.flown))
         if state.height_m < 0.0:
             break
     recovery.state = flight.machine.state
@@ -183,26 +182,6 @@ def _between(stand: Controls, goal: Controls, share: float) -> Controls:
     )
 
 
-def _row(time_s: float, state: State, flown: Controls) -> tuple[float, ...]:
-    return (
-        time_s,
-        math.degrees(state.roll_rad),
-        math.degrees(state.pitch_rad),
-        math.degrees(state.roll_rate_radps),
-        math.degrees(state.pitch_rate_radps),
-        math.degrees(state.yaw_rate_radps),
-        state.airspeed_mps / KT_TO_MPS,
-        -state.specific_force_z_mps2 / _GRAVITY_MPS2,
-        math.degrees(state.angle_of_attack_rad),
-        state.altitude_m / FT_TO_M,
-        -state.down_mps,
-        flown.elevator,
-        flown.aileron,
-        flown.rudder,
-        flown.throttle,
-    )
-
-
 def full_aileron(time_s: float, _state: State, wanted: Controls) -> Controls | None:
     """Full left aileron for 3 s, the rest as the autopilot wants it: a servo that runs away."""
     return replace(wanted, aileron=-1.0) if time_s < 3.0 else None
@@ -228,9 +207,9 @@ def to_attitude(
         airspeed = state.airspeed_mps / KT_TO_MPS
         roll_off = (roll_deg - roll + 180.0) % 360.0 - 180.0
         pitch_off = 0.0 if pitch_deg is None else pitch_deg - pitch
-        passed = not airspeed_kt or bool(was) and (was[-1] - airspeed_kt) * (
-            airspeed - airspeed_kt
-        ) <= 0.0
+        passed = not airspeed_kt or (
+            bool(was) and (was[-1] - airspeed_kt) * (airspeed - airspeed_kt) <= 0.0
+        )
         was.append(airspeed)
         if abs(roll_off) < 8.0 and abs(pitch_off) < 8.0 and passed:
             return None
@@ -248,22 +227,24 @@ def to_attitude(
     return script
 
 
-def spin(seconds: float, side: float = 1.0) -> Script:
+def stall_with_full_rudder(seconds: float) -> Script:
     """Return a script that stalls with idle power, then holds full rudder and full up elevator."""
+    stalled_at: list[float] = []
 
     def script(time_s: float, state: State, _wanted: Controls) -> Controls | None:
-        if time_s > 40.0:
-            return None
-        held = script_state
-        if held["since"] is None:
+        if not stalled_at:
             if state.angle_of_attack_rad > math.radians(14.0):
-                held["since"] = time_s
-            ramp = min(1.0, 0.1 * time_s)
-            roll_hold = -0.8 * state.roll_rad - 0.4 * state.roll_rate_radps
-            return Controls(elevator=ramp, aileron=roll_hold, throttle=0.0)
-        if time_s - held["since"] < seconds:
-            return Controls(elevator=1.0, aileron=0.0, rudder=side, throttle=0.0)
+                stalled_at.append(time_s)
+            assert time_s < 40.0, "it does not stall"
+            level = -0.8 * state.roll_rad - 0.4 * state.roll_rate_radps
+            return Controls(elevator=min(1.0, 0.1 * time_s), aileron=level)
+        if time_s - stalled_at[0] < seconds:
+            return Controls(elevator=1.0, rudder=1.0)
         return None
 
-    script_state: dict[str, float | None] = {"since": None}
     return script
+
+
+def wake_vortex(time_s: float, _state: State, wanted: Controls) -> Controls | None:
+    """Roll by full aileron for a second, at 60 degrees a second and more."""
+    return replace(wanted, aileron=1.0) if time_s < 1.0 else None

@@ -126,8 +126,9 @@ const AHEAD_BEYOND_RAD: f64 = 0.349;
 /// The angle of attack of a wing that is surely stalled, rad (20°): 4° beyond
 /// that of light aircraft, as much as a gust of 2.5 m/s at the stalling speed.
 const STALLED_RAD: f64 = 0.349;
-/// At no more than this multiple of the stalling airspeed.
-const STALLED_BELOW: f64 = 1.2;
+/// ... at no more than this multiple of the stalling airspeed: faster, such a
+/// difference of attitude and path is a downdraught's.
+const STALLED_BELOW: f64 = 1.0;
 const STALLED_FOR_S: f64 = 0.6;
 /// The yaw rate of a spin and that at which its rotation has stopped, rad/s (40
 /// and 20 °/s). A Cessna 172 spins at 120 to 180 °/s (Bowman 1989 gives 2.5 to
