@@ -171,7 +171,7 @@ class _Running:
         # Slightly early: sums of ticks and of frames are not exact.
         if time_s < self._next_s - 1e-6:
             return dict.fromkeys(values)
-        self._next_s = max(self._next_s + self.fault.amount, time_s)
+        self._next_s = max(self._next_s, time_s) + self.fault.amount
         return values
 
     def _nan(self, _time_s: float, values: _Values) -> _Values:

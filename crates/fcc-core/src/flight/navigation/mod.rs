@@ -24,7 +24,8 @@ pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub(crate) use plausibility::{
-    GateLimits, airspeed_can_follow, airspeed_is_suspect, plausibility_gate,
+    ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
+    airspeed_is_suspect, plausibility_gate,
 };
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
