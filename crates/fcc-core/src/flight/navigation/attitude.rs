@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use libm::{atan2, cos, sin, sqrt};
 
+use super::resolution::Resolution;
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{smoothing_factor, wrap_pi};
 use crate::flight::orientation::{
@@ -62,7 +63,11 @@ pub struct AttitudeChannel {
     heading_rad: f64,
     attitude_news: SampleTracker,
     heading_news: SampleTracker,
+    heading_resolution: Resolution,
 }
+
+/// The coarsest heading that is flown: 2°, rad.
+const COARSEST_HEADING_RAD: f64 = 0.035;
 
 /// Near the vertical the heading is undefined: below this cosine of the pitch
 /// (about 80°).
@@ -78,7 +83,18 @@ impl AttitudeChannel {
             heading_rad: 0.0,
             attitude_news: SampleTracker::new(),
             heading_news: SampleTracker::new(),
+            heading_resolution: Resolution::new(COARSEST_HEADING_RAD),
         }
+    }
+
+    /// What is known of the resolution of the heading's sensor.
+    pub(super) const fn heading_resolution(&self) -> &Resolution {
+        &self.heading_resolution
+    }
+
+    /// The sensor is the same as that of `other`.
+    pub(super) const fn keep_resolution(&mut self, other: &Self) {
+        self.heading_resolution = other.heading_resolution;
     }
 
     pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
@@ -118,15 +134,24 @@ impl AttitudeChannel {
                 self.correct_gravity(measured, share);
             }
         }
-        let share = match self.heading_news.of(&measurements.heading_rad, dt_s) {
-            NewSample::None => 0.0,
-            NewSample::First => 1.0,
-            NewSample::Next(since_s) => smoothing_factor(since_s, self.heading_tau_s),
-        };
+        let heading = measurements.heading_rad;
+        let sample = self.heading_news.of(&heading, dt_s);
+        if !matches!(sample, NewSample::None) {
+            self.heading_resolution
+                .take(&heading, |is, was| wrap_pi(is - was));
+        }
         let mut angles = euler_from_quaternion(self.rotation);
-        if share > 0.0 && cos(angles.pitch_rad) >= MIN_COS_PITCH {
-            let error = wrap_pi(measurements.heading_rad.value - angles.heading_rad);
-            angles.heading_rad += share * error;
+        let error = wrap_pi(heading.value - angles.heading_rad);
+        let correction = match sample {
+            NewSample::None => 0.0,
+            NewSample::First => error,
+            NewSample::Next(since_s) => {
+                smoothing_factor(since_s, self.heading_tau_s)
+                    * self.heading_resolution.beyond(error)
+            }
+        };
+        if correction != 0.0 && cos(angles.pitch_rad) >= MIN_COS_PITCH {
+            angles.heading_rad += correction;
             self.rotation = quaternion_from_euler(angles);
         }
         self.heading_rad += wrap_pi(angles.heading_rad - self.heading_rad);
