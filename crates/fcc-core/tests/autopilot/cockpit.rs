@@ -114,7 +114,7 @@ impl Cockpit {
     }
 
     /// A tick in which nothing arrives.
-    pub(crate) fn hear_nothing(&mut self) {
+    pub(crate) fn receive_nothing(&mut self) {
         self.next_tick();
         self.autopilot.estimate(&self.tick, &self.measurements);
     }

@@ -327,8 +327,7 @@ fn to_number(value: Value) -> f64 {
     match value {
         Value::Bool(value) => f64::from(u8::from(value)),
         Value::Code(value) => value.into(),
-        Value::Flags(value) => value.into(),
-        Value::Count(value) => value as f64,
+        Value::Flags(value) | Value::Count(value) => value as f64,
         Value::Signed(value) | Value::Instant(value) => value as f64,
         Value::Number(value) => value,
     }
@@ -338,7 +337,7 @@ fn from_number(kind: Kind, number: f64) -> Value {
     match kind {
         Kind::Bool => Value::Bool(number != 0.0),
         Kind::Code(_) => Value::Code(number as u8),
-        Kind::Flags => Value::Flags(number as u32),
+        Kind::Flags => Value::Flags(number as u64),
         Kind::Count(_) => Value::Count(number as u64),
         Kind::Signed(_) => Value::Signed(number as i64),
         Kind::Instant => Value::Instant(number as i64),
