@@ -221,6 +221,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(measurements)
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {

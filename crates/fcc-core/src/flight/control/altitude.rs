@@ -228,6 +228,12 @@ impl AltitudeLoop {
         self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
     }
 
+    /// Whether energy is short for both height and airspeed: the airspeed is
+    /// held, and height is given up.
+    pub const fn gives_up_height(&self) -> bool {
+        self.speed.is_short()
+    }
+
     /// The elevator trim that the loop has found.
     pub const fn trim(&self) -> f64 {
         self.pitch_rate.integral()
@@ -235,8 +241,7 @@ impl AltitudeLoop {
 
     /// Limits the pitch to that at which the airspeed stays within its limits.
     fn limit_pitch(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) {
-        let airspeeds_mps = envelope.floor_mps(estimate)..=envelope.max_airspeed_mps;
-        let limits = self.speed.step(estimate, airspeeds_mps, dt_s);
+        let limits = self.speed.step(estimate, envelope, dt_s);
         let (least, most) = (envelope.min_pitch_rad, envelope.max_pitch_rad);
         self.pitch.set_output_limits(
             limit(limits.min_rad, least, most),
@@ -253,6 +258,7 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
+        self.speed.commanded(pitch_rad, dt_s);
         let config = &self.config;
         let speed = estimate.true_airspeed_mps.max(1.0);
         let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);

@@ -183,7 +183,7 @@ mod tests {
         seconds: f64,
     ) -> Lift {
         let mut lift = Lift::default();
-        for tick in 1..=(seconds * 40.0) as u64 {
+        for tick in 1..=(seconds * 40.0) as i64 {
             let now = Time::from_nanos(tick * 25_000_000);
             let measured = Measurements {
                 specific_force: Reading::new(force, now),

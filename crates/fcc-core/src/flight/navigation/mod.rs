@@ -25,7 +25,10 @@ pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
 pub(crate) use frozen::{Frozen, FrozenDetector};
 pub use lift::{Lift, LiftChannel};
-pub(crate) use plausibility::{airspeed_can_follow, airspeed_is_suspect, plausibility_gate};
+pub(crate) use plausibility::{
+    ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
+    airspeed_is_suspect, plausibility_gate,
+};
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
