@@ -12,7 +12,7 @@ use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
-    ("loop.rate_hz", 1.0, 2_000.0),
+    ("loop.rate_hz", 20.0, 2_000.0),
     ("loop.early_wake.min_us", 0.0, 10_000.0),
     ("loop.early_wake.max_us", 1.0, 10_000.0),
     ("loop.early_wake.guard_us", 0.0, 10_000.0),

@@ -168,8 +168,8 @@ mod tests {
         assert!((Envelope::default().bank_limit_rad().to_degrees() - 30.0).abs() < 1e-9);
     }
 
-    /// FAA-H-8083-3C, figure 5-12: the stalling speed at 60° of bank is 1.41
-    /// times that of level flight.
+    /// FAA-H-8083-3C, chapter 5: the stalling speed at 45° of bank is 1.19 times
+    /// that of level flight.
     #[test]
     fn the_floor_rises_with_the_root_of_the_load() {
         let envelope = Envelope {
@@ -182,7 +182,7 @@ mod tests {
         };
         let level = envelope.floor_mps(&banked(0.0));
         assert!((level / envelope.stall_airspeed_mps - 1.15).abs() < 1e-9);
-        assert!((envelope.floor_mps(&banked(60.0)) / level - 1.41).abs() < 0.01);
+        assert!((envelope.floor_mps(&banked(45.0)) / level - 1.19).abs() < 0.01);
     }
 
     #[test]
