@@ -35,7 +35,7 @@ impl PitchLimits {
 /// Energy that an aircraft does not have it cannot spend on height and speed:
 /// the path angle at which it keeps its speed is its excess thrust over weight,
 /// (T - D)/W = sin γ + V̇/g (Lambregts 1983). Speed goes first here: pitch is
-/// limited to what leaves the acceleration k·(V_limit - V). The angle itself
+/// limited to what leaves the acceleration k·(V₀ - V), V₀ being the limit. The angle itself
 /// need not be known: the present pitch, delayed as the flight path follows it,
 /// plus the present acceleration over g, is the pitch of constant speed, in a
 /// vertical wind, too. So the limit is where the pitch is when it takes over, no
@@ -74,7 +74,8 @@ pub struct SpeedLimits {
 
 /// How fast the airspeed approaches its limit, 1/s.
 const GAIN_PER_S: f64 = 0.3;
-/// The flight path follows the pitch after V/(g·n_α), s: 0.5 for a Cessna 172 at
+/// The flight path follows the pitch after V/(g·n'), n' being load per
+/// angle of attack, s: 0.5 for a Cessna 172 at
 /// 65 kt (Etkin and Reid 1996, section 4.9).
 const PATH_LAG_S: f64 = 0.5;
 /// Gusts and noise of the accelerometers are smoothed by this, s.

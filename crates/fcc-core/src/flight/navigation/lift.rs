@@ -52,7 +52,7 @@ pub(super) struct Path<'a> {
 /// accelerometers.
 ///
 /// The angle of attack is measured where a source has it. Otherwise it follows
-/// from the lift: α = α₀ + a·n/V² below the stall (lift n·W = ½ρV²·S·c_L(α);
+/// from the lift: α = α₀ + a·n/V² below the stall (lift n·W = ½ρV²·S·c(α);
 /// Stevens, Lewis and Johnson 2016, section 2.3). That line leads from the angle
 /// without lift to the stalling angle at the stalling speed; it is moved in
 /// flight, slowly and within 3°, to pitch less path angle
