@@ -176,8 +176,8 @@ mod tests {
             airspeed_mps += 0.025 * acceleration_mps2;
             path_rad += 0.025 / 0.5 * (pitch_rad - 0.05 - path_rad);
             let estimate = Estimate {
-                airspeed_mps,
                 pitch_rad,
+                airspeed_mps,
                 acceleration_mps2,
                 ..Estimate::default()
             };
