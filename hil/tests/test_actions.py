@@ -233,7 +233,7 @@ def test_time_runs_twice_as_fast(bench: Bench) -> None:
     assert bench.frames(2)[2] == 1.0, "0 is a pause"
 
 
-def test_fewer_frames_than_19_are_told(bench: Bench) -> None:
+def test_fewer_frames_than_19_are_reported(bench: Bench) -> None:
     bench.act("fps:9.5")
     bench.frames(20)
     assert bench.read("sim/time/sim_speed_actual") == 1.0

@@ -142,7 +142,7 @@ def test_a_freeze_is_flown_through(flights: dict[str, Flown]) -> None:
     assert max(lengths_s(flown, LINK_LOST), default=0.0) < 1.0
 
 
-def test_a_cut_is_told_from_a_freeze(flights: dict[str, Flown]) -> None:
+def test_a_cut_is_distinguished_from_a_freeze(flights: dict[str, Flown]) -> None:
     flown = flights["cuts"]
     assert_engaged_throughout(flown)
     assert_lengths(flown, LINK_LOST)

@@ -26,7 +26,7 @@ def bound() -> socket.socket:
     return opened
 
 
-def test_a_port_without_a_program_is_told_from_one_that_does_not_answer(
+def test_a_port_without_a_program_is_distinguished_from_one_that_does_not_answer(
     fccd: Path, tmp_path: Path
 ) -> None:
     with bound() as nobody:

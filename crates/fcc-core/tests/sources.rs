@@ -107,7 +107,7 @@ fn each_reading_is_chosen_separately() {
 
 #[test]
 fn an_implausible_reading_is_taken_only_if_no_fresh_one_is_plausible() {
-    let chosen = |ages: [i64; 2], plausible: [u32; 2]| {
+    let chosen = |ages: [i64; 2], plausible: [u64; 2]| {
         let mut sensors = SENSORS;
         for (sensor, bits) in sensors.iter_mut().zip(plausible) {
             sensor.plausible = Flags::from_bits(bits);
@@ -127,7 +127,7 @@ fn an_implausible_reading_is_taken_only_if_no_fresh_one_is_plausible() {
     assert_eq!(chosen([0, 0], [0b111, 0b000]), [0, 0, 0]);
 }
 
-fn watched(sources: &mut Sources, from: [Option<u8>; 3]) -> Vec<(u32, u8, u8)> {
+fn watched(sources: &mut Sources, from: [Option<u8>; 3]) -> Vec<(u64, u8, u8)> {
     let reading = |source: Option<u8>| {
         source.map_or_else(Reading::default, |source| Reading { source, ..taken(1) })
     };

@@ -20,7 +20,7 @@ fn uncommented(text: &str) -> String {
 
 /// What is only said where there is a choice to make. Of the budgets, the
 /// tick's and how many are failsafe are what they would be at 40 Hz.
-fn say_the_choices(config: &mut Config) {
+fn write_the_choices(config: &mut Config) {
     config.realtime.cpu = Some(CpuChoice::Number(3));
     config.realtime.cpu_dma_latency_us = Some(0);
     config.restart.state_file = Some("recordings/fccd.flight".into());
@@ -41,12 +41,12 @@ fn as_value(config: &Config) -> toml::Value {
 }
 
 #[test]
-fn the_built_in_example_says_every_default() {
+fn the_built_in_example_contains_every_default() {
     let mut expected = Config {
         built_in: Some(BuiltInSection::default()),
         ..Config::default()
     };
-    say_the_choices(&mut expected);
+    write_the_choices(&mut expected);
     let full = Config::parse(&uncommented(BUILT_IN), "built-in.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
     let keys = uncommented(BUILT_IN)
@@ -58,12 +58,12 @@ fn the_built_in_example_says_every_default() {
 }
 
 #[test]
-fn the_x_plane_example_says_every_default() {
+fn the_x_plane_example_contains_every_default() {
     let mut expected = Config {
         x_plane: Some(XPlaneSection::default()),
         ..Config::default()
     };
-    say_the_choices(&mut expected);
+    write_the_choices(&mut expected);
     let full = Config::parse(&uncommented(X_PLANE), "x-plane.toml").unwrap();
     assert_eq!(as_value(&full), as_value(&expected));
 }

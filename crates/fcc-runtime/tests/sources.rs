@@ -36,12 +36,12 @@ fcc_core::readings!(Measured {
 struct Scripted {
     number: f64,
     measures_speed: bool,
-    speaks: Arc<AtomicBool>,
+    sends: Arc<AtomicBool>,
 }
 
 impl Sensor<Measured> for Scripted {
     fn sample(&mut self, tick: &Tick, into: &mut Measured) -> Result<(), SensorFault> {
-        if !self.speaks.load(Ordering::Relaxed) {
+        if !self.sends.load(Ordering::Relaxed) {
             return Err(SensorFault::Silent);
         }
         into.depth_m = Reading::new(self.number, tick.woke);
@@ -101,22 +101,22 @@ impl Controller for Boat {
 struct Bench {
     machine: Machine<Boat>,
     link: Link<Boat>,
-    speaks: Vec<Arc<AtomicBool>>,
+    sends: Vec<Arc<AtomicBool>>,
 }
 
 impl Bench {
     /// Sensors 0, 1, ..., of which each says whether it measures speed.
     fn new(measure_speed: &[bool]) -> Self {
-        let speaks: Vec<_> = measure_speed
+        let sends: Vec<_> = measure_speed
             .iter()
             .map(|_| Arc::new(AtomicBool::new(true)))
             .collect();
-        let sensors = (0_u8..).zip(measure_speed).zip(&speaks);
-        let sensors = sensors.map(|((number, measures_speed), speaks)| {
+        let sensors = (0_u8..).zip(measure_speed).zip(&sends);
+        let sensors = sensors.map(|((number, measures_speed), sends)| {
             let sensor: Box<dyn Sensor<Measured>> = Box::new(Scripted {
                 number: number.into(),
                 measures_speed: *measures_speed,
-                speaks: Arc::clone(speaks),
+                sends: Arc::clone(sends),
             });
             sensor
         });
@@ -131,12 +131,12 @@ impl Bench {
         Self {
             machine,
             link,
-            speaks,
+            sends,
         }
     }
 
-    fn let_speak(&self, sensor: usize, speaks: bool) {
-        self.speaks[sensor].store(speaks, Ordering::Relaxed);
+    fn set_sending(&self, sensor: usize, sends: bool) {
+        self.sends[sensor].store(sends, Ordering::Relaxed);
     }
 
     /// So many ticks; how old the depth was in each, in ticks, and from which
@@ -164,7 +164,7 @@ impl Bench {
     }
 }
 
-fn changed(readings: u32, from: u8, to: u8) -> EventKind<u32> {
+fn changed(readings: u64, from: u8, to: u8) -> EventKind<u32> {
     EventKind::SourceChanged(SourceChange {
         readings: Flags::from_bits(readings),
         from,
@@ -179,8 +179,8 @@ fn fault(index: u16) -> EventKind<u32> {
     }
 }
 
-const DEPTH: u32 = 0b01;
-const SPEED: u32 = 0b10;
+const DEPTH: u64 = 0b01;
+const SPEED: u64 = 0b10;
 
 /// 100 ms by default: four ticks of 25 ms are borne, in the fifth the next
 /// sensor is taken.
@@ -188,10 +188,10 @@ const SPEED: u32 = 0b10;
 fn a_sensor_that_falls_silent_is_replaced_and_taken_back() {
     let mut bench = Bench::new(&[true, true]);
     assert_eq!(bench.depths(3), [(0, 0); 3]);
-    bench.let_speak(0, false);
+    bench.set_sending(0, false);
     let fallen = [(1, 0), (2, 0), (3, 0), (4, 0), (0, 1), (0, 1)];
     assert_eq!(bench.depths(6), fallen);
-    bench.let_speak(0, true);
+    bench.set_sending(0, true);
     assert_eq!(bench.depths(1), [(0, 0)]);
     assert_eq!(
         bench.events(),
@@ -208,7 +208,7 @@ fn a_sensor_that_falls_silent_is_replaced_and_taken_back() {
 fn each_reading_goes_to_the_next_sensor_that_has_it() {
     let mut bench = Bench::new(&[true, false, true]);
     bench.depths(1);
-    bench.let_speak(0, false);
+    bench.set_sending(0, false);
     assert_eq!(bench.depths(5).last(), Some(&(0, 1)));
     assert_eq!(bench.machine.record().measurements.speed_mps.source, 2);
     let events = bench.events();
@@ -226,9 +226,9 @@ fn each_reading_goes_to_the_next_sensor_that_has_it() {
 fn where_all_are_silent_the_last_reading_grows_old() {
     let mut bench = Bench::new(&[true, true]);
     bench.depths(1);
-    bench.let_speak(1, false);
+    bench.set_sending(1, false);
     bench.depths(1);
-    bench.let_speak(0, false);
+    bench.set_sending(0, false);
     assert_eq!(bench.depths(8).last(), Some(&(8, 0)));
     assert_eq!(bench.events(), [fault(1), fault(0)]);
 }
@@ -237,7 +237,7 @@ fn where_all_are_silent_the_last_reading_grows_old() {
 fn one_sensor_measures_what_it_would_without_any_choice() {
     let mut bench = Bench::new(&[true]);
     bench.depths(2);
-    bench.let_speak(0, false);
+    bench.set_sending(0, false);
     assert_eq!(bench.depths(8).last(), Some(&(8, 0)));
     assert_eq!(bench.events(), [fault(0)]);
     let measured = bench.machine.record().measurements;
@@ -250,7 +250,7 @@ fn choosing_among_sixteen_sensors_that_come_and_go_allocates_nothing() {
     let mut bench = Bench::new(&[true; 16]);
     let mut changes = 0;
     for tick in 0..2_000 {
-        bench.let_speak(tick / 7 % 16, tick / 112 % 2 == 1);
+        bench.set_sending(tick / 7 % 16, tick / 112 % 2 == 1);
         let ((), calls) = allocator_calls(|| {
             bench.machine.step();
         });

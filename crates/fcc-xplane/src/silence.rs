@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_port_is_told_from_one_where_a_program_does_not_answer() {
+    fn a_closed_port_is_distinguished_from_one_where_a_program_does_not_answer() {
         for host in ["127.0.0.1", "[::1]"] {
             let other = UdpSocket::bind(format!("{host}:0")).unwrap();
             let simulator = other.local_addr().unwrap();
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_beacon_tells_the_port_on_which_it_listens() {
+    fn a_beacon_contains_the_port_on_which_it_listens() {
         let group = UdpSocket::bind("127.0.0.1:0").unwrap();
         let config = XPlaneConfig::default();
         let (sensor, _actuator) = XPlane::open(&config).unwrap();

@@ -136,7 +136,7 @@ mod tests {
     /// Level flight where the local axes lean by 1°: an accelerometer measures
     /// gravity along the aircraft's z, and the sine of 1° of it nowhere.
     #[test]
-    fn leaning_local_axes_do_not_move_gravity() {
+    fn tilted_local_axes_do_not_move_gravity() {
         let lean = 1.0_f64.to_radians();
         let level = Attitude::default();
         let force = super::specific_force([0.0; 3], [0.5, lean, -lean], level);

@@ -1,8 +1,8 @@
-//! A set of up to 32 conditions.
+//! A set of up to 64 conditions.
 
 use core::ops::{BitOr, BitOrAssign};
 
-/// A set of up to 32 conditions: engage inhibits or faults. A controller names
+/// A set of up to 64 conditions: engage inhibits or faults. A controller names
 /// its bits ([`Controller::flag_name`](super::Controller::flag_name)).
 ///
 /// ```
@@ -15,27 +15,27 @@ use core::ops::{BitOr, BitOrAssign};
 /// ```
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[repr(transparent)]
-pub struct Flags(u32);
+pub struct Flags(u64);
 
 impl Flags {
     /// No condition holds.
     pub const NONE: Self = Self(0);
 
     /// Every condition holds.
-    pub const ALL: Self = Self(u32::MAX);
+    pub const ALL: Self = Self(u64::MAX);
 
-    /// The set of one condition, by its bit 0..=31; a higher bit wraps.
+    /// The set of one condition, by its bit 0..=63; a higher bit wraps.
     pub const fn bit(bit: u32) -> Self {
-        Self(1_u32.wrapping_shl(bit))
+        Self(1_u64.wrapping_shl(bit))
     }
 
     /// From the bits as stored.
-    pub const fn from_bits(bits: u32) -> Self {
+    pub const fn from_bits(bits: u64) -> Self {
         Self(bits)
     }
 
     /// The bits, for storing.
-    pub const fn bits(self) -> u32 {
+    pub const fn bits(self) -> u64 {
         self.0
     }
 
@@ -62,7 +62,7 @@ impl Flags {
 
     /// The bits that are set, lowest first.
     pub fn iter(self) -> impl Iterator<Item = u32> {
-        (0..32).filter(move |bit| self.contains(Self::bit(*bit)))
+        (0..64).filter(move |bit| self.contains(Self::bit(*bit)))
     }
 }
 

@@ -76,10 +76,6 @@ impl StateCode {
         code.is_state().then_some(code)
     }
 
-    #[expect(
-        clippy::trivially_copy_pass_by_ref,
-        reason = "the declaration hands its check a reference"
-    )]
     fn is_state(&self) -> bool {
         Self::from(self.state()) == *self
     }

@@ -59,17 +59,17 @@ fn a_pause_before_another_simulators_clock_is_no_time() {
 fn periods_that_this_loop_missed_are_not_the_link_s() {
     for (later_ticks, expected) in [(0, None), (8, Some(LINK_LOST))] {
         let mut cockpit = manoeuvring();
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         cockpit.tick.missed = 15;
         cockpit.period = Duration::from_millis(400);
         cockpit.tick.woke = cockpit.tick.woke + Duration::from_micros(24_900);
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         cockpit.tick.missed = 0;
         cockpit.period = Duration::from_micros(100);
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         cockpit.period = Duration::from_millis(25);
         for _ in 0..later_ticks {
-            cockpit.hear_nothing();
+            cockpit.receive_nothing();
         }
         cockpit.observe();
         assert_eq!(noticed(&cockpit).map(|(kind, _)| kind), expected);
@@ -90,8 +90,8 @@ fn a_slow_loop_is_no_lost_link() {
         assert_eq!(noticed(&cockpit), None);
     }
     assert_eq!(cockpit.engage_inhibits(), Flags::NONE);
-    cockpit.hear_nothing();
-    cockpit.hear_nothing();
+    cockpit.receive_nothing();
+    cockpit.receive_nothing();
     cockpit.observe();
     assert_eq!(noticed(&cockpit).map(|(kind, _)| kind), Some(LINK_LOST));
 }

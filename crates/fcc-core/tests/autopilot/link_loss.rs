@@ -19,7 +19,7 @@ fn after_a_long_cut_neither_a_dive_nor_a_climb_is_estimated() {
         };
         for _ in 0..seconds * 40 {
             sink(&mut cockpit);
-            cockpit.hear_nothing();
+            cockpit.receive_nothing();
             cockpit.act();
         }
         for tick in 0..200 {

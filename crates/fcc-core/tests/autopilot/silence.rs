@@ -3,24 +3,14 @@
 use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, flags};
+use fcc_core::flight::{Autopilot, AutopilotConfig, PlantState, flags};
 use fcc_core::framework::{Controller, Flags, Notice};
 
 use crate::cockpit::{Cockpit, DT_S, SENSORS};
 
 /// Engaged on a simulator, in a turn to the right and a climb.
 pub(crate) fn manoeuvring() -> Cockpit {
-    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
-    cockpit.feel.plant = Some(PlantState::Running);
-    for _ in 0..60 {
-        cockpit.observe();
-    }
-    cockpit
-        .autopilot
-        .engage(&cockpit.tick, &cockpit.measurements);
-    cockpit
-        .autopilot
-        .command(&AutopilotCommand::Heading(100.0_f64.to_radians()));
+    let mut cockpit = Cockpit::engaged_on_a_simulator(60);
     fly(&mut cockpit, 40);
     cockpit
 }
@@ -52,7 +42,7 @@ pub(crate) fn silence(cockpit: &mut Cockpit, ticks: u32, flies_on: bool) {
         } else {
             cockpit.stood_s += DT_S;
         }
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         cockpit.act();
         assert_eq!(cockpit.faults(), Flags::NONE);
     }
@@ -196,7 +186,7 @@ fn a_silent_simulator_is_a_fault_after_its_limit() {
         cockpit.observe();
     }
     silence(&mut cockpit, 80, false);
-    cockpit.hear_nothing();
+    cockpit.receive_nothing();
     let lost = SENSORS.into_iter().fold(Flags::NONE, |all, one| all | one);
     assert_eq!(cockpit.faults(), lost | flags::PLANT_SILENT);
     // It cannot be engaged long before.
@@ -211,7 +201,7 @@ fn silence_without_a_simulators_clock_is_a_loss_at_once() {
     let mut cockpit = Cockpit::engaged(GuidanceConfig::Hold);
     cockpit.step();
     for _ in 0..11 {
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         assert!(!cockpit.withholds());
     }
     assert!(cockpit.faults().contains(flags::ATTITUDE | flags::ALTITUDE));
@@ -223,7 +213,7 @@ fn a_silent_simulator_gets_the_trims_and_then_nothing() {
     let before = cockpit.step();
     // 250 ms as they were, 250 ms the trims.
     for tick in 1..=120 {
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         let out = cockpit.act();
         assert_eq!(cockpit.withholds(), tick > 20, "tick {tick}");
         assert_eq!(out.throttle, before.throttle);
@@ -248,7 +238,7 @@ fn a_pause_may_be_silent_for_any_time() {
         cockpit.act();
     }
     for _ in 0..4_000 {
-        cockpit.hear_nothing();
+        cockpit.receive_nothing();
         cockpit.act();
         assert_eq!(cockpit.faults(), Flags::NONE);
     }

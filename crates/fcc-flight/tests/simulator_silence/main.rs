@@ -38,7 +38,7 @@ fn notices(flight: &mut Flight) -> Vec<Notice> {
 }
 
 #[track_caller]
-fn assert_told(flight: &mut Flight, kind: u8, lasted_s: f64) {
+fn assert_reported(flight: &mut Flight, kind: u8, lasted_s: f64) {
     let noticed = notices(flight);
     let [notice] = noticed[..] else {
         panic!("{lasted_s:.3} s: {noticed:?}");
@@ -52,7 +52,7 @@ fn assert_told(flight: &mut Flight, kind: u8, lasted_s: f64) {
 const FRAMES: [(f64, u64); 2] = [(60.0, 0), (25.0, 5)];
 
 #[test]
-fn thirty_freezes_are_told_and_the_pattern_is_flown_as_without() {
+fn thirty_freezes_are_reported_and_the_pattern_is_flown_as_without() {
     let undisturbed = Flight::engaged(60.0, 0).flown(200.0);
     for (frame_hz, jitter) in FRAMES {
         let mut flight = Flight::engaged(frame_hz, jitter);
@@ -60,7 +60,7 @@ fn thirty_freezes_are_told_and_the_pattern_is_flown_as_without() {
             flight.fly(before_s);
             flight.during(Manner::Frozen, length_s);
             flight.fly(0.5);
-            assert_told(&mut flight, STOOD_STILL, length_s);
+            assert_reported(&mut flight, STOOD_STILL, length_s);
         }
         let frozen = flight.flown(200.0);
         let pairs = [
@@ -79,7 +79,7 @@ fn thirty_freezes_are_told_and_the_pattern_is_flown_as_without() {
 }
 
 #[test]
-fn thirty_cuts_are_told_from_freezes_and_the_bank_command_never_steps() {
+fn thirty_cuts_are_distinguished_from_freezes_and_the_bank_command_never_steps() {
     for (index, (frame_hz, jitter)) in FRAMES.into_iter().enumerate() {
         let hears = index % 2 == 0;
         let mut flight = Flight::engaged(frame_hz, jitter);
@@ -92,7 +92,7 @@ fn thirty_cuts_are_told_from_freezes_and_the_bank_command_never_steps() {
             assert!(!hears || bank_deg.abs() < 60.0, "{length_s} s: {bank_deg}°");
             flight.restore();
             flight.fly(0.5);
-            assert_told(&mut flight, LINK_LOST, length_s);
+            assert_reported(&mut flight, LINK_LOST, length_s);
         }
         let step_deg = flight.largest_bank_step_deg();
         assert!(step_deg <= 5.0, "{step_deg}°");

@@ -290,8 +290,9 @@ fn to_python(py: Python<'_>, column: &Column, value: Value) -> PyResult<Py<PyAny
             .into_any()
             .unbind(),
         (Value::Code(number), _) => number.into_pyobject(py)?.into_any().unbind(),
-        (Value::Flags(value), _) => value.into_pyobject(py)?.into_any().unbind(),
-        (Value::Count(value), _) => value.into_pyobject(py)?.into_any().unbind(),
+        (Value::Flags(value) | Value::Count(value), _) => {
+            value.into_pyobject(py)?.into_any().unbind()
+        }
         (Value::Signed(value) | Value::Instant(value), _) => {
             value.into_pyobject(py)?.into_any().unbind()
         }
@@ -327,8 +328,7 @@ fn to_number(value: Value) -> f64 {
     match value {
         Value::Bool(value) => f64::from(u8::from(value)),
         Value::Code(value) => value.into(),
-        Value::Flags(value) => value.into(),
-        Value::Count(value) => value as f64,
+        Value::Flags(value) | Value::Count(value) => value as f64,
         Value::Signed(value) | Value::Instant(value) => value as f64,
         Value::Number(value) => value,
     }
@@ -338,7 +338,7 @@ fn from_number(kind: Kind, number: f64) -> Value {
     match kind {
         Kind::Bool => Value::Bool(number != 0.0),
         Kind::Code(_) => Value::Code(number as u8),
-        Kind::Flags => Value::Flags(number as u32),
+        Kind::Flags => Value::Flags(number as u64),
         Kind::Count(_) => Value::Count(number as u64),
         Kind::Signed(_) => Value::Signed(number as i64),
         Kind::Instant => Value::Instant(number as i64),

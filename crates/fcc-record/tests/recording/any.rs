@@ -72,7 +72,7 @@ fn any_state() -> impl Strategy<Value = State> {
         Just(State::Stopped),
         Just(State::Failsafe(Cause::InvalidOutput)),
         Just(State::Failsafe(Cause::Overrun)),
-        any::<u32>().prop_map(|bits| State::Failsafe(Cause::Faults(Flags::from_bits(bits)))),
+        any::<u64>().prop_map(|bits| State::Failsafe(Cause::Faults(Flags::from_bits(bits)))),
     ]
 }
 

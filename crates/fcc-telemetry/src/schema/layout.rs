@@ -74,7 +74,7 @@ pub(crate) fn end_of(value: f64) -> String {
 pub(super) fn type_of(kind: Kind) -> String {
     match kind {
         Kind::Bool | Kind::Code(_) => "u8".to_owned(),
-        Kind::Flags => "u32".to_owned(),
+        Kind::Flags => "u64".to_owned(),
         Kind::Count(bytes) => format!("u{}", 8 * bytes),
         Kind::Signed(bytes) => format!("i{}", 8 * bytes),
         Kind::Instant => "i64".to_owned(),

@@ -1,3 +1,4 @@
+use super::late::LATE;
 use super::*;
 
 const SILENT_AFTER: Duration = Duration::from_millis(500);

@@ -73,6 +73,26 @@ pub const REVERSE_THRUST: Flags = Flags::bit(29);
 pub const PLANT_FAST: Flags = Flags::bit(30);
 /// The airspeed contradicts its source's other values.
 pub const SUSPECT_AIRSPEED: Flags = Flags::bit(31);
+/// The airspeed contradicts the other sensors and is not used.
+pub const DOUBTED_AIRSPEED: Flags = Flags::bit(32);
+/// The aircraft is recovered from an upset.
+pub const RECOVERING: Flags = Flags::bit(33);
+/// The loops or the airframe oscillate: gain is taken out.
+pub const OSCILLATION: Flags = Flags::bit(34);
+/// The outputs take effect too late for the configured gains.
+pub const LATE_EFFECT: Flags = Flags::bit(35);
+/// The outputs do not reach the aircraft.
+pub const NOT_FOLLOWED: Flags = Flags::bit(36);
+/// There is not enough energy for speed and height: height is given up.
+pub const UNDERSPEED: Flags = Flags::bit(37);
+/// A reading is from the future.
+pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
+/// The floor prevents a further descent.
+pub const AT_FLOOR: Flags = Flags::bit(39);
+/// The pilot moves the stick.
+pub const PILOT_TAKES_OVER: Flags = Flags::bit(40);
+/// A quantity is lost, and the flight goes on without it.
+pub const DEGRADED: Flags = Flags::bit(41);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -96,7 +116,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 32] = [
+pub(super) const NAMES: [&str; 42] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -129,6 +149,16 @@ pub(super) const NAMES: [&str; 32] = [
     "thrust is reversed",
     "simulator time runs more than twice as fast",
     "airspeed contradicts the simulator's true airspeed",
+    "airspeed contradicts the other sensors and is not used",
+    "recovering from an upset",
+    "oscillation: gain is reduced",
+    "the outputs take effect too late for the gains",
+    "the outputs do not reach the aircraft",
+    "too little energy for speed and height: height is given up",
+    "a reading is from the future",
+    "the floor prevents a further descent",
+    "the pilot moves the stick",
+    "flying on without a lost quantity",
 ];
 
 #[cfg(test)]

@@ -140,9 +140,8 @@ impl Kind {
     pub const fn bytes(&self) -> usize {
         match self {
             Self::Bool | Self::Code(_) => 1,
-            Self::Flags => 4,
             Self::Count(bytes) | Self::Signed(bytes) => *bytes as usize,
-            Self::Instant | Self::Number => 8,
+            Self::Flags | Self::Instant | Self::Number => 8,
         }
     }
 }

@@ -12,7 +12,7 @@ pub enum Value {
     /// Of [`Kind::Code`].
     Code(u8),
     /// Of [`Kind::Flags`].
-    Flags(u32),
+    Flags(u64),
     /// Of [`Kind::Count`].
     Count(u64),
     /// Of [`Kind::Signed`].
@@ -30,8 +30,7 @@ impl Value {
         match self {
             Self::Bool(value) => value as u64,
             Self::Code(value) => value as u64,
-            Self::Flags(value) => value as u64,
-            Self::Count(value) => value,
+            Self::Flags(value) | Self::Count(value) => value,
             Self::Signed(value) | Self::Instant(value) => value as u64,
             Self::Number(value) => value.to_bits(),
         }
@@ -47,7 +46,7 @@ impl Value {
                 _ => return None,
             },
             Kind::Code(_) => Self::Code(bits as u8),
-            Kind::Flags => Self::Flags(bits as u32),
+            Kind::Flags => Self::Flags(bits),
             Kind::Count(bytes) => Self::Count(bits & (u64::MAX >> (64 - 8 * bytes as u32))),
             Kind::Signed(bytes) => {
                 let above = 64 - 8 * bytes as u32;

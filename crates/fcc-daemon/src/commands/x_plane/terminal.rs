@@ -50,12 +50,12 @@ impl Terminal {
             suspended,
         };
         if has_person {
-            terminal.say(KEYS);
+            terminal.print(KEYS);
         }
         Ok(terminal)
     }
 
-    fn say(&self, text: &str) {
+    fn print(&self, text: &str) {
         self.live.suspend(|| output::message(text));
     }
 }
@@ -88,9 +88,9 @@ fn read_answers() -> Receiver<Answer> {
 
 impl Screen for Terminal {
     fn begin(&mut self, step: &Step) {
-        self.say(&format!("\n{:2}. {}", step.number, step.title));
+        self.print(&format!("\n{:2}. {}", step.number, step.title));
         if self.answers.is_some() {
-            self.say(&format!("    {}", step.action));
+            self.print(&format!("    {}", step.action));
         }
     }
 
@@ -104,12 +104,12 @@ impl Screen for Terminal {
         } else {
             " (It is seen when it is done.)"
         };
-        self.say(&format!("  → {text}{how}"));
+        self.print(&format!("  → {text}{how}"));
     }
 
     fn live(&mut self, text: &str) {
         if self.suspended.swap(false, Ordering::Relaxed) {
-            self.say("Ctrl-Z does not stop this; Ctrl-C ends it");
+            self.print("Ctrl-Z does not stop this; Ctrl-C ends it");
         }
         self.live.set_message(text.to_owned());
         self.live.tick();
@@ -129,7 +129,7 @@ impl Screen for Terminal {
             text.push_str("\n    ");
             text.push_str(advice);
         }
-        self.say(&text);
+        self.print(&text);
     }
 
     fn answer(&mut self) -> Option<Answer> {

@@ -135,7 +135,9 @@ impl Source for Decoder<'_> {
             (kind, None) => Value::from_bits(kind, 0),
             (Kind::Number, Some(Wire::Fixed64(bits))) => Some(Value::Number(f64::from_bits(bits))),
             (Kind::Instant, Some(Wire::Fixed64(bits))) => Some(Value::Instant(bits as i64)),
-            (Kind::Flags, Some(Wire::Fixed32(bits))) => Some(Value::Flags(bits)),
+            (Kind::Flags, Some(Wire::Fixed64(bits))) => Some(Value::Flags(bits)),
+            // As written while a set had up to 32 conditions.
+            (Kind::Flags, Some(Wire::Fixed32(bits))) => Some(Value::Flags(bits.into())),
             (Kind::Bool, Some(Wire::Varint(value))) => Some(Value::Bool(value != 0)),
             (Kind::Code(_), Some(Wire::Varint(value))) => {
                 Some(Value::Code(u8::try_from(value).unwrap_or(u8::MAX)))

@@ -70,7 +70,7 @@ fn field_of(field: &MessageField, package: &str) -> FieldDescriptorProto {
     let (kind, named) = match &field.of {
         FieldType::Leaf(Kind::Bool) => (Type::Bool, None),
         FieldType::Leaf(Kind::Code(of)) => (Type::Enum, Some(of.name)),
-        FieldType::Leaf(Kind::Flags) => (Type::Fixed32, None),
+        FieldType::Leaf(Kind::Flags) => (Type::Fixed64, None),
         FieldType::Leaf(Kind::Count(_)) => (Type::Uint64, None),
         FieldType::Leaf(Kind::Signed(_)) => (Type::Sint64, None),
         FieldType::Leaf(Kind::Instant) => (Type::Sfixed64, None),

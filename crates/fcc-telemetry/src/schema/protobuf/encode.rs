@@ -68,7 +68,7 @@ impl Sink for Encoder<'_> {
             value if value.bits() == 0 && said_by_absence => {}
             Value::Bool(value) => encoding::bool::encode(number, &value, into),
             Value::Code(value) => encoding::uint32::encode(number, &value.into(), into),
-            Value::Flags(value) => encoding::fixed32::encode(number, &value, into),
+            Value::Flags(value) => encoding::fixed64::encode(number, &value, into),
             Value::Count(value) => encoding::uint64::encode(number, &value, into),
             Value::Signed(value) => encoding::sint64::encode(number, &value, into),
         }

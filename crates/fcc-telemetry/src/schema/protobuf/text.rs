@@ -75,7 +75,7 @@ fn type_of(field: &MessageField) -> &str {
     match &field.of {
         FieldType::Leaf(Kind::Bool) => "bool",
         FieldType::Leaf(Kind::Code(of)) => of.name,
-        FieldType::Leaf(Kind::Flags) => "fixed32",
+        FieldType::Leaf(Kind::Flags) => "fixed64",
         FieldType::Leaf(Kind::Count(_)) => "uint64",
         FieldType::Leaf(Kind::Signed(_)) => "sint64",
         FieldType::Leaf(Kind::Instant) => "sfixed64",
