@@ -332,7 +332,19 @@ class Estimate:
 
     @property
     def load_factor(self) -> float:
-        """Load factor, g: specific force up through the cabin's roof; 1 in level flight."""
+        """Load factor, g, along the body's z axis, upwards."""
+
+    @property
+    def gust_load(self) -> float:
+        """Standard deviation of the load that gusts cause, g."""
+
+    @property
+    def estimated_angle_of_attack_rad(self) -> float:
+        """Angle of attack, rad."""
+
+    @property
+    def acceleration_mps2(self) -> float:
+        """Acceleration along the flight path, without gusts, m/s²."""
 
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...

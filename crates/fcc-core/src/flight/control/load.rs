@@ -16,8 +16,8 @@ const OF_STALL_LOAD: f64 = 0.75;
 /// How much of the load is used while rolling: two thirds (14 CFR 23.349, in its
 /// form before 2017).
 const ROLLING: f64 = 2.0 / 3.0;
-/// The most load of the recovery over the outer loops' largest.
-const OVER_OUTER_LOOPS: f64 = 1.5;
+/// How much of the limit load is commanded: the rest is for overshoot and gusts.
+const OF_LIMIT_LOAD: f64 = 0.8;
 /// Below this bank the lift is used in full, and beyond 90° not at all: cos 50°.
 const FULL_LIFT: f64 = 0.643;
 /// With the nose this far down any pull raises it, whatever the bank: sin 65°.
@@ -94,7 +94,7 @@ impl LoadLoop {
         let wanted = wanted_load(motion, estimate, inputs.envelope, rolls);
         let load = self.load.step(wanted, inputs.dt_s);
         let expected = self.expected.step(load, inputs.dt_s);
-        let stall_mps = inputs.envelope.stall_airspeed_mps();
+        let stall_mps = inputs.envelope.stall_airspeed_mps;
         let speed = estimate.true_airspeed_mps.max(LEAST_SPEED * stall_mps);
         let [_, _, down] = motion.down;
         // The pitch rate of a path that is curved by a load n: g/V (n - cos θ cos
@@ -139,8 +139,8 @@ fn wanted_load(motion: &Motion, estimate: &Estimate, envelope: &Envelope, rolls:
     let path_rate = -PATH_GAIN_PER_S * motion.path_rad;
     let wanted =
         (cos(motion.path_rad) + speed / GRAVITY_MPS2 * path_rate) / limit(upright, FULL_LIFT, 1.0);
-    let ratio = estimate.airspeed_mps / envelope.stall_airspeed_mps();
-    let strength = OVER_OUTER_LOOPS * envelope.max_load_factor;
+    let ratio = estimate.airspeed_mps / envelope.stall_airspeed_mps;
+    let strength = OF_LIMIT_LOAD * envelope.limit_load_factor;
     let most = if rolls { ROLLING * strength } else { strength };
     let most = most.min(OF_STALL_LOAD * ratio * ratio).max(UNLOADED);
     let pull = limit(wanted, UNLOADED, most);

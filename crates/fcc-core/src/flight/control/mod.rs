@@ -23,14 +23,16 @@ mod heading;
 mod load;
 mod recovery;
 mod schedule;
+mod speed_limits;
 mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
-pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
+pub use speed_limits::{PitchLimits, SpeedLimits};
 pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.

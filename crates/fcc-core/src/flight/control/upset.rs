@@ -161,7 +161,7 @@ impl UpsetDetector {
     /// Whether the aircraft is upset, after a step.
     pub fn step(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) -> bool {
         let motion = Motion::of(estimate);
-        let stall_mps = envelope.stall_airspeed_mps();
+        let stall_mps = envelope.stall_airspeed_mps;
         let rates = estimate.body_rates;
         let stalled = motion.angle_of_attack_rad > STALLED_RAD
             && estimate.airspeed_mps < STALLED_BELOW * stall_mps;
