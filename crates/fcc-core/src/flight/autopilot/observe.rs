@@ -1,10 +1,11 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
+use super::degraded::by_name;
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
-use crate::flight::navigation::{FrozenDetector, airspeed_can_follow, plausibility_gate};
+use crate::flight::navigation::{FrozenDetector, Lost, airspeed_can_follow, plausibility_gate};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Readings, Tick, Time};
 
@@ -32,14 +33,32 @@ impl Autopilot {
             self.whereabouts.keep(&self.accepted);
         }
         let step_s = self.clock.step_s();
-        self.navigation.step(now, &self.accepted, step_s);
+        self.navigate(now, measured, step_s);
         self.frozen
             .step(now, &self.accepted, self.navigation.estimate(), step_s);
         self.take_over_after_loss(now);
+        self.take_over_unless_followed(now, self.config.max_age);
+        self.follow_failsafe(tick, measured);
         if self.watching_since.is_never() && self.stale(now).is_empty() {
             self.watching_since = now;
         }
         self.before = now;
+    }
+
+    /// Estimates the aircraft's state, in failsafe without what is lost.
+    fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+        let lost = by_name(self.lost(now, measured));
+        let estimate = *self.navigation.estimate();
+        self.replacement
+            .follow(&self.accepted, lost, &estimate, step_s);
+        if self.degraded.is_failsafe && lost != Lost::default() {
+            let left = self
+                .replacement
+                .without(&self.accepted, lost, &estimate, now);
+            self.navigation.step(now, &left, step_s);
+        } else {
+            self.navigation.step(now, &self.accepted, step_s);
+        }
     }
 
     /// Follows where the aircraft is.
@@ -57,6 +76,7 @@ impl Autopilot {
     /// in it, if one did.
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
         let max_age = self.config.max_age;
+        self.move_distrusted();
         let Some(gap) = self.clock.gap() else {
             plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
             return;

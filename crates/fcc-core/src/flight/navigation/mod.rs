@@ -9,6 +9,7 @@ mod air_data;
 mod attitude;
 mod frozen;
 mod plausibility;
+mod replacement;
 mod vertical;
 mod vertical_covariance;
 
@@ -23,6 +24,7 @@ pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
 pub(crate) use frozen::{Frozen, FrozenDetector};
 pub(crate) use plausibility::{airspeed_can_follow, airspeed_is_suspect, plausibility_gate};
+pub(crate) use replacement::{Lost, Replacement};
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
