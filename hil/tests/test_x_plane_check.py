@@ -206,14 +206,7 @@ def test_responses_over_x_planes_protocol_are_those_of_the_aircraft(running: Run
 
 
 def test_without_a_person_and_without_yes_it_says_what_to_do(fccd: Path, tmp_path: Path) -> None:
-    done = subprocess.run(
-        [fccd, "x-plane", "check"],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-    )
+    done = run_alone(fccd, tmp_path, "check")
     assert done.returncode == USAGE
     assert "--yes" in done.stderr
 
@@ -251,9 +244,10 @@ def test_identification_without_x_plane_says_so(fccd: Path, tmp_path: Path) -> N
     assert f"nothing arrives from X-Plane at 127.0.0.1:{port}" in done.stderr
 
 
-def identify_by_hand(fccd: Path, scratch: Path, port: int) -> subprocess.CompletedProcess[str]:
+def run_alone(fccd: Path, scratch: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run `fccd x-plane` with these words and without a terminal."""
     return subprocess.run(
-        [fccd, "x-plane", "identify", "--by-hand", "--config", write_config(scratch, port)],
+        [fccd, "x-plane", *words],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
@@ -263,20 +257,18 @@ def identify_by_hand(fccd: Path, scratch: Path, port: int) -> subprocess.Complet
     )
 
 
+def identify_by_hand(fccd: Path, scratch: Path, port: int) -> subprocess.CompletedProcess[str]:
+    return run_alone(
+        fccd, scratch, "identify", "--by-hand", "--config", str(write_config(scratch, port))
+    )
+
+
 def test_a_report_that_cannot_be_written_is_refused_before_the_steps(
     fccd: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "folder").mkdir()
     # Nobody answers there: a step would fail with another exit code.
-    words = ["x-plane", "check", "--yes", "--only", "1", "--report", str(tmp_path / "folder")]
-    done = subprocess.run(
-        [fccd, *words],
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-        timeout=PATIENCE_S,
-    )
+    words = ["--yes", "--only", "1", "--report", str(tmp_path / "folder")]
+    done = run_alone(fccd, tmp_path, "check", *words)
     assert done.returncode == FAILURE
     assert "the report cannot be written" in done.stderr

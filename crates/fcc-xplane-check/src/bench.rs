@@ -122,6 +122,13 @@ impl<'a> Bench<'a> {
         self.figures.push(Figure::new(name, value, unit, limit));
     }
 
+    /// Records how many replies showed an override since a moment: none may.
+    pub(crate) fn measure_overridden(&mut self, name: &str, since: Instant) {
+        let overridden = self.link.since(since).filter(|s| s.is_overridden());
+        let count = overridden.count() as f64;
+        self.measure(name, count, "", Limit::AtMost(0.0));
+    }
+
     /// Records something noticed.
     pub(crate) fn note(&mut self, text: impl Into<String>) {
         self.notes.push(text.into());

@@ -4,8 +4,8 @@ use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
 use fcc_core::flight::{
-    Attitude, Autopilot, AutopilotConfig, BodyRates, Measurements, OtherControl, Plant, PlantState,
-    Position, SpecificForce, Surfaces, Suspect, flags,
+    Attitude, Autopilot, AutopilotCommand, AutopilotConfig, BodyRates, Measurements, OtherControl,
+    Plant, PlantState, Position, SpecificForce, Surfaces, Suspect, flags,
 };
 use fcc_core::framework::{Controller, Flags, Reading, Switch, Tick, Time};
 
@@ -110,6 +110,22 @@ impl Cockpit {
         cockpit
             .autopilot
             .engage(&cockpit.tick, &cockpit.measurements);
+        cockpit
+    }
+
+    /// On a simulator that has run for some ticks, to turn to 100°.
+    pub(crate) fn engaged_on_a_simulator(ticks: u32) -> Self {
+        let mut cockpit = Self::new(GuidanceConfig::Hold);
+        cockpit.feel.plant = Some(PlantState::Running);
+        for _ in 0..ticks {
+            cockpit.observe();
+        }
+        cockpit
+            .autopilot
+            .engage(&cockpit.tick, &cockpit.measurements);
+        cockpit
+            .autopilot
+            .command(&AutopilotCommand::Heading(100.0_f64.to_radians()));
         cockpit
     }
 

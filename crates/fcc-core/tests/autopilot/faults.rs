@@ -3,7 +3,7 @@
 use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, Surfaces, flags};
+use fcc_core::flight::{Autopilot, AutopilotConfig, PlantState, Surfaces, flags};
 use fcc_core::framework::{Controller, Flags, Switch};
 
 use crate::cockpit::{Cockpit, DT_S, Feel, LEVEL, SENSORS, STANDING};
@@ -94,15 +94,7 @@ fn implausible_values_count_as_silence_and_never_reach_a_surface() {
 /// bank differ from their set points.
 #[test]
 fn a_paused_simulator_changes_nothing() {
-    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
-    cockpit.feel.plant = Some(PlantState::Running);
-    cockpit.observe();
-    cockpit
-        .autopilot
-        .engage(&cockpit.tick, &cockpit.measurements);
-    cockpit
-        .autopilot
-        .command(&AutopilotCommand::Heading(100.0_f64.to_radians()));
+    let mut cockpit = Cockpit::engaged_on_a_simulator(1);
     cockpit.feel.altitude_m += 14.0;
     cockpit.feel.roll_deg = 5.0;
     let before = cockpit.steps(20);

@@ -3,24 +3,14 @@
 use core::time::Duration;
 
 use fcc_core::flight::guidance::GuidanceConfig;
-use fcc_core::flight::{Autopilot, AutopilotCommand, AutopilotConfig, PlantState, flags};
+use fcc_core::flight::{Autopilot, AutopilotConfig, PlantState, flags};
 use fcc_core::framework::{Controller, Flags, Notice};
 
 use crate::cockpit::{Cockpit, DT_S, SENSORS};
 
 /// Engaged on a simulator, in a turn to the right and a climb.
 pub(crate) fn manoeuvring() -> Cockpit {
-    let mut cockpit = Cockpit::new(GuidanceConfig::Hold);
-    cockpit.feel.plant = Some(PlantState::Running);
-    for _ in 0..60 {
-        cockpit.observe();
-    }
-    cockpit
-        .autopilot
-        .engage(&cockpit.tick, &cockpit.measurements);
-    cockpit
-        .autopilot
-        .command(&AutopilotCommand::Heading(100.0_f64.to_radians()));
+    let mut cockpit = Cockpit::engaged_on_a_simulator(60);
     fly(&mut cockpit, 40);
     cockpit
 }

@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 use super::paths;
 use crate::bench::{Bench, Done, ENGAGES_WITHIN, failed};
 use crate::configuration::Guidance;
-use crate::figure::Limit;
 use crate::step::Step;
 use crate::watched::Watched;
 
@@ -46,17 +45,7 @@ fn autopilot(bench: &mut Bench<'_>) -> Done {
     let since = Instant::now();
     bench.set_switch(true);
     bench.wait("fccd refuses", ENGAGES_WITHIN)?;
-    let overridden = bench
-        .link
-        .since(since)
-        .filter(|s| s.is_overridden())
-        .count();
-    bench.measure(
-        "replies with an override set",
-        overridden as f64,
-        "",
-        Limit::AtMost(0.0),
-    );
+    bench.measure_overridden("replies with an override set", since);
     if !bench.has_said(since, &["not engaged"]) {
         return failed("fccd did not say that it refuses to engage");
     }

@@ -215,17 +215,7 @@ fn incoming(bench: &mut Bench<'_>) -> Done {
     } else {
         bench.note("on the ground fccd does not engage, so only the check's own write was tried");
     }
-    let overridden = bench
-        .link
-        .since(since)
-        .filter(|s| s.is_overridden())
-        .count();
-    bench.measure(
-        "replies with an override set",
-        overridden as f64,
-        "",
-        Limit::AtMost(0.0),
-    );
+    bench.measure_overridden("replies with an override set", since);
     bench.have_confirmed("incoming-on", "Switch it ON again, then press Enter.")?;
     bench.wait("the setting takes effect", Duration::from_millis(300))?;
     if light_follows(bench, 0.0)? {

@@ -6,45 +6,19 @@
 use libm::{cos, sqrt};
 
 use crate::blocks::wrap_pi;
+use crate::flight::navigation::{ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit};
 use crate::flight::{Attitude, Measurements, Position};
 use crate::framework::{Reading, Time};
 
 /// The Earth's mean radius, m (WGS 84: 6,371,009 m).
 const EARTH_M: f64 = 6_371_009.0;
 
-/// How far a quantity can be from its last value: a constant part and a part
-/// for each second.
-struct Reach {
-    at_once: f64,
-    per_s: f64,
-}
-
-impl Reach {
-    fn holds(&self, difference: f64, passed_s: f64) -> bool {
-        difference.abs() <= self.at_once + self.per_s * passed_s
-    }
-}
-
 /// Three seconds of a light aircraft's flight, for positions that arrive late,
 /// and the speed of sound with a jet stream from behind.
-const POSITION_M: Reach = Reach {
+const POSITION_M: PlausibilityLimit = PlausibilityLimit {
     at_once: 150.0,
     per_s: 450.0,
 };
-/// As for the plausibility of a single reading, but for any length of time.
-const ALTITUDE_M: Reach = Reach {
-    at_once: 15.0,
-    per_s: 60.0,
-};
-const ATTITUDE_RAD: Reach = Reach {
-    at_once: 0.175,
-    per_s: core::f64::consts::PI,
-};
-const HEADING_RAD: Reach = Reach {
-    at_once: 0.26,
-    per_s: core::f64::consts::PI,
-};
-
 /// An aircraft whose clock has stopped moves if it has changed by more than
 /// this: five times the noise of a phone's sensors.
 const STILL_RAD: f64 = 0.052; // 3°
@@ -68,7 +42,7 @@ impl Position {
     pub fn can_be_reached(&self, before: &Self, passed_s: f64) -> bool {
         is_possible(before)
             && is_possible(self)
-            && POSITION_M.holds(distance_m(before, self), passed_s)
+            && POSITION_M.holds_over(distance_m(before, self), passed_s)
     }
 }
 
@@ -159,15 +133,15 @@ impl Whereabouts {
         let is_new = |was: Time, is: Time| !was.is_never() && is > was && is > self.seen;
         let attitude = is_new(self.attitude.taken, measured.attitude.taken) && {
             let (was, is) = (self.attitude.value, measured.attitude.value);
-            !(ATTITUDE_RAD.holds(wrap_pi(is.roll_rad - was.roll_rad), passed_s)
-                && ATTITUDE_RAD.holds(is.pitch_rad - was.pitch_rad, passed_s))
+            !(ATTITUDE_RAD.holds_over(wrap_pi(is.roll_rad - was.roll_rad), passed_s)
+                && ATTITUDE_RAD.holds_over(is.pitch_rad - was.pitch_rad, passed_s))
         };
         let heading = is_new(self.heading_rad.taken, measured.heading_rad.taken) && {
             let turned = wrap_pi(measured.heading_rad.value - self.heading_rad.value);
-            !HEADING_RAD.holds(turned, passed_s)
+            !HEADING_RAD.holds_over(turned, passed_s)
         };
         let altitude = is_new(self.altitude_m.taken, measured.altitude_m.taken)
-            && !ALTITUDE_M.holds(measured.altitude_m.value - self.altitude_m.value, passed_s);
+            && !HEIGHT_M.holds_over(measured.altitude_m.value - self.altitude_m.value, passed_s);
         [attitude, heading, altitude]
             .into_iter()
             .filter(|out| *out)

@@ -23,7 +23,10 @@ use crate::schema;
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
 pub(crate) use frozen::{Frozen, FrozenDetector};
-pub(crate) use plausibility::{airspeed_can_follow, airspeed_is_suspect, plausibility_gate};
+pub(crate) use plausibility::{
+    ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
+    airspeed_is_suspect, plausibility_gate,
+};
 pub(crate) use replacement::{Lost, Replacement};
 pub use vertical::VerticalChannel;
 

@@ -32,19 +32,19 @@ const MAX_ANGLE_RAD: f64 = 12.6;
 /// The limits are wider than the motion of a light aircraft, so that only
 /// impossible values are rejected: a smaller step passes through the filters
 /// like noise.
-struct PlausibilityLimit {
-    at_once: f64,
-    per_s: f64,
+pub(crate) struct PlausibilityLimit {
+    pub(crate) at_once: f64,
+    pub(crate) per_s: f64,
 }
 
 /// 10° for a sensor that recovers after a gap, and a roll rate of half a turn
 /// per second: twice that of training aircraft.
-const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
+pub(crate) const ATTITUDE_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.175,
     per_s: PI,
 };
 /// 15° for a swinging compass, and half a turn per second, as in a fast spin.
-const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
+pub(crate) const HEADING_RAD: PlausibilityLimit = PlausibilityLimit {
     at_once: 0.26,
     per_s: PI,
 };
@@ -64,7 +64,7 @@ const AIRSPEED_MPS: PlausibilityLimit = PlausibilityLimit {
     per_s: 20.0,
 };
 /// 50 ft at once, for a static source in a gust; 60 m/s, as in a steep dive.
-const HEIGHT_M: PlausibilityLimit = PlausibilityLimit {
+pub(crate) const HEIGHT_M: PlausibilityLimit = PlausibilityLimit {
     at_once: 15.0,
     per_s: 60.0,
 };
@@ -86,7 +86,12 @@ const ACCEPTED_AFTER: u32 = 4;
 
 impl PlausibilityLimit {
     fn holds(&self, difference: f64, gap_s: f64) -> bool {
-        difference.abs() <= self.at_once + self.per_s * gap_s.min(GROWS_FOR_S)
+        self.holds_over(difference, gap_s.min(GROWS_FOR_S))
+    }
+
+    /// Whether a value can have changed by this much in any length of time, s.
+    pub(crate) fn holds_over(&self, difference: f64, passed_s: f64) -> bool {
+        difference.abs() <= self.at_once + self.per_s * passed_s
     }
 }
 
