@@ -213,6 +213,10 @@ fn failsafe_does_not_believe_what_was_rejected() {
         // It ends: the reading may have been right, and the old value wrong.
         cockpit.autopilot.disengage();
         cockpit.observe();
+        assert_eq!(cockpit.engage_inhibits(), flags::SETTLING, "{name}");
+        for _ in 0..40 {
+            cockpit.observe();
+        }
         assert_eq!(cockpit.engage_inhibits(), Flags::NONE, "{name}");
     }
 }

@@ -162,7 +162,9 @@ pub(super) struct Degraded {
 impl Autopilot {
     /// The quantities that control cannot use: too old, frozen, or contradicted.
     pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Flags {
-        let contradicted = self.external(measured).contains(flags::SUSPECT_AIRSPEED);
+        let contradicted = self
+            .external(now, measured)
+            .contains(flags::SUSPECT_AIRSPEED);
         flags::unusable(self.stale(now), self.frozen()).with(flags::AIRSPEED, contradicted)
     }
 
@@ -172,7 +174,8 @@ impl Autopilot {
         if !self.degraded.is_failsafe {
             return;
         }
-        let faults = self.unsafe_to_fly(tick.woke, measured) | self.not_flyable(measured);
+        let faults =
+            self.unsafe_to_fly(tick.woke, measured) | self.not_flyable(tick.woke, measured);
         let held = held_without(self.lost(tick.woke, measured));
         let config = &self.config.failsafe;
         let degraded = &mut self.degraded;

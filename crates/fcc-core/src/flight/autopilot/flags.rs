@@ -110,7 +110,8 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | NEEDED.bits() << FROZEN_SHIFT
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
-        | DOUBTED_AIRSPEED.bits()),
+        | DOUBTED_AIRSPEED.bits()
+        | FROM_THE_FUTURE.bits()),
 );
 
 /// The bits of the frozen quantities.

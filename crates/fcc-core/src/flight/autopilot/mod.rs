@@ -7,6 +7,7 @@ mod degraded;
 mod failsafe;
 pub mod flags;
 mod following;
+mod future;
 mod observe;
 mod other_control;
 mod plant_clock;
@@ -203,31 +204,32 @@ impl Controller for Autopilot {
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        (self.unsafe_with(self.stale(tick.woke), measurements) | self.not_permitted(measurements))
-            .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
-            .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
-            .with(flags::PLANT_STALLED, self.clock.has_stopped())
-            .with(
-                flags::SETTLING,
-                self.watching_since.is_never()
-                    || tick.woke.since(self.watching_since) < self.config.settling,
-            )
-            .with(
-                flags::TOO_SLOW,
-                estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
-            )
-            .with(
-                flags::UPSET,
-                estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
-            )
+        (self.unsafe_with(self.stale(tick.woke), tick.woke, measurements)
+            | self.not_permitted(tick.woke, measurements))
+        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(
+            flags::SETTLING,
+            self.watching_since.is_never()
+                || tick.woke.since(self.watching_since) < self.config.settling,
+        )
+        .with(
+            flags::TOO_SLOW,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+        )
+        .with(
+            flags::UPSET,
+            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+        )
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(measurements)
+        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(tick.woke, measurements)
     }
 
-    fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(measurements)
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        self.external(tick.woke, measurements)
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -417,8 +419,7 @@ impl Controller for Autopilot {
         plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
-            self.config.max_age,
-            self.distrusted,
+            &self.gate_limits(),
         )
     }
 

@@ -10,6 +10,7 @@ mod attitude;
 mod frozen;
 mod plausibility;
 mod replacement;
+mod resolution;
 mod vertical;
 mod vertical_covariance;
 
@@ -22,12 +23,13 @@ use crate::schema;
 
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
-pub(crate) use frozen::{Frozen, FrozenDetector};
+pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub(crate) use plausibility::{
-    ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
+    ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
     airspeed_is_suspect, plausibility_gate,
 };
 pub(crate) use replacement::{Lost, Replacement};
+pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 
 /// Time constants of navigation's channels.
@@ -227,9 +229,34 @@ impl Navigation {
         self.airspeed.adopt_next();
     }
 
-    /// Resets everything, after the plant was repositioned.
+    /// Resets everything but what is known of the sensors, after the plant was
+    /// repositioned.
     pub fn reset(&mut self, config: &NavigationConfig) {
+        let known = self.clone();
         *self = Self::new(config);
+        self.attitude.keep_resolution(&known.attitude);
+        self.vertical.keep_resolution(&known.vertical);
+        self.airspeed.keep_resolution(&known.airspeed);
+    }
+
+    /// The resolutions of the sensors, as far as their readings have shown them.
+    pub(crate) const fn resolutions(&self) -> Resolutions {
+        Resolutions {
+            heading_rad: self.attitude.heading_resolution().smallest(),
+            airspeed_mps: self.airspeed.resolution().smallest(),
+            altitude_m: self.vertical.resolution().smallest(),
+            altitude_step_m: self.vertical.resolution().step(),
+        }
+    }
+
+    /// What evidence of frozen sensors needs.
+    pub(crate) const fn known(&self) -> Known {
+        Known {
+            estimate: self.estimate,
+            felt_mps2: self.airspeed.felt_mps2(),
+            felt_up_mps2: self.vertical.felt_mps2(),
+            resolutions: self.resolutions(),
+        }
     }
 }
 
