@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use fcc_core::flight::{FailsafeConfig, FailsafeEnd, flags};
 use fcc_core::framework::{AfterRelease, Flags};
-use fcc_core::units::KNOT_MPS;
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
 
@@ -229,8 +228,6 @@ pub struct FailsafeSection {
     pub recover_s: f64,
     /// What ends a failsafe.
     pub end: End,
-    /// Indicated airspeed of the glide.
-    pub glide_airspeed_kt: f64,
 }
 
 /// What ends a failsafe in which nothing sound can be held.
@@ -254,7 +251,6 @@ impl From<&FailsafeSection> for FailsafeConfig {
             hold: Duration::from_secs_f64(section.hold_s),
             degraded: Duration::from_secs_f64(section.degraded_s),
             recovered_after: Duration::from_secs_f64(section.recover_s),
-            glide_airspeed_mps: section.glide_airspeed_kt * KNOT_MPS,
             ..Self::default()
         }
     }
@@ -271,7 +267,6 @@ impl Default for FailsafeSection {
             degraded_s: 600.0,
             recover_s: 2.0,
             end: End::Release,
-            glide_airspeed_kt: 65.0,
         }
     }
 }

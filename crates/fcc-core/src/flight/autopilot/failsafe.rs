@@ -47,25 +47,21 @@ pub struct FailsafeConfig {
     /// What was flown before is continued when all has been good for so long;
     /// zero for never.
     pub recovered_after: Duration,
-    /// The indicated airspeed of the glide, m/s, and its ratio of distance to
-    /// height.
-    pub glide_airspeed_mps: f64,
-    /// See `glide_airspeed_mps`.
+    /// The ratio of distance to height of the best glide.
     pub glide_ratio: f64,
     /// The bank of the glide, rad.
     pub glide_bank_rad: f64,
 }
 
 impl Default for FailsafeConfig {
-    /// A Cessna 172: its best glide is 65 kt and 1.5 nautical miles for 1,000 ft
-    /// (handbook of the 172P, 1981, section 3).
+    /// A Cessna 172: its best glide is 1.5 nautical miles for 1,000 ft (handbook
+    /// of the 172P, 1981, section 3).
     fn default() -> Self {
         Self {
             end: FailsafeEnd::Release,
             hold: Duration::from_secs(5),
             degraded: Duration::from_secs(600),
             recovered_after: Duration::from_secs(2),
-            glide_airspeed_mps: 33.438_889,
             glide_ratio: 9.1,
             glide_bank_rad: 0.261_799, // 15°
         }
@@ -149,7 +145,7 @@ impl Autopilot {
         if lost.contains(flags::AIRSPEED) {
             // That of the pitch and power that are held.
             estimate.airspeed_mps = if glides {
-                config.glide_airspeed_mps
+                self.config.envelope.best_glide_airspeed_mps
             } else {
                 self.targets.airspeed_mps
             };
@@ -160,7 +156,7 @@ impl Autopilot {
         let envelope = self.config.envelope;
         // A constant pitch: one that follows the airspeed lets it diverge.
         let trimmed = self.schedule_at(if glides {
-            config.glide_airspeed_mps
+            self.config.envelope.best_glide_airspeed_mps
         } else {
             self.targets.airspeed_mps
         });
@@ -170,7 +166,7 @@ impl Autopilot {
         let altitude = &mut self.altitude;
         let vertical = match held.vertical {
             Vertical::Level if glides => {
-                let fast_mps = estimate.airspeed_mps - config.glide_airspeed_mps;
+                let fast_mps = estimate.airspeed_mps - self.config.envelope.best_glide_airspeed_mps;
                 let climb_rate_mps = GLIDE_GAIN * fast_mps - glide_mps;
                 altitude.hold_climb_rate(climb_rate_mps, &estimate, &envelope, schedule, dt_s)
             }

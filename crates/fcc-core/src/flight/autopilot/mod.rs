@@ -120,7 +120,8 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps),
             replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
@@ -162,7 +163,11 @@ impl Autopilot {
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.targets.airspeed_mps,
+            airspeed_mps: self
+                .config
+                .envelope
+                .least_target_mps(estimate)
+                .max(self.targets.airspeed_mps),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
@@ -230,6 +235,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(tick.woke, measurements)
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
     fn failsafe_goes_on(&self) -> bool {
