@@ -3,8 +3,10 @@
 mod capture;
 mod command;
 mod config;
+mod degraded;
 mod failsafe;
 pub mod flags;
+mod following;
 mod future;
 mod observe;
 mod other_control;
@@ -23,7 +25,10 @@ use libm::cos;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use degraded::Degraded;
 use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -32,7 +37,7 @@ use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
+use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -80,6 +85,7 @@ pub struct Autopilot {
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
+    replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
@@ -103,6 +109,8 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    degraded: Degraded,
+    following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
 }
@@ -114,6 +122,7 @@ impl Autopilot {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation)
                 .for_stall_airspeed(config.envelope.stall_airspeed_mps),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -132,6 +141,8 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
             distrusted: Flags::NONE,
             config,
         }
@@ -143,10 +154,11 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        Schedule::at(
-            self.navigation.estimate().airspeed_mps,
-            self.config.reference_airspeed_mps,
-        )
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -225,8 +237,20 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(tick.woke, measurements)
-            .with(flags::RECOVERING, self.recovery.is_active())
+            .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+    }
+
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -238,7 +262,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice()
+        self.clock.notice().or_else(|| self.degraded_notice())
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -248,6 +272,14 @@ impl Controller for Autopilot {
             plant_clock::LINK_LOST => write!(
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            degraded::GOOD_AGAIN => write!(
+                f,
+                "all is good again: back to what was flown {lasted_s:.1} s ago"
+            ),
+            degraded::GLIDES => write!(
+                f,
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
             _ => f.write_str("an unknown notice"),
         }
@@ -276,6 +308,7 @@ impl Controller for Autopilot {
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -331,7 +364,7 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        if let Some(recovering) = self.recover(tick.woke) {
+        if let Some(recovering) = self.recover_from_upset(tick.woke) {
             self.last = recovering;
             return self.last;
         }
@@ -368,6 +401,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.recovery = Recovery::new();

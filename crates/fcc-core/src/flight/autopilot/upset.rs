@@ -37,7 +37,7 @@ impl Autopilot {
 
     /// The outputs while the aircraft is upset; none otherwise. When it no longer
     /// is, the loops take over from them.
-    pub(super) fn recover(&mut self, now: Time) -> Option<Surfaces> {
+    pub(super) fn recover_from_upset(&mut self, now: Time) -> Option<Surfaces> {
         let estimate = *self.navigation.estimate();
         let inputs = RecoveryInputs {
             envelope: &self.config.envelope,
@@ -68,6 +68,11 @@ impl Autopilot {
             ..self.setpoints
         };
         Some(self.recovery.step(&estimate, &inputs))
+    }
+
+    /// Whether it recovers from an upset: in failsafe it does not.
+    pub(super) const fn is_recovering(&self) -> bool {
+        self.recovery.is_active() && !self.degraded.is_failsafe
     }
 
     /// Whether the surfaces stand where they were last commanded to, if the plant
