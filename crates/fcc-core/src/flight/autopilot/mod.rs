@@ -112,7 +112,8 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -150,7 +151,11 @@ impl Autopilot {
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.targets.airspeed_mps,
+            airspeed_mps: self
+                .config
+                .envelope
+                .least_target_mps(estimate)
+                .max(self.targets.airspeed_mps),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
@@ -218,6 +223,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         self.external(tick.woke, measurements)
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
