@@ -116,7 +116,10 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
 
 
 def config_of(flight: Flight) -> str:
-    """Return the configuration: the aircraft's own, or the defaults; with the flight's pattern."""
+    """Return the configuration: the aircraft's own, or the defaults.
+
+    With the flight's pattern, and the stalling speed of the greatest weight.
+    """
     first = flight.orders[0]
     values: dict[str, float | str] = {
         "guidance.mode": "timed-pattern",
@@ -125,6 +128,7 @@ def config_of(flight: Flight) -> str:
         "guidance.leg_s": LEG_S,
         "guidance.turn_deg": first.turn_deg if flight.is_pattern else 0.0,
         "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
+        "autopilot.envelope.stall_airspeed_kt": flight.limits.stall_setting_kt,
     }
     return with_values(configuration(flight.aircraft), values)
 
