@@ -25,16 +25,17 @@ _STALL_DEG = 16.5
 class _Flight:
     """A flight, and what it reached."""
 
-    def __init__(self, aircraft: str, seed: int, turbulence: int = 0) -> None:
+    def __init__(self, aircraft: str, seed: int, turbulence: int = 0, envelope: str = "") -> None:
         self.plant = Plant(aircraft, seed=seed, weather=Weather(turbulence_severity=turbulence))
-        self.rig = LockstepRig(
-            Settings(aircraft=aircraft, noise=True, seed=seed), self.plant, fcc.Machine(_HOLD)
-        )
+        machine = fcc.Machine(f"{_HOLD}[autopilot.envelope]\n{envelope}")
+        settings = Settings(aircraft=aircraft, noise=True, seed=seed)
+        self.rig = LockstepRig(settings, self.plant, machine)
         self.rig.prepare()
         self.rig.set_switch(on=True)
         self.rig.fly_to(_ENGAGED_S)
         assert self.rig.holds_control
         self.least_kt = math.inf
+        self.most_kt = 0.0
         self.airspeed_kt = math.nan
         self.largest_alpha_deg = 0.0
         self.longest_stall_s = 0.0
@@ -50,6 +51,7 @@ class _Flight:
             alpha_deg = math.degrees(state.angle_of_attack_rad)
             self.airspeed_kt = state.airspeed_mps / KT_TO_MPS
             self.least_kt = min(self.least_kt, self.airspeed_kt)
+            self.most_kt = max(self.most_kt, self.airspeed_kt)
             self.largest_alpha_deg = max(self.largest_alpha_deg, alpha_deg)
             self._stalled_s = self._stalled_s + 0.025 if alpha_deg > _STALL_DEG else 0.0
             self.longest_stall_s = max(self.longest_stall_s, self._stalled_s)
@@ -74,6 +76,24 @@ def test_an_engine_that_fails_leaves_the_best_glide(sink_mps: float) -> None:
     assert abs(flight.airspeed_kt - 65.0) <= 5.0
     assert flight.largest_alpha_deg <= 12.0
     assert any("height is given up" in text for text in flight.texts())
+
+
+def test_a_best_glide_above_the_lowest_airspeed_is_flown() -> None:
+    flight = _Flight("c172p", seed=7306, envelope="best_glide_airspeed_kt = 75.0\n")
+    flight.plant.fdm["propulsion/magneto_cmd"] = 0
+    flight.fly(60.0)
+    assert abs(flight.airspeed_kt - 75.0) <= 2.0
+    assert flight.least_kt >= 64.0
+
+
+def test_the_highest_airspeed_is_held_in_air_that_rises() -> None:
+    """With the engine idling it would need 118 kt to stay down."""
+    flight = _Flight("c172p", seed=7307, envelope="max_airspeed_kt = 108.0\n")
+    before_m = flight.plant.state().altitude_m
+    flight.plant.fdm["atmosphere/wind-down-fps"] = -12.0 / FT_TO_M
+    flight.fly(60.0)
+    assert flight.most_kt <= 109.0
+    assert flight.plant.state().altitude_m > before_m + 10.0
 
 
 def test_air_that_sinks_faster_than_the_aircraft_climbs() -> None:

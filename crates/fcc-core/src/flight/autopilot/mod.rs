@@ -3,8 +3,10 @@
 mod capture;
 mod command;
 mod config;
+mod degraded;
 mod failsafe;
 pub mod flags;
+mod following;
 mod future;
 mod observe;
 mod other_control;
@@ -22,7 +24,10 @@ use libm::cos;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use degraded::Degraded;
 use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -30,7 +35,7 @@ use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
+use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -81,6 +86,7 @@ pub struct Autopilot {
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
+    replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
@@ -103,6 +109,8 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    degraded: Degraded,
+    following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
 }
@@ -114,6 +122,7 @@ impl Autopilot {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation)
                 .for_stall_airspeed(config.envelope.stall_airspeed_mps),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -131,6 +140,8 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
             distrusted: Flags::NONE,
             config,
         }
@@ -142,10 +153,11 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        Schedule::at(
-            self.navigation.estimate().airspeed_mps,
-            self.config.reference_airspeed_mps,
-        )
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -226,6 +238,18 @@ impl Controller for Autopilot {
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
+    }
+
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
         self.is_elsewhere()
     }
@@ -235,7 +259,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice()
+        self.clock.notice().or_else(|| self.degraded_notice())
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -245,6 +269,14 @@ impl Controller for Autopilot {
             plant_clock::LINK_LOST => write!(
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            degraded::GOOD_AGAIN => write!(
+                f,
+                "all is good again: back to what was flown {lasted_s:.1} s ago"
+            ),
+            degraded::GLIDES => write!(
+                f,
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
             _ => f.write_str("an unknown notice"),
         }
@@ -273,6 +305,7 @@ impl Controller for Autopilot {
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -360,6 +393,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.setpoints = Setpoints::default();

@@ -213,19 +213,29 @@ impl AltitudeLoop {
         )
     }
 
-    /// One step towards the pitch expected for level flight, if altitude and
-    /// climb rate are not known.
-    pub fn hold_level_pitch(
+    /// One step towards the pitch expected for a flight path (rad, up) at the
+    /// airspeed of the schedule `trimmed`, if the climb rate is not known.
+    pub fn hold_path_pitch(
         &mut self,
+        path_rad: f64,
+        trimmed: Schedule,
         estimate: &Estimate,
         envelope: &Envelope,
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
         self.limit_pitch(estimate, envelope, dt_s);
-        let level = self.angle_of_attack(estimate, schedule) + self.pitch.integral();
-        let pitch_rad = self.pitch.limited(level);
-        self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
+        let level = self.angle_of_attack(estimate, trimmed) + self.pitch.integral();
+        let pitch_rad = self.pitch.limited(path_rad + level);
+        let climb_rate_mps = estimate.true_airspeed_mps * sin(path_rad);
+        self.hold(
+            climb_rate_mps,
+            pitch_rad,
+            estimate,
+            envelope,
+            schedule,
+            dt_s,
+        )
     }
 
     /// Whether energy is short for both height and airspeed: the airspeed is

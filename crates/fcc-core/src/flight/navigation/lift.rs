@@ -80,6 +80,8 @@ const LEARNING_S: f64 = 30.0;
 /// At most this much is learned, rad (3°): an error of rigging, loading or the
 /// attitude's zero.
 const MOST_LEARNED_RAD: f64 = 0.052;
+/// A larger difference is a vertical wind, rad (5°: 3 m/s at 65 kt).
+const WIND_RAD: f64 = 0.087;
 /// Learned below this bank, rad (15°), and load off 1, g.
 const LEARNING_BANK_RAD: f64 = 0.26;
 const LEARNING_LOAD: f64 = 0.15;
@@ -151,10 +153,10 @@ impl LiftChannel {
             let sine = limit_abs(path.climb_rate_mps / path.true_airspeed_mps.max(1.0), 0.5);
             let by_path = path.orientation.pitch_rad - asin(sine);
             let off = by_path - by_lift - self.learned_rad;
-            self.learned_rad = limit_abs(
-                self.learned_rad + off * (dt_s / LEARNING_S).min(1.0),
-                MOST_LEARNED_RAD,
-            );
+            if off.abs() < WIND_RAD {
+                let learned_rad = self.learned_rad + off * (dt_s / LEARNING_S).min(1.0);
+                self.learned_rad = limit_abs(learned_rad, MOST_LEARNED_RAD);
+            }
         }
         limit(by_lift + self.learned_rad, -STALL_RAD, 2.0 * STALL_RAD)
     }

@@ -10,6 +10,7 @@ mod attitude;
 mod frozen;
 mod lift;
 mod plausibility;
+mod replacement;
 mod resolution;
 mod vertical;
 mod vertical_covariance;
@@ -30,6 +31,7 @@ pub(crate) use plausibility::{
     ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
     airspeed_is_suspect, plausibility_gate,
 };
+pub(crate) use replacement::{Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 
