@@ -198,11 +198,14 @@ def _fly(rig: LockstepRig, flight: Flight) -> tuple[list[Leg], list[str]]:
     legs = [_leg(engaged_at_s, HOLD_S, now, now)]
     refused: list[str] = []
     rig.fly_to(legs[0].end_s, until=is_over)
-    for order in flight.orders:
+    for drawn in flight.orders:
         if is_over():
             break
+        # In failsafe no order is taken.
+        waits = not flight.is_pattern and rig.machine.state != "engaged"
+        order = Order(0.0, 0.0) if waits else drawn
         to = _after(order, now)
-        if not flight.is_pattern:
+        if not flight.is_pattern and not waits:
             refused += _command(rig.machine, order, to)
         legs.append(_leg(legs[-1].end_s, LEG_S, now, to))
         now = to
