@@ -79,9 +79,8 @@ impl Autopilot {
     /// measures them.
     fn is_followed(&self, now: Time) -> bool {
         let stand = self.accepted.surfaces.fresh(now, self.config.max_age);
-        stand.is_none_or(|stand| {
-            let near = |a: f64, b: f64| (a - b).abs() < FOLLOWS;
-            near(stand.elevator, self.last.elevator)
-        })
+        // Where they do not reach the aircraft, the last ones are the measured ones.
+        !self.is_not_followed()
+            && stand.is_none_or(|stand| (stand.elevator - self.last.elevator).abs() < FOLLOWS)
     }
 }
