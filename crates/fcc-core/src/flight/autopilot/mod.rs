@@ -1,5 +1,6 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod airspeed_doubt;
 mod capture;
 mod command;
 mod config;
@@ -104,6 +105,8 @@ pub struct Autopilot {
     kept_trims: KeptTrims,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
+    /// That the airspeed has just been doubted.
+    doubt_notice: Option<Notice>,
 }
 
 impl Autopilot {
@@ -111,7 +114,10 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation),
+            navigation: Navigation::new(&config.navigation).for_aircraft(
+                config.reference_airspeed_mps,
+                config.airspeed.throttle_per_mps2,
+            ),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -130,6 +136,7 @@ impl Autopilot {
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
             distrusted: Flags::NONE,
+            doubt_notice: None,
             config,
         }
     }
@@ -149,10 +156,10 @@ impl Autopilot {
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.targets.airspeed_mps,
+            airspeed_mps: self.flyable_airspeed_mps(self.targets.airspeed_mps),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
-            least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
+            least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
         }
     }
 
@@ -215,7 +222,7 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(measurements)
+        self.external(measurements) | self.doubted()
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -227,7 +234,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice()
+        self.clock.notice().or(self.doubt_notice)
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -238,7 +245,7 @@ impl Controller for Autopilot {
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
             ),
-            _ => f.write_str("an unknown notice"),
+            kind => airspeed_doubt::write(kind, f),
         }
     }
 
@@ -315,7 +322,7 @@ impl Controller for Autopilot {
         }
         let estimate = *self.navigation.estimate();
         let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let envelope = self.envelope();
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
@@ -380,12 +387,14 @@ impl Controller for Autopilot {
     }
 
     fn plausible(&self, measurements: &Measurements) -> Flags {
-        plausibility_gate(
+        let plausible = plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
             self.config.max_age,
             self.distrusted,
-        )
+        );
+        let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
+        plausible.with(flags::AIRSPEED, airspeed)
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

@@ -32,7 +32,10 @@ impl Autopilot {
             self.whereabouts.keep(&self.accepted);
         }
         let step_s = self.clock.step_s();
+        self.note_throttle(now);
+        let doubted = self.navigation.airspeed_doubt();
         self.navigation.step(now, &self.accepted, step_s);
+        self.note_doubt(doubted);
         self.frozen
             .step(now, &self.accepted, self.navigation.estimate(), step_s);
         self.take_over_after_loss(now);

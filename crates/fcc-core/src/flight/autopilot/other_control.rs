@@ -27,7 +27,10 @@ impl Autopilot {
             .with(flags::OTHER_WRITER, other.writer)
             .with(flags::REVERSE_THRUST, other.reverse_thrust)
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
-            .with(flags::SUSPECT_AIRSPEED, airspeed_is_suspect(measurements))
+            .with(
+                flags::SUSPECT_AIRSPEED,
+                airspeed_is_suspect(measurements) && self.doubted().is_empty(),
+            )
     }
 
     /// Those that prevent engaging.
