@@ -330,6 +330,14 @@ class Estimate:
     def side_force_mps2(self) -> float:
         """Specific force to the right, m/s²: 0 in a coordinated turn."""
 
+    @property
+    def airspeed_source(self) -> str:
+        """Where the airspeed comes from."""
+
+    @property
+    def airspeed_uncertainty_mps(self) -> float:
+        """Standard deviation of an airspeed that comes from the forces, m/s."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -35,10 +35,10 @@ const THRUST_RECENT_S: f64 = 10.0;
 /// The time for which a filter runs without the sensor before it is compared, s.
 const ALONE_S: f64 = 20.0;
 /// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 2.5
-/// standard deviations and of 2.3 times the gusts must last for 2.5 s.
+/// standard deviations and of 3 times the gusts must last for 2.5 s.
 const DIFFERS_RATIO: f64 = 0.09;
 const DIFFERS_SDS: f64 = 2.5;
-const DIFFERS_GUSTS: f64 = 2.3;
+const DIFFERS_GUSTS: f64 = 3.0;
 const DOUBTED_AFTER_S: f64 = 2.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
@@ -46,9 +46,9 @@ const SENSOR_SHARE: f64 = 0.45;
 const WIND_CHANGED_AFTER_S: f64 = 2.0;
 const VOTE_LAG_S: f64 = 2.0;
 const DIFFERENCE_LAG_S: f64 = 0.5;
-/// A doubted sensor is believed again when it has agreed within 5 % of the
+/// A doubted sensor is believed again when it has agreed within 7 % of the
 /// reference airspeed for 10 s; another sensor of the same quantity for 1 s.
-const AGREES_RATIO: f64 = 0.05;
+const AGREES_RATIO: f64 = 0.07;
 const BELIEVED_AFTER_S: f64 = 10.0;
 const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
 /// Doubt needs models that have learned the aircraft for this time, s.
@@ -212,7 +212,7 @@ impl AirspeedMonitor {
             return;
         }
         let least_mps = LEAST_RATIO * self.prior.reference_mps;
-        let followed = self.bank.as_ref().map(|bank| bank.believing.airspeed_mps());
+        let followed = self.bank.as_ref().map(|bank| bank.older.airspeed_mps());
         if self.doubt.is_none() && followed.is_some_and(|mps| mps < least_mps) {
             *self = Self::new(self.prior);
             return;
@@ -281,10 +281,14 @@ impl AirspeedMonitor {
         };
         let knows = mean.thrust.is_some();
         if core::mem::replace(&mut bank.thrust_is_known, knows) != knows {
-            bank.each().map(|filter| filter.learn_offset(&mean));
+            for filter in bank.each() {
+                filter.learn_offset(&mean);
+            }
         }
         if holds {
-            bank.each().map(|filter| filter.correct(&mean, passed_s));
+            for filter in bank.each() {
+                filter.correct(&mean, passed_s);
+            }
         }
         if self.doubt.is_none() && has_sensor {
             bank.believing.correct_by_sensor(sensor_mps);
