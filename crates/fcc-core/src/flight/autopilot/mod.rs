@@ -4,8 +4,11 @@ mod airspeed_doubt;
 mod capture;
 mod command;
 mod config;
+mod degraded;
 mod failsafe;
 pub mod flags;
+mod following;
+mod future;
 mod observe;
 mod other_control;
 mod plant_clock;
@@ -22,7 +25,10 @@ use libm::cos;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use degraded::Degraded;
 use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -30,7 +36,7 @@ use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
+use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -81,6 +87,7 @@ pub struct Autopilot {
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
+    replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
@@ -103,6 +110,8 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    degraded: Degraded,
+    following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
     /// That the airspeed has just been doubted.
@@ -114,10 +123,13 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation).for_aircraft(
-                config.reference_airspeed_mps,
-                config.airspeed.throttle_per_mps2,
-            ),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps)
+                .for_aircraft(
+                    config.reference_airspeed_mps,
+                    config.airspeed.throttle_per_mps2,
+                ),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -135,6 +147,8 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
             distrusted: Flags::NONE,
             doubt_notice: None,
             config,
@@ -147,16 +161,20 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        Schedule::at(
-            self.navigation.estimate().airspeed_mps,
-            self.config.reference_airspeed_mps,
-        )
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.flyable_airspeed_mps(self.targets.airspeed_mps),
+            airspeed_mps: self
+                .envelope()
+                .least_target_mps(estimate)
+                .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
@@ -198,31 +216,45 @@ impl Controller for Autopilot {
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        (self.unsafe_with(self.stale(tick.woke), measurements) | self.not_permitted(measurements))
-            .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
-            .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
-            .with(flags::PLANT_STALLED, self.clock.has_stopped())
-            .with(
-                flags::SETTLING,
-                self.watching_since.is_never()
-                    || tick.woke.since(self.watching_since) < self.config.settling,
-            )
-            .with(
-                flags::TOO_SLOW,
-                estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
-            )
-            .with(
-                flags::UPSET,
-                estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
-            )
+        (self.unsafe_with(self.stale(tick.woke), tick.woke, measurements)
+            | self.not_permitted(tick.woke, measurements))
+        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(
+            flags::SETTLING,
+            self.watching_since.is_never()
+                || tick.woke.since(self.watching_since) < self.config.settling,
+        )
+        .with(
+            flags::TOO_SLOW,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+        )
+        .with(
+            flags::UPSET,
+            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+        )
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(measurements)
+        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(tick.woke, measurements)
     }
 
-    fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(measurements) | self.doubted()
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        (self.external(tick.woke, measurements) | self.doubted())
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+    }
+
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -234,7 +266,10 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice().or(self.doubt_notice)
+        self.clock
+            .notice()
+            .or_else(|| self.degraded_notice())
+            .or(self.doubt_notice)
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -244,6 +279,14 @@ impl Controller for Autopilot {
             plant_clock::LINK_LOST => write!(
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            degraded::GOOD_AGAIN => write!(
+                f,
+                "all is good again: back to what was flown {lasted_s:.1} s ago"
+            ),
+            degraded::GLIDES => write!(
+                f,
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
             kind => airspeed_doubt::write(kind, f),
         }
@@ -272,6 +315,7 @@ impl Controller for Autopilot {
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -359,6 +403,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.setpoints = Setpoints::default();
@@ -390,8 +435,7 @@ impl Controller for Autopilot {
         let plausible = plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
-            self.config.max_age,
-            self.distrusted,
+            &self.gate_limits(),
         );
         let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
         plausible.with(flags::AIRSPEED, airspeed)

@@ -18,12 +18,14 @@ mod altitude;
 mod envelope;
 mod heading;
 mod schedule;
+mod speed_limits;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
-pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use schedule::Schedule;
+pub use speed_limits::{PitchLimits, SpeedLimits};
 
 /// The largest bank for which a turn's load and rate are computed, rad.
 const MAX_TURN_BANK_RAD: f64 = 1.05;

@@ -11,7 +11,10 @@ mod airspeed_monitor;
 mod airspeed_reason;
 mod attitude;
 mod frozen;
+mod lift;
 mod plausibility;
+mod replacement;
+mod resolution;
 mod vertical;
 mod vertical_covariance;
 
@@ -24,7 +27,7 @@ use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
 use crate::schema;
-use crate::units::GRAVITY_MPS2;
+use crate::units::{GRAVITY_MPS2, KNOT_MPS};
 use airspeed_filter::{AirframePrior, ForceSample};
 use airspeed_monitor::{AirspeedMonitor, MonitorInput, in_g};
 
@@ -33,11 +36,14 @@ pub use airspeed_monitor::AirspeedSource;
 pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
 use attitude::Orientation;
-pub(crate) use frozen::{Frozen, FrozenDetector};
+pub(crate) use frozen::{Frozen, FrozenDetector, Known};
+pub use lift::{Lift, LiftChannel};
 pub(crate) use plausibility::{
-    ATTITUDE_RAD, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
+    ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
     airspeed_is_suspect, plausibility_gate,
 };
+pub(crate) use replacement::{Lost, Replacement};
+pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 use vertical::VerticalState;
 
@@ -119,12 +125,25 @@ schema! {
         /// Specific force to the right, m/s²: 0 in a coordinated turn.
         #[field(9)]
         pub side_force_mps2: f64,
-        /// Where the airspeed comes from.
+        /// Load factor, g, along the body's z axis, upwards.
         #[field(10)]
+        pub load_factor: f64,
+        /// Standard deviation of the load that gusts cause, g.
+        #[field(11)]
+        pub gust_load: f64,
+        /// Angle of attack, rad: measured if a source has it, otherwise
+        /// estimated from the lift.
+        #[field(12, column = "estimated_angle_of_attack_rad")]
+        pub angle_of_attack_rad: f64,
+        /// Acceleration along the flight path, without gusts, m/s².
+        #[field(13)]
+        pub acceleration_mps2: f64,
+        /// Where the airspeed comes from.
+        #[field(14)]
         pub airspeed_source: AirspeedSource,
         /// Standard deviation of an airspeed that comes from the forces, m/s;
         /// 0 while the sensor is used.
-        #[field(11)]
+        #[field(15)]
         pub airspeed_uncertainty_mps: f64,
     }
 }
@@ -153,6 +172,7 @@ pub struct Navigation {
     attitude: AttitudeChannel,
     vertical: VerticalChannel,
     airspeed: AirspeedChannel,
+    lift: LiftChannel,
     monitor: AirspeedMonitor,
     airframe: AirframePrior,
     throttle: Option<f64>,
@@ -168,6 +188,7 @@ impl Navigation {
             attitude: AttitudeChannel::new(config.attitude_tau_s, config.heading_tau_s),
             vertical: VerticalChannel::new(config.vertical_bandwidth_radps),
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
+            lift: LiftChannel::new(STALL_AIRSPEED_MPS),
             monitor: AirspeedMonitor::new(CESSNA_172),
             airframe: CESSNA_172,
             throttle: None,
@@ -187,6 +208,10 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                load_factor: 1.0,
+                gust_load: 0.0,
+                angle_of_attack_rad: 0.0,
+                acceleration_mps2: 0.0,
                 airspeed_source: AirspeedSource::Sensor,
                 airspeed_uncertainty_mps: 0.0,
             },
@@ -222,6 +247,15 @@ impl Navigation {
         self.monitor.permits(airspeed_mps)
     }
 
+    /// For an aircraft with this stalling speed, clean and without power, m/s.
+    #[must_use]
+    pub const fn for_stall_airspeed(self, stall_airspeed_mps: f64) -> Self {
+        Self {
+            lift: LiftChannel::new(stall_airspeed_mps),
+            ..self
+        }
+    }
+
     /// Processes the measurements at `now`, `dt_s` seconds of the plant's time
     /// after the last.
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) {
@@ -247,19 +281,29 @@ impl Navigation {
         if is_current(&force, now) {
             self.side_force.step(force.value.y_mps2, dt_s);
         }
+        let true_airspeed_mps =
+            super::atmosphere::true_airspeed_mps(airspeed_mps, vertical.altitude_m);
+        let path = lift::Path {
+            orientation: &attitude,
+            airspeed_mps,
+            true_airspeed_mps,
+            climb_rate_mps: vertical.climb_rate_mps,
+        };
+        let lift = self.lift.step(now, measurements, &path, dt_s);
         self.estimate = Estimate {
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
             heading_rad: attitude.heading_rad,
             body_rates: measurements.body_rates.value,
             airspeed_mps,
-            true_airspeed_mps: super::atmosphere::true_airspeed_mps(
-                airspeed_mps,
-                vertical.altitude_m,
-            ),
+            true_airspeed_mps,
             altitude_m: vertical.altitude_m,
             climb_rate_mps: vertical.climb_rate_mps,
             side_force_mps2: self.side_force.output(),
+            load_factor: lift.load_factor,
+            gust_load: lift.gust_load,
+            angle_of_attack_rad: lift.angle_of_attack_rad,
+            acceleration_mps2: lift.acceleration_mps2,
             airspeed_source,
             airspeed_uncertainty_mps,
         };
@@ -329,14 +373,42 @@ impl Navigation {
         }
     }
 
-    /// Resets everything, after the plant was repositioned.
+    /// Resets everything but what is known of the sensors, after the plant was
+    /// repositioned.
     pub fn reset(&mut self, config: &NavigationConfig) {
-        let airframe = self.airframe;
+        let known = self.clone();
         *self = Self::new(config);
-        self.airframe = airframe;
-        self.monitor = AirspeedMonitor::new(airframe);
+        self.airframe = known.airframe;
+        self.monitor = AirspeedMonitor::new(known.airframe);
+        self.lift = known.lift.renewed();
+        self.attitude.keep_resolution(&known.attitude);
+        self.vertical.keep_resolution(&known.vertical);
+        self.airspeed.keep_resolution(&known.airspeed);
+    }
+
+    /// The resolutions of the sensors, as far as their readings have shown them.
+    pub(crate) const fn resolutions(&self) -> Resolutions {
+        Resolutions {
+            heading_rad: self.attitude.heading_resolution().smallest(),
+            airspeed_mps: self.airspeed.resolution().smallest(),
+            altitude_m: self.vertical.resolution().smallest(),
+            altitude_step_m: self.vertical.resolution().step(),
+        }
+    }
+
+    /// What evidence of frozen sensors needs.
+    pub(crate) const fn known(&self) -> Known {
+        Known {
+            estimate: self.estimate,
+            felt_mps2: self.airspeed.felt_mps2(),
+            felt_up_mps2: self.vertical.felt_mps2(),
+            resolutions: self.resolutions(),
+        }
     }
 }
+
+/// The stalling speed of a Cessna 172, m/s (53 kt).
+const STALL_AIRSPEED_MPS: f64 = 53.0 * KNOT_MPS;
 
 /// The aircraft of the default gains: 100 kt, throttle for 1 g of 3.63.
 const CESSNA_172: AirframePrior = AirframePrior {
