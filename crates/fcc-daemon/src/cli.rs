@@ -82,7 +82,8 @@ pub struct FlyArgs {
     pub seconds: Option<f64>,
     /// Seed of gusts and sensor noise
     // TOML has no larger numbers: the recording could not contain it.
-    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64),
+          allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// Strength of the gusts
     #[arg(long, value_parser = gusts())]

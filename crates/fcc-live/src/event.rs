@@ -116,11 +116,7 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
     match event.kind {
         EventKind::StateChanged { from, to } => {
             let (from, to) = (StateCode::from(from), StateCode::from(to));
-            let values = [
-                from.phase().into(),
-                to.phase().into(),
-                to.flags().bits().into(),
-            ];
+            let values = [from.phase().into(), to.phase().into(), to.flags().bits()];
             (EventCode::StateChanged, 0, values)
         }
         EventKind::CommandReceived(command) => {
@@ -132,11 +128,9 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             };
             (EventCode::CommandReceived, 0, [which, 0, 0])
         }
-        EventKind::EngageRefused { engage_inhibits } => (
-            EventCode::EngageRefused,
-            0,
-            [engage_inhibits.bits().into(), 0, 0],
-        ),
+        EventKind::EngageRefused { engage_inhibits } => {
+            (EventCode::EngageRefused, 0, [engage_inhibits.bits(), 0, 0])
+        }
         EventKind::SensorFault { index, .. } => (EventCode::SensorFault, index.into(), NONE),
         EventKind::SensorRecovered { index } => (EventCode::SensorRecovered, index.into(), NONE),
         EventKind::ActuatorFault { index, .. } => (EventCode::ActuatorFault, index.into(), NONE),
@@ -169,14 +163,14 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
         }
         EventKind::Hung { silent_ns } => (EventCode::Hung, 0, [silent_ns, 0, 0]),
         EventKind::SourceChanged(change) => {
-            let values = [change.readings.bits().into(), change.from.into(), 0];
+            let values = [change.readings.bits(), change.from.into(), 0];
             (EventCode::SourceChanged, change.to.into(), values)
         }
         EventKind::ModeChanged { from, to } => {
             (EventCode::ModeChanged, 0, [from.into(), to.into(), 0])
         }
         EventKind::ConditionsChanged { began, ended } => {
-            let values = [began.bits().into(), ended.bits().into(), 0];
+            let values = [began.bits(), ended.bits(), 0];
             (EventCode::ConditionsChanged, 0, values)
         }
         EventKind::Noticed(notice) => (
@@ -184,11 +178,9 @@ fn numbers<O: Copy>(event: &framework::Event<O>) -> (EventCode, u32, [u64; 3]) {
             notice.kind.into(),
             [notice.lasted_ns, 0, 0],
         ),
-        EventKind::ReleasedAtOnce { conditions } => (
-            EventCode::ReleasedAtOnce,
-            0,
-            [conditions.bits().into(), 0, 0],
-        ),
+        EventKind::ReleasedAtOnce { conditions } => {
+            (EventCode::ReleasedAtOnce, 0, [conditions.bits(), 0, 0])
+        }
         EventKind::SwitchedOnUnseen => (EventCode::SwitchedOnUnseen, 0, NONE),
         // An event without a number in this version still has its text.
         _ => (EventCode::Remark, 0, NONE),

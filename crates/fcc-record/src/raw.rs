@@ -26,6 +26,9 @@ pub(super) enum Cut {
     /// The file ends here, unfinished.
     #[error("cut off after {0} bytes")]
     Off(u64),
+    /// It ends before it says what it is.
+    #[error("too short: {0} bytes")]
+    TooShort(u64),
     /// It does not begin like a recording.
     #[error("not an MCAP file")]
     NotMcap,
@@ -180,7 +183,7 @@ impl RawReader {
     /// Reads the magic number; returns what is wrong with it.
     fn read_magic(&mut self) -> Result<Option<&'static str>, Cut> {
         if self.length < MAGIC_BYTES {
-            return Err(Cut::Off(self.length));
+            return Err(Cut::TooShort(self.length));
         }
         self.read_body(MAGIC_BYTES)?;
         Ok((self.body != mcap::MAGIC).then_some(NO_MAGIC))

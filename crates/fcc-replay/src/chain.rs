@@ -16,13 +16,6 @@ pub struct Chain {
     others: Vec<Recording>,
 }
 
-impl ChainError {
-    /// Whether the recording is of another plant than the program's.
-    pub const fn is_another_plant(&self) -> bool {
-        matches!(self, Self::Open(OpenError::AnotherPlant { .. }))
-    }
-}
-
 /// Reason why files cannot be replayed as one recording.
 #[derive(thiserror::Error, Debug)]
 #[non_exhaustive]

@@ -7,8 +7,8 @@ use std::time::Instant;
 use fcc_core::flight::Autopilot;
 use fcc_flight::config::Config;
 use fcc_flight::replay::{recorded_config, replay as replay_of};
-use fcc_record::create_output;
-use fcc_replay::{Chain, Comparison, Csv, Deviation, Identity, Replayed};
+use fcc_record::{OpenError, create_output};
+use fcc_replay::{Chain, ChainError, Comparison, Csv, Deviation, Identity, Replayed};
 use serde::Serialize;
 
 use super::failure::Failure;
@@ -37,10 +37,10 @@ struct Outcome {
 /// Replays a recording.
 pub(super) fn replay(args: &ReplayArgs) -> Result<Exit, Failure> {
     let chain = Chain::open::<Autopilot>(&args.files).map_err(|error| {
-        let exit = if error.is_another_plant() {
-            Exit::Usage
-        } else {
-            Exit::NotReplayed
+        let exit = match error {
+            ChainError::Open(OpenError::AnotherPlant { .. }) => Exit::Usage,
+            ChainError::Open(OpenError::Io { .. }) => Exit::Failure,
+            _ => Exit::NotReplayed,
         };
         Failure::of(exit, error)
     })?;

@@ -149,7 +149,7 @@ fn every_command_reports_an_error_as_json() {
         (&["list", "none"], 1),
         (&["recover", "none.mcap"], 1),
         (&["timing", "--rate", "0"], 2),
-        (&["replay", "none.mcap"], 8),
+        (&["replay", "none.mcap"], 1),
         (&["top", "--instance", &instance], 1),
         (&["command", "engage", "--instance", &instance], 1),
         (&["command", "set", "--altitude-ft", "1e6"], 2),

@@ -290,8 +290,9 @@ fn to_python(py: Python<'_>, column: &Column, value: Value) -> PyResult<Py<PyAny
             .into_any()
             .unbind(),
         (Value::Code(number), _) => number.into_pyobject(py)?.into_any().unbind(),
-        (Value::Flags(value), _) => value.into_pyobject(py)?.into_any().unbind(),
-        (Value::Count(value), _) => value.into_pyobject(py)?.into_any().unbind(),
+        (Value::Flags(value) | Value::Count(value), _) => {
+            value.into_pyobject(py)?.into_any().unbind()
+        }
         (Value::Signed(value) | Value::Instant(value), _) => {
             value.into_pyobject(py)?.into_any().unbind()
         }
