@@ -26,6 +26,9 @@ use crate::framework::Flags;
 pub struct AutopilotConfig {
     /// The reference airspeed of the gains, m/s.
     pub reference_airspeed_mps: f64,
+    /// The latency from an output to its effect that is assumed until it has
+    /// been measured in flight, s.
+    pub assumed_latency_s: f64,
     /// Readings older than this count as a loss of their sensor.
     pub max_age: Duration,
     /// If a simulated plant falls silent, so that none of its readings arrives,
@@ -63,6 +66,7 @@ impl Default for AutopilotConfig {
     fn default() -> Self {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
+            assumed_latency_s: 0.025,
             max_age: Duration::from_millis(250),
             max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),

@@ -1,5 +1,6 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod actuation;
 mod capture;
 mod command;
 mod config;
@@ -18,6 +19,7 @@ use core::hint::black_box;
 
 use libm::cos;
 
+use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
@@ -90,6 +92,7 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    actuation: Actuation,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -121,6 +124,7 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -144,6 +148,7 @@ impl Autopilot {
             self.navigation.estimate().airspeed_mps,
             self.config.reference_airspeed_mps,
         )
+        .slowed(self.actuation.pace())
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -215,7 +220,7 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(measurements)
+        self.external(measurements) | self.actuation.conditions()
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -283,6 +288,7 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        self.actuation.engage(&standing);
         self.take_over(&standing);
     }
 
@@ -313,9 +319,9 @@ impl Controller for Autopilot {
             self.last = self.trims();
             return self.last;
         }
-        let estimate = *self.navigation.estimate();
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
+        let (schedule, envelope) = (self.schedule(), self.config.envelope);
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
@@ -338,7 +344,7 @@ impl Controller for Autopilot {
         };
         self.last = Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
         };
@@ -362,7 +368,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        *self.navigation.estimate()
+        self.actuation.shown_in(self.navigation.estimate())
     }
 
     fn setpoints(&self) -> Setpoints {

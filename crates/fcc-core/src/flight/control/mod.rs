@@ -15,14 +15,20 @@ use crate::blocks::{AntiWindup, PidConfig};
 
 mod airspeed;
 mod altitude;
+mod elevator_response;
 mod envelope;
 mod heading;
+mod oscillation;
+mod play_inverse;
 mod schedule;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
 pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use elevator_response::ElevatorResponse;
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
+pub use oscillation::OscillationMonitor;
+pub use play_inverse::PlayInverse;
 pub use schedule::Schedule;
 
 /// The largest bank for which a turn's load and rate are computed, rad.

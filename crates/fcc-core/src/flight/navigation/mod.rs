@@ -106,6 +106,13 @@ schema! {
         /// Specific force to the right, m/s²: 0 in a coordinated turn.
         #[field(9)]
         pub side_force_mps2: f64,
+        /// The time from an output to its effect, s, measured by the elevator;
+        /// until then the assumed one.
+        #[field(10)]
+        pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(11)]
+        pub elevator_play: f64,
     }
 }
 
@@ -159,6 +166,8 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                output_latency_s: 0.0,
+                elevator_play: 0.0,
             },
         }
     }
@@ -188,6 +197,7 @@ impl Navigation {
             altitude_m: vertical.altitude_m,
             climb_rate_mps: vertical.climb_rate_mps,
             side_force_mps2: self.side_force.output(),
+            ..self.estimate
         };
     }
 
