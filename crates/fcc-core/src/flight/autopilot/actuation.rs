@@ -3,19 +3,24 @@
 use super::flags;
 use crate::blocks::limit;
 use crate::flight::Surfaces;
-use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse};
+use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
 use crate::flight::navigation::Estimate;
 use crate::framework::Flags;
 
-/// The loops keep 6 dB and 45° up to this latency, s: 25 ms and a servo of
-/// 3 Hz, whose lag is 1/(2π 3 Hz) = 53 ms.
-const TUNED_FOR_S: f64 = 0.08;
+/// The pitch loops keep 6 dB and 45° up to this latency, s: 25 ms and a servo
+/// of 3 Hz, whose lag is 1/(2π 3 Hz) = 53 ms.
+const PITCH_TUNED_FOR_S: f64 = 0.08;
+/// The roll loops keep them up to this one, s.
+const ROLL_TUNED_FOR_S: f64 = 0.12;
 /// The time constant of the loops themselves, s: their bandwidth is
 /// proportional to 1/(this + the latency in excess of what they are tuned for).
 const OWN_S: f64 = 0.15;
 /// The least part of the bandwidth: with less, the outer loops are no longer
 /// slower than the inner ones.
 const LEAST_PACE: f64 = 0.35;
+/// In an aircraft whose loops are slower than this, by their unit of time, the
+/// elevator's effect is not told from noise: the latency stays the assumed one.
+const SLOWEST_MEASURED: f64 = 1.25;
 /// A latency above the first is reported until it is below the second, s.
 const LATE_S: (f64, f64) = (0.12, 0.1);
 
@@ -26,15 +31,19 @@ pub(super) struct Actuation {
     oscillation: OscillationMonitor,
     inverse: PlayInverse,
     is_late: bool,
+    /// The loops' own unit of time: 1 over the pace of the configuration.
+    unit: f64,
 }
 
 impl Actuation {
-    pub(super) fn new(assumed_latency_s: f64) -> Self {
+    /// With the assumed latency, s, and the pace of the configuration.
+    pub(super) fn new(assumed_latency_s: f64, configured_pace: f64) -> Self {
         Self {
             elevator: ElevatorResponse::new(assumed_latency_s),
             oscillation: OscillationMonitor::new(),
             inverse: PlayInverse::new(0.0),
             is_late: false,
+            unit: 1.0 / configured_pace,
         }
     }
 
@@ -48,17 +57,25 @@ impl Actuation {
 
     /// One step with what was sent before.
     pub(super) fn follow(&mut self, sent: &Surfaces, estimate: &Estimate, dt_s: f64) {
-        self.elevator.step(sent.elevator, estimate, dt_s);
         self.oscillation.step(sent, estimate, dt_s);
+        if self.unit <= SLOWEST_MEASURED {
+            self.elevator.step(sent.elevator, estimate, dt_s);
+        }
         let (late_s, timely_s) = LATE_S;
         let latency_s = self.elevator.latency_s();
         self.is_late = latency_s > if self.is_late { timely_s } else { late_s };
     }
 
-    /// The part of the loops' bandwidth that latency and oscillation leave.
-    pub(super) fn pace(&self) -> f64 {
-        let excess_s = (self.elevator.latency_s() - TUNED_FOR_S).max(0.0);
-        let pace = OWN_S / (OWN_S + excess_s) * self.oscillation.pace();
+    /// The schedule with the part of the loops' bandwidth that latency and
+    /// oscillation leave.
+    pub(super) fn slowed(&self, schedule: Schedule) -> Schedule {
+        schedule.slowed(self.pace(PITCH_TUNED_FOR_S), self.pace(ROLL_TUNED_FOR_S))
+    }
+
+    fn pace(&self, tuned_for_s: f64) -> f64 {
+        let excess_s = (self.elevator.latency_s() - tuned_for_s * self.unit).max(0.0);
+        let own_s = OWN_S * self.unit;
+        let pace = own_s / (own_s + excess_s) * self.oscillation.pace();
         limit(pace, LEAST_PACE, 1.0)
     }
 

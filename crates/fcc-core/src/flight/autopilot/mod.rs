@@ -124,7 +124,7 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
-            actuation: Actuation::new(config.assumed_latency_s),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -144,11 +144,10 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        Schedule::at(
+        self.actuation.slowed(Schedule::at(
             self.navigation.estimate().airspeed_mps,
             self.config.reference_airspeed_mps,
-        )
-        .slowed(self.actuation.pace())
+        ))
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {

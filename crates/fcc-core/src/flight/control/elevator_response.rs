@@ -5,9 +5,9 @@ use crate::blocks::HighPass;
 use crate::flight::navigation::Estimate;
 
 /// The number of delays compared, one sample each.
-const DELAYS: usize = 8;
+const DELAYS: usize = 12;
 /// The widths of play compared, in the elevator's units of -1 to 1.
-const PLAYS: [f64; 5] = [0.0, 0.03, 0.06, 0.09, 0.12];
+const PLAYS: [f64; 4] = [0.0, 0.06, 0.09, 0.12];
 /// Samples are at least this far apart, s.
 const LEAST_PERIOD_S: f64 = 0.02;
 /// After a longer gap the memory begins anew, s.
@@ -24,9 +24,15 @@ const FIRST_AFTER: u32 = 120;
 const LEAST_MOTION: f64 = 1e-3;
 /// The part of it that the elevator must explain.
 const LEAST_EXPLAINED: f64 = 0.05;
-/// Play is believed if it leaves less than this part of what is unexplained
-/// without it.
-const PLAY_IS_BETTER: f64 = 0.96;
+/// Another model is believed if it leaves less than this part of what the
+/// present one leaves unexplained.
+const BETTER: f64 = 0.94;
+/// One with play, if it leaves less than this part of what the best one without
+/// play does, and the elevator explains at least this part of all.
+const PLAY_IS_BETTER: f64 = 0.94;
+const PLAY_EXPLAINS: f64 = 0.25;
+/// Play is no longer believed if a model without it leaves less than this part.
+const NO_PLAY_IS_BETTER: f64 = 0.9;
 /// The part of a change that is adopted at each comparison.
 const ADOPTED: f64 = 0.25;
 
@@ -131,7 +137,7 @@ impl Explained {
 /// section 6.3), fitted by least squares with exponential forgetting (Åström
 /// and Wittenmark 1995, section 2.2). A servo's lag appears as delay. Flight in
 /// which the elevator has no visible effect, calm or in turbulence, changes
-/// nothing. A play is 0.12 at most, a delay eight samples.
+/// nothing. A play is 0.12 at most, a delay eleven samples.
 ///
 /// ```
 /// use fcc_core::flight::control::ElevatorResponse;
@@ -145,6 +151,8 @@ pub struct ElevatorResponse {
     assumed_s: f64,
     latency_s: f64,
     play: f64,
+    /// The width of play and the delay in samples of the model that is believed.
+    believed: (f64, f64),
     /// Since the last sample, s.
     elapsed_s: f64,
     /// Mean time between samples, s.
@@ -165,6 +173,7 @@ impl ElevatorResponse {
             assumed_s,
             latency_s: assumed_s,
             play: 0.0,
+            believed: (0.0, 0.0),
             elapsed_s: 0.0,
             period_s: LEAST_PERIOD_S,
             samples: 0,
@@ -210,10 +219,15 @@ impl ElevatorResponse {
         let angle = estimate.pitch_rad - path;
         let (rate_before, angle_before) = core::mem::replace(&mut self.before, (rate, angle));
         if self.samples == 0 || period_s > LONGEST_PERIOD_S {
-            let (assumed_s, latency_s, play) = (self.assumed_s, self.latency_s, self.play);
-            *self = Self::new(assumed_s);
-            (self.latency_s, self.play) = (latency_s, play);
-            (self.period_s, self.samples, self.before) = (period_s, 1, (rate, angle));
+            *self = Self {
+                latency_s: self.latency_s,
+                play: self.play,
+                believed: self.believed,
+                period_s,
+                samples: 1,
+                before: (rate, angle),
+                ..Self::new(self.assumed_s)
+            };
             for play in &mut self.plays {
                 play.position = elevator;
             }
@@ -266,38 +280,49 @@ impl ElevatorResponse {
         }
     }
 
-    /// Compares the models, and adopts a part of what the best one says.
+    /// Compares the models, and follows the one that is believed.
     fn compare(&mut self) {
         let explained = self.motion.explains();
-        // What is left, the width and the delay: without play, and of all.
-        let mut without = (explained.left, 0.0, 0.0);
-        let mut best = without;
+        let (believed_width, believed_delay) = self.believed;
+        let mut present = explained.left;
+        let nothing = (explained.left, 0.0, 0.0);
+        let (mut with_play, mut without) = (nothing, nothing);
         for (play, width) in self.plays.iter().zip(PLAYS) {
+            let best = if width > 0.0 {
+                &mut with_play
+            } else {
+                &mut without
+            };
             let mut delay = 0.0;
             for sums in &play.sums {
                 delay += 1.0;
                 let left = explained.left_with(sums);
                 if left < best.0 {
-                    best = (left, width, delay);
+                    *best = (left, width, delay);
                 }
-                if width == 0.0 && left < without.0 {
-                    without = (left, width, delay);
+                if width == believed_width && delay == believed_delay {
+                    present = left;
                 }
             }
         }
-        let is_seen = explained.left > LEAST_MOTION
-            && explained.left - best.0 > LEAST_EXPLAINED * explained.left;
-        if !is_seen {
-            return;
-        }
-        let found = if best.0 < PLAY_IS_BETTER * without.0 {
-            best
+        let has_play = with_play.0 < PLAY_IS_BETTER * without.0
+            && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
+        let had_play = believed_width > 0.0 && NO_PLAY_IS_BETTER * present <= without.0;
+        let (left, width, delay) = if has_play || had_play {
+            with_play
         } else {
             without
         };
-        if found.2 > 0.0 {
-            self.latency_s += ADOPTED * (found.2 * self.period_s - self.latency_s);
-            self.play += ADOPTED * (found.1 - self.play);
+        let is_seen = explained.left > LEAST_MOTION
+            && explained.left - left > LEAST_EXPLAINED * explained.left;
+        // The longest delay may stand for any longer one.
+        if is_seen && left < BETTER * present && delay < DELAYS as f64 {
+            self.believed = (width, delay);
+        }
+        let (width, delay) = self.believed;
+        if delay > 0.0 {
+            self.latency_s += ADOPTED * (delay * self.period_s - self.latency_s);
+            self.play += ADOPTED * (width - self.play);
         }
     }
 }

@@ -20,8 +20,10 @@ pub struct Schedule {
     /// For rates: at a given deflection the turn rate is proportional to
     /// airspeed, so this is V₀/V.
     pub rate: f64,
-    /// The bandwidth of all loops, 1 or less: see [`Schedule::slowed`].
+    /// The bandwidth of the altitude loop, 1 or less: see [`Schedule::slowed`].
     pub pace: f64,
+    /// The bandwidth of the lateral loops, 1 or less, likewise.
+    pub lateral_pace: f64,
     /// The bandwidth of the pitch loops. The short period's frequency is
     /// proportional to airspeed (Etkin and Reid 1996, section 6.3), so this is
     /// V/V₀, times `pace`.
@@ -52,27 +54,30 @@ impl Schedule {
             moment: ratio * ratio,
             rate: ratio,
             pace: 1.0,
+            lateral_pace: 1.0,
             pitch_pace: (1.0 / ratio).min(MAX_PITCH_PACE),
             path: ratio.min(1.0),
         }
     }
 
-    /// The same with the bandwidth of all loops multiplied by `pace`: a loop's
-    /// phase margin is kept at more latency if its crossover frequency is
-    /// proportional to 1/latency.
+    /// The same with the bandwidth of altitude and pitch multiplied by `pace`,
+    /// that of heading, roll and yaw by `lateral`: a loop's phase margin is
+    /// kept at more latency if its crossover frequency is proportional to
+    /// 1/latency.
     ///
     /// ```
     /// use fcc_core::flight::control::Schedule;
     ///
-    /// let halved = Schedule::at(50.0, 50.0).slowed(0.5);
-    /// assert_eq!((halved.pitch_pace, halved.moment), (0.5, 1.0));
+    /// let halved = Schedule::at(50.0, 50.0).slowed(0.5, 1.0);
+    /// assert_eq!((halved.pitch_pace, halved.lateral_pace), (0.5, 1.0));
     /// ```
     #[must_use]
-    pub fn slowed(self, pace: f64) -> Self {
+    pub fn slowed(self, pace: f64, lateral: f64) -> Self {
         Self {
             pace: self.pace * pace,
             pitch_pace: self.pitch_pace * pace,
             path: self.path * pace,
+            lateral_pace: self.lateral_pace * lateral,
             ..self
         }
     }
