@@ -1,4 +1,4 @@
-"""The commands `suite`, `margins`, `tune` and `soak`."""
+"""The commands `suite`, `margins`, `tune` and `soak`, and `campaign` of its package."""
 
 from __future__ import annotations
 
@@ -6,38 +6,16 @@ import argparse
 import fnmatch
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
 from .aircraft import AIRCRAFT
+from .campaign import command as campaign
+from .progress import bar
 from .soak import Soak, soak
 
 _LARGEST_SEEDS = 1_000
 _AXES = ("elevator", "aileron", "rudder", "throttle")
-
-
-@contextmanager
-def _bar(what: str, total: int) -> Iterator[Any]:
-    """Yield a function that shows progress; without output if there is no terminal."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-    )
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(what, total=total)
-
-        def notify(done: int, doing: str) -> None:
-            progress.update(task, completed=done, description=doing)
-
-        yield notify
 
 
 def seeds(text: str) -> tuple[int, ...]:
@@ -101,6 +79,7 @@ def add(commands: Any) -> None:
     margins.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     margins.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
     margins.set_defaults(run=_margins)
+    campaign.add(commands)
 
     tune = commands.add_parser("tune", help="search gains for an aircraft")
     tune.add_argument(
@@ -170,7 +149,7 @@ def _suite(options: argparse.Namespace) -> int:
         names = "\n  ".join(case.name for case in cases())
         raise ValueError(f"--only '{options.only}' matches no case; there are:\n  {names}")
     flown = {}
-    with _bar("flying", len(chosen)) as notify:
+    with bar("flying", len(chosen)) as notify:
         for outcome in fly_all(chosen, options.workers):
             flown[outcome.case.name] = outcome
             notify(len(flown), outcome.case.name)
@@ -201,7 +180,7 @@ def _margins(options: argparse.Namespace) -> int:
         for axis in options.axes.split(",")
     ]
     measured = []
-    with _bar("measuring", len(conditions)) as notify:
+    with bar("measuring", len(conditions)) as notify:
         for found in margins.measure_all(conditions, options.workers):
             measured.append(found)
             notify(len(measured), found.condition.aircraft)
@@ -233,10 +212,10 @@ def _tune(options: argparse.Namespace) -> int:
     workers = (
         tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
     )
-    with workers as fly_all, _bar("tuning", task.evaluations) as bar:
+    with workers as fly_all, bar("tuning", task.evaluations) as show:
 
         def notify(flown: int, least: float) -> None:
-            bar(min(flown, task.evaluations), f"cost {least:.3f}")
+            show(min(flown, task.evaluations), f"cost {least:.3f}")
 
         found = tuning.tune(task, fly_all, notify)
     head = (
@@ -260,8 +239,8 @@ def _soak(options: argparse.Namespace) -> int:
     if seconds <= 0.0:
         raise ValueError("--minutes: give more than 0")
     task = Soak(options.fccd, seconds, options.rate, not options.idle)
-    with _bar("flying", round(seconds)) as bar:
-        result = soak(task, lambda flown_s: bar(round(flown_s), "flying"))
+    with bar("flying", round(seconds)) as show:
+        result = soak(task, lambda flown_s: show(round(flown_s), "flying"))
     late, machine = result.lateness_us, result.machine
     rows = {
         "ticks": f"{result.ticks}, {result.missed} missed, "

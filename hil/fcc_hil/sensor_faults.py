@@ -39,8 +39,12 @@ class Kind(Enum):
     """A constant is added."""
     NOISE = "noise"
     """White noise is added; the amount is one standard deviation."""
+    ROUND = "round"
+    """Its values are multiples of the amount."""
     NAN = "nan"
     """It returns NaN."""
+    SLOW = "slow"
+    """It gives one value in so many seconds."""
     DELAY = "delay"
     """Values are late by so many seconds; none until the first arrives."""
     DUPLICATE = "duplicate"
@@ -66,7 +70,7 @@ class SensorFault:
     begins_s: float
     ends_s: float = math.inf
     amount: float = 0.0
-    """Of bias and noise in SI units, of delay in s."""
+    """Of bias, noise and steps in SI units, of delay and the time between values in s."""
     share: float = 1.0
     """The share of the samples of a loss, duplication or reordering, 0..1."""
     words: str = ""
@@ -132,6 +136,7 @@ class _Running:
         self._random = np.random.default_rng(fault.seed)
         self._kept: _Values | None = None
         self._late: deque[tuple[float, _Values]] = deque()
+        self._next_s = -math.inf
         self._act: Callable[[float, _Values], _Values] = getattr(self, f"_{fault.kind.value}")
 
     def draw(self) -> bool:
@@ -154,6 +159,20 @@ class _Running:
             name: _add(name, value, self.fault.amount * self._random.standard_normal())
             for name, value in values.items()
         }
+
+    def _round(self, _time_s: float, values: _Values) -> _Values:
+        step = self.fault.amount
+        return {
+            name: None if value is None else _in_range(name, round(value / step) * step)
+            for name, value in values.items()
+        }
+
+    def _slow(self, time_s: float, values: _Values) -> _Values:
+        # Slightly early: sums of ticks and of frames are not exact.
+        if time_s < self._next_s - 1e-6:
+            return dict.fromkeys(values)
+        self._next_s = max(self._next_s, time_s) + self.fault.amount
+        return values
 
     def _nan(self, _time_s: float, values: _Values) -> _Values:
         return dict.fromkeys(values, math.nan)
@@ -184,9 +203,11 @@ class _Running:
 
 
 def _add(channel: str, value: float | None, amount: float) -> float | None:
-    if value is None:
-        return None
-    return wrap_heading_rad(value + amount) if channel == "heading_rad" else value + amount
+    return None if value is None else _in_range(channel, value + amount)
+
+
+def _in_range(channel: str, value: float) -> float:
+    return wrap_heading_rad(value) if channel == "heading_rad" else value
 
 
 class Faults:
@@ -283,6 +304,34 @@ class Faults:
         if sigma < 0.0:
             raise ValueError(f"sigma is {sigma:g}: a standard deviation is at least 0")
         return self._add(Kind.NOISE, sensor, after, lasts, by=sigma)
+
+    def round(
+        self,
+        sensor: Quantity | str,
+        *,
+        to: float,
+        after: float = 0.0,
+        lasts: float | None = None,
+    ) -> SensorFault:
+        """Round its values to multiples of `to`, in its unit."""
+        to = finite("to", to)
+        if to <= 0.0:
+            raise ValueError(f"to is {to:g}: give a step above 0")
+        return self._add(Kind.ROUND, sensor, after, lasts, by=to)
+
+    def slow(
+        self,
+        sensor: Quantity | str,
+        *,
+        to_hz: float,
+        after: float = 0.0,
+        lasts: float | None = None,
+    ) -> SensorFault:
+        """Let it give no more than `to_hz` values a second."""
+        to_hz = finite("to_hz", to_hz)
+        if not 1.0 / _LONGEST_DELAY_S <= to_hz <= 1_000.0:
+            raise ValueError(f"to_hz is {to_hz:g}: give 1/60 to 1000 values a second")
+        return self._add(Kind.SLOW, sensor, after, lasts, amount=1.0 / to_hz)
 
     def end(self, fault: SensorFault | None = None) -> None:
         """End a fault now, or all of them."""

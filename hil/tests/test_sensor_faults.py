@@ -51,6 +51,8 @@ def _said(level: State, break_it: Break, samples: int = 6) -> list[float | None]
         (lambda f: f.duplicate(altitude, after=1), [0, 1, 1, 2, 3, 4]),
         (lambda f: f.reorder(altitude), [None, 0, None, 2, None, 4]),
         (lambda f: f.noise(altitude, sigma=0), [0, 1, 2, 3, 4, 5]),
+        (lambda f: f.round(altitude("m"), to=4), [0, 0, 0, 4, 4, 4]),
+        (lambda f: f.slow(altitude, to_hz=0.5), [0, None, 2, None, 4, None]),
         (lambda f: (f.delay(altitude, by=1), f.bias(altitude("m"), by=7)), [None, 7, 8, 9, 10, 11]),
         (lambda f: (f.loss(altitude), f.end()), [0, 1, 2, 3, 4, 5]),
     ],

@@ -8,6 +8,7 @@ mod cockpit;
 mod event_texts;
 mod faults;
 mod flying;
+mod future;
 mod link_loss;
 mod other_control;
 mod resuming;

@@ -171,9 +171,22 @@ section! {
         max_climb_fpm => max_climb_mps * FOOT_PER_MINUTE_MPS,
         /// Largest descent rate.
         max_sink_fpm => max_sink_mps * FOOT_PER_MINUTE_MPS,
-        /// Within this margin of an airspeed limit the climb limits are
-        /// reduced.
+        /// Commanded airspeeds keep this margin from both limits.
         airspeed_margin_kt => airspeed_margin_mps * KNOT_MPS,
+        /// Stalling speed, clean, without power, at the heaviest weight flown.
+        stall_airspeed_kt => stall_airspeed_mps * KNOT_MPS,
+        /// Airspeed of the longest glide.
+        best_glide_airspeed_kt => best_glide_airspeed_mps * KNOT_MPS,
+        /// Manoeuvring speed, Va.
+        maneuvering_airspeed_kt => maneuvering_airspeed_mps * KNOT_MPS,
+        /// Never-exceed speed, Vne.
+        never_exceed_airspeed_kt => never_exceed_airspeed_mps * KNOT_MPS,
+        /// Limit load factor of the structure.
+        limit_load_factor_g => limit_load_factor * SI,
+        /// The same, negative.
+        limit_negative_load_factor_g => limit_negative_load_factor * SI,
+        /// Largest angle of attack, below that of the stall.
+        max_angle_of_attack_deg => max_angle_of_attack_rad * DEGREE_RAD,
     }
 }
 

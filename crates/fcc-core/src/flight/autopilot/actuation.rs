@@ -14,7 +14,7 @@ const PITCH_TUNED_FOR_S: f64 = 0.08;
 const ROLL_TUNED_FOR_S: f64 = 0.12;
 /// The time constant of the loops themselves, s: their bandwidth is
 /// proportional to 1/(this + the latency in excess of what they are tuned for).
-const OWN_S: f64 = 0.15;
+const OWN_S: f64 = 0.2;
 /// The least part of the bandwidth: with less, the outer loops are no longer
 /// slower than the inner ones.
 const LEAST_PACE: f64 = 0.35;

@@ -8,6 +8,8 @@ use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
 use crate::framework::Flags;
 
+use super::FailsafeConfig;
+
 /// The autopilot's configuration.
 ///
 /// ```
@@ -48,6 +50,8 @@ pub struct AutopilotConfig {
     /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE` and
     /// `FLY_BY_WIRE`.
     pub permitted: Flags,
+    /// How a flight goes on without a sensor, and how it ends.
+    pub failsafe: FailsafeConfig,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -76,6 +80,7 @@ impl Default for AutopilotConfig {
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             permitted: Flags::NONE,
+            failsafe: FailsafeConfig::default(),
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

@@ -4,8 +4,11 @@ mod actuation;
 mod capture;
 mod command;
 mod config;
+mod degraded;
 mod failsafe;
 pub mod flags;
+mod following;
+mod future;
 mod observe;
 mod other_control;
 mod plant_clock;
@@ -23,7 +26,10 @@ use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use degraded::Degraded;
 use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -31,7 +37,7 @@ use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
+use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
@@ -82,6 +88,7 @@ pub struct Autopilot {
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
+    replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
@@ -105,6 +112,8 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    degraded: Degraded,
+    following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
 }
@@ -114,7 +123,9 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -133,6 +144,8 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
             distrusted: Flags::NONE,
             config,
         }
@@ -144,16 +157,22 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        self.actuation.slowed(Schedule::at(
-            self.navigation.estimate().airspeed_mps,
-            self.config.reference_airspeed_mps,
-        ))
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.targets.airspeed_mps,
+            airspeed_mps: self
+                .config
+                .envelope
+                .least_target_mps(estimate)
+                .max(self.targets.airspeed_mps),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
@@ -195,31 +214,45 @@ impl Controller for Autopilot {
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         let estimate = self.navigation.estimate();
-        (self.unsafe_with(self.stale(tick.woke), measurements) | self.not_permitted(measurements))
-            .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
-            .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
-            .with(flags::PLANT_STALLED, self.clock.has_stopped())
-            .with(
-                flags::SETTLING,
-                self.watching_since.is_never()
-                    || tick.woke.since(self.watching_since) < self.config.settling,
-            )
-            .with(
-                flags::TOO_SLOW,
-                estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
-            )
-            .with(
-                flags::UPSET,
-                estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
-            )
+        (self.unsafe_with(self.stale(tick.woke), tick.woke, measurements)
+            | self.not_permitted(tick.woke, measurements))
+        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(
+            flags::SETTLING,
+            self.watching_since.is_never()
+                || tick.woke.since(self.watching_since) < self.config.settling,
+        )
+        .with(
+            flags::TOO_SLOW,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+        )
+        .with(
+            flags::UPSET,
+            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+        )
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(measurements)
+        self.unsafe_to_fly(tick.woke, measurements) | self.not_flyable(tick.woke, measurements)
     }
 
-    fn conditions(&self, _tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(measurements) | self.actuation.conditions()
+    fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
+        (self.external(tick.woke, measurements) | self.actuation.conditions())
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+    }
+
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -231,7 +264,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice()
+        self.clock.notice().or_else(|| self.degraded_notice())
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -241,6 +274,14 @@ impl Controller for Autopilot {
             plant_clock::LINK_LOST => write!(
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            degraded::GOOD_AGAIN => write!(
+                f,
+                "all is good again: back to what was flown {lasted_s:.1} s ago"
+            ),
+            degraded::GLIDES => write!(
+                f,
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
             _ => f.write_str("an unknown notice"),
         }
@@ -269,6 +310,7 @@ impl Controller for Autopilot {
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -357,6 +399,7 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.setpoints = Setpoints::default();
@@ -388,8 +431,7 @@ impl Controller for Autopilot {
         plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
-            self.config.max_age,
-            self.distrusted,
+            &self.gate_limits(),
         )
     }
 

@@ -1,16 +1,29 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
+use super::degraded::by_name;
+use super::future::{is_from_the_future, without_future};
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
-use crate::flight::navigation::{FrozenDetector, airspeed_can_follow, plausibility_gate};
+use crate::flight::navigation::{
+    FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
+};
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Readings, Tick, Time};
 
 impl Autopilot {
     /// Processes a tick's measurements.
     pub(super) fn observe(&mut self, tick: &Tick, measured: &Measurements) {
+        let now = tick.woke;
+        if is_from_the_future(measured, now) {
+            self.observe_present(tick, &without_future(*measured, now));
+        } else {
+            self.observe_present(tick, measured);
+        }
+    }
+
+    fn observe_present(&mut self, tick: &Tick, measured: &Measurements) {
         let now = tick.woke;
         self.clock.step(tick, measured);
         if self.clock.waiting() == Waiting::Replaying {
@@ -32,14 +45,35 @@ impl Autopilot {
             self.whereabouts.keep(&self.accepted);
         }
         let step_s = self.clock.step_s();
-        self.navigation.step(now, &self.accepted, step_s);
-        self.frozen
-            .step(now, &self.accepted, self.navigation.estimate(), step_s);
+        self.navigate(now, measured, step_s);
+        let known = self.navigation.known();
+        self.frozen.step(now, &self.accepted, &known, step_s);
         self.take_over_after_loss(now);
-        if self.watching_since.is_never() && self.stale(now).is_empty() {
+        self.take_over_unless_followed(now, self.config.max_age);
+        self.follow_failsafe(tick, measured);
+        // After an outage everything settles anew before it may engage.
+        if !self.stale(now).is_empty() {
+            self.watching_since = Time::NEVER;
+        } else if self.watching_since.is_never() {
             self.watching_since = now;
         }
         self.before = now;
+    }
+
+    /// Estimates the aircraft's state, in failsafe without what is lost.
+    fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+        let lost = by_name(self.lost(now, measured));
+        let estimate = *self.navigation.estimate();
+        self.replacement
+            .follow(&self.accepted, lost, &estimate, step_s);
+        if self.degraded.is_failsafe && lost != Lost::default() {
+            let left = self
+                .replacement
+                .without(&self.accepted, lost, &estimate, now);
+            self.navigation.step(now, &left, step_s);
+        } else {
+            self.navigation.step(now, &self.accepted, step_s);
+        }
     }
 
     /// Follows where the aircraft is.
@@ -56,9 +90,9 @@ impl Autopilot {
     /// Accepts the plausible measurements of a tick, after the gap that ended
     /// in it, if one did.
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
-        let max_age = self.config.max_age;
+        self.move_distrusted();
         let Some(gap) = self.clock.gap() else {
-            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
+            self.pass_gate(measured);
             return;
         };
         // What arrives in this tick is later than all before.
@@ -70,7 +104,7 @@ impl Autopilot {
             let airspeed = self.accepted.airspeed_mps;
             self.accepted = Measurements::default();
             let distrusted = core::mem::take(&mut self.distrusted);
-            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
+            self.pass_gate(measured);
             let passed_s = self.clock.passed_s();
             if !airspeed_can_follow(&airspeed, &self.accepted.airspeed_mps, passed_s) {
                 self.accepted.airspeed_mps = airspeed;
@@ -83,10 +117,25 @@ impl Autopilot {
         if gap.settles_anew {
             self.settle_anew(tick);
         } else {
-            plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
+            self.pass_gate(measured);
         }
         if gap.ran_on {
             self.heading.lead_from(self.setpoints.roll_rad);
+        }
+    }
+
+    /// Accepts the plausible ones of a tick's measurements.
+    fn pass_gate(&mut self, measured: &Measurements) {
+        let limits = self.gate_limits();
+        plausibility_gate(&mut self.accepted, measured, &limits);
+    }
+
+    /// By what measurements are judged at present.
+    pub(super) const fn gate_limits(&self) -> GateLimits {
+        GateLimits {
+            max_age: self.config.max_age,
+            distrusted: self.distrusted,
+            altitude_step_m: self.navigation.resolutions().altitude_step_m,
         }
     }
 
@@ -129,8 +178,7 @@ impl Autopilot {
     fn start_anew(&mut self, measured: &Measurements) {
         self.accepted = Measurements::default();
         self.distrusted = Flags::NONE;
-        let max_age = self.config.max_age;
-        plausibility_gate(&mut self.accepted, measured, max_age, self.distrusted);
+        self.pass_gate(measured);
         self.navigation.reset(&self.config.navigation);
         self.frozen = FrozenDetector::new(self.config.frozen_after.as_secs_f64());
         self.watching_since = Time::NEVER;

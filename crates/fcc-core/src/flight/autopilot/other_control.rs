@@ -1,10 +1,11 @@
 //! What else acts on the aircraft, and what its source contradicts: reported in
 //! flight, and mostly a reason not to engage.
 
+use super::future::is_from_the_future;
 use super::{Autopilot, flags};
 use crate::flight::navigation::airspeed_is_suspect;
 use crate::flight::{Measurements, PlantState};
-use crate::framework::Flags;
+use crate::framework::{Flags, Time};
 
 /// Reported, but no reason not to engage: many aircraft have a yaw damper that
 /// is always on, and are flown through it.
@@ -17,7 +18,7 @@ const NOT_FLYABLE: Flags =
 
 impl Autopilot {
     /// The conditions that are reported while engaged.
-    pub(super) fn external(&self, measurements: &Measurements) -> Flags {
+    pub(super) fn external(&self, now: Time, measurements: &Measurements) -> Flags {
         let other = measurements.other_control.value;
         Flags::NONE
             .with(flags::OTHER_AUTOPILOT, other.autopilot)
@@ -28,16 +29,22 @@ impl Autopilot {
             .with(flags::REVERSE_THRUST, other.reverse_thrust)
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
             .with(flags::SUSPECT_AIRSPEED, airspeed_is_suspect(measurements))
+            .with(flags::NOT_FOLLOWED, self.is_not_followed())
+            .with(flags::DEGRADED, self.is_degraded())
+            .with(
+                flags::FROM_THE_FUTURE,
+                is_from_the_future(measurements, now),
+            )
     }
 
     /// Those that prevent engaging.
-    pub(super) fn not_permitted(&self, measurements: &Measurements) -> Flags {
+    pub(super) fn not_permitted(&self, now: Time, measurements: &Measurements) -> Flags {
         let allowed = HARMLESS | self.config.permitted;
-        Flags::from_bits(self.external(measurements).bits() & !allowed.bits())
+        Flags::from_bits(self.external(now, measurements).bits() & !allowed.bits())
     }
 
     /// Those that end a flight.
-    pub(super) fn not_flyable(&self, measurements: &Measurements) -> Flags {
-        Flags::from_bits(self.external(measurements).bits() & NOT_FLYABLE.bits())
+    pub(super) fn not_flyable(&self, now: Time, measurements: &Measurements) -> Flags {
+        Flags::from_bits(self.external(now, measurements).bits() & NOT_FLYABLE.bits())
     }
 }

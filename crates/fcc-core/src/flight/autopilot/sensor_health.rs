@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use super::future::is_from_the_future;
 use super::plant_clock::Waiting;
 use super::{Autopilot, flags};
 use crate::flight::{Measurements, PlantState};
@@ -89,16 +90,23 @@ impl Autopilot {
         } else {
             self.too_old(&self.accepted)
         };
-        self.unsafe_with(stale, measurements)
+        self.unsafe_with(stale, now, measurements)
     }
 
     /// What prevents both engaging and staying engaged, with these readings too
     /// old.
-    pub(super) fn unsafe_with(&self, stale: Flags, measurements: &Measurements) -> Flags {
+    pub(super) fn unsafe_with(
+        &self,
+        stale: Flags,
+        now: Time,
+        measurements: &Measurements,
+    ) -> Flags {
         let switch = self.accepted.engage_switch;
         let rejected = !self.rejected(measurements).is_empty();
+        let is_lost_to_the_future = !stale.is_empty() && is_from_the_future(measurements, now);
         (stale | self.frozen() | self.is_elsewhere())
             .with(flags::REJECTED, rejected)
+            .with(flags::FROM_THE_FUTURE, is_lost_to_the_future)
             .with(flags::PLANT_STALLED, self.clock.is_ignored())
             .with(
                 flags::ENGAGE_SWITCH,

@@ -26,6 +26,12 @@ const STILL_ALTITUDE_M: f64 = 8.0;
 const STILL_POSITION_M: f64 = 30.0;
 
 impl Position {
+    /// Whether it is a position on the Earth; false for NaN.
+    pub(crate) fn is_on_earth(&self) -> bool {
+        self.latitude_rad.abs() <= core::f64::consts::FRAC_PI_2
+            && self.longitude_rad.abs() <= core::f64::consts::TAU
+    }
+
     /// Whether an aircraft can have flown here from `before` in this time: 150 m,
     /// three seconds of a light aircraft's flight, for positions that arrive
     /// late, and 450 m/s, the speed of sound with a jet stream from behind.
@@ -40,8 +46,8 @@ impl Position {
     /// assert!(mile.can_be_reached(&milwaukee, 4.0));
     /// ```
     pub fn can_be_reached(&self, before: &Self, passed_s: f64) -> bool {
-        is_possible(before)
-            && is_possible(self)
+        before.is_on_earth()
+            && self.is_on_earth()
             && POSITION_M.holds_over(distance_m(before, self), passed_s)
     }
 }
@@ -71,7 +77,7 @@ impl Whereabouts {
         self.was_relocated = after_gap && self.is_another(measured, passed_s);
         self.passed_s += passed_s;
         let new = measured.position;
-        if new.taken <= self.seen || !is_possible(&new.value) {
+        if new.taken <= self.seen || !new.value.is_on_earth() {
             return;
         }
         self.seen = new.taken;
@@ -148,12 +154,6 @@ impl Whereabouts {
             .count()
             >= 2
     }
-}
-
-/// Whether a position is on the Earth; false for NaN.
-fn is_possible(position: &Position) -> bool {
-    position.latitude_rad.abs() <= core::f64::consts::FRAC_PI_2
-        && position.longitude_rad.abs() <= core::f64::consts::TAU
 }
 
 /// The distance over the ground of two positions, m; on a flat Earth, which is

@@ -2,7 +2,7 @@
 
 use libm::{asin, cos, sin, tan};
 
-use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
+use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule, SpeedLimits};
 use crate::blocks::{LowPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
@@ -63,25 +63,6 @@ impl Default for AltitudeConfig {
     }
 }
 
-/// Limits of the climb rate, m/s; if they conflict, the upper one applies,
-/// since too slow is more dangerous than too fast.
-///
-/// ```
-/// use fcc_core::flight::control::{ClimbLimits, Envelope};
-///
-/// // At 100 kt a Cessna 172 is far from either limit: 965 ft/min up and down.
-/// let limits: ClimbLimits = Envelope::default().climb_limits(51.4);
-/// assert!((limits.max_mps * 196.85 - 965.0).abs() < 0.1);
-/// assert!((limits.min_mps + limits.max_mps).abs() < 1e-12);
-/// ```
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct ClimbLimits {
-    /// Fastest climb.
-    pub max_mps: f64,
-    /// Fastest descent, a negative number.
-    pub min_mps: f64,
-}
-
 /// The commands of the altitude loop.
 ///
 /// ```
@@ -127,9 +108,13 @@ pub struct AltitudeLoop {
     climb_rate: RateLimit,
     /// The flight-path angle expected now from the past commands, rad.
     expected_path: LowPass,
+    speed: SpeedLimits,
     pitch: Pid,
     pitch_rate: Pid,
 }
+
+/// How fast the angle of attack approaches its limit, 1/s.
+const ANGLE_OF_ATTACK_GAIN_PER_S: f64 = 2.0;
 
 impl AltitudeLoop {
     /// A loop that is not engaged.
@@ -138,6 +123,7 @@ impl AltitudeLoop {
             config,
             climb_rate: RateLimit::new(config.climb_acceleration_mps2),
             expected_path: LowPass::new(config.flight_path_lag_s),
+            speed: SpeedLimits::new(),
             pitch: Pid::new(PidConfig {
                 kp: config.climb_rate_gain,
                 ki: config.climb_rate_integral_gain_per_s,
@@ -158,6 +144,7 @@ impl AltitudeLoop {
         let path = flight_path(estimate.climb_rate_mps, estimate);
         self.climb_rate.reset(estimate.climb_rate_mps);
         self.expected_path.reset(path);
+        self.speed = SpeedLimits::new();
         self.pitch.engage(
             estimate.pitch_rad,
             path,
@@ -198,14 +185,18 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
-        let limits = envelope.climb_limits(estimate.airspeed_mps);
-        let wanted = limit(climb_rate_mps, limits.min_mps, limits.max_mps);
+        let wanted = limit(
+            climb_rate_mps,
+            -envelope.max_sink_mps,
+            envelope.max_climb_mps,
+        );
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
         let expected = self.expected_path.step(path, schedule.path * dt_s);
         // The gain acts on the whole error, the integral only on the part not
         // explained by the lag.
         let ahead = schedule.path * self.config.climb_rate_gain * (path - expected);
+        self.limit_pitch(estimate, envelope, dt_s);
         let pitch_rad = self.pitch.step_scheduled(
             expected,
             flight_path(estimate.climb_rate_mps, estimate),
@@ -223,26 +214,50 @@ impl AltitudeLoop {
         )
     }
 
-    /// One step towards the pitch expected for level flight, if altitude and
-    /// climb rate are not known.
-    pub fn hold_level_pitch(
+    /// One step towards the pitch expected for a flight path (rad, up) at the
+    /// airspeed of the schedule `trimmed`, if the climb rate is not known.
+    pub fn hold_path_pitch(
         &mut self,
+        path_rad: f64,
+        trimmed: Schedule,
         estimate: &Estimate,
         envelope: &Envelope,
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
-        let pitch_rad = limit(
-            self.angle_of_attack(estimate, schedule) + self.pitch.integral(),
-            envelope.min_pitch_rad,
-            envelope.max_pitch_rad,
-        );
-        self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
+        self.limit_pitch(estimate, envelope, dt_s);
+        let level = self.angle_of_attack(estimate, trimmed) + self.pitch.integral();
+        let pitch_rad = self.pitch.limited(path_rad + level);
+        let climb_rate_mps = estimate.true_airspeed_mps * sin(path_rad);
+        self.hold(
+            climb_rate_mps,
+            pitch_rad,
+            estimate,
+            envelope,
+            schedule,
+            dt_s,
+        )
+    }
+
+    /// Whether energy is short for both height and airspeed: the airspeed is
+    /// held, and height is given up.
+    pub const fn gives_up_height(&self) -> bool {
+        self.speed.is_short()
     }
 
     /// The elevator trim that the loop has found.
     pub const fn trim(&self) -> f64 {
         self.pitch_rate.integral()
+    }
+
+    /// Limits the pitch to that at which the airspeed stays within its limits.
+    fn limit_pitch(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) {
+        let limits = self.speed.step(estimate, envelope, dt_s);
+        let (least, most) = (envelope.min_pitch_rad, envelope.max_pitch_rad);
+        self.pitch.set_output_limits(
+            limit(limits.min_rad, least, most),
+            limit(limits.max_rad, least, most),
+        );
     }
 
     fn hold(
@@ -254,6 +269,7 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
+        self.speed.commanded(pitch_rad, dt_s);
         let config = &self.config;
         let speed = estimate.true_airspeed_mps.max(1.0);
         let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
@@ -266,8 +282,17 @@ impl AltitudeLoop {
         let turn_rate = GRAVITY_MPS2 / speed * tan(bank);
         let turn_pitch_rate = turn_rate * cos(estimate.pitch_rad) * sin(bank);
         // Load factor in excess of 1 is about V q / g.
-        let most = GRAVITY_MPS2 / speed * (envelope.max_load_factor - cos(bank)).max(0.1);
-        let pitch_rate = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        let per_load = GRAVITY_MPS2 / speed;
+        let most = per_load * (envelope.max_load_factor - cos(bank)).max(0.1);
+        let wanted = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        // α̇ = q - (n - cos φ) g/V: the pitch rate at which the angle of attack
+        // approaches its limit and does not exceed it.
+        let spare_rad = envelope.max_angle_of_attack_rad - estimate.angle_of_attack_rad;
+        let kept = per_load * (estimate.load_factor - cos(bank));
+        let pitch_rate = wanted.min(limit_abs(
+            ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept,
+            2.0 * config.max_pitch_rate_radps,
+        ));
         let elevator = self.pitch_rate.step_scheduled(
             pitch_rate,
             estimate.body_rates.pitch_radps,

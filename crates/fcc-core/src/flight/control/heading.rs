@@ -201,7 +201,7 @@ impl HeadingLoop {
         // Coordinated turn: tan φ = V ψ̇ / g.
         let roll_rad = limit_abs(
             atan(speed / GRAVITY_MPS2 * profile.speed(error)),
-            envelope.bank_limit_rad(),
+            envelope.bank_limit_at_rad(estimate),
         );
         let roll_rad = self.led(roll_rad, dt_s);
         self.hold_bank(roll_rad, estimate, schedule, dt_s)

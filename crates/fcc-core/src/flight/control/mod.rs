@@ -21,15 +21,17 @@ mod heading;
 mod oscillation;
 mod play_inverse;
 mod schedule;
+mod speed_limits;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
-pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
 pub use elevator_response::ElevatorResponse;
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
 pub use oscillation::OscillationMonitor;
 pub use play_inverse::PlayInverse;
 pub use schedule::Schedule;
+pub use speed_limits::{PitchLimits, SpeedLimits};
 
 /// The largest bank for which a turn's load and rate are computed, rad.
 const MAX_TURN_BANK_RAD: f64 = 1.05;

@@ -157,3 +157,46 @@ impl OscillationMonitor {
         self.pace
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::BodyRates;
+
+    /// A sine of the pitch rate, °/s, with the elevator against it.
+    fn after(seconds: u32, frequency_hz: f64, amplitude_degps: f64) -> OscillationMonitor {
+        let mut monitor = OscillationMonitor::new();
+        for tick in 0..seconds * 40 {
+            let angle = core::f64::consts::TAU * frequency_hz * f64::from(tick) * 0.025;
+            let pitch_radps = amplitude_degps.to_radians() * libm::sin(angle);
+            let estimate = Estimate {
+                body_rates: BodyRates {
+                    pitch_radps,
+                    ..BodyRates::default()
+                },
+                ..Estimate::default()
+            };
+            let sent = Surfaces {
+                elevator: -pitch_radps,
+                ..Surfaces::default()
+            };
+            monitor.step(&sent, &estimate, 0.025);
+        }
+        monitor
+    }
+
+    #[test]
+    fn a_fast_oscillation_takes_gain_and_a_slow_one_is_reported_only() {
+        let fast = after(6, 1.5, 12.0);
+        assert!(fast.is_oscillating());
+        assert!(fast.pace() < 0.5);
+        let slow = after(12, 0.5, 12.0);
+        assert!(slow.is_oscillating());
+        assert_eq!(slow.pace(), 1.0);
+    }
+
+    #[test]
+    fn small_motion_is_no_oscillation() {
+        assert!(!after(20, 1.5, 3.0).is_oscillating());
+    }
+}

@@ -5,6 +5,7 @@ use core::time::Duration;
 use libm::{asin, cos, sin, sqrt};
 
 use super::attitude::Orientation;
+use super::resolution::Resolution;
 use super::vertical::VerticalState;
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, limit_abs};
@@ -36,7 +37,13 @@ use crate::units::GRAVITY_MPS2;
 pub struct AirspeedChannel {
     airspeed: Complementary,
     news: SampleTracker,
+    resolution: Resolution,
+    /// The acceleration that was integrated last, of the indicated airspeed, m/s².
+    felt_mps2: f64,
 }
+
+/// The coarsest airspeed sensor that is flown: 2 kt, m/s.
+const COARSEST_MPS: f64 = 1.03;
 
 /// Below this airspeed the flight-path angle is not computed, m/s.
 const MIN_AIRSPEED_MPS: f64 = 5.0;
@@ -50,7 +57,25 @@ impl AirspeedChannel {
         Self {
             airspeed: Complementary::new(tau_s),
             news: SampleTracker::new(),
+            resolution: Resolution::new(COARSEST_MPS),
+            felt_mps2: 0.0,
         }
+    }
+
+    /// What is known of the sensor's resolution.
+    pub(super) const fn resolution(&self) -> &Resolution {
+        &self.resolution
+    }
+
+    /// The acceleration along the flight path by the accelerometers, of the
+    /// indicated airspeed, m/s².
+    pub(super) const fn felt_mps2(&self) -> f64 {
+        self.felt_mps2
+    }
+
+    /// The sensor is the same as that of `other`.
+    pub(super) const fn keep_resolution(&mut self, other: &Self) {
+        self.resolution = other.resolution;
     }
 
     pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
@@ -78,15 +103,24 @@ impl AirspeedChannel {
             // Angle of attack, assuming still air.
             let alpha = limit_abs(orientation.pitch_rad - asin(sin_path), MAX_ALPHA_RAD);
             let along_path = force.x_mps2 * cos(alpha) + force.z_mps2 * sin(alpha);
-            self.airspeed
-                .predict((along_path - GRAVITY_MPS2 * sin_path) * sqrt_density, dt_s);
+            self.felt_mps2 = (along_path - GRAVITY_MPS2 * sin_path) * sqrt_density;
+            self.airspeed.predict(self.felt_mps2, dt_s);
+        } else {
+            self.felt_mps2 = 0.0;
         }
-        match self.news.of(&measurements.airspeed_mps, dt_s) {
+        let measured = measurements.airspeed_mps;
+        match self.news.of(&measured, dt_s) {
             NewSample::None => {}
-            NewSample::First => self.airspeed.reset(measurements.airspeed_mps.value),
-            NewSample::Next(since_s) => self
-                .airspeed
-                .correct(measurements.airspeed_mps.value, since_s),
+            NewSample::First => {
+                self.resolution.take(&measured, |is, was| is - was);
+                self.airspeed.reset(measured.value);
+            }
+            NewSample::Next(since_s) => {
+                self.resolution.take(&measured, |is, was| is - was);
+                let error = measured.value - self.airspeed.value();
+                let beyond = self.resolution.beyond(error);
+                self.airspeed.correct_by(beyond, since_s);
+            }
         }
         self.airspeed.value()
     }

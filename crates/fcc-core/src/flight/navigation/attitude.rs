@@ -4,6 +4,7 @@ use core::time::Duration;
 
 use libm::{cos, sin};
 
+use super::resolution::Resolution;
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::{Complementary, wrap_pi};
 use crate::flight::Measurements;
@@ -50,7 +51,11 @@ pub struct AttitudeChannel {
     heading: Complementary,
     attitude_news: SampleTracker,
     heading_news: SampleTracker,
+    heading_resolution: Resolution,
 }
+
+/// The coarsest heading that is flown: 2°, rad.
+const COARSEST_HEADING_RAD: f64 = 0.035;
 
 /// Near the vertical the heading is undefined; the rates are not divided by
 /// less than this cosine (about 80°).
@@ -65,7 +70,18 @@ impl AttitudeChannel {
             heading: Complementary::new(heading_tau_s),
             attitude_news: SampleTracker::new(),
             heading_news: SampleTracker::new(),
+            heading_resolution: Resolution::new(COARSEST_HEADING_RAD),
         }
+    }
+
+    /// What is known of the resolution of the heading's sensor.
+    pub(super) const fn heading_resolution(&self) -> &Resolution {
+        &self.heading_resolution
+    }
+
+    /// The sensor is the same as that of `other`.
+    pub(super) const fn keep_resolution(&mut self, other: &Self) {
+        self.heading_resolution = other.heading_resolution;
     }
 
     pub(super) fn postpone(&mut self, by: Duration, latest: Time) {
@@ -107,16 +123,20 @@ impl AttitudeChannel {
                 self.pitch.correct(attitude.value.pitch_rad, since_s);
             }
         }
-        match self.heading_news.of(&measurements.heading_rad, dt_s) {
+        let heading = measurements.heading_rad;
+        let sample = self.heading_news.of(&heading, dt_s);
+        if !matches!(sample, NewSample::None) {
+            self.heading_resolution
+                .take(&heading, |is, was| wrap_pi(is - was));
+        }
+        let error = wrap_pi(heading.value - self.heading.value());
+        match sample {
             NewSample::None => {}
-            NewSample::First => {
-                // Continue the present count of full turns.
-                let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
-                self.heading.reset(self.heading.value() + error);
-            }
+            // Continue the present count of full turns.
+            NewSample::First => self.heading.reset(self.heading.value() + error),
             NewSample::Next(since_s) => {
-                let error = wrap_pi(measurements.heading_rad.value - self.heading.value());
-                self.heading.correct_by(error, since_s);
+                let beyond = self.heading_resolution.beyond(error);
+                self.heading.correct_by(beyond, since_s);
             }
         }
         Orientation {

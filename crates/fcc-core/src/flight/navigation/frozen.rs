@@ -9,26 +9,30 @@
 //! altitude, a change of bank or pitch for airspeed and accelerometers. While
 //! nothing moves, a frozen sensor is not detected, and has no effect.
 //!
+//! The motion counts from the last change on, and must exceed the resolution of
+//! the sensor as well, which is the smallest change that it has ever shown. Of a
+//! coarse airspeed sensor a manoeuvre shows nothing, since an airspeed that is
+//! held stays within its step: what counts is the acceleration. Of a coarse
+//! altimeter it counts, too, since in rising air the pitch alone is wrong.
+//!
 //! The motion shown by other quantities is integrated with a leak, so that
 //! their small errors never add up to a motion. A sensor with any noise never
 //! repeats its bits, so that it cannot be reported by mistake.
+
+mod evidence;
 
 use core::time::Duration;
 
 use libm::{cos, sin};
 
-use super::Estimate;
 use super::attitude::MIN_COS_PITCH;
+use evidence::{LeakyIntegrator, StuckDetector};
+
+use super::{Estimate, Resolutions};
 use crate::blocks::wrap_pi;
 use crate::flight::Measurements;
 use crate::framework::Time;
 
-/// The least number of unchanged readings: a sensor with few readings per
-/// second repeats some of them.
-const FEWEST_REPEATS: u32 = 10;
-/// The time constant of the leak, s: gyroscopes off by 0.5 °/s, or a climb by
-/// 1.5 m/s, never reach the limits below.
-const LEAK_S: f64 = 10.0;
 /// The rotation that attitude, heading or gyroscopes must show, rad (5°): ten
 /// times the resolution of a coarse attitude sensor.
 const TURNED_RAD: f64 = 0.087;
@@ -38,6 +42,14 @@ const CLIMBED_M: f64 = 15.0;
 /// beyond those of a trimmed aircraft in calm air.
 const BANKED_RAD: f64 = 0.175;
 const PITCHED_RAD: f64 = 0.07;
+/// Steps of a fine airspeed sensor, m/s: 0.1 kt, by which the airspeed of an
+/// aircraft that banks or pitches changes.
+const FINE_AIRSPEED_MPS: f64 = 0.06;
+/// The change of airspeed that a coarse sensor must show, m/s: an error of the
+/// accelerations by 0.15 m/s² (0.9° of pitch) never reaches it.
+const ACCELERATED_MPS: f64 = 1.5;
+/// Steps of a fine altimeter, m: less than the barometer's noise.
+const FINE_ALTITUDE_M: f64 = 0.5;
 /// Unchanged means the same to the last bit, ...
 const EXACTLY: f64 = 0.0;
 /// ... except for a specific force computed from an acceleration over the
@@ -47,65 +59,6 @@ const SAME_FORCE_MPS2: f64 = 1e-3;
 /// The age up to which the climb rate is taken from the ground velocity;
 /// otherwise it is computed from the pitch.
 const CURRENT: Duration = Duration::from_millis(500);
-
-/// One quantity and how long it has been unchanged.
-#[derive(Clone, Copy, Debug)]
-struct StuckDetector<const N: usize> {
-    values: [f64; N],
-    taken: Time,
-    repeats: u32,
-    for_s: f64,
-    is_frozen: bool,
-}
-
-impl<const N: usize> StuckDetector<N> {
-    const fn new(values: [f64; N], taken: Time) -> Self {
-        Self {
-            values,
-            taken,
-            repeats: 0,
-            for_s: 0.0,
-            is_frozen: false,
-        }
-    }
-
-    /// Whether the value differs from the previous one by more than
-    /// `tolerance`; `dt_s` of the plant's time have passed.
-    fn has_changed(&mut self, values: [f64; N], tolerance: f64, taken: Time, dt_s: f64) -> bool {
-        let differs = |(is, was): (&f64, &f64)| (is - was).abs() > tolerance;
-        if taken.is_never() || values.iter().zip(&self.values).any(differs) {
-            *self = Self::new(values, taken);
-            return true;
-        }
-        if taken > self.taken {
-            self.taken = taken;
-            self.repeats = self.repeats.saturating_add(1);
-        }
-        self.for_s += dt_s;
-        false
-    }
-
-    /// Updates the result, given whether it must have changed. Once frozen it
-    /// stays frozen until it changes.
-    fn update(&mut self, must_have_changed: bool, after_s: f64) {
-        let lasts = self.for_s >= after_s && self.repeats >= FEWEST_REPEATS;
-        self.is_frozen |= lasts && must_have_changed;
-    }
-}
-
-/// An integrator with a leak.
-#[derive(Clone, Copy, Debug, Default)]
-struct LeakyIntegrator(f64);
-
-impl LeakyIntegrator {
-    fn add(&mut self, amount: f64, dt_s: f64) {
-        self.0 += amount - self.0 * (dt_s / LEAK_S).min(1.0);
-    }
-
-    fn exceeds(self, limit: f64) -> bool {
-        self.0.abs() > limit
-    }
-}
 
 /// Which of the quantities needed by control are frozen.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -120,6 +73,17 @@ pub(crate) struct Frozen {
     pub(crate) specific_force: bool,
     pub(crate) airspeed: bool,
     pub(crate) altitude: bool,
+}
+
+/// What navigation knows that the evidence needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Known {
+    pub(crate) estimate: Estimate,
+    /// The acceleration along the flight path, of the indicated airspeed, m/s².
+    pub(crate) felt_mps2: f64,
+    /// The vertical acceleration, up, m/s².
+    pub(crate) felt_up_mps2: f64,
+    pub(crate) resolutions: Resolutions,
 }
 
 /// Roll, pitch and heading, rad, or their rates.
@@ -142,14 +106,20 @@ pub(crate) struct FrozenDetector {
     /// Rotation by attitude and heading minus that by the gyroscopes, since the
     /// gyroscopes changed.
     unsaid: [LeakyIntegrator; 3],
-    /// Climb since the altitude changed.
+    /// Climb since the altitude changed, by the velocity or the pitch, and by the
+    /// vertical acceleration.
     climbed: LeakyIntegrator,
+    felt_climb: LeakyIntegrator,
+    /// The climb rate when the altitude changed, and what was felt since.
+    felt_climb_mps: f64,
     /// Climb rate minus the one computed from the pitch, when the altitude
     /// changed.
     climb_at_level_mps: f64,
     /// The attitude when specific force and airspeed changed.
     force_at: Angles,
     airspeed_at: Angles,
+    /// The change of airspeed by the accelerometers since it changed.
+    accelerated: LeakyIntegrator,
     /// The measured attitude and heading of the previous tick.
     before: Option<Angles>,
 }
@@ -167,25 +137,29 @@ impl FrozenDetector {
             force: StuckDetector::new([0.0; 3], Time::NEVER),
             airspeed: StuckDetector::new([0.0], Time::NEVER),
             altitude: StuckDetector::new([0.0], Time::NEVER),
-            turned: [LeakyIntegrator(0.0); 3],
-            unsaid: [LeakyIntegrator(0.0); 3],
-            climbed: LeakyIntegrator(0.0),
+            turned: [LeakyIntegrator::ZERO; 3],
+            unsaid: [LeakyIntegrator::ZERO; 3],
+            climbed: LeakyIntegrator::ZERO,
+            felt_climb: LeakyIntegrator::ZERO,
+            felt_climb_mps: 0.0,
             climb_at_level_mps: 0.0,
             force_at: [0.0; 3],
             airspeed_at: [0.0; 3],
+            accelerated: LeakyIntegrator::ZERO,
             before: None,
         }
     }
 
     /// Processes the measurements at `now`, `dt_s` seconds of the plant's time
-    /// after the last, and navigation's estimate.
+    /// after the last, and what navigation knows.
     pub(crate) fn step(
         &mut self,
         now: Time,
         measurements: &Measurements,
-        estimate: &Estimate,
+        navigation: &Known,
         dt_s: f64,
     ) {
+        let resolutions = &navigation.resolutions;
         if self.after_s <= 0.0 || dt_s <= 0.0 {
             return;
         }
@@ -199,9 +173,11 @@ impl FrozenDetector {
         let before = self.before.replace(angles).unwrap_or(angles);
         let said = angle_rates(measurements, angles);
 
-        self.step_angles(attitude.taken, heading.taken, angles, said, dt_s);
+        let steps = [0.0, 0.0, resolutions.heading_rad];
+        self.step_angles(attitude.taken, heading.taken, angles, said, steps, dt_s);
         self.step_rates(measurements, angles, before, said, dt_s);
-        self.step_altitude(now, measurements, estimate, dt_s);
+        self.step_altitude(now, measurements, navigation, dt_s);
+        self.step_airspeed(measurements, angles, navigation, dt_s);
 
         let force = measurements.specific_force;
         let forces = [force.value.x_mps2, force.value.y_mps2, force.value.z_mps2];
@@ -213,15 +189,34 @@ impl FrozenDetector {
         }
         self.force
             .update(manoeuvred(self.force_at, angles), self.after_s);
+    }
+
+    fn step_airspeed(
+        &mut self,
+        measurements: &Measurements,
+        angles: Angles,
+        navigation: &Known,
+        dt_s: f64,
+    ) {
         let airspeed = measurements.airspeed_mps;
+        let resolution = navigation.resolutions.airspeed_mps;
         if self
             .airspeed
             .has_changed([airspeed.value], EXACTLY, airspeed.taken, dt_s)
         {
             self.airspeed_at = angles;
+            self.accelerated = LeakyIntegrator::default();
+        } else {
+            let gained_mps = navigation.felt_mps2 * dt_s;
+            self.accelerated
+                .add(gained_mps, ACCELERATED_MPS, resolution, dt_s);
         }
-        self.airspeed
-            .update(manoeuvred(self.airspeed_at, angles), self.after_s);
+        let must_have_changed = if resolution < FINE_AIRSPEED_MPS {
+            manoeuvred(self.airspeed_at, angles)
+        } else {
+            self.accelerated.exceeds(ACCELERATED_MPS, resolution)
+        };
+        self.airspeed.update(must_have_changed, self.after_s);
     }
 
     fn step_angles(
@@ -230,24 +225,26 @@ impl FrozenDetector {
         heading_taken: Time,
         [roll, pitch, heading]: Angles,
         said: Angles,
+        resolutions: Angles,
         dt_s: f64,
     ) {
         let stuck = [&mut self.roll, &mut self.pitch, &mut self.heading];
         let values = [roll, pitch, heading];
         let taken = [attitude_taken, attitude_taken, heading_taken];
-        for ((((stuck, turned), value), taken), rate) in stuck
+        for (((((stuck, turned), value), taken), rate), resolution) in stuck
             .into_iter()
             .zip(&mut self.turned)
             .zip(values)
             .zip(taken)
             .zip(said)
+            .zip(resolutions)
         {
             if stuck.has_changed([value], EXACTLY, taken, dt_s) {
                 *turned = LeakyIntegrator::default();
             } else {
-                turned.add(rate * dt_s, dt_s);
+                turned.add(rate * dt_s, TURNED_RAD, resolution, dt_s);
             }
-            stuck.update(turned.exceeds(TURNED_RAD), self.after_s);
+            stuck.update(turned.exceeds(TURNED_RAD, resolution), self.after_s);
         }
     }
 
@@ -272,8 +269,8 @@ impl FrozenDetector {
         let mut exceeds = false;
         for (((unsaid, is), was), said) in self.unsaid.iter_mut().zip(angles).zip(before).zip(said)
         {
-            unsaid.add(wrap_pi(is - was) - said * dt_s, dt_s);
-            exceeds |= unsaid.exceeds(TURNED_RAD);
+            unsaid.add(wrap_pi(is - was) - said * dt_s, TURNED_RAD, 0.0, dt_s);
+            exceeds |= unsaid.exceeds(TURNED_RAD, 0.0);
         }
         self.rates.update(exceeds, self.after_s);
     }
@@ -282,26 +279,37 @@ impl FrozenDetector {
         &mut self,
         now: Time,
         measurements: &Measurements,
-        estimate: &Estimate,
+        navigation: &Known,
         dt_s: f64,
     ) {
         let altitude = measurements.altitude_m;
+        let estimate = &navigation.estimate;
+        let resolution_m = navigation.resolutions.altitude_m;
         let by_pitch_mps = estimate.true_airspeed_mps * sin(estimate.pitch_rad);
         if self
             .altitude
             .has_changed([altitude.value], EXACTLY, altitude.taken, dt_s)
         {
             self.climbed = LeakyIntegrator::default();
+            self.felt_climb = LeakyIntegrator::default();
+            self.felt_climb_mps = estimate.climb_rate_mps;
             self.climb_at_level_mps = estimate.climb_rate_mps - by_pitch_mps;
             return;
         }
-        let climb_mps = match measurements.velocity.fresh(now, CURRENT) {
+        self.felt_climb_mps += navigation.felt_up_mps2 * dt_s;
+        let velocity = measurements.velocity.fresh(now, CURRENT);
+        let climb_mps = match velocity {
             Some(velocity) => -velocity.down_mps,
             None => self.climb_at_level_mps + by_pitch_mps,
         };
-        self.climbed.add(climb_mps * dt_s, dt_s);
-        self.altitude
-            .update(self.climbed.exceeds(CLIMBED_M), self.after_s);
+        self.climbed
+            .add(climb_mps * dt_s, CLIMBED_M, resolution_m, dt_s);
+        let felt_m = self.felt_climb_mps * dt_s;
+        self.felt_climb.add(felt_m, CLIMBED_M, resolution_m, dt_s);
+        let pitch_suffices = velocity.is_some() || resolution_m < FINE_ALTITUDE_M;
+        let must_have_changed = self.climbed.exceeds(CLIMBED_M, resolution_m)
+            && (pitch_suffices || self.felt_climb.exceeds(CLIMBED_M, resolution_m));
+        self.altitude.update(must_have_changed, self.after_s);
     }
 
     /// Which quantities are frozen.

@@ -10,7 +10,9 @@ use core::f64::consts::PI;
 use core::time::Duration;
 
 use crate::blocks::wrap_pi;
-use crate::flight::{Attitude, BodyRates, Measurements, Plant, SpecificForce, Surfaces};
+use crate::flight::{
+    Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
+};
 use crate::framework::{Flags, Reading};
 
 /// The largest plausible speed, that of sound, m/s.
@@ -21,6 +23,9 @@ const ALTITUDE_M: core::ops::RangeInclusive<f64> = -500.0..=20_000.0;
 const MAX_SPECIFIC_FORCE_MPS2: f64 = 200.0;
 /// The largest plausible turn rate, two turns per second, rad/s.
 const MAX_RATE_RADPS: f64 = 12.6;
+/// The largest plausible speed over the ground: that of sound, with a jet stream
+/// from behind, m/s.
+const MAX_GROUND_SPEED_MPS: f64 = 450.0;
 /// The largest plausible angle, two turns in either direction: -180..180 and
 /// 0..360 are both accepted.
 const MAX_ANGLE_RAD: f64 = 12.6;
@@ -95,16 +100,30 @@ impl PlausibilityLimit {
     }
 }
 
+/// By what the plausibility of readings is judged, besides their values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GateLimits {
+    /// Readings older than this are too old.
+    pub(crate) max_age: Duration,
+    /// The quantities, by the bits of the measurements, of which only a value is
+    /// accepted that can follow the last good one, however long that was ago.
+    pub(crate) distrusted: Flags,
+    /// By how much the altitude of a coarse sensor changes at once, m.
+    pub(crate) altitude_step_m: f64,
+}
+
 /// Copies the plausible values from `new` into `good`, and returns which they
-/// are: a bit for each, in the order of the measurements. Readings are too old
-/// at `max_age`. Of `distrusted`, by the same bits, only a value that can follow
-/// the last good one is accepted, however long that was ago.
+/// are: a bit for each, in the order of the measurements.
 pub(crate) fn plausibility_gate(
     good: &mut Measurements,
     new: &Measurements,
-    max_age: Duration,
-    distrusted: Flags,
+    limits: &GateLimits,
 ) -> Flags {
+    let GateLimits {
+        max_age,
+        distrusted,
+        altitude_step_m,
+    } = *limits;
     let convinced = |bit: u32| {
         if distrusted.contains(Flags::bit(bit)) {
             Duration::MAX
@@ -158,7 +177,10 @@ pub(crate) fn plausibility_gate(
         &new.altitude_m,
         convinced(5),
         |m| ALTITUDE_M.contains(m),
-        |a, b, gap_s| HEIGHT_M.holds(b - a, gap_s),
+        |a, b, gap_s| {
+            let beyond_m = ((b - a).abs() - altitude_step_m).max(0.0);
+            HEIGHT_M.holds(beyond_m, gap_s)
+        },
     );
     let anywhere = Duration::ZERO;
     let angle = take(
@@ -182,14 +204,29 @@ pub(crate) fn plausibility_gate(
         |plant: &Plant| plant.time_s.is_finite(),
         |_, _, _| true,
     );
+    let position = take(
+        &mut good.position,
+        &new.position,
+        anywhere,
+        |at: &Position| at.is_on_earth() && ALTITUDE_M.contains(&at.altitude_m),
+        |_, _, _| true,
+    );
+    let velocity = take(
+        &mut good.velocity,
+        &new.velocity,
+        anywhere,
+        |v: &Velocity| {
+            let axes = [v.north_mps, v.east_mps, v.down_mps];
+            axes.iter().all(|axis| within(*axis, MAX_GROUND_SPEED_MPS))
+        },
+        |_, _, _| true,
+    );
     replace(&mut good.engage_switch, &new.engage_switch);
-    replace(&mut good.position, &new.position);
-    replace(&mut good.velocity, &new.velocity);
     replace(&mut good.other_control, &new.other_control);
     replace(&mut good.suspect, &new.suspect);
     [
-        attitude, heading, rates, force, airspeed, altitude, angle, true, true, surfaces, true,
-        plant, true, true,
+        attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
+        true, plant, true, true,
     ]
     .into_iter()
     .zip(0..)
@@ -258,110 +295,4 @@ fn within(value: f64, most: f64) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flight::Suspect;
-    use crate::framework::{Readings, Time};
-
-    const MAX_AGE: Duration = Duration::from_millis(250);
-
-    fn ms(ms: i64) -> Time {
-        Time::from_nanos(ms * 1_000_000)
-    }
-
-    fn flying(at: Time) -> Measurements {
-        Measurements {
-            airspeed_mps: Reading::new(51.0, at),
-            altitude_m: Reading::new(914.0, at),
-            heading_rad: Reading::new(6.2, at),
-            ..Measurements::default()
-        }
-    }
-
-    #[test]
-    fn an_implausible_value_leaves_the_last_good_one() {
-        let mut good = Measurements::default();
-        let mut new = flying(ms(1));
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        for bad in [f64::NAN, f64::INFINITY, -1e9, 1e9] {
-            new.airspeed_mps = Reading::new(bad, ms(2));
-            new.altitude_m = Reading::new(bad, ms(2));
-            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-            assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(1)));
-            assert_eq!(good.altitude_m, Reading::new(914.0, ms(1)));
-        }
-    }
-
-    #[test]
-    fn a_jump_is_rejected_until_it_lasts() {
-        let mut good = flying(ms(0));
-        for at_ms in (25..1_000).step_by(25) {
-            let mut new = flying(ms(at_ms));
-            new.altitude_m.value = 1_200.0;
-            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-            assert_eq!(good.altitude_m, Reading::new(914.0, ms(0)), "{at_ms} ms");
-            assert_eq!(good.airspeed_mps.taken, ms(at_ms));
-        }
-        let mut new = flying(ms(1_000));
-        new.altitude_m.value = 1_200.0;
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        assert_eq!(good.altitude_m, new.altitude_m);
-    }
-
-    #[test]
-    fn which_values_are_plausible_is_returned_in_the_order_of_the_measurements() {
-        let mut good = flying(ms(0));
-        let mut new = flying(ms(25));
-        assert_eq!(
-            plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE).bits(),
-            0x3fff
-        );
-        // 30 m in 25 ms, and 400 kt more.
-        new.altitude_m = Reading::new(944.0, ms(50));
-        new.airspeed_mps = Reading::new(257.0, ms(50));
-        new.plant.value.time_s = f64::NAN;
-        let plausible = plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        let rejected = (0..14)
-            .filter(|bit| !plausible.contains(Flags::bit(*bit)))
-            .map(|bit| <Measurements as Readings>::NAMES[bit as usize]);
-        assert!(rejected.eq(["airspeed", "altitude", "the plant's state"]));
-    }
-
-    #[test]
-    fn a_single_outlier_loses_one_reading() {
-        let mut good = flying(ms(0));
-        let mut new = flying(ms(25));
-        new.airspeed_mps.value = 90.0;
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        plausibility_gate(&mut good, &flying(ms(50)), MAX_AGE, Flags::NONE);
-        assert_eq!(good.airspeed_mps, Reading::new(51.0, ms(50)));
-    }
-
-    #[test]
-    fn a_suspect_airspeed_is_not_used_unless_it_is_another_sensors() {
-        let mut good = flying(ms(0));
-        let mut new = flying(ms(25));
-        new.suspect = Reading::new(
-            Suspect {
-                airspeed: true,
-                ..Suspect::default()
-            },
-            ms(25),
-        );
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        assert_eq!(good.airspeed_mps.taken, ms(0));
-        assert_eq!(good.altitude_m.taken, ms(25));
-        new.airspeed_mps.source = 1;
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        assert_eq!(good.airspeed_mps.taken, ms(25));
-    }
-
-    #[test]
-    fn headings_on_both_sides_of_north_are_neighbours() {
-        let mut good = flying(ms(0));
-        let mut new = flying(ms(25));
-        new.heading_rad.value = 0.05;
-        plausibility_gate(&mut good, &new, MAX_AGE, Flags::NONE);
-        assert_eq!(good.heading_rad, new.heading_rad);
-    }
-}
+mod tests;

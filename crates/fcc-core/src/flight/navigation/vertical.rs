@@ -5,7 +5,8 @@ use core::time::Duration;
 use libm::{cos, sin};
 
 use super::attitude::Orientation;
-use super::vertical_covariance::{CrossCovariance, VerticalCovariance};
+use super::resolution::Resolution;
+use super::vertical_covariance::{CrossCovariance, Gains, VerticalCovariance};
 use super::{NewSample, SampleTracker, is_current};
 use crate::blocks::limit_abs;
 use crate::flight::Measurements;
@@ -30,6 +31,9 @@ pub struct VerticalState {
 /// An altitude can be marked: later measurements still carry information about
 /// it, and refine the marked altitude (a fixed-point smoother, Gelb 1974,
 /// section 5.3).
+///
+/// The readings of a coarse altimeter are no noise: the estimate is free within
+/// half a step of them, and corrected by the moments in which they change.
 ///
 /// ```
 /// use fcc_core::flight::Measurements;
@@ -58,6 +62,9 @@ pub struct VerticalChannel {
     covariance: VerticalCovariance,
     mark: Option<Mark>,
     news: SampleTracker,
+    resolution: Resolution,
+    /// The vertical acceleration that was integrated last, up, m/s².
+    felt_mps2: f64,
 }
 
 /// The altitude at a past instant, and its covariance with the present state.
@@ -69,6 +76,12 @@ struct Mark {
 
 /// The largest bias of an intact accelerometer, m/s².
 const MAX_BIAS_MPS2: f64 = 2.0;
+
+/// The coarsest altimeter that is flown, m: one with three digits, 100 ft.
+const COARSEST_M: f64 = 30.48;
+
+/// A smaller step is less than the barometer's noise, m.
+const LEAST_STEP_M: f64 = 0.5;
 
 impl VerticalChannel {
     /// A filter in its initial state; `bandwidth_radps` in rad/s.
@@ -82,7 +95,24 @@ impl VerticalChannel {
             covariance: VerticalCovariance::new(bandwidth_radps),
             mark: None,
             news: SampleTracker::new(),
+            resolution: Resolution::new(COARSEST_M),
+            felt_mps2: 0.0,
         }
+    }
+
+    /// The vertical acceleration by the accelerometers, up, m/s².
+    pub(super) const fn felt_mps2(&self) -> f64 {
+        self.felt_mps2
+    }
+
+    /// What is known of the altimeter's resolution.
+    pub(super) const fn resolution(&self) -> &Resolution {
+        &self.resolution
+    }
+
+    /// The sensor is the same as that of `other`.
+    pub(super) const fn keep_resolution(&mut self, other: &Self) {
+        self.resolution = other.resolution;
     }
 
     /// Processes the measurements; returns altitude and climb rate.
@@ -104,11 +134,31 @@ impl VerticalChannel {
         } else {
             0.0
         };
+        self.felt_mps2 = acceleration;
         self.predict(acceleration, measured, dt_s);
-        match self.news.of(&measurements.altitude_m, dt_s) {
+        let measured = measurements.altitude_m;
+        let sample = self.news.of(&measured, dt_s);
+        let known = self.resolution.step();
+        let change = match sample {
+            NewSample::None => 0.0,
+            NewSample::First | NewSample::Next(_) => {
+                self.resolution.take(&measured, |is, was| is - was)
+            }
+        };
+        let step_m = self.resolution.step();
+        match sample {
             NewSample::None => {}
-            NewSample::First => self.begin(measurements.altitude_m.value),
-            NewSample::Next(since_s) => self.correct(measurements.altitude_m.value, since_s),
+            NewSample::First => self.begin(measured.value),
+            NewSample::Next(since_s) if step_m > LEAST_STEP_M => {
+                if known <= LEAST_STEP_M {
+                    self.covariance.widen(step_m);
+                }
+                self.correct_coarse(measured.value, change, since_s);
+            }
+            NewSample::Next(since_s) => {
+                let gains = self.covariance.correct(since_s);
+                self.correct(measured.value - self.state.altitude_m, &gains);
+            }
         }
         self.state
     }
@@ -158,19 +208,39 @@ impl VerticalChannel {
         };
         self.bias_mps2 = 0.0;
         self.covariance.restart();
+        self.covariance.widen(self.resolution.step());
         if let Some(mark) = &mut self.mark {
             mark.link = CrossCovariance::default();
         }
     }
 
-    fn correct(&mut self, altitude_m: f64, since_s: f64) {
-        let error = altitude_m - self.state.altitude_m;
-        let gains = self.covariance.correct(since_s);
+    /// By a coarse altimeter that changed by `change_m`.
+    fn correct_coarse(&mut self, altitude_m: f64, change_m: f64, since_s: f64) {
+        let error_m = altitude_m - self.state.altitude_m;
+        let beyond_m = self.resolution.beyond(error_m);
+        if change_m == 0.0 && beyond_m == 0.0 {
+            let gains = self
+                .covariance
+                .correct_by_step(self.resolution.step(), since_s);
+            self.correct(0.0, &gains);
+            return;
+        }
+        let edge_m = if change_m == 0.0 {
+            beyond_m
+        } else {
+            self.resolution.from_edge(error_m, change_m)
+        };
+        let climb_rate_mps = self.state.climb_rate_mps;
+        let gains = self.covariance.correct_by_edge(climb_rate_mps, since_s);
+        self.correct(edge_m, &gains);
+    }
+
+    fn correct(&mut self, error: f64, gains: &Gains) {
         self.state.altitude_m += gains.altitude * error;
         self.state.climb_rate_mps += gains.climb_rate_per_s * error;
         self.bias_mps2 = limit_abs(self.bias_mps2 + gains.bias_per_s2 * error, MAX_BIAS_MPS2);
         if let Some(mark) = &mut self.mark {
-            mark.altitude_m += mark.link.correct(&gains) * error;
+            mark.altitude_m += mark.link.correct(gains) * error;
         }
     }
 }
@@ -261,7 +331,8 @@ mod tests {
             };
             let measurements = Measurements {
                 specific_force: Reading::new(force, now),
-                altitude_m: Reading::new(900.0, now),
+                // Not to the last bit, as of a coarse altimeter.
+                altitude_m: Reading::new(900.0 + (sample % 2) as f64 * 1e-6, now),
                 ..Measurements::default()
             };
             state = channel.step(now, &measurements, &Orientation::default(), DT_S);

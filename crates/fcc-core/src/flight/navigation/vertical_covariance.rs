@@ -22,6 +22,11 @@ const FIRST_CLIMB_RATE_MPS: f64 = 5.0;
 /// and the difference of gravity between the equator and the poles.
 const FIRST_BIAS_MPS2: f64 = 0.1;
 
+/// Readings of a coarse altimeter this far apart count as independent, s: about
+/// as long as an aircraft in level flight stays within half a step of 100 ft by
+/// its accelerometers alone.
+const SAME_STEP_S: f64 = 1.0;
+
 /// The first altitude is weighted as a sample of this length, s.
 const FIRST_SAMPLE_S: f64 = 0.025;
 
@@ -119,7 +124,32 @@ impl VerticalCovariance {
 
     /// Corrects by an altitude, `since_s` seconds after the previous one.
     pub(super) fn correct(&mut self, since_s: f64) -> Gains {
-        let per_variance = 1.0 / (self.hh + ALTITUDE_NOISE / since_s);
+        self.correct_by(ALTITUDE_NOISE / since_s)
+    }
+
+    /// Corrects by the moment in which a coarse altimeter changed, known to
+    /// within `since_s` at this climb rate: an error that is uniform in that
+    /// interval.
+    pub(super) fn correct_by_edge(&mut self, climb_rate_mps: f64, since_s: f64) -> Gains {
+        let passed_m = climb_rate_mps * since_s;
+        self.correct_by(ALTITUDE_NOISE / FIRST_SAMPLE_S + passed_m * passed_m / 12.0)
+    }
+
+    /// Corrects by an altitude known to within a step, uniformly. The error of
+    /// the readings between two changes is the same in all of them, so they
+    /// count as one in [`SAME_STEP_S`].
+    pub(super) fn correct_by_step(&mut self, step_m: f64, since_s: f64) -> Gains {
+        self.correct_by(step_m * step_m / 12.0 * SAME_STEP_S / since_s)
+    }
+
+    /// The altitude is known to within a step only.
+    pub(super) const fn widen(&mut self, step_m: f64) {
+        self.hh = self.hh.max(step_m * step_m / 12.0);
+    }
+
+    /// Corrects by an altitude of this variance, m².
+    fn correct_by(&mut self, variance: f64) -> Gains {
+        let per_variance = 1.0 / (self.hh + variance);
         let gains = Gains {
             altitude: self.hh * per_variance,
             climb_rate_per_s: self.hv * per_variance,

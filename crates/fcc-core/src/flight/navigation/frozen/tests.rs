@@ -8,6 +8,12 @@ use crate::framework::Reading;
 
 const DT_S: f64 = 0.025;
 const AFTER_S: f64 = 2.0;
+const FINE: Resolutions = Resolutions {
+    heading_rad: 1e-9,
+    airspeed_mps: 1e-9,
+    altitude_m: 1e-9,
+    altitude_step_m: 0.0,
+};
 
 /// An aircraft that rolls by 10 °/s for 3 s, then turns by 5 °/s and
 /// climbs by 5 m/s; every value a little different from tick to tick.
@@ -56,12 +62,17 @@ fn flying(tick: i64) -> Measurements {
 /// The times, in s, at which each quantity is reported as frozen over 20 s.
 fn watch(mut measured: impl FnMut(i64) -> Measurements) -> Vec<(f64, Frozen)> {
     let mut watch = FrozenDetector::new(AFTER_S);
-    let estimate = Estimate::default();
+    let known = Known {
+        estimate: Estimate::default(),
+        felt_mps2: 0.0,
+        felt_up_mps2: 0.0,
+        resolutions: FINE,
+    };
     let mut seen = Vec::new();
     for tick in 0..800 {
         let measurements = measured(tick);
         let now = measurements.attitude.taken;
-        watch.step(now, &measurements, &estimate, DT_S);
+        watch.step(now, &measurements, &known, DT_S);
         let frozen = watch.frozen();
         if seen.last().is_none_or(|(_, last)| *last != frozen) {
             seen.push((tick as f64 * DT_S, frozen));
@@ -184,4 +195,64 @@ fn a_value_that_changes_again_is_no_longer_frozen() {
     });
     assert_eq!(seen.len(), 3, "{seen:?}");
     assert_eq!(seen[2], (10.0, Frozen::default()));
+}
+
+/// The flight by coarse sensors, good until `frozen_at_s`; when each quantity is
+/// reported as frozen. `felt_mps2` is what the accelerometers feel.
+fn watch_coarse(frozen_at_s: f64, felt_mps2: f64) -> Vec<(f64, Frozen)> {
+    const STEP_M: f64 = 30.48;
+    const STEP_MPS: f64 = 0.514_444;
+    const STEP_RAD: f64 = 0.017_453;
+    let round = |value: f64, step: f64| libm::round(value / step) * step;
+    let mut watch = FrozenDetector::new(AFTER_S);
+    let known = Known {
+        estimate: Estimate::default(),
+        felt_mps2,
+        felt_up_mps2: 0.0,
+        resolutions: Resolutions {
+            heading_rad: STEP_RAD,
+            airspeed_mps: STEP_MPS,
+            altitude_m: STEP_M,
+            altitude_step_m: STEP_M,
+        },
+    };
+    let last = flying((frozen_at_s / DT_S) as i64);
+    let mut seen = Vec::new();
+    for tick in 0..2_000 {
+        let t_s = tick as f64 * DT_S;
+        let is = flying(tick);
+        let shown = if t_s < frozen_at_s { &is } else { &last };
+        let mut measurements = is;
+        let gained_mps = felt_mps2 * t_s.min(frozen_at_s);
+        measurements.airspeed_mps.value = round(shown.airspeed_mps.value + gained_mps, STEP_MPS);
+        measurements.altitude_m.value = round(shown.altitude_m.value, STEP_M);
+        measurements.heading_rad.value = round(shown.heading_rad.value, STEP_RAD);
+        watch.step(measurements.attitude.taken, &measurements, &known, DT_S);
+        if seen.last().is_none_or(|(_, last)| *last != watch.frozen()) {
+            seen.push((t_s, watch.frozen()));
+        }
+    }
+    seen
+}
+
+/// A roll, a turn and a climb by 5 m/s, in which the altimeter changes every 6 s
+/// and the airspeed never.
+#[test]
+fn good_coarse_sensors_are_not_frozen() {
+    assert_eq!(watch_coarse(60.0, 0.0), [(0.0, Frozen::default())]);
+    assert_eq!(watch_coarse(60.0, 0.3), [(0.0, Frozen::default())]);
+}
+
+/// 5 m/s must climb 15 m and a step: 9 s without the leak. 6° at 5 °/s take 1.2 s,
+/// so the least time of 2 s counts. 0.3 m/s² must gain 2 m/s: 6.7 s without it.
+#[test]
+fn frozen_coarse_sensors_are_found() {
+    let seen = watch_coarse(20.0, 0.3);
+    let at_s = |of: fn(&Frozen) -> bool| {
+        let (at_s, _) = seen.iter().find(|(_, frozen)| of(frozen)).unwrap();
+        at_s - 20.0
+    };
+    assert!((9.0..18.0).contains(&at_s(|frozen| frozen.altitude)));
+    assert!((1.0..2.1).contains(&at_s(|frozen| frozen.heading)));
+    assert!((6.0..11.0).contains(&at_s(|frozen| frozen.airspeed)));
 }
