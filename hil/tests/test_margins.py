@@ -32,7 +32,7 @@ class _Flight:
     play: float = 0.0
 
 
-def _fly(  # noqa: PLR0913 - the conditions of a flight
+def _fly(
     aircraft: str,
     airspeed_kt: float,
     *,
@@ -95,9 +95,7 @@ def test_play_in_the_elevator_is_found_and_inverted(airspeed_kt: float, most_g: 
 
 
 @pytest.mark.parametrize(("delay_s", "least_ms", "most_ms"), [(0.0, 0, 50), (0.15, 110, 210)])
-def test_the_latency_is_measured_in_flight(
-    delay_s: float, least_ms: float, most_ms: float
-) -> None:
+def test_the_latency_is_measured_in_flight(delay_s: float, least_ms: float, most_ms: float) -> None:
     flown = _fly("c172p", 100, delay_s=delay_s, noise=True)
     assert least_ms <= flown.latency_ms <= most_ms
     late = "the outputs take effect too late for the gains"
