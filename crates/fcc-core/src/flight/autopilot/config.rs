@@ -47,8 +47,8 @@ pub struct AutopilotConfig {
     /// engage.
     pub settling: Duration,
     /// Conditions of [`flags`](super::flags) that are reported but do not
-    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE` and
-    /// `FLY_BY_WIRE`.
+    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE`,
+    /// `FLY_BY_WIRE` and `UPSET`, from which it recovers first.
     pub permitted: Flags,
     /// How a flight goes on without a sensor, and how it ends.
     pub failsafe: FailsafeConfig,

@@ -15,6 +15,7 @@ mod plant_clock;
 mod resume;
 mod scale;
 mod sensor_health;
+mod upset;
 mod whereabouts;
 
 use core::fmt;
@@ -33,17 +34,15 @@ use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
+use upset::is_far_from_level;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
-
-/// Beyond this bank or pitch the autopilot does not engage, rad.
-const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
 ///
@@ -100,6 +99,7 @@ pub struct Autopilot {
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
     actuation: Actuation,
+    recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -136,6 +136,7 @@ impl Autopilot {
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
             actuation: Actuation::new(config.assumed_latency_s, config.pace),
+            recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -226,11 +227,12 @@ impl Controller for Autopilot {
         )
         .with(
             flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
             flags::UPSET,
-            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+            is_far_from_level(estimate) && !self.may_engage_in_upset(),
         )
     }
 
@@ -240,6 +242,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         (self.external(tick.woke, measurements) | self.actuation.conditions())
+            .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
@@ -331,6 +334,7 @@ impl Controller for Autopilot {
             });
         self.actuation.engage(&standing);
         self.take_over(&standing);
+        self.begin_watching_for_upsets();
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
@@ -365,6 +369,10 @@ impl Controller for Autopilot {
         let (schedule, envelope) = (self.schedule(), self.config.envelope);
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
+        }
+        if let Some(recovering) = self.recover_from_upset(tick.woke) {
+            self.last = recovering;
+            return self.last;
         }
         let to = self.targets;
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);
@@ -402,6 +410,7 @@ impl Controller for Autopilot {
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
+        self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();
     }
 

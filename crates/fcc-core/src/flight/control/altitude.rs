@@ -239,6 +239,30 @@ impl AltitudeLoop {
         )
     }
 
+    /// The elevator for a pitch-rate error (rad/s) and a load of the wing above
+    /// that of the trim (g at the reference airspeed), without the integral: while
+    /// another law determines the pitch.
+    pub(crate) fn elevator_for(
+        &self,
+        error_radps: f64,
+        load: f64,
+        trim: f64,
+        schedule: Schedule,
+    ) -> f64 {
+        trim + self.config.elevator_per_g * load
+            + schedule.moment * self.config.pitch_rate_gain * error_radps
+    }
+
+    /// What `dt_s` of a pitch-rate error (rad/s) add to the elevator.
+    pub(crate) fn elevator_increment(
+        &self,
+        error_radps: f64,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> f64 {
+        schedule.moment * self.config.pitch_rate_integral_gain * error_radps * dt_s
+    }
+
     /// Whether energy is short for both height and airspeed: the airspeed is
     /// held, and height is given up.
     pub const fn gives_up_height(&self) -> bool {

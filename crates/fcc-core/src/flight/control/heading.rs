@@ -259,6 +259,31 @@ impl HeadingLoop {
         }
     }
 
+    /// The surfaces for a roll rate (rad/s) from trims, without the integrals:
+    /// while another law determines the roll.
+    pub(crate) fn surfaces_for(
+        &self,
+        roll_rate_radps: f64,
+        aileron_trim: f64,
+        rudder_trim: f64,
+        estimate: &Estimate,
+        schedule: Schedule,
+    ) -> Lateral {
+        let error = roll_rate_radps - estimate.body_rates.roll_radps;
+        let aileron = aileron_trim
+            + self.aileron_feed_forward(roll_rate_radps, schedule)
+            + schedule.moment * self.config.roll_rate_gain * error;
+        let aileron = limit_abs(aileron, 1.0);
+        let rudder = rudder_trim
+            + self.rudder_feed_forward(aileron - aileron_trim, estimate, schedule)
+            - schedule.moment * self.config.side_force_gain * estimate.side_force_mps2;
+        Lateral {
+            roll_rad: 0.0,
+            aileron,
+            rudder: limit_abs(rudder, 1.0),
+        }
+    }
+
     /// The aileron for a steady roll rate.
     fn aileron_feed_forward(&self, roll_rate_radps: f64, schedule: Schedule) -> f64 {
         schedule.rate * self.config.aileron_per_roll_rate * roll_rate_radps

@@ -256,6 +256,12 @@ impl Navigation {
         self.vertical.mark();
     }
 
+    /// Counts the full turns of the heading so that it is the nearest to
+    /// `near_rad`: after an upset they say nothing of the turn that was flown.
+    pub(crate) fn count_heading_near(&mut self, near_rad: f64) {
+        self.estimate.heading_rad = self.attitude.count_near(near_rad);
+    }
+
     /// The present estimate of the altitude at the mark, m; none if nothing was
     /// marked.
     pub fn marked_altitude_m(&self) -> Option<f64> {
