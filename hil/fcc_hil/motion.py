@@ -37,6 +37,9 @@ UNITS = MappingProxyType(
 )
 """Every figure of `motion`, with its unit."""
 
+LEAST = ("least_load_g", "least_airspeed_kt")
+"""The figures of which the least is the worst."""
+
 
 def motion(truth: Truth, legs: Sequence[Leg]) -> dict[str, float]:
     """Return the figures in UNITS of a flight and its legs, at least one.

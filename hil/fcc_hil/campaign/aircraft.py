@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import fcc
+
 from ..configurations import configuration, value_of
 from ..units import FT_TO_M, KT_TO_MPS
 
@@ -40,7 +42,23 @@ class Limits:
     @property
     def floor_kt(self) -> float:
         """The lowest airspeed that its configuration permits."""
-        return value_of(configuration(self.name), "autopilot.envelope.min_airspeed_kt", 65.0)
+        return self._configured("min_airspeed_kt")
+
+    @property
+    def slowest_order_kt(self) -> float:
+        """The lowest airspeed that may be commanded."""
+        return self.floor_kt + self._configured("airspeed_margin_kt")
+
+    @property
+    def stall_setting_kt(self) -> float:
+        """The stalling speed for the configuration: whole, at the greatest weight."""
+        return max(
+            self._configured("stall_airspeed_kt"), float(math.ceil(self.stall_kt(self.most_lb)))
+        )
+
+    def _configured(self, name: str) -> float:
+        key = f"autopilot.envelope.{name}"
+        return value_of(configuration(self.name), key, float(fcc.Config()[key]))
 
     def stall_kt(self, weight_lb: float) -> float:
         """Return the stalling speed in straight flight, calibrated."""

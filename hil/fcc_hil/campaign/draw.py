@@ -162,7 +162,9 @@ def draw(number: int, seed: int, bounds: Bounds) -> Flight:
         ),
         fault=_fault(random),
         is_pattern=is_pattern,
-        orders=tuple(_orders(random, is_pattern, slow_kt, limits.fast_kt)),
+        orders=tuple(
+            _orders(random, is_pattern, max(slow_kt, limits.slowest_order_kt), limits.fast_kt)
+        ),
     )
 
 

@@ -116,7 +116,10 @@ def fly(flight: Flight, recording: Path | None = None) -> tuple[Outcome, Truth |
 
 
 def config_of(flight: Flight) -> str:
-    """Return the configuration: the aircraft's own, or the defaults; with the flight's pattern."""
+    """Return the configuration: the aircraft's own, or the defaults.
+
+    With the flight's pattern, and the stalling speed of the greatest weight.
+    """
     first = flight.orders[0]
     values: dict[str, float | str] = {
         "guidance.mode": "timed-pattern",
@@ -125,6 +128,7 @@ def config_of(flight: Flight) -> str:
         "guidance.leg_s": LEG_S,
         "guidance.turn_deg": first.turn_deg if flight.is_pattern else 0.0,
         "guidance.climb_ft": first.climb_ft if flight.is_pattern else 0.0,
+        "autopilot.envelope.stall_airspeed_kt": flight.limits.stall_setting_kt,
     }
     return with_values(configuration(flight.aircraft), values)
 
@@ -194,11 +198,14 @@ def _fly(rig: LockstepRig, flight: Flight) -> tuple[list[Leg], list[str]]:
     legs = [_leg(engaged_at_s, HOLD_S, now, now)]
     refused: list[str] = []
     rig.fly_to(legs[0].end_s, until=is_over)
-    for order in flight.orders:
+    for drawn in flight.orders:
         if is_over():
             break
+        # In failsafe no order is taken.
+        waits = not flight.is_pattern and rig.machine.state != "engaged"
+        order = Order(0.0, 0.0) if waits else drawn
         to = _after(order, now)
-        if not flight.is_pattern:
+        if not flight.is_pattern and not waits:
             refused += _command(rig.machine, order, to)
         legs.append(_leg(legs[-1].end_s, LEG_S, now, to))
         now = to

@@ -16,7 +16,7 @@ from ..motion import longest_s, motion, steady_pitch_rate_sd
 from ..pattern import Leg
 from ..score import ALTITUDE_RMS_WINDOW_S, LegScore, score
 from ..truth import TRUTH_HZ, Truth
-from .draw import Flight
+from .draw import HOLD_S, LEG_S, Flight
 
 LONGEST_STALL_S = 1.0
 """Beyond the stalling angle, or below the stalling speed, without interruption."""
@@ -38,6 +38,8 @@ HEADING_RMS_DEG = (3.0, 3.0, 3.0, 5.0, 8.0, 12.0, 15.0, 15.0)
 ALTITUDE_RMS_FT = (20.0, 20.0, 25.0, 40.0, 80.0, 150.0, 200.0, 250.0)
 
 _FULL, _IDLE = 0.97, 0.03
+_RETURN_S = 5.0
+"""What was lost is believed again, and flown by, within this time."""
 
 KINDS = (
     *("lost", "stall", "below Vs", "bank", "load", "oscillation"),
@@ -103,7 +105,8 @@ def judge(
     if refused:
         broken["refused"] = refused[0]
     ended = [leg for leg in flown if leg.end_s <= ends_s + 1.0 / TRUTH_HZ]
-    unsettled = list(_unsettled(flight, engaged, ended))
+    judged = [leg for leg in ended if not _is_degraded(flight, leg, legs[0].start_s)]
+    unsettled = _unsettled(flight, engaged, judged)
     if unsettled:
         broken["unsettled"] = "; ".join(unsettled)
     return Verdict(broken, figures)
@@ -131,11 +134,27 @@ def _is_gusty(flight: Flight, ends_s: float) -> bool:
     )
 
 
+def _is_degraded(flight: Flight, leg: Leg, engaged_at_s: float) -> bool:
+    """Return whether a quantity was lost in a leg, so that it was not flown to its end.
+
+    The autopilot then flies level, and continues when the quantity is back for some seconds: a
+    timed pattern later than its times here, so that no leg after the fault is judged.
+    """
+    fault = flight.fault
+    if fault is None or fault.lasts_s is None:
+        return False
+    begins_s = engaged_at_s + fault.begins_s
+    over_s = math.inf if flight.is_pattern else begins_s + fault.lasts_s + _RETURN_S
+    return leg.start_s < over_s and leg.end_s > begins_s
+
+
 def _unsettled(flight: Flight, truth: Truth, legs: Sequence[Leg]) -> list[str]:
+    start_s = float(truth["time_s"][0])
     severity = flight.weather.turbulence_severity
     words = []
     scores: list[LegScore] = score(truth.trace(), legs)["legs"] if legs else []
-    for number, (leg, flown) in enumerate(zip(legs, scores, strict=True)):
+    for leg, flown in zip(legs, scores, strict=True):
+        number = round((leg.end_s - HOLD_S - start_s) / LEG_S)
         if not flown["heading_rms_deg"] <= HEADING_RMS_DEG[severity]:
             words.append(f"leg {number}: heading {flown['heading_rms_deg']:.1f}° RMS")
         is_high = not flown["altitude_rms_ft"] <= ALTITUDE_RMS_FT[severity]

@@ -185,6 +185,10 @@ impl From<Then> for AfterRelease {
 /// `[engage]`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "four conditions, each permitted or not"
+)]
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
@@ -194,6 +198,8 @@ pub struct EngageSection {
     pub permit_autothrottle: bool,
     /// Engage although another flight control computer moves the surfaces.
     pub permit_fly_by_wire: bool,
+    /// Engage beyond 60° of bank or pitch, and recover from it first.
+    pub permit_upset: bool,
 }
 
 impl EngageSection {
@@ -203,6 +209,7 @@ impl EngageSection {
             .with(flags::OTHER_AUTOPILOT, self.permit_autopilot)
             .with(flags::OTHER_AUTOTHROTTLE, self.permit_autothrottle)
             .with(flags::FLY_BY_WIRE, self.permit_fly_by_wire)
+            .with(flags::UPSET, self.permit_upset)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod actuation;
 mod airspeed_doubt;
 mod capture;
 mod command;
@@ -15,6 +16,7 @@ mod plant_clock;
 mod resume;
 mod scale;
 mod sensor_health;
+mod upset;
 mod whereabouts;
 
 use core::fmt;
@@ -22,6 +24,7 @@ use core::hint::black_box;
 
 use libm::cos;
 
+use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
@@ -32,17 +35,15 @@ use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
+use upset::is_far_from_level;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
-
-/// Beyond this bank or pitch the autopilot does not engage, rad.
-const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
 ///
@@ -98,6 +99,8 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    actuation: Actuation,
+    recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -139,6 +142,8 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
+            recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -165,7 +170,8 @@ impl Autopilot {
     }
 
     fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -228,11 +234,12 @@ impl Controller for Autopilot {
         )
         .with(
             flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
             flags::UPSET,
-            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+            is_far_from_level(estimate) && !self.may_engage_in_upset(),
         )
     }
 
@@ -241,7 +248,8 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        (self.external(tick.woke, measurements) | self.doubted())
+        (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
+            .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
 
@@ -334,7 +342,9 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        self.actuation.engage(&standing);
         self.take_over(&standing);
+        self.begin_watching_for_upsets();
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
@@ -364,11 +374,15 @@ impl Controller for Autopilot {
             self.last = self.trims();
             return self.last;
         }
-        let estimate = *self.navigation.estimate();
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.envelope();
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
+        let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
+        }
+        if let Some(recovering) = self.recover_from_upset(tick.woke) {
+            self.last = recovering;
+            return self.last;
         }
         let to = self.targets;
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);
@@ -389,7 +403,7 @@ impl Controller for Autopilot {
         };
         self.last = Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
         };
@@ -406,6 +420,7 @@ impl Controller for Autopilot {
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
+        self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();
     }
 
@@ -414,7 +429,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        *self.navigation.estimate()
+        self.actuation.shown_in(self.navigation.estimate())
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -138,12 +138,19 @@ schema! {
         /// Acceleration along the flight path, without gusts, m/s².
         #[field(13)]
         pub acceleration_mps2: f64,
-        /// Where the airspeed comes from.
+        /// The time from an output to its effect, s, measured by the elevator;
+        /// until then the assumed one.
         #[field(14)]
+        pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(15)]
+        pub elevator_play: f64,
+        /// Where the airspeed comes from.
+        #[field(16)]
         pub airspeed_source: AirspeedSource,
         /// Standard deviation of an airspeed that comes from the forces, m/s;
         /// 0 while the sensor is used.
-        #[field(15)]
+        #[field(17)]
         pub airspeed_uncertainty_mps: f64,
     }
 }
@@ -208,6 +215,8 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                output_latency_s: 0.0,
+                elevator_play: 0.0,
                 load_factor: 1.0,
                 gust_load: 0.0,
                 angle_of_attack_rad: 0.0,
@@ -306,6 +315,7 @@ impl Navigation {
             acceleration_mps2: lift.acceleration_mps2,
             airspeed_source,
             airspeed_uncertainty_mps,
+            ..self.estimate
         };
     }
 
@@ -344,6 +354,12 @@ impl Navigation {
     /// Marks the present altitude.
     pub const fn mark_altitude(&mut self) {
         self.vertical.mark();
+    }
+
+    /// Counts the full turns of the heading so that it is the nearest to
+    /// `near_rad`: after an upset they say nothing of the turn that was flown.
+    pub(crate) fn count_heading_near(&mut self, near_rad: f64) {
+        self.estimate.heading_rad = self.attitude.count_near(near_rad);
     }
 
     /// The present estimate of the altitude at the mark, m; none if nothing was
