@@ -346,6 +346,14 @@ class Estimate:
     def acceleration_mps2(self) -> float:
         """Acceleration along the flight path, without gusts, m/s²."""
 
+    @property
+    def output_latency_s(self) -> float:
+        """The time from an output to its effect, s, measured by the elevator."""
+
+    @property
+    def elevator_play(self) -> float:
+        """The play of the elevator, in the elevator's units of -1 to 1."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -1,5 +1,6 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod actuation;
 mod capture;
 mod command;
 mod config;
@@ -22,6 +23,7 @@ use core::hint::black_box;
 
 use libm::cos;
 
+use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
@@ -96,6 +98,7 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    actuation: Actuation,
     recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
@@ -132,6 +135,7 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
             recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
@@ -158,7 +162,8 @@ impl Autopilot {
     }
 
     fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -236,7 +241,7 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(tick.woke, measurements)
+        (self.external(tick.woke, measurements) | self.actuation.conditions())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
@@ -327,6 +332,7 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        self.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_watching_for_upsets();
     }
@@ -358,9 +364,9 @@ impl Controller for Autopilot {
             self.last = self.trims();
             return self.last;
         }
-        let estimate = *self.navigation.estimate();
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
+        let (schedule, envelope) = (self.schedule(), self.config.envelope);
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
@@ -387,7 +393,7 @@ impl Controller for Autopilot {
         };
         self.last = Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
         };
@@ -413,7 +419,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        *self.navigation.estimate()
+        self.actuation.shown_in(self.navigation.estimate())
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -4,7 +4,7 @@
 //! shorter way to wings level, power by the speed, then pull to the horizon
 //! within load, angle of attack and speed. A spin gets power idle, ailerons
 //! neutral, full rudder against it, then elevator forward (the same handbook,
-//! chapter 5, spin recovery; Bowman, NASA TP-2939, 1989). Neither heading nor
+//! chapter 5, spin recovery; Bowman, NASA TN D-6575, 1971). Neither heading nor
 //! altitude is followed meanwhile.
 
 use libm::sin;
@@ -251,4 +251,74 @@ pub(crate) enum Change {
     None,
     Begins,
     Ends,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::BodyRates;
+    use crate::flight::control::{AltitudeConfig, HeadingConfig};
+
+    const DT_S: f64 = 0.025;
+
+    /// A spin to the right: a turn in 3 s and 45 m/s of sink (FAA-H-8083-3C,
+    /// chapter 5: 500 ft in a turn of 3 s), 45° nose down, 50 kt indicated.
+    fn spinning() -> Estimate {
+        Estimate {
+            pitch_rad: -45.0_f64.to_radians(),
+            airspeed_mps: 25.7,
+            true_airspeed_mps: 46.0,
+            climb_rate_mps: -45.0,
+            load_factor: 1.2,
+            body_rates: BodyRates {
+                roll_radps: 85.0_f64.to_radians(),
+                pitch_radps: 0.0,
+                yaw_radps: 85.0_f64.to_radians(),
+            },
+            ..Estimate::default()
+        }
+    }
+
+    /// FAA-H-8083-3C, spin recovery: power idle, ailerons neutral, rudder full
+    /// opposite, elevator forward after it; rudder neutral when the rotation
+    /// stops, then the pull out of the dive.
+    #[test]
+    fn a_spin_gets_the_handbooks_recovery() {
+        let envelope = Envelope::default();
+        let heading = HeadingLoop::new(HeadingConfig::default());
+        let altitude = AltitudeLoop::new(AltitudeConfig::default(), &envelope);
+        let inputs = RecoveryInputs {
+            envelope: &envelope,
+            schedule: Schedule::at(25.7, 51.4),
+            heading: &heading,
+            altitude: &altitude,
+            followed: true,
+            dt_s: DT_S,
+        };
+        let mut recovery = Recovery::new();
+        let mut outputs = Surfaces {
+            throttle: 0.6,
+            ..Surfaces::default()
+        };
+        let mut fly = |estimate: &Estimate, ticks: u32| {
+            for _ in 0..ticks {
+                recovery.observe(&outputs, &Surfaces::default(), estimate, &inputs);
+                outputs = recovery.step(estimate, &inputs);
+            }
+            outputs
+        };
+        let first = fly(&spinning(), 16);
+        assert_eq!((first.rudder, first.elevator), (-1.0, 0.0));
+        let later = fly(&spinning(), 80);
+        assert_eq!((later.rudder, later.aileron), (-1.0, 0.0));
+        assert_eq!(later.throttle, 0.0);
+        assert!(later.elevator < -0.5);
+        let stopped = Estimate {
+            body_rates: BodyRates::default(),
+            airspeed_mps: 45.0,
+            ..spinning()
+        };
+        let pulls = fly(&stopped, 20);
+        assert!(pulls.rudder.abs() < 0.3 && pulls.elevator > 0.0);
+    }
 }

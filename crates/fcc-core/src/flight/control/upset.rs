@@ -131,8 +131,8 @@ const STALLED_RAD: f64 = 0.349;
 const STALLED_BELOW: f64 = 1.0;
 const STALLED_FOR_S: f64 = 0.6;
 /// The yaw rate of a spin and that at which its rotation has stopped, rad/s (40
-/// and 20 °/s). A Cessna 172 spins at 120 to 180 °/s (Bowman 1989 gives 2.5 to
-/// 3 s for a turn of its kind); in a level turn at 60° and 60 kt it is 28 °/s.
+/// and 20 °/s). A light aircraft spins a turn in 3 s (FAA-H-8083-3C, chapter 5),
+/// about half of it in yaw; in a level turn at 60° and 60 kt yaw is 16 °/s.
 const SPIN_RADPS: f64 = 0.698;
 const SPIN_STOPPED_RADPS: f64 = 0.349;
 const SPIN_FOR_S: f64 = 0.3;

@@ -126,6 +126,13 @@ schema! {
         /// Acceleration along the flight path, without gusts, m/s².
         #[field(13)]
         pub acceleration_mps2: f64,
+        /// The time from an output to its effect, s, measured by the elevator;
+        /// until then the assumed one.
+        #[field(14)]
+        pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(15)]
+        pub elevator_play: f64,
     }
 }
 
@@ -181,6 +188,8 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                output_latency_s: 0.0,
+                elevator_play: 0.0,
                 load_factor: 1.0,
                 gust_load: 0.0,
                 angle_of_attack_rad: 0.0,
@@ -233,6 +242,7 @@ impl Navigation {
             gust_load: lift.gust_load,
             angle_of_attack_rad: lift.angle_of_attack_rad,
             acceleration_mps2: lift.acceleration_mps2,
+            ..self.estimate
         };
     }
 
