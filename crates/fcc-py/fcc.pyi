@@ -346,6 +346,22 @@ class Estimate:
     def acceleration_mps2(self) -> float:
         """Acceleration along the flight path, without gusts, m/s²."""
 
+    @property
+    def output_latency_s(self) -> float:
+        """The time from an output to its effect, s, measured by the elevator."""
+
+    @property
+    def elevator_play(self) -> float:
+        """The play of the elevator, in the elevator's units of -1 to 1."""
+
+    @property
+    def airspeed_source(self) -> str:
+        """Where the airspeed comes from."""
+
+    @property
+    def airspeed_uncertainty_mps(self) -> float:
+        """Standard deviation of an airspeed that comes from the forces, m/s."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

@@ -102,7 +102,7 @@ class AutopilotMark:
         return f"[guidance]\n{flown}\n{failsafe}\n{self.config}\n"
 
 
-def autopilot_mark(
+def autopilot_mark(  # noqa: PLR0913 - the settings of a mark
     mode: str = "timed-pattern",
     *,
     hold_s: float = 20.0,

@@ -20,7 +20,7 @@ import numpy as np
 
 from .quantities import Quantity, finite, quantity_of
 from .state import State
-from .units import wrap_heading_rad
+from .units import calibrated_airspeed_mps, impact_pressure_pa, wrap_heading_rad
 
 EVERYTHING = "everything"
 """In place of a sensor: the whole simulator, its clock and its switch included."""
@@ -39,6 +39,14 @@ class Kind(Enum):
     """A constant is added."""
     NOISE = "noise"
     """White noise is added; the amount is one standard deviation."""
+    DRIFT = "drift"
+    """A bias grows by the amount each second."""
+    BLOCKED_TUBE = "blocked_tube"
+    """The pitot tube and its drain are blocked: the total pressure stays as it was."""
+    OPEN_DRAIN = "open_drain"
+    """The pitot tube is blocked and its drain is not: the total pressure falls to the static."""
+    BLOCKED_STATIC = "blocked_static"
+    """The static port is blocked: its pressure stays as it was, for airspeed and altitude."""
     ROUND = "round"
     """Its values are multiples of the amount."""
     NAN = "nan"
@@ -54,6 +62,17 @@ class Kind(Enum):
     LOSS = "loss"
     """A sample is lost."""
 
+
+_MORE_CHANNELS = {
+    Kind.BLOCKED_TUBE: ("pressure_pa",),
+    Kind.OPEN_DRAIN: ("pressure_pa",),
+    Kind.BLOCKED_STATIC: ("pressure_pa", "altitude_m"),
+}
+"""What else of the state they need or change."""
+
+_DRAINS_S = 2.0
+SAMPLES_PER_S = 40.0
+"""In lockstep."""
 
 _ORDER = {kind: place for place, kind in enumerate(Kind)}
 
@@ -153,6 +172,42 @@ class _Running:
 
     def _bias(self, _time_s: float, values: _Values) -> _Values:
         return {name: _add(name, value, self.fault.amount) for name, value in values.items()}
+
+    def _drift(self, time_s: float, values: _Values) -> _Values:
+        by = self.fault.amount * (time_s - self.fault.begins_s)
+        return {
+            name: None if value is None else max(0.0, value + by) for name, value in values.items()
+        }
+
+    def _blocked_tube(self, _time_s: float, values: _Values) -> _Values:
+        return self._by_pressures(values, tube_s=math.inf, static=False)
+
+    def _open_drain(self, _time_s: float, values: _Values) -> _Values:
+        return self._by_pressures(values, tube_s=_DRAINS_S, static=False)
+
+    def _blocked_static(self, _time_s: float, values: _Values) -> _Values:
+        return self._by_pressures(values, tube_s=0.0, static=True)
+
+    def _by_pressures(self, values: _Values, *, tube_s: float, static: bool) -> _Values:
+        """Return what the instruments show with a tube or a static port that is blocked.
+
+        The trapped total pressure falls to the static one with the time constant `tube_s`; 0 is
+        a tube that is open.
+        """
+        airspeed_mps, pressure_pa = values["airspeed_mps"], values["pressure_pa"]
+        if airspeed_mps is None or pressure_pa is None:
+            return values
+        total_pa = pressure_pa + impact_pressure_pa(airspeed_mps)
+        self._kept = self._kept or {"total": total_pa, **values}
+        if tube_s > 0.0:
+            kept_pa = self._kept["total"] or total_pa
+            left = 1.0 if math.isinf(tube_s) else math.exp(-1.0 / (SAMPLES_PER_S * tube_s))
+            total_pa = pressure_pa + left * (kept_pa - pressure_pa)
+            self._kept["total"] = total_pa
+        if static:
+            kept = {name: self._kept[name] for name in ("pressure_pa", "altitude_m")}
+            values, pressure_pa = values | kept, kept["pressure_pa"] or pressure_pa
+        return values | {"airspeed_mps": calibrated_airspeed_mps(total_pa - pressure_pa)}
 
     def _noise(self, _time_s: float, values: _Values) -> _Values:
         return {
@@ -305,6 +360,28 @@ class Faults:
             raise ValueError(f"sigma is {sigma:g}: a standard deviation is at least 0")
         return self._add(Kind.NOISE, sensor, after, lasts, by=sigma)
 
+    def drift(
+        self,
+        sensor: Quantity | str,
+        *,
+        per_s: float,
+        after: float = 0.0,
+        lasts: float | None = None,
+    ) -> SensorFault:
+        """Add a bias that grows by so much each second, in its unit; not below 0."""
+        return self._add(Kind.DRIFT, sensor, after, lasts, by=finite("per_s", per_s))
+
+    def blocked_tube(
+        self, *, drain_is_open: bool = False, after: float = 0.0, lasts: float | None = None
+    ) -> SensorFault:
+        """Block the pitot tube, and its drain unless that is open."""
+        kind = Kind.OPEN_DRAIN if drain_is_open else Kind.BLOCKED_TUBE
+        return self._add(kind, "airspeed", after, lasts)
+
+    def blocked_static(self, *, after: float = 0.0, lasts: float | None = None) -> SensorFault:
+        """Block the static port, which airspeed and altitude share."""
+        return self._add(Kind.BLOCKED_STATIC, "airspeed", after, lasts)
+
     def round(
         self,
         sensor: Quantity | str,
@@ -372,7 +449,8 @@ class Faults:
             if not quantity.channels:
                 raise ValueError(f"no sensor measures {quantity.name}: it cannot have a fault")
             name, channels = quantity.name, quantity.channels
-            words = f"{kind.value} of {name}"
+            channels += _MORE_CHANNELS.get(kind, ())
+            words = f"{kind.value.replace('_', ' ')} of {name}"
             if by is not None:
                 amount = by * quantity.si_per_unit
                 words += f" by {quantity.words(by)}"

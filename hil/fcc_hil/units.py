@@ -15,6 +15,7 @@ DRY_AIR_GAS_CONSTANT = 287.053
 STANDARD_INHG = SEA_LEVEL_PRESSURE_PA / INHG_TO_PA
 _SEA_LEVEL_TEMPERATURE_K = 288.15
 _LAPSE_KPM = 0.0065
+_SEA_LEVEL_SOUND_MPS = 340.294
 
 
 def pressure_altitude_m(pressure_pa: float) -> float:
@@ -22,6 +23,18 @@ def pressure_altitude_m(pressure_pa: float) -> float:
     exponent = DRY_AIR_GAS_CONSTANT * _LAPSE_KPM / STANDARD_GRAVITY_MPS2
     ratio = math.pow(pressure_pa / SEA_LEVEL_PRESSURE_PA, exponent)
     return _SEA_LEVEL_TEMPERATURE_K / _LAPSE_KPM * (1.0 - ratio)
+
+
+def impact_pressure_pa(calibrated_mps: float) -> float:
+    """Return total minus static pressure of a calibrated airspeed (ICAO 7488: isentropic)."""
+    mach = calibrated_mps / _SEA_LEVEL_SOUND_MPS
+    return SEA_LEVEL_PRESSURE_PA * (math.pow(1.0 + 0.2 * mach * mach, 3.5) - 1.0)
+
+
+def calibrated_airspeed_mps(impact_pa: float) -> float:
+    """Return the calibrated airspeed of total minus static pressure; 0 if it is not positive."""
+    ratio = max(0.0, impact_pa) / SEA_LEVEL_PRESSURE_PA + 1.0
+    return _SEA_LEVEL_SOUND_MPS * math.sqrt(5.0 * (math.pow(ratio, 2.0 / 7.0) - 1.0))
 
 
 def wrap_degrees(angle_deg: float) -> float:

@@ -33,7 +33,7 @@ impl Stepped {
 
     /// Processes measurements without controlling.
     pub(crate) fn observe(&mut self, measured: &PyMeasurements, dt_s: f64) {
-        self.take(measured, dt_s, Surfaces::default());
+        self.take(measured, dt_s, None);
     }
 
     /// Engages with the controls at these positions.
@@ -43,7 +43,7 @@ impl Stepped {
         dt_s: f64,
         readback: Surfaces,
     ) -> Result<(), String> {
-        self.take(measured, dt_s, readback);
+        self.take(measured, dt_s, Some(readback));
         let engage_inhibits = self.engage_inhibits();
         if !engage_inhibits.is_empty() {
             return Err(format!(
@@ -58,14 +58,14 @@ impl Stepped {
 
     /// One tick of control.
     pub(crate) fn step(&mut self, measured: &PyMeasurements, dt_s: f64) -> Surfaces {
-        self.take(measured, dt_s, Surfaces::default());
+        self.take(measured, dt_s, None);
         self.autopilot.guide(&self.tick, &self.taken);
         self.autopilot.control(&self.tick, &self.taken)
     }
 
     /// One tick of failsafe.
     pub(crate) fn failsafe(&mut self, measured: &PyMeasurements, dt_s: f64) -> Surfaces {
-        self.take(measured, dt_s, Surfaces::default());
+        self.take(measured, dt_s, None);
         self.autopilot.failsafe(&self.tick, &self.taken)
     }
 
@@ -100,7 +100,7 @@ impl Stepped {
         self.autopilot.faults(&self.tick, &self.taken)
     }
 
-    fn take(&mut self, measured: &PyMeasurements, dt_s: f64, readback: Surfaces) {
+    fn take(&mut self, measured: &PyMeasurements, dt_s: f64, readback: Option<Surfaces>) {
         self.time_s += dt_s;
         let now = Time::from_nanos(Duration::from_secs_f64(self.time_s).as_nanos() as i64);
         self.tick = Tick {
@@ -110,12 +110,7 @@ impl Stepped {
             missed: 0,
             dt_s,
         };
-        let sample = with_plant(
-            &measured.sample(|_| false),
-            self.time_s,
-            Some(readback),
-            None,
-        );
+        let sample = with_plant(&measured.sample(|_| false), self.time_s, readback, None);
         self.taken = Measurements::default();
         Shape::of::<Measurements>().copy(&sample, &mut self.taken, Some(now));
         self.autopilot.estimate(&self.tick, &self.taken);

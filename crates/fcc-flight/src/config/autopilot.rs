@@ -18,6 +18,9 @@ use super::GuidanceSection;
 pub struct AutopilotSection {
     /// The reference airspeed of the gains.
     pub reference_airspeed_kt: f64,
+    /// The latency from an output to its effect that is assumed until it has
+    /// been measured.
+    pub assumed_latency_ms: f64,
     /// How the aircraft differs from the one for which the gains were tuned.
     pub scale: ScaleSection,
     /// The limits of the loops' commands.
@@ -37,6 +40,7 @@ impl Default for AutopilotSection {
         let core = AutopilotConfig::default();
         Self {
             reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
+            assumed_latency_ms: rounded(core.assumed_latency_s * 1e3),
             scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
             navigation: NavigationSection::from(&core.navigation),
@@ -58,6 +62,7 @@ impl AutopilotSection {
     ) -> AutopilotConfig {
         AutopilotConfig {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
+            assumed_latency_s: self.assumed_latency_ms * 1e-3,
             max_age,
             frozen_after,
             navigation: NavigationConfig::from(&self.navigation),

@@ -48,6 +48,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("altimeter.setting_hpa", 940.0, 1_060.0),
     ("altimeter.field_elevation_ft", -1_500.0, 20_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
+    ("autopilot.assumed_latency_ms", 0.0, 300.0),
     ("autopilot.scale.elevator", 0.01, 100.0),
     ("autopilot.scale.aileron", 0.01, 100.0),
     ("autopilot.scale.rudder", 0.0, 100.0),

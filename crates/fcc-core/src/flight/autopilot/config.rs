@@ -28,6 +28,12 @@ use super::FailsafeConfig;
 pub struct AutopilotConfig {
     /// The reference airspeed of the gains, m/s.
     pub reference_airspeed_mps: f64,
+    /// The latency from an output to its effect that is assumed until it has
+    /// been measured in flight, s.
+    pub assumed_latency_s: f64,
+    /// The pace of the gains, as [`Scale`](super::Scale) has it: a slower loop
+    /// stands more latency.
+    pub pace: f64,
     /// Readings older than this count as a loss of their sensor.
     pub max_age: Duration,
     /// If a simulated plant falls silent, so that none of its readings arrives,
@@ -67,6 +73,8 @@ impl Default for AutopilotConfig {
     fn default() -> Self {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
+            assumed_latency_s: 0.025,
+            pace: 1.0,
             max_age: Duration::from_millis(250),
             max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),

@@ -1,5 +1,7 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod actuation;
+mod airspeed_doubt;
 mod capture;
 mod command;
 mod config;
@@ -22,6 +24,7 @@ use core::hint::black_box;
 
 use libm::cos;
 
+use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
@@ -96,6 +99,7 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    actuation: Actuation,
     recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
@@ -113,6 +117,8 @@ pub struct Autopilot {
     following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
+    /// That the airspeed has just been doubted.
+    doubt_notice: Option<Notice>,
 }
 
 impl Autopilot {
@@ -121,7 +127,11 @@ impl Autopilot {
         Self {
             accepted: Measurements::default(),
             navigation: Navigation::new(&config.navigation)
-                .for_stall_airspeed(config.envelope.stall_airspeed_mps),
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps)
+                .for_aircraft(
+                    config.reference_airspeed_mps,
+                    config.airspeed.throttle_per_mps2,
+                ),
             replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
@@ -132,6 +142,7 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
             recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
@@ -144,6 +155,7 @@ impl Autopilot {
             degraded: Degraded::default(),
             following: Following::default(),
             distrusted: Flags::NONE,
+            doubt_notice: None,
             config,
         }
     }
@@ -158,20 +170,20 @@ impl Autopilot {
     }
 
     fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        Schedule::at(airspeed_mps, self.config.reference_airspeed_mps)
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
             airspeed_mps: self
-                .config
-                .envelope
+                .envelope()
                 .least_target_mps(estimate)
-                .max(self.targets.airspeed_mps),
+                .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
-            least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
+            least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
         }
     }
 
@@ -236,7 +248,7 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(tick.woke, measurements)
+        (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
     }
@@ -262,7 +274,10 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice().or_else(|| self.degraded_notice())
+        self.clock
+            .notice()
+            .or_else(|| self.degraded_notice())
+            .or(self.doubt_notice)
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -281,7 +296,7 @@ impl Controller for Autopilot {
                 f,
                 "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
-            _ => f.write_str("an unknown notice"),
+            kind => airspeed_doubt::write(kind, f),
         }
     }
 
@@ -327,6 +342,7 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        self.actuation.engage(&standing);
         self.take_over(&standing);
         self.begin_watching_for_upsets();
     }
@@ -358,9 +374,9 @@ impl Controller for Autopilot {
             self.last = self.trims();
             return self.last;
         }
-        let estimate = *self.navigation.estimate();
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
+        let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
@@ -387,7 +403,7 @@ impl Controller for Autopilot {
         };
         self.last = Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
         };
@@ -413,7 +429,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        *self.navigation.estimate()
+        self.actuation.shown_in(self.navigation.estimate())
     }
 
     fn setpoints(&self) -> Setpoints {
@@ -431,11 +447,13 @@ impl Controller for Autopilot {
     }
 
     fn plausible(&self, measurements: &Measurements) -> Flags {
-        plausibility_gate(
+        let plausible = plausibility_gate(
             &mut self.accepted.clone(),
             measurements,
             &self.gate_limits(),
-        )
+        );
+        let airspeed = plausible.contains(flags::AIRSPEED) && self.permits_airspeed(measurements);
+        plausible.with(flags::AIRSPEED, airspeed)
     }
 
     fn switch(&self, measurements: &Measurements) -> Reading<Switch> {

@@ -45,7 +45,10 @@ impl Autopilot {
             self.whereabouts.keep(&self.accepted);
         }
         let step_s = self.clock.step_s();
+        self.note_throttle(now);
+        let doubted = self.navigation.airspeed_doubt();
         self.navigate(now, measured, step_s);
+        self.note_doubt(doubted);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);
         self.take_over_after_loss(now);

@@ -28,7 +28,10 @@ impl Autopilot {
             .with(flags::OTHER_WRITER, other.writer)
             .with(flags::REVERSE_THRUST, other.reverse_thrust)
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
-            .with(flags::SUSPECT_AIRSPEED, airspeed_is_suspect(measurements))
+            .with(
+                flags::SUSPECT_AIRSPEED,
+                airspeed_is_suspect(measurements) && self.doubted().is_empty(),
+            )
             .with(flags::NOT_FOLLOWED, self.is_not_followed())
             .with(flags::DEGRADED, self.is_degraded())
             .with(

@@ -54,7 +54,11 @@ impl Autopilot {
         if self.navigation.estimate().airspeed_mps < self.config.envelope.min_airspeed_mps {
             Flags::NONE
         } else {
-            flags::frozen(self.frozen.frozen())
+            let frozen = flags::frozen(self.frozen.frozen());
+            frozen.with(
+                flags::FROZEN_AIRSPEED,
+                frozen.contains(flags::FROZEN_AIRSPEED) && self.doubted().is_empty(),
+            )
         }
     }
 
@@ -71,7 +75,11 @@ impl Autopilot {
         ];
         taken.into_iter().fold(Flags::NONE, |old, (flag, taken)| {
             let reading = Reading::new((), taken);
-            old.with(flag, !reading.is_fresh(judged, self.config.max_age))
+            let needed = flag != flags::AIRSPEED || self.doubted().is_empty();
+            old.with(
+                flag,
+                needed && !reading.is_fresh(judged, self.config.max_age),
+            )
         })
     }
 

@@ -50,14 +50,14 @@ impl Default for AltitudeConfig {
             altitude_gain_per_s: 1.5,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
-            climb_rate_gain: 1.8,
+            climb_rate_gain: 1.53,
             climb_rate_integral_gain_per_s: 0.35,
-            flight_path_lag_s: 0.2,
+            flight_path_lag_s: 0.235,
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
-            pitch_gain_per_s: 6.2,
+            pitch_gain_per_s: 4.96,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
-            pitch_rate_gain: 0.86,
-            pitch_rate_integral_gain: 2.76,
+            pitch_rate_gain: 0.69,
+            pitch_rate_integral_gain: 1.77,
             elevator_per_g: 0.30,
         }
     }
@@ -154,8 +154,9 @@ impl AltitudeLoop {
         );
         let rate = estimate.body_rates.pitch_radps;
         let feed_forward = schedule.moment * self.config.elevator_per_g * turn_load(estimate);
+        let gain = schedule.moment * schedule.pitch_pace;
         self.pitch_rate
-            .engage(elevator, rate, rate, feed_forward, schedule.moment);
+            .engage(elevator, rate, rate, feed_forward, gain);
     }
 
     /// One step towards an altitude (m).
@@ -168,7 +169,7 @@ impl AltitudeLoop {
         dt_s: f64,
     ) -> PitchCommand {
         let profile = SquareRootProfile {
-            gain_per_s: self.config.altitude_gain_per_s,
+            gain_per_s: schedule.pace * self.config.altitude_gain_per_s,
             deceleration: self.config.capture_mps2,
         };
         let wanted = profile.speed(altitude_m - estimate.altitude_m);
@@ -191,16 +192,16 @@ impl AltitudeLoop {
         );
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
-        let expected = self.expected_path.step(path, dt_s);
+        let expected = self.expected_path.step(path, schedule.path * dt_s);
         // The gain acts on the whole error, the integral only on the part not
         // explained by the lag.
-        let ahead = self.config.climb_rate_gain * (path - expected);
+        let ahead = schedule.path * self.config.climb_rate_gain * (path - expected);
         self.limit_pitch(estimate, envelope, dt_s);
         let pitch_rad = self.pitch.step_scheduled(
             expected,
             flight_path(estimate.climb_rate_mps, estimate),
             path + ahead + self.angle_of_attack(estimate, schedule),
-            1.0,
+            schedule.path,
             dt_s,
         );
         self.hold(
@@ -299,7 +300,7 @@ impl AltitudeLoop {
         // Euler pitch rate converted to body axes, plus the pitch rate of the
         // turn: q = θ̇ cos φ + ψ̇ cos θ sin φ.
         let theta_rate = limit_abs(
-            config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
+            schedule.pitch_pace * config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
             config.max_pitch_rate_radps,
         );
         let turn_rate = GRAVITY_MPS2 / speed * tan(bank);
@@ -320,8 +321,9 @@ impl AltitudeLoop {
             pitch_rate,
             estimate.body_rates.pitch_radps,
             schedule.moment * config.elevator_per_g * turn_load(estimate),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.pitch_pace,
+            // The integral's time constant is as long as the loop is slow.
+            schedule.pitch_pace * dt_s,
         );
         PitchCommand {
             climb_rate_mps,

@@ -171,14 +171,14 @@ impl HeadingLoop {
             roll_rate,
             roll_rate,
             self.aileron_feed_forward(roll_rate, schedule),
-            schedule.moment,
+            schedule.moment * schedule.lateral_pace,
         );
         self.side_force.engage(
             rudder,
             0.0,
             estimate.side_force_mps2,
             self.rudder_feed_forward(aileron, estimate, schedule),
-            schedule.moment,
+            schedule.moment * schedule.lateral_pace,
         );
     }
 
@@ -195,7 +195,7 @@ impl HeadingLoop {
         let turn_rate = GRAVITY_MPS2 / speed * tan(limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD));
         let error = heading_rad - estimate.heading_rad - self.config.lead_s * turn_rate;
         let profile = SquareRootProfile {
-            gain_per_s: self.config.heading_gain_per_s,
+            gain_per_s: schedule.lateral_pace * self.config.heading_gain_per_s,
             deceleration: GRAVITY_MPS2 / speed * self.config.rollout_rate_radps,
         };
         // Coordinated turn: tan φ = V ψ̇ / g.
@@ -233,7 +233,7 @@ impl HeadingLoop {
     ) -> Lateral {
         let config = &self.config;
         let wanted = limit_abs(
-            config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
+            schedule.lateral_pace * config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
             config.max_roll_rate_radps,
         );
         let roll_rate = self.roll_command.step(wanted, dt_s);
@@ -241,16 +241,16 @@ impl HeadingLoop {
             roll_rate,
             estimate.body_rates.roll_radps,
             self.aileron_feed_forward(roll_rate, schedule),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.lateral_pace,
+            schedule.lateral_pace * dt_s,
         );
         // A side force to the right requires yaw to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
             self.rudder_feed_forward(aileron, estimate, schedule),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.lateral_pace,
+            schedule.lateral_pace * dt_s,
         );
         Lateral {
             roll_rad,
@@ -297,7 +297,7 @@ impl HeadingLoop {
             * cos(estimate.pitch_rad);
         let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
         self.config.rudder_per_aileron * aileron
-            - schedule.moment * self.config.yaw_damping * excess
+            - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess
     }
 
     /// The aileron trim that the loop has found for wings level.

@@ -18,9 +18,12 @@ use crate::blocks::{AntiWindup, PidConfig};
 
 mod airspeed;
 mod altitude;
+mod elevator_response;
 mod envelope;
 mod heading;
 mod load;
+mod oscillation;
+mod play_inverse;
 mod recovery;
 mod schedule;
 mod speed_limits;
@@ -28,8 +31,11 @@ mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
 pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
+pub use elevator_response::ElevatorResponse;
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
+pub use oscillation::OscillationMonitor;
+pub use play_inverse::PlayInverse;
 pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
 pub use speed_limits::{PitchLimits, SpeedLimits};

@@ -6,6 +6,9 @@
 //! pair, and predicts through ticks in which nothing new arrived.
 
 mod air_data;
+mod airspeed_filter;
+mod airspeed_monitor;
+mod airspeed_reason;
 mod attitude;
 mod frozen;
 mod lift;
@@ -17,14 +20,22 @@ mod vertical_covariance;
 
 use core::time::Duration;
 
+use libm::sqrt;
+
+use super::atmosphere::density_ratio;
 use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
 use crate::schema;
-use crate::units::KNOT_MPS;
+use crate::units::{GRAVITY_MPS2, KNOT_MPS};
+use airspeed_filter::{AirframePrior, ForceSample};
+use airspeed_monitor::{AirspeedMonitor, MonitorInput, in_g};
 
 pub use air_data::AirspeedChannel;
+pub use airspeed_monitor::AirspeedSource;
+pub(crate) use airspeed_reason::{Doubt, DoubtReason};
 pub use attitude::AttitudeChannel;
+use attitude::Orientation;
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
 pub use lift::{Lift, LiftChannel};
 pub(crate) use plausibility::{
@@ -34,6 +45,7 @@ pub(crate) use plausibility::{
 pub(crate) use replacement::{Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
+use vertical::VerticalState;
 
 /// Time constants of navigation's channels.
 ///
@@ -126,6 +138,20 @@ schema! {
         /// Acceleration along the flight path, without gusts, m/s².
         #[field(13)]
         pub acceleration_mps2: f64,
+        /// The time from an output to its effect, s, measured by the elevator;
+        /// until then the assumed one.
+        #[field(14)]
+        pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(15)]
+        pub elevator_play: f64,
+        /// Where the airspeed comes from.
+        #[field(16)]
+        pub airspeed_source: AirspeedSource,
+        /// Standard deviation of an airspeed that comes from the forces, m/s;
+        /// 0 while the sensor is used.
+        #[field(17)]
+        pub airspeed_uncertainty_mps: f64,
     }
 }
 
@@ -154,6 +180,10 @@ pub struct Navigation {
     vertical: VerticalChannel,
     airspeed: AirspeedChannel,
     lift: LiftChannel,
+    monitor: AirspeedMonitor,
+    airframe: AirframePrior,
+    throttle: Option<f64>,
+    is_engaged: bool,
     side_force: LowPass,
     estimate: Estimate,
 }
@@ -166,6 +196,10 @@ impl Navigation {
             vertical: VerticalChannel::new(config.vertical_bandwidth_radps),
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
             lift: LiftChannel::new(STALL_AIRSPEED_MPS),
+            monitor: AirspeedMonitor::new(CESSNA_172),
+            airframe: CESSNA_172,
+            throttle: None,
+            is_engaged: false,
             side_force: LowPass::new(config.side_force_tau_s),
             estimate: Estimate {
                 roll_rad: 0.0,
@@ -181,12 +215,45 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                output_latency_s: 0.0,
+                elevator_play: 0.0,
                 load_factor: 1.0,
                 gust_load: 0.0,
                 angle_of_attack_rad: 0.0,
                 acceleration_mps2: 0.0,
+                airspeed_source: AirspeedSource::Sensor,
+                airspeed_uncertainty_mps: 0.0,
             },
         }
+    }
+
+    /// The same for an aircraft that cruises near an airspeed, and whose throttle
+    /// accelerates it by 1 m/s² per this much.
+    #[must_use]
+    pub fn for_aircraft(mut self, reference_airspeed_mps: f64, throttle_per_mps2: f64) -> Self {
+        self.airframe = AirframePrior {
+            reference_mps: reference_airspeed_mps,
+            full_thrust_ratio: FULL_THRUST_SHARE / (throttle_per_mps2 * GRAVITY_MPS2),
+        };
+        self.monitor = AirspeedMonitor::new(self.airframe);
+        self
+    }
+
+    /// The throttle from now on, 0..=1, if it is known, and whether the
+    /// autopilot is engaged: only then is a sensor doubted.
+    pub(crate) const fn flown_with(&mut self, throttle: Option<f64>, is_engaged: bool) {
+        self.throttle = throttle;
+        self.is_engaged = is_engaged;
+    }
+
+    /// The doubt of the airspeed sensor, while it lasts.
+    pub(crate) const fn airspeed_doubt(&self) -> Option<Doubt> {
+        self.monitor.doubt()
+    }
+
+    /// Whether an airspeed may be used beside those of other sensors.
+    pub(crate) fn permits_airspeed(&self, airspeed_mps: f64) -> bool {
+        self.monitor.permits(airspeed_mps)
     }
 
     /// For an aircraft with this stalling speed, clean and without power, m/s.
@@ -204,9 +271,22 @@ impl Navigation {
         let attitude = self.attitude.step(now, measurements, dt_s);
         let force = measurements.specific_force;
         let vertical = self.vertical.step(now, measurements, &attitude, dt_s);
-        let airspeed_mps = self
+        let measured_mps = self
             .airspeed
             .step(now, measurements, &attitude, &vertical, dt_s);
+        let input = self.monitor_input(now, measurements, &attitude, &vertical);
+        let known = is_current(&force, now) && is_current(&measurements.attitude, now);
+        self.monitor.step(&input, if known { dt_s } else { 0.0 });
+        let without = self.monitor.without_sensor(&input);
+        if without.is_some() {
+            self.airspeed.adopt_next();
+        }
+        let (airspeed_mps, airspeed_uncertainty_mps) = without.unwrap_or((measured_mps, 0.0));
+        let airspeed_source = if without.is_some() {
+            AirspeedSource::Forces
+        } else {
+            AirspeedSource::Sensor
+        };
         if is_current(&force, now) {
             self.side_force.step(force.value.y_mps2, dt_s);
         }
@@ -233,7 +313,37 @@ impl Navigation {
             gust_load: lift.gust_load,
             angle_of_attack_rad: lift.angle_of_attack_rad,
             acceleration_mps2: lift.acceleration_mps2,
+            airspeed_source,
+            airspeed_uncertainty_mps,
+            ..self.estimate
         };
+    }
+
+    fn monitor_input(
+        &self,
+        now: Time,
+        measurements: &Measurements,
+        attitude: &Orientation,
+        vertical: &VerticalState,
+    ) -> MonitorInput {
+        let force = measurements.specific_force.value;
+        let (forward, up) = in_g(force.x_mps2, force.z_mps2);
+        let airspeed = measurements.airspeed_mps;
+        MonitorInput {
+            sample: ForceSample {
+                forward,
+                up,
+                pitch_rad: attitude.pitch_rad,
+                roll_rad: attitude.roll_rad,
+                climb_rate_mps: vertical.climb_rate_mps,
+                sqrt_density: sqrt(density_ratio(vertical.altitude_m)),
+                ..ForceSample::default()
+            },
+            throttle: self.throttle,
+            altitude_m: vertical.altitude_m,
+            sensor_mps: is_current(&airspeed, now).then_some((airspeed.value, airspeed.source)),
+            may_doubt: self.is_engaged,
+        }
     }
 
     /// The latest estimate.
@@ -274,6 +384,9 @@ impl Navigation {
         self.attitude.adopt_next();
         self.vertical.coast(passed_s);
         self.airspeed.adopt_next();
+        if self.monitor.doubt().is_none() {
+            self.monitor = AirspeedMonitor::new(self.airframe);
+        }
     }
 
     /// Resets everything but what is known of the sensors, after the plant was
@@ -281,6 +394,8 @@ impl Navigation {
     pub fn reset(&mut self, config: &NavigationConfig) {
         let known = self.clone();
         *self = Self::new(config);
+        self.airframe = known.airframe;
+        self.monitor = AirspeedMonitor::new(known.airframe);
         self.lift = known.lift.renewed();
         self.attitude.keep_resolution(&known.attitude);
         self.vertical.keep_resolution(&known.vertical);
@@ -310,6 +425,16 @@ impl Navigation {
 
 /// The stalling speed of a Cessna 172, m/s (53 kt).
 const STALL_AIRSPEED_MPS: f64 = 53.0 * KNOT_MPS;
+
+/// The aircraft of the default gains: 100 kt, throttle for 1 g of 3.63.
+const CESSNA_172: AirframePrior = AirframePrior {
+    reference_mps: 51.444_444,
+    full_thrust_ratio: 0.25,
+};
+
+/// Thrust over weight at full throttle, from the throttle per g in cruise: thrust
+/// is proportional to the square of the throttle, whose slope is 1 at a half.
+const FULL_THRUST_SHARE: f64 = 0.9;
 
 /// A source that is silent for longer than this is no longer integrated, and
 /// when it returns, its value is adopted at once.

@@ -183,6 +183,21 @@ pub(crate) fn plausibility_gate(
             HEIGHT_M.holds(beyond_m, gap_s)
         },
     );
+    let [angle, position, velocity, surfaces, plant] = take_others(good, new);
+    [
+        attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
+        true, plant, true, true,
+    ]
+    .into_iter()
+    .zip(0..)
+    .fold(Flags::NONE, |all, (plausible, bit)| {
+        all.with(Flags::bit(bit), plausible)
+    })
+}
+
+/// Copies what can be anything valid at once: angle of attack, position,
+/// velocity, surfaces, plant; and what is always plausible.
+fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 5] {
     let anywhere = Duration::ZERO;
     let angle = take(
         &mut good.angle_of_attack_rad,
@@ -225,15 +240,7 @@ pub(crate) fn plausibility_gate(
     replace(&mut good.engage_switch, &new.engage_switch);
     replace(&mut good.other_control, &new.other_control);
     replace(&mut good.suspect, &new.suspect);
-    [
-        attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
-        true, plant, true, true,
-    ]
-    .into_iter()
-    .zip(0..)
-    .fold(Flags::NONE, |all, (plausible, bit)| {
-        all.with(Flags::bit(bit), plausible)
-    })
+    [angle, position, velocity, surfaces, plant]
 }
 
 /// Whether an airspeed can be that of an aircraft which had another one before it

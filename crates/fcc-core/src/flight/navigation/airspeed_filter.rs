@@ -1,0 +1,334 @@
+//! Airspeed from the forces on the aircraft and its motion.
+
+use libm::{asin, cos, exp};
+
+use crate::blocks::{limit, limit_abs};
+use crate::units::GRAVITY_MPS2;
+
+/// What an [`AirspeedFilter`] must know of the aircraft beforehand.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) struct AirframePrior {
+    /// The airspeed V₀ at which the ratios below hold, m/s.
+    pub(super) reference_mps: f64,
+    /// Thrust over weight at full throttle and V₀.
+    pub(super) full_thrust_ratio: f64,
+}
+
+/// Parasite and induced drag over weight at V₀, of a lift over drag of 9 there:
+/// light aircraft cruise at 8 to 12 (Roskam and Lan 1997, table 5.1 has others).
+const PARASITE_DRAG_RATIO: f64 = 0.09;
+const INDUCED_DRAG_RATIO: f64 = 0.02;
+/// The angle of attack above that of zero lift, for 1 g at V₀, rad (3.8°).
+const LIFT_ANGLE_RAD: f64 = 0.067;
+
+/// Standard deviations: of the axial model over weight, of the lift model in
+/// rad, of an airspeed sensor in m/s.
+const AXIAL_SD: f64 = 0.02;
+const LIFT_SD_RAD: f64 = 0.017_5;
+const SENSOR_SD_MPS: f64 = 0.514;
+/// The share of a change of thrust that the model does not explain, ...
+const THRUST_ERROR: f64 = 0.15;
+/// ... the time in which that counts as a lasting offset, s, and its weights in
+/// the noise of a correction and of the comparison of two airspeeds.
+const THRUST_SETTLES_S: f64 = 5.0;
+const THRUST_NOISE: f64 = 3.0;
+/// Beyond these innovations the force is not explained by airspeed: an engine
+/// that stops, or a wind that rises (weight; rad).
+const ENGINE_CHANGE: f64 = 0.06;
+const UPDRAUGHT_RAD: f64 = 0.026;
+const UPDRAUGHT_SHARE: f64 = 0.2;
+/// The correlation time of vertical gusts, s: 533 m at 65 m/s (MIL-F-8785C,
+/// 3.7.3, above 2,000 ft).
+const GUST_S: f64 = 8.0;
+/// Random walks, per √s: of the airspeed in m/s, of the offset, of the thrust
+/// ratio, of the zero of the angle of attack in rad.
+const AIRSPEED_WALK_MPS: f64 = 0.3;
+const OFFSET_WALK: f64 = 0.000_5;
+const THRUST_WALK: f64 = 0.003;
+const ANGLE_WALK_RAD: f64 = 0.000_87;
+/// The share of the gusts' variance that acts along the path.
+const GUSTS_ALONG: f64 = 0.3;
+const MIN_AIRSPEED_MPS: f64 = 5.0;
+
+/// What the filter's models need, averaged over the time between two
+/// corrections.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct ForceSample {
+    /// Specific force forward and up along the body axes, in g.
+    pub(super) forward: f64,
+    pub(super) up: f64,
+    pub(super) pitch_rad: f64,
+    pub(super) roll_rad: f64,
+    pub(super) climb_rate_mps: f64,
+    /// √(density over its value at sea level).
+    pub(super) sqrt_density: f64,
+    /// Thrust over that at full throttle and V₀, and its change over seconds;
+    /// none if the throttle is not known.
+    pub(super) thrust: Option<(f64, f64)>,
+    /// Standard deviation of vertical gusts, m/s.
+    pub(super) gusts_mps: f64,
+}
+
+/// The state: indicated airspeed V in m/s, vertical wind w in m/s, offset of
+/// the axial force, thrust ratio, angle of attack of zero lift in rad, angle of
+/// attack for 1 g in rad.
+const N: usize = 6;
+type State = [f64; N];
+
+/// The difference of the airspeed that a model has from the filter's, and the
+/// weight of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Vote {
+    differs_mps: f64,
+    weight: f64,
+}
+
+/// An extended Kalman filter. The acceleration along the path is integrated;
+/// two models of forces correct it, both with q = (V/V₀)²:
+///
+/// - along x, in weights: thrust·V₀/V - D₀ q + (A - K) n²/q + offset (the drag
+///   polar with the lift's part along x; Stevens, Lewis and Johnson 2016, 2.3),
+/// - of lift: pitch = path + cos(bank) (α₀ + A n/q), where the path is the climb
+///   rate without vertical wind over the true airspeed.
+///
+/// What it does not know of the aircraft it learns while a sensor is believed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AirspeedFilter {
+    prior: AirframePrior,
+    x: State,
+    covariance: [State; N],
+    /// The models as they were when the filter was copied.
+    kept: State,
+    axial: Vote,
+    lift: Vote,
+}
+
+impl AirspeedFilter {
+    /// A filter that begins at a sensor's airspeed.
+    pub(super) fn new(prior: AirframePrior, airspeed_mps: f64, sample: &ForceSample) -> Self {
+        let q = squared(airspeed_mps / prior.reference_mps);
+        let path = sample.climb_rate_mps * sample.sqrt_density / airspeed_mps;
+        let zero_lift_rad = sample.pitch_rad - path - LIFT_ANGLE_RAD / q;
+        let x = [
+            airspeed_mps,
+            0.0,
+            0.0,
+            prior.full_thrust_ratio,
+            zero_lift_rad,
+            LIFT_ANGLE_RAD,
+        ];
+        let thrust_sd = 0.5 * prior.full_thrust_ratio;
+        let sds = [1.0, 1.0, 0.0, thrust_sd, 0.052, 0.25 * LIFT_ANGLE_RAD];
+        let mut filter = Self {
+            prior,
+            x,
+            covariance: [[0.0; N]; N],
+            kept: x,
+            axial: Vote::default(),
+            lift: Vote::default(),
+        };
+        filter.add_variance(sds.map(squared));
+        filter.learn_offset(sample);
+        filter
+    }
+
+    pub(super) const fn airspeed_mps(&self) -> f64 {
+        self.x[0]
+    }
+
+    pub(super) const fn vertical_wind_mps(&self) -> f64 {
+        self.x[1]
+    }
+
+    /// Standard deviation of the airspeed, m/s.
+    pub(super) fn sd_mps(&self) -> f64 {
+        libm::sqrt(self.covariance[0][0].max(0.0))
+    }
+
+    /// Sets the airspeed.
+    pub(super) const fn adopt(&mut self, airspeed_mps: f64) {
+        self.x[0] = airspeed_mps;
+    }
+
+    /// A copy that remembers the models as they are now.
+    pub(super) const fn kept(&self) -> Self {
+        let mut copy = *self;
+        copy.kept = self.x;
+        copy
+    }
+
+    /// The offset of the axial force follows from a throttle that is known only
+    /// now.
+    pub(super) fn learn_offset(&mut self, sample: &ForceSample) {
+        if let Some((thrust, _)) = sample.thrust {
+            self.x[2] = 0.0;
+            self.x[2] = sample.forward - self.axial_of(self.x, thrust, sample.up);
+            self.kept[2] = self.x[2];
+            self.covariance[2][2] += squared(0.05);
+        }
+    }
+
+    /// Integrates an acceleration along the path, of indicated airspeed.
+    pub(super) fn accelerate(&mut self, acceleration_mps2: f64, dt_s: f64) {
+        self.x[0] += acceleration_mps2 * dt_s;
+    }
+
+    /// The uncertainty of `dt_s` seconds, then the corrections by both models.
+    pub(super) fn correct(&mut self, sample: &ForceSample, dt_s: f64) {
+        self.predict(sample.gusts_mps, dt_s);
+        self.correct_by_axial_force(sample, dt_s);
+        self.correct_by_lift(sample);
+    }
+
+    /// Corrects by a sensor's airspeed.
+    pub(super) fn correct_by_sensor(&mut self, airspeed_mps: f64) {
+        let by = airspeed_mps - self.x[0];
+        self.update([1.0, 0.0, 0.0, 0.0, 0.0, 0.0], by, squared(SENSOR_SD_MPS));
+    }
+
+    /// How far the airspeed is from this one by the forces alone, with the
+    /// models as they were when the filter was copied, m/s.
+    pub(super) fn vote_mps(&self) -> f64 {
+        let Self { axial, lift, .. } = self;
+        let weight = axial.weight + lift.weight;
+        if weight > 0.0 {
+            (axial.weight * axial.differs_mps + lift.weight * lift.differs_mps) / weight
+        } else {
+            0.0
+        }
+    }
+
+    fn predict(&mut self, gusts_mps: f64, dt_s: f64) {
+        let fades = exp(-dt_s / GUST_S);
+        self.x[1] *= fades;
+        self.covariance[1] = self.covariance[1].map(|p| p * fades);
+        for [_, wind, ..] in &mut self.covariance {
+            *wind *= fades;
+        }
+        let gusts = squared(gusts_mps);
+        self.add_variance([
+            (squared(AIRSPEED_WALK_MPS) + GUSTS_ALONG * 2.0 * gusts / GUST_S) * dt_s,
+            (1.0 - fades * fades) * gusts,
+            squared(OFFSET_WALK) * dt_s,
+            squared(THRUST_WALK) * dt_s,
+            squared(ANGLE_WALK_RAD) * dt_s,
+            0.0,
+        ]);
+    }
+
+    fn correct_by_axial_force(&mut self, sample: &ForceSample, dt_s: f64) {
+        let Some((thrust, change)) = sample.thrust else {
+            self.axial = Vote::default();
+            return;
+        };
+        let slower = self.slower();
+        let induced = squared(sample.up * slower);
+        let unexplained = squared(THRUST_ERROR * self.x[3] * change);
+        self.covariance[2][2] += unexplained * dt_s / THRUST_SETTLES_S;
+        let drag = 2.0 * (PARASITE_DRAG_RATIO / squared(slower));
+        let per_mps = -(self.x[3] * thrust * slower
+            + drag
+            + 2.0 * (self.x[5] - INDUCED_DRAG_RATIO) * induced)
+            / self.at_mps();
+        let per_mps = per_mps.min(-1e-3);
+        let kept = sample.forward - self.axial_of(self.kept, thrust, sample.up);
+        self.axial = Vote {
+            differs_mps: kept / per_mps,
+            weight: squared(per_mps) / (squared(AXIAL_SD) + THRUST_NOISE * unexplained),
+        };
+        let by = sample.forward - self.axial_of(self.x, thrust, sample.up);
+        if by.abs() > ENGINE_CHANGE {
+            self.covariance[2][2] += by * by * dt_s;
+        }
+        self.update(
+            [per_mps, 0.0, 1.0, thrust * slower, 0.0, induced],
+            by,
+            squared(AXIAL_SD) + THRUST_NOISE * unexplained,
+        );
+    }
+
+    /// Force along x over weight, with the models of `by` and the present
+    /// airspeed.
+    fn axial_of(&self, by: State, thrust: f64, load: f64) -> f64 {
+        let [_, _, offset, ratio, _, angle] = by;
+        let slower = self.slower();
+        offset + ratio * thrust * slower - PARASITE_DRAG_RATIO / squared(slower)
+            + (angle - INDUCED_DRAG_RATIO) * squared(load * slower)
+    }
+
+    fn correct_by_lift(&mut self, sample: &ForceSample) {
+        let true_mps = self.at_mps() / sample.sqrt_density;
+        let lift = sample.up * squared(self.slower());
+        let level = cos(sample.roll_rad);
+        let pitch = |[_, wind, _, _, zero, angle]: State| {
+            limit_abs((sample.climb_rate_mps - wind) / true_mps, 0.5)
+                + level * (zero + angle * lift)
+        };
+        let path = limit_abs((sample.climb_rate_mps - self.x[1]) / true_mps, 0.5);
+        let per_mps = -(path + 2.0 * level * self.x[5] * lift) / self.at_mps();
+        let gusts = squared(sample.gusts_mps) + 0.3;
+        let by_kept =
+            sample.pitch_rad - pitch([0.0, self.x[1], 0.0, 0.0, self.kept[4], self.kept[5]]);
+        self.lift = Vote {
+            differs_mps: by_kept / per_mps.min(-1e-3),
+            weight: squared(per_mps) / (gusts / squared(true_mps) + squared(LIFT_SD_RAD)),
+        };
+        let by = sample.pitch_rad - pitch(self.x);
+        if by.abs() > UPDRAUGHT_RAD {
+            self.covariance[1][1] += UPDRAUGHT_SHARE * squared(by * true_mps);
+        }
+        self.update(
+            [per_mps, -1.0 / true_mps, 0.0, 0.0, level, level * lift],
+            by,
+            squared(LIFT_SD_RAD),
+        );
+    }
+
+    fn at_mps(&self) -> f64 {
+        self.x[0].max(MIN_AIRSPEED_MPS)
+    }
+
+    /// V₀ over V.
+    fn slower(&self) -> f64 {
+        self.prior.reference_mps / self.at_mps()
+    }
+
+    fn add_variance(&mut self, variance: State) {
+        for (place, (row, more)) in self.covariance.iter_mut().zip(variance).enumerate() {
+            if let Some(own) = row.get_mut(place) {
+                *own += more;
+            }
+        }
+    }
+
+    /// The correction by a scalar measurement (Gelb 1974, table 4.2-1).
+    fn update(&mut self, h: State, by: f64, variance: f64) {
+        let ph = self.covariance.map(|row| dot(row, h));
+        let per = 1.0 / (dot(ph, h) + variance);
+        for ((row, x), gain) in self.covariance.iter_mut().zip(&mut self.x).zip(ph) {
+            *x += gain * by * per;
+            for (p, other) in row.iter_mut().zip(ph) {
+                *p -= gain * other * per;
+            }
+        }
+    }
+}
+
+/// Acceleration of the indicated airspeed along the path, m/s², from the forces
+/// in g; without vertical wind, whose effect is of second order.
+pub(super) fn acceleration_mps2(sample: &ForceSample, airspeed_mps: f64) -> f64 {
+    let true_mps = airspeed_mps.max(MIN_AIRSPEED_MPS) / sample.sqrt_density;
+    let sin_path = limit_abs(sample.climb_rate_mps / true_mps, 1.0);
+    let level = cos(sample.roll_rad).max(0.3);
+    let alpha = limit((sample.pitch_rad - asin(sin_path)) / level, -0.3, 0.3);
+    let along = sample.forward * cos(alpha) - sample.up * libm::sin(alpha) - sin_path;
+    GRAVITY_MPS2 * along * sample.sqrt_density
+}
+
+pub(super) fn squared(x: f64) -> f64 {
+    x * x
+}
+
+fn dot(a: State, b: State) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,377 @@
+//! Whether the airspeed sensor is believed, and the airspeed without it.
+
+use super::airspeed_filter::{
+    AirframePrior, AirspeedFilter, ForceSample, acceleration_mps2, squared,
+};
+use super::airspeed_reason::{Doubt, Reference};
+use crate::blocks::{LowPass, smoothing_factor};
+use crate::schema;
+use crate::units::GRAVITY_MPS2;
+
+schema! {
+    /// Where the estimate's airspeed comes from.
+    ///
+    /// ```
+    /// use fcc_core::flight::navigation::AirspeedSource;
+    ///
+    /// assert_eq!(AirspeedSource::from_number(1), Some(AirspeedSource::Forces));
+    /// ```
+    pub enum AirspeedSource {
+        /// The airspeed sensor.
+        Sensor = 0,
+        /// Forces and motion: the sensor is doubted or silent.
+        Forces = 1,
+    }
+}
+
+/// The time between two corrections of the filters, s.
+const CORRECTED_S: f64 = 0.1;
+/// The throttle's lag: propeller and engine follow it over this time, s. Thrust
+/// is taken as proportional to its square: the power of a piston engine rises
+/// with the pressure in its manifold, which rises with the throttle's angle.
+const THRUST_LAG_S: f64 = 1.7;
+/// The time over which a change of thrust counts as recent, s.
+const THRUST_RECENT_S: f64 = 10.0;
+/// The time for which a filter runs without the sensor before it is compared, s.
+const ALONE_S: f64 = 20.0;
+/// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 2.5
+/// standard deviations and of 3 times the gusts must last for 2.5 s.
+const DIFFERS_RATIO: f64 = 0.09;
+const DIFFERS_SDS: f64 = 2.5;
+const DIFFERS_GUSTS: f64 = 3.0;
+const DOUBTED_AFTER_S: f64 = 2.5;
+/// The forces vote for the sensor if they put the airspeed more than this share
+/// of the way towards it: then the wind has changed, after this time in s.
+const SENSOR_SHARE: f64 = 0.45;
+const WIND_CHANGED_AFTER_S: f64 = 2.0;
+const VOTE_LAG_S: f64 = 2.0;
+const DIFFERENCE_LAG_S: f64 = 0.5;
+/// A doubted sensor is believed again when it has agreed within 7 % of the
+/// reference airspeed for 10 s; another sensor of the same quantity for 1 s.
+const AGREES_RATIO: f64 = 0.07;
+const BELIEVED_AFTER_S: f64 = 10.0;
+const ANOTHER_BELIEVED_AFTER_S: f64 = 1.0;
+/// Doubt needs models that have learned the aircraft for this time, s.
+const LEARNED_S: f64 = 10.0;
+/// Below this share of the reference airspeed nothing is compared.
+const LEAST_RATIO: f64 = 0.4;
+/// Beyond these the models of the forces do not hold: bank and pitch in rad
+/// (60°, 45°), load in g.
+const STEEP_BANK_RAD: f64 = 1.05;
+const STEEP_PITCH_RAD: f64 = 0.79;
+const LOADS: core::ops::RangeInclusive<f64> = 0.3..=2.5;
+/// Vertical gusts are the filter's vertical wind, over this time, s; at least
+/// and at most these variances, m²/s².
+const GUSTS_OVER_S: f64 = 20.0;
+const LEAST_GUSTS_MPS2: f64 = 0.1;
+const MOST_GUSTS_MPS2: f64 = 49.0;
+
+/// One tick's inputs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MonitorInput {
+    /// Forces and motion; its thrust and gusts are not read.
+    pub(super) sample: ForceSample,
+    /// 0..=1, if it is known.
+    pub(super) throttle: Option<f64>,
+    pub(super) altitude_m: f64,
+    /// Indicated, with the number of its sensor; none if it is silent.
+    pub(super) sensor_mps: Option<(f64, u8)>,
+    /// Whether the sensor may be doubted: while engaged.
+    pub(super) may_doubt: bool,
+}
+
+/// The filters of one flight: one that follows the sensor, and two that began
+/// as its copies and have run without it since.
+#[derive(Clone, Copy, Debug)]
+struct Bank {
+    believing: AirspeedFilter,
+    /// Without the sensor for 20 to 40 s, and for up to 20 s.
+    older: AirspeedFilter,
+    younger: AirspeedFilter,
+    younger_s: f64,
+    learned_s: f64,
+    thrust_is_known: bool,
+}
+
+impl Bank {
+    fn new(prior: AirframePrior, sensor_mps: f64, sample: &ForceSample) -> Self {
+        let believing = AirspeedFilter::new(prior, sensor_mps, sample);
+        Self {
+            believing,
+            older: believing,
+            younger: believing,
+            younger_s: 0.0,
+            learned_s: 0.0,
+            thrust_is_known: sample.thrust.is_some(),
+        }
+    }
+
+    const fn each(&mut self) -> [&mut AirspeedFilter; 3] {
+        [&mut self.believing, &mut self.older, &mut self.younger]
+    }
+
+    /// Both copies begin anew.
+    const fn follow_sensor(&mut self) {
+        self.older = self.believing.kept();
+        self.younger = self.older;
+        self.younger_s = 0.0;
+    }
+}
+
+/// Holds the airspeed sensor against forces and motion.
+///
+/// A sensor is doubted if it differs from the airspeed of a filter that has not
+/// used it for at least 20 s (a multiple-model test; Willsky 1976), and if the
+/// forces, by models as they were before, are nearer to the filter than to the
+/// sensor. Otherwise the wind has changed, and the filters follow.
+#[derive(Clone, Debug)]
+pub(super) struct AirspeedMonitor {
+    prior: AirframePrior,
+    bank: Option<Bank>,
+    /// Sums of the samples since the last correction, and their time.
+    sum: ForceSample,
+    sensor_sum_mps: f64,
+    sum_s: f64,
+    thrust: LowPass,
+    recent_thrust: LowPass,
+    gusts_mps2: f64,
+    difference: LowPass,
+    vote: LowPass,
+    differs_s: f64,
+    wind_s: f64,
+    agrees_s: f64,
+    reference: Reference,
+    doubt: Option<Doubt>,
+    /// A sensor was doubted in this flight: of several, readings that
+    /// contradict the forces are left out.
+    was_doubted: bool,
+}
+
+impl AirspeedMonitor {
+    pub(super) const fn new(prior: AirframePrior) -> Self {
+        const NOTHING: ForceSample = ForceSample {
+            forward: 0.0,
+            up: 0.0,
+            pitch_rad: 0.0,
+            roll_rad: 0.0,
+            climb_rate_mps: 0.0,
+            sqrt_density: 0.0,
+            thrust: None,
+            gusts_mps: 0.0,
+        };
+        Self {
+            prior,
+            bank: None,
+            sum: NOTHING,
+            sensor_sum_mps: 0.0,
+            sum_s: 0.0,
+            thrust: LowPass::new(THRUST_LAG_S),
+            recent_thrust: LowPass::new(THRUST_RECENT_S),
+            gusts_mps2: 1.0,
+            difference: LowPass::new(DIFFERENCE_LAG_S),
+            vote: LowPass::new(VOTE_LAG_S),
+            differs_s: 0.0,
+            wind_s: 0.0,
+            agrees_s: 0.0,
+            reference: Reference::NONE,
+            doubt: None,
+            was_doubted: false,
+        }
+    }
+
+    /// The doubt of the sensor, while it lasts.
+    pub(super) const fn doubt(&self) -> Option<Doubt> {
+        self.doubt
+    }
+
+    /// Whether an airspeed may be used beside others: until one was doubted,
+    /// any.
+    pub(super) fn permits(&self, airspeed_mps: f64) -> bool {
+        let Some(bank) = self.bank.filter(|_| self.was_doubted) else {
+            return true;
+        };
+        let differs = (airspeed_mps - bank.older.airspeed_mps()).abs();
+        differs < self.limit_mps(&bank.older)
+    }
+
+    /// The airspeed by forces and motion and its standard deviation, m/s, if the
+    /// sensor is not to be used.
+    pub(super) fn without_sensor(&self, input: &MonitorInput) -> Option<(f64, f64)> {
+        let bank = self.bank?;
+        let filter = match (self.doubt, input.sensor_mps) {
+            (Some(_), _) => bank.older,
+            (None, None) => bank.believing,
+            (None, Some(_)) => return None,
+        };
+        Some((filter.airspeed_mps(), filter.sd_mps()))
+    }
+
+    /// Processes one tick.
+    pub(super) fn step(&mut self, input: &MonitorInput, dt_s: f64) {
+        if dt_s <= 0.0 {
+            return;
+        }
+        let least_mps = LEAST_RATIO * self.prior.reference_mps;
+        let followed = self.bank.as_ref().map(|bank| bank.older.airspeed_mps());
+        if self.doubt.is_none() && followed.is_some_and(|mps| mps < least_mps) {
+            *self = Self::new(self.prior);
+            return;
+        }
+        let sample = ForceSample {
+            thrust: self.thrust_of(input.throttle, dt_s),
+            gusts_mps: libm::sqrt(self.gusts_mps2),
+            ..input.sample
+        };
+        let Some(mut bank) = self.bank else {
+            if let Some((mps, _)) = input.sensor_mps.filter(|(mps, _)| *mps > 1.2 * least_mps) {
+                self.bank = Some(Bank::new(self.prior, mps, &sample));
+            }
+            return;
+        };
+        let now_mps = bank.older.airspeed_mps();
+        let acceleration = acceleration_mps2(&sample, now_mps);
+        for filter in bank.each() {
+            filter.accelerate(acceleration, dt_s);
+        }
+        self.add(&sample, input.sensor_mps, dt_s);
+        let holds = sample.roll_rad.abs() < STEEP_BANK_RAD
+            && sample.pitch_rad.abs() < STEEP_PITCH_RAD
+            && LOADS.contains(&sample.up);
+        if self.sum_s >= CORRECTED_S - 1e-6 {
+            self.correct(&mut bank, &sample, input.sensor_mps.is_some(), holds);
+        }
+        bank.younger_s += dt_s;
+        bank.learned_s += dt_s;
+        if let Some((sensor_mps, source)) = input.sensor_mps {
+            self.compare(&mut bank, input, (sensor_mps, source), holds, dt_s);
+        }
+        self.bank = Some(bank);
+    }
+
+    /// Thrust over that at full throttle, and its recent change.
+    fn thrust_of(&mut self, throttle: Option<f64>, dt_s: f64) -> Option<(f64, f64)> {
+        let follows = self.thrust.step(throttle?, dt_s);
+        let recent = self.recent_thrust.step(follows, dt_s);
+        Some((squared(follows), squared(follows) - squared(recent)))
+    }
+
+    fn add(&mut self, sample: &ForceSample, sensor_mps: Option<(f64, u8)>, dt_s: f64) {
+        let sum = &mut self.sum;
+        sum.forward += sample.forward * dt_s;
+        sum.up += sample.up * dt_s;
+        sum.pitch_rad += sample.pitch_rad * dt_s;
+        sum.roll_rad += sample.roll_rad * dt_s;
+        sum.climb_rate_mps += sample.climb_rate_mps * dt_s;
+        self.sensor_sum_mps += sensor_mps.unwrap_or_default().0 * dt_s;
+        self.sum_s += dt_s;
+    }
+
+    /// Corrects the filters by the mean of the samples since the last time.
+    fn correct(&mut self, bank: &mut Bank, now: &ForceSample, has_sensor: bool, holds: bool) {
+        let passed_s = core::mem::take(&mut self.sum_s);
+        let sum = core::mem::take(&mut self.sum);
+        let sensor_mps = core::mem::take(&mut self.sensor_sum_mps) / passed_s;
+        let mean = ForceSample {
+            forward: sum.forward / passed_s,
+            up: sum.up / passed_s,
+            pitch_rad: sum.pitch_rad / passed_s,
+            roll_rad: sum.roll_rad / passed_s,
+            climb_rate_mps: sum.climb_rate_mps / passed_s,
+            ..*now
+        };
+        let knows = mean.thrust.is_some();
+        if core::mem::replace(&mut bank.thrust_is_known, knows) != knows {
+            for filter in bank.each() {
+                filter.learn_offset(&mean);
+            }
+        }
+        if holds {
+            for filter in bank.each() {
+                filter.correct(&mean, passed_s);
+            }
+        }
+        if self.doubt.is_none() && has_sensor {
+            bank.believing.correct_by_sensor(sensor_mps);
+            let seen = (2.0 * squared(bank.believing.vertical_wind_mps())).min(MOST_GUSTS_MPS2);
+            self.gusts_mps2 += smoothing_factor(passed_s, GUSTS_OVER_S)
+                * (seen + LEAST_GUSTS_MPS2 - self.gusts_mps2);
+        }
+    }
+
+    fn limit_mps(&self, filter: &AirspeedFilter) -> f64 {
+        (DIFFERS_RATIO * self.prior.reference_mps)
+            .max(DIFFERS_SDS * filter.sd_mps())
+            .max(DIFFERS_GUSTS * libm::sqrt(self.gusts_mps2))
+    }
+
+    fn compare(
+        &mut self,
+        bank: &mut Bank,
+        input: &MonitorInput,
+        (sensor_mps, source): (f64, u8),
+        holds: bool,
+        dt_s: f64,
+    ) {
+        let filter_mps = bank.older.airspeed_mps();
+        let differs = self.difference.step(sensor_mps - filter_mps, dt_s);
+        let vote = self.vote.step(bank.older.vote_mps(), dt_s);
+        if let Some(doubt) = self.doubt {
+            let agrees = differs.abs() < AGREES_RATIO * self.prior.reference_mps;
+            self.agrees_s = if agrees { self.agrees_s + dt_s } else { 0.0 };
+            let needed_s = if source == doubt.source {
+                BELIEVED_AFTER_S
+            } else {
+                ANOTHER_BELIEVED_AFTER_S
+            };
+            if self.agrees_s > needed_s {
+                bank.believing = bank.older;
+                bank.believing.adopt(sensor_mps);
+                self.follow_sensor(bank);
+                self.doubt = None;
+            }
+            return;
+        }
+        let limit_mps = self.limit_mps(&bank.older);
+        let is_large = holds && differs.abs() > limit_mps;
+        let for_sensor = vote * differs.signum() > SENSOR_SHARE * differs.abs();
+        let count = |now: bool, s: f64| if now { s + dt_s } else { (s - dt_s).max(0.0) };
+        self.differs_s = count(is_large && !for_sensor, self.differs_s);
+        self.wind_s = count(is_large && for_sensor, self.wind_s);
+        if differs.abs() < 0.3 * limit_mps {
+            self.reference = Reference::new(input.altitude_m, sensor_mps);
+        }
+        if self.wind_s > WIND_CHANGED_AFTER_S {
+            self.follow_sensor(bank);
+        } else if self.differs_s > DOUBTED_AFTER_S {
+            if input.may_doubt && bank.learned_s > LEARNED_S {
+                let sigma = squared(input.sample.sqrt_density);
+                let reason = self
+                    .reference
+                    .reason(input.altitude_m, sensor_mps, sigma, differs);
+                self.doubt = Some(Doubt { source, reason });
+                self.was_doubted = true;
+                self.agrees_s = 0.0;
+            } else {
+                self.follow_sensor(bank);
+            }
+        } else if bank.younger_s >= ALONE_S && differs.abs() < 0.6 * limit_mps {
+            bank.older = bank.younger;
+            bank.younger = bank.believing.kept();
+            bank.younger_s = 0.0;
+        }
+    }
+
+    /// The filters follow the sensor from now on.
+    fn follow_sensor(&mut self, bank: &mut Bank) {
+        bank.follow_sensor();
+        self.difference.reset(0.0);
+        self.vote.reset(0.0);
+        self.differs_s = 0.0;
+        self.wind_s = 0.0;
+    }
+}
+
+/// Specific force in m/s² to weights, forward and up.
+pub(super) fn in_g(x_mps2: f64, z_mps2: f64) -> (f64, f64) {
+    (x_mps2 / GRAVITY_MPS2, -z_mps2 / GRAVITY_MPS2)
+}

@@ -1,0 +1,158 @@
+"""An airspeed sensor that is wrong: doubted, flown on without, and taken again.
+
+JSBSim's truth; aircraft, gains and limits are the defaults. The seeds were not used while the
+monitor was designed (those were 7 and 21 to 23).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import fcc
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from fcc_hil import airspeed
+from fcc_hil.lockstep import measurements
+from fcc_hil.noise import SensorNoise
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.sensor_faults import Faults, FaultySensors
+from fcc_hil.state import Controls
+from fcc_hil.units import FT_TO_M, KT_TO_MPS
+
+SEED = 2112
+_FAULT_S = 28.0
+_END_S = 75.0
+_VS_KT = 47.0
+"""Of the c172p, flaps up (Pilot's Operating Handbook, Cessna 172P 1981, section 5)."""
+_VNE_KT = 158.0
+
+Break = Callable[[Faults], object]
+
+
+@dataclass
+class _Flown:
+    """Times in s, airspeeds in kt, one row per tick from the engagement on."""
+
+    time_s: npt.NDArray[np.float64]
+    true_kt: npt.NDArray[np.float64]
+    sensed_kt: npt.NDArray[np.float64]
+    used_kt: npt.NDArray[np.float64]
+    is_doubted: npt.NDArray[np.bool_]
+
+
+def _fly(
+    break_it: Break | None = None,
+    climb_ft: float = 0.0,
+    end_s: float = _END_S,
+    weather: Weather | None = None,
+    disturb: Callable[[Plant], None] | None = None,
+) -> _Flown:
+    """Hold heading and altitude from 5 s on; at the fault's time change the altitude."""
+    plant = Plant("c172p", seed=SEED, weather=weather or Weather())
+    autopilot = fcc.Autopilot('[guidance]\nmode = "hold"\n')
+    noise, sensors = SensorNoise(SEED), FaultySensors()
+    faults = Faults(lambda: plant.time_s, sensors.set_faults)
+    if break_it is not None:
+        break_it(faults)
+    engaged = commanded = False
+    start_m = 0.0
+    rows: list[tuple[float, ...]] = []
+    while plant.time_s < end_s:
+        plant.step(3)
+        if disturb is not None:
+            disturb(plant)
+        state = plant.state()
+        measured, _ = sensors.read(plant.time_s, noise.apply(state))
+        assert measured is not None
+        sample = measurements(measured)
+        if plant.time_s < 5.0:
+            autopilot.observe(sample)
+            continue
+        if not engaged:
+            autopilot.engage(sample, throttle=plant.controls.throttle)
+            engaged = True
+            start_m = state.altitude_m
+        if not commanded and plant.time_s >= _FAULT_S:
+            autopilot.command(altitude_m=start_m + climb_ft * FT_TO_M)
+            commanded = True
+        s = autopilot.step(sample)
+        plant.write(Controls(s.elevator, s.aileron, s.rudder, s.throttle))
+        estimate = autopilot.estimate
+        rows.append(
+            (
+                plant.time_s,
+                state.airspeed_mps / KT_TO_MPS,
+                measured.airspeed_mps / KT_TO_MPS,
+                estimate.airspeed_mps / KT_TO_MPS,
+                estimate.airspeed_source != "sensor",
+            )
+        )
+    table = np.array(rows)
+    return _Flown(*table[:, :4].T, is_doubted=table[:, 4] > 0.5)
+
+
+@pytest.mark.parametrize(
+    ("break_it", "climb_ft"),
+    [
+        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), 1_500.0, id="tube, climb"),
+        pytest.param(lambda f: f.blocked_tube(after=_FAULT_S), -1_500.0, id="tube, descent"),
+        pytest.param(lambda f: f.drift(airspeed, per_s=-2.0, after=_FAULT_S), 0.0, id="decay"),
+        pytest.param(
+            lambda f: f.blocked_tube(drain_is_open=True, after=_FAULT_S), 0.0, id="open drain"
+        ),
+        pytest.param(lambda f: f.bias(airspeed, by=15.0, after=_FAULT_S), 0.0, id="jump"),
+    ],
+)
+def test_a_wrong_airspeed_is_doubted_and_flown_on_without(break_it: Break, climb_ft: float) -> None:
+    flown = _fly(break_it, climb_ft)
+    assert flown.true_kt.min() > 1.2 * _VS_KT
+    assert flown.true_kt.max() < _VNE_KT
+    error_kt = np.abs(flown.sensed_kt - flown.true_kt)
+    half_a_second = np.convolve(error_kt, np.full(20, 0.05), "same")
+    wrong_s = flown.time_s[half_a_second > 10.0][0]
+    doubted_s = flown.time_s[flown.is_doubted][0]
+    assert doubted_s - wrong_s < 5.0
+    later = flown.time_s > _FAULT_S + 15.0
+    assert np.abs(flown.used_kt - flown.true_kt)[later].max() < 10.0
+
+
+def test_a_sensor_that_agrees_again_is_taken_again() -> None:
+    flown = _fly(lambda f: f.bias(airspeed, by=15.0, after=_FAULT_S, lasts=10.0), end_s=65.0)
+    assert flown.is_doubted[flown.time_s > _FAULT_S + 5.0][0]
+    assert not flown.is_doubted[-1]
+
+
+def test_a_headwind_that_falls_by_20_kt_in_10_s_is_no_fault() -> None:
+    def shear(plant: Plant) -> None:
+        share = min(1.0, max(0.0, (plant.time_s - 30.0) / 10.0))
+        plant.fdm["atmosphere/wind-north-fps"] = share * 20.0 * KT_TO_MPS / FT_TO_M
+
+    flown = _fly(disturb=shear, end_s=60.0)
+    assert flown.true_kt.min() < 97.0, "the wind acts"
+    assert not flown.is_doubted.any()
+
+
+@pytest.mark.parametrize("severity", [3, 4])
+def test_turbulence_is_no_fault(severity: int) -> None:
+    flown = _fly(weather=Weather(turbulence_severity=severity))
+    assert not flown.is_doubted.any()
+
+
+def test_a_blocked_tube_behaves_like_an_altimeter() -> None:
+    """FAA-H-8083-15B, chapter 5."""
+    sensors = FaultySensors()
+    Faults(lambda: 0.0, sensors.set_faults).blocked_tube()
+    state = Plant("c172p").state()
+    at_first, _ = sensors.read(0.0, state)
+    assert at_first is not None
+    assert at_first.airspeed_mps == pytest.approx(state.airspeed_mps, abs=1e-6)
+    higher = replace(state, pressure_pa=state.pressure_pa - 3_490.0)
+    climbed, _ = sensors.read(1.0, higher)
+    assert climbed is not None
+    # Incompressible: q = rho0 V^2 / 2, less than 2 % off at this speed.
+    q_pa = 0.5 * 1.225 * state.airspeed_mps**2 + 3_490.0
+    assert climbed.airspeed_mps == pytest.approx(math.sqrt(2.0 * q_pa / 1.225), rel=0.02)
