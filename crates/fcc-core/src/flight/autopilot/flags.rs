@@ -87,12 +87,8 @@ pub const NOT_FOLLOWED: Flags = Flags::bit(36);
 pub const UNDERSPEED: Flags = Flags::bit(37);
 /// A reading is from the future.
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
-/// The floor prevents a further descent.
-pub const AT_FLOOR: Flags = Flags::bit(39);
-/// The pilot moves the stick.
-pub const PILOT_TAKES_OVER: Flags = Flags::bit(40);
 /// A quantity is lost, and the flight goes on without it.
-pub const DEGRADED: Flags = Flags::bit(41);
+pub const DEGRADED: Flags = Flags::bit(39);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -126,7 +122,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 42] = [
+pub(super) const NAMES: [&str; 40] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -166,8 +162,6 @@ pub(super) const NAMES: [&str; 42] = [
     "the outputs do not reach the aircraft",
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
-    "the floor prevents a further descent",
-    "the pilot moves the stick",
     "flying on without a lost quantity",
 ];
 

@@ -6,10 +6,12 @@ mod capture;
 mod command;
 mod config;
 mod degraded;
+mod engaging;
 mod failsafe;
 pub mod flags;
 mod following;
 mod future;
+mod notices;
 mod observe;
 mod other_control;
 mod plant_clock;
@@ -35,13 +37,12 @@ use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
-use upset::is_far_from_level;
 use whereabouts::Whereabouts;
 
 use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
-use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
+use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
 
@@ -194,19 +195,6 @@ impl Autopilot {
             self.guidance = ActiveMode::enter(mode, config, self.targets);
         }
     }
-
-    /// Engages the loops with the present throttle and surfaces.
-    fn take_over(&mut self, standing: &Surfaces) {
-        self.last = *standing;
-        let estimate = *self.navigation.estimate();
-        let schedule = self.schedule();
-        self.heading
-            .engage(standing.aileron, standing.rudder, &estimate, schedule);
-        self.altitude.engage(standing.elevator, &estimate, schedule);
-        let demand = self.throttle_demand(estimate.climb_rate_mps);
-        self.airspeed.engage(standing.throttle, &demand, &estimate);
-        self.keep_trims();
-    }
 }
 
 impl Controller for Autopilot {
@@ -221,26 +209,7 @@ impl Controller for Autopilot {
     }
 
     fn engage_inhibits(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let estimate = self.navigation.estimate();
-        (self.unsafe_with(self.stale(tick.woke), tick.woke, measurements)
-            | self.not_permitted(tick.woke, measurements))
-        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
-        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
-        .with(flags::PLANT_STALLED, self.clock.has_stopped())
-        .with(
-            flags::SETTLING,
-            self.watching_since.is_never()
-                || tick.woke.since(self.watching_since) < self.config.settling,
-        )
-        .with(
-            flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
-                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
-        )
-        .with(
-            flags::UPSET,
-            is_far_from_level(estimate) && !self.may_engage_in_upset(),
-        )
+        self.inhibits(tick.woke, measurements)
     }
 
     fn faults(&self, tick: &Tick, measurements: &Measurements) -> Flags {
@@ -281,23 +250,7 @@ impl Controller for Autopilot {
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lasted_s = notice.lasted_s();
-        match notice.kind {
-            plant_clock::STOOD_STILL => write!(f, "the simulator stood still for {lasted_s:.1} s"),
-            plant_clock::LINK_LOST => write!(
-                f,
-                "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
-            ),
-            degraded::GOOD_AGAIN => write!(
-                f,
-                "all is good again: back to what was flown {lasted_s:.1} s ago"
-            ),
-            degraded::GLIDES => write!(
-                f,
-                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
-            ),
-            kind => airspeed_doubt::write(kind, f),
-        }
+        notices::write(notice, f)
     }
 
     fn flag_name(bit: u32) -> &'static str {
@@ -322,29 +275,7 @@ impl Controller for Autopilot {
     }
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
-        self.distrusted = Flags::NONE;
-        self.degraded = Degraded::default();
-        let estimate = *self.navigation.estimate();
-        self.targets = Targets {
-            airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
-            heading_rad: estimate.heading_rad,
-            altitude_m: estimate.altitude_m,
-        };
-        self.reference = AltitudeReference::PressureLevel;
-        self.navigation.mark_altitude();
-        self.capture = Some(Capture::of(estimate.altitude_m));
-        self.change_mode(ModeInput::Engage);
-        let standing = self
-            .accepted
-            .surfaces
-            .fresh(tick.woke, self.config.max_age)
-            .unwrap_or(Surfaces {
-                throttle: self.config.airspeed.trim_throttle,
-                ..Surfaces::default()
-            });
-        self.actuation.engage(&standing);
-        self.take_over(&standing);
-        self.begin_watching_for_upsets();
+        self.begin_flight(tick.woke);
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {

@@ -1,0 +1,74 @@
+//! When the autopilot may engage, and how it begins.
+
+use super::capture::Capture;
+use super::degraded::Degraded;
+use super::upset::is_far_from_level;
+use super::{Autopilot, flags};
+use crate::flight::guidance::{ModeInput, Targets};
+use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
+use crate::framework::{Flags, Time};
+
+impl Autopilot {
+    /// Why the autopilot does not engage.
+    pub(super) fn inhibits(&self, now: Time, measurements: &Measurements) -> Flags {
+        let estimate = self.navigation.estimate();
+        (self.unsafe_with(self.stale(now), now, measurements)
+            | self.not_permitted(now, measurements))
+        .with(flags::PLANT_REPLAYING, self.plant_is(PlantState::Replaying))
+        .with(flags::PLANT_PAUSED, self.plant_is(PlantState::Paused))
+        .with(flags::PLANT_STALLED, self.clock.has_stopped())
+        .with(
+            flags::SETTLING,
+            self.watching_since.is_never() || now.since(self.watching_since) < self.config.settling,
+        )
+        .with(
+            flags::TOO_SLOW,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
+        )
+        .with(
+            flags::UPSET,
+            is_far_from_level(estimate) && !self.may_engage_in_upset(),
+        )
+    }
+
+    /// Engages: what is flown now is held, or the pattern begins.
+    pub(super) fn begin_flight(&mut self, now: Time) {
+        self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
+        let estimate = *self.navigation.estimate();
+        self.targets = Targets {
+            airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
+            heading_rad: estimate.heading_rad,
+            altitude_m: estimate.altitude_m,
+        };
+        self.reference = AltitudeReference::PressureLevel;
+        self.navigation.mark_altitude();
+        self.capture = Some(Capture::of(estimate.altitude_m));
+        self.change_mode(ModeInput::Engage);
+        let standing = self
+            .accepted
+            .surfaces
+            .fresh(now, self.config.max_age)
+            .unwrap_or(Surfaces {
+                throttle: self.config.airspeed.trim_throttle,
+                ..Surfaces::default()
+            });
+        self.actuation.engage(&standing);
+        self.take_over(&standing);
+        self.begin_watching_for_upsets();
+    }
+
+    /// Engages the loops with the present throttle and surfaces.
+    pub(super) fn take_over(&mut self, standing: &Surfaces) {
+        self.last = *standing;
+        let estimate = *self.navigation.estimate();
+        let schedule = self.schedule();
+        self.heading
+            .engage(standing.aileron, standing.rudder, &estimate, schedule);
+        self.altitude.engage(standing.elevator, &estimate, schedule);
+        let demand = self.throttle_demand(estimate.climb_rate_mps);
+        self.airspeed.engage(standing.throttle, &demand, &estimate);
+        self.keep_trims();
+    }
+}
