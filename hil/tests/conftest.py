@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
 import pytest
+
+from fcc_hil.standin import BEACON_GROUP
 
 # The duration of an example depends on the machine's load only.
 hypothesis.settings.register_profile(
@@ -28,6 +32,15 @@ def _program(variable: str, build: str) -> Path:
     if not os.access(program, os.X_OK):
         pytest.fail(f"{variable}: {program} is no program: `{build}`", pytrace=False)
     return program
+
+
+@pytest.fixture
+def beacon(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, int]]:
+    """Return X-Plane's multicast group: of tests that run side by side, one uses it at a time."""
+    shared = tmp_path_factory.getbasetemp().parent / "beacon.lock"
+    with shared.open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield BEACON_GROUP
 
 
 @pytest.fixture(scope="session")

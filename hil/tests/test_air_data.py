@@ -91,8 +91,8 @@ def _fly(
                 estimate.airspeed_source != "sensor",
             )
         )
-    table = np.array(rows)
-    return _Flown(*table[:, :4].T, is_doubted=table[:, 4] > 0.5)
+    times_s, true_kt, measured_kt, estimated_kt, doubted = np.array(rows).T
+    return _Flown(times_s, true_kt, measured_kt, estimated_kt, is_doubted=doubted > 0.5)
 
 
 @pytest.mark.parametrize(

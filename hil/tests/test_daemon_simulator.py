@@ -14,7 +14,7 @@ from read_only_simulator import ReadOnlySimulator
 
 from fcc_hil.fly import ENGAGE_SWITCH
 from fcc_hil.process import StandInProcess
-from fcc_hil.standin import BEACON_GROUP, Mode, Settings
+from fcc_hil.standin import Mode, Settings
 
 SUCCESS = 0
 FAILURE = 1
@@ -277,8 +277,8 @@ def test_without_a_simulator_it_waits_and_reports_it(fccd: Path, tmp_path: Path)
     assert ending.states == ["standby -> stopped"]
 
 
-def test_the_beacon_gives_the_address(fccd: Path, tmp_path: Path) -> None:
-    with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
+def test_the_beacon_gives_the_address(fccd: Path, tmp_path: Path, beacon: tuple[str, int]) -> None:
+    with StandInProcess(Settings(port=0, beacon=beacon)) as simulator:
         config = tmp_path / "fccd.toml"
         config.write_text(
             '[x-plane]\nsimulator = "beacon"\n[guidance]\nmode = "hold"\n'

@@ -35,7 +35,7 @@ from fault_flights import (
 from recordings import RECORD, attachments, in_sequence, only_recording
 
 from fcc_hil.process import StandInProcess
-from fcc_hil.standin import BEACON_GROUP, Settings
+from fcc_hil.standin import Settings
 
 SUCCESS = 0
 NOT_RECORDED = 14
@@ -240,9 +240,9 @@ def test_a_second_daemon_does_not_fly_the_same_simulator(fccd: Path, tmp_path: P
 
 @pytest.mark.parametrize(("first", "second"), [("address", "beacon"), ("beacon", "address")])
 def test_a_beacon_does_not_lead_to_a_simulator_under_control(
-    fccd: Path, tmp_path: Path, first: str, second: str
+    fccd: Path, tmp_path: Path, beacon: tuple[str, int], first: str, second: str
 ) -> None:
-    with StandInProcess(Settings(port=0, beacon=BEACON_GROUP)) as simulator:
+    with StandInProcess(Settings(port=0, beacon=beacon)) as simulator:
         address = f"127.0.0.1:{simulator.port}"
 
         def daemon(way: str) -> DaemonUnderTest:

@@ -91,12 +91,12 @@ fn all_parts_of_a_recording_replay_identically() {
     assert_eq!(code(&output), Some(0), "{}", stderr(&output));
     let result = json(&output);
     assert_eq!(result["ticks"], 1_000);
-    assert_eq!(result["identity"]["outputs"], 37_000);
+    assert_eq!(result["identity"]["outputs"], 1_000 * super::OUTPUTS);
     assert_eq!(result["identity"]["differing"], 0);
     assert_eq!(result["unflown"], Value::Null);
 
     let output = fccd_replay(&parts, &[]);
-    assert!(stderr(&output).contains("37000 outputs compared bit for bit: 0 differ"));
+    assert!(stderr(&output).contains("45000 outputs compared bit for bit: 0 differ"));
 }
 
 #[test]

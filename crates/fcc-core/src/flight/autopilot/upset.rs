@@ -48,26 +48,31 @@ impl Autopilot {
             dt_s: self.clock.step_s(),
         };
         let trims = self.trims();
-        match self
+        let change = self
             .recovery
-            .observe(&self.last, &trims, &estimate, &inputs)
-        {
+            .observe(&self.last, &trims, &estimate, &inputs);
+        match change {
             Change::Ends => {
                 let last = self.last;
                 self.navigation.count_heading_near(self.targets.heading_rad);
                 self.take_over(&last);
+                self.heading.lead_from(self.setpoints.roll_rad);
                 return None;
             }
             Change::Begins | Change::None if !self.recovery.is_active() => return None,
             Change::Begins | Change::None => {}
         }
+        let outputs = self.recovery.step(&estimate, &inputs);
+        if change == Change::Begins {
+            self.heading.lead_from(self.setpoints.roll_rad);
+        }
         self.setpoints = Setpoints {
-            roll_rad: 0.0,
+            roll_rad: self.heading.led(0.0, self.clock.step_s()),
             climb_rate_mps: 0.0,
             pitch_rad: 0.0,
             ..self.setpoints
         };
-        Some(self.recovery.step(&estimate, &inputs))
+        Some(outputs)
     }
 
     /// Whether it recovers from an upset: in failsafe it does not.

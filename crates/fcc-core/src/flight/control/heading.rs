@@ -208,7 +208,7 @@ impl HeadingLoop {
     }
 
     /// The bank command on the way from an earlier one to `wanted_rad`.
-    fn led(&mut self, wanted_rad: f64, dt_s: f64) -> f64 {
+    pub(crate) fn led(&mut self, wanted_rad: f64, dt_s: f64) -> f64 {
         let Some(lead) = &mut self.lead else {
             return wanted_rad;
         };

@@ -34,11 +34,11 @@ const THRUST_LAG_S: f64 = 1.7;
 const THRUST_RECENT_S: f64 = 10.0;
 /// The time for which a filter runs without the sensor before it is compared, s.
 const ALONE_S: f64 = 20.0;
-/// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 2.5
-/// standard deviations and of 3 times the gusts must last for 2.5 s.
+/// A difference of 9 % of the reference airspeed (9 kt of 100 kt), of 3.5
+/// standard deviations and of 4.5 times the gusts must last for 2.5 s.
 const DIFFERS_RATIO: f64 = 0.09;
-const DIFFERS_SDS: f64 = 2.5;
-const DIFFERS_GUSTS: f64 = 3.0;
+const DIFFERS_SDS: f64 = 3.5;
+const DIFFERS_GUSTS: f64 = 4.5;
 const DOUBTED_AFTER_S: f64 = 2.5;
 /// The forces vote for the sensor if they put the airspeed more than this share
 /// of the way towards it: then the wind has changed, after this time in s.
