@@ -141,8 +141,8 @@ pub(crate) const NO_ACTUATOR: &str =
     "there is no actuator: engaging moves nothing (actuator is an empty list)";
 
 /// How long the thread that reads the loop's messages may be delayed before
-/// records are lost, at 200 Hz or less.
-const FETCHED_WITHIN_S: f64 = 20.0;
+/// records are lost, at 500 Hz or less.
+const FETCHED_WITHIN_S: f64 = 8.0;
 
 impl Config {
     /// Reads and checks a file.
