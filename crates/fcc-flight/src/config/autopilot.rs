@@ -229,7 +229,7 @@ section! {
         roll_rate_integral_gain => roll_rate_integral_gain * SI,
         /// Rudder per aileron.
         rudder_per_aileron => rudder_per_aileron * SI,
-        /// Time constant of the washout of that.
+        /// Time constant of its washout.
         rudder_washout_s => rudder_washout_s * SI,
         /// Rudder per g of side force.
         rudder_per_side_g => side_force_gain * (1.0 / GRAVITY_MPS2),

@@ -38,9 +38,9 @@ pub struct AirspeedConfig {
 impl Default for AirspeedConfig {
     fn default() -> Self {
         Self {
-            airspeed_gain_per_s: 0.5,
+            airspeed_gain_per_s: 0.45,
             airspeed_integral_gain_per_s2: 0.045,
-            acceleration_gain: 0.4,
+            acceleration_gain: 0.3,
             throttle_per_mps2: 0.370_157, // 3.63 per g
             induced_drag_ratio: 0.035,
             max_throttle_rate_per_s: 1.0,

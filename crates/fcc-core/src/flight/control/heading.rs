@@ -37,8 +37,8 @@ pub struct HeadingConfig {
     pub roll_rate_integral_gain: f64,
     /// Rudder per aileron, against adverse yaw, at the reference airspeed.
     pub rudder_per_aileron: f64,
-    /// Time constant of the washout of that, s: a constant aileron moves no
-    /// rudder.
+    /// Time constant of its washout, s: after it, an aileron beyond that of
+    /// the commanded roll rate moves no rudder.
     pub rudder_washout_s: f64,
     /// Rudder per side force, per m/s².
     pub side_force_gain: f64,
@@ -60,8 +60,8 @@ impl Default for HeadingConfig {
             aileron_per_roll_rate: 0.27,
             roll_rate_gain: 0.38,
             roll_rate_integral_gain: 0.40,
-            rudder_per_aileron: 0.7,
-            rudder_washout_s: 1.5,
+            rudder_per_aileron: 0.76,
+            rudder_washout_s: 1.0,
             side_force_gain: 0.060_163,          // 0.59 per g
             side_force_integral_gain: 0.054_045, // 0.53 per g and s
             yaw_damping: 1.35,
@@ -116,8 +116,8 @@ pub struct HeadingLoop {
     roll_command: RateLimit,
     roll_rate: Pid,
     side_force: Pid,
-    /// The aileron that moves the rudder.
-    crossfeed: HighPass,
+    /// The aileron that corrects the roll rate, without its constant part.
+    correction: HighPass,
     /// While the commanded bank is led from an earlier command to the present
     /// one.
     lead: Option<Lead>,
@@ -154,7 +154,7 @@ impl HeadingLoop {
                 ki: config.side_force_integral_gain,
                 ..SURFACE
             }),
-            crossfeed: HighPass::new(config.rudder_washout_s),
+            correction: HighPass::new(config.rudder_washout_s),
             lead: None,
         }
     }
@@ -171,21 +171,22 @@ impl HeadingLoop {
     /// Engages with the present surfaces.
     pub fn engage(&mut self, aileron: f64, rudder: f64, estimate: &Estimate, schedule: Schedule) {
         let roll_rate = estimate.body_rates.roll_radps;
+        let rolling = self.aileron_feed_forward(roll_rate, schedule);
         self.lead = None;
         self.roll_command.reset(roll_rate);
         self.roll_rate.engage(
             aileron,
             roll_rate,
             roll_rate,
-            self.aileron_feed_forward(roll_rate, schedule),
+            rolling,
             schedule.moment * schedule.lateral_pace,
         );
-        self.crossfeed.reset(aileron);
+        self.correction.reset(aileron - rolling);
         self.side_force.engage(
             rudder,
             0.0,
             estimate.side_force_mps2,
-            self.rudder_feed_forward(0.0, estimate, schedule),
+            self.rudder_feed_forward(rolling, estimate, schedule),
             schedule.moment * schedule.lateral_pace,
         );
     }
@@ -245,19 +246,22 @@ impl HeadingLoop {
             config.max_roll_rate_radps,
         );
         let roll_rate = self.roll_command.step(wanted, dt_s);
+        let rolling = self.aileron_feed_forward(roll_rate, schedule);
         let aileron = self.roll_rate.step_scheduled(
             roll_rate,
             estimate.body_rates.roll_radps,
-            self.aileron_feed_forward(roll_rate, schedule),
+            rolling,
             schedule.moment * schedule.lateral_pace,
             schedule.lateral_pace * dt_s,
         );
-        let moved = self.crossfeed.step(aileron, schedule.lateral_pace * dt_s);
+        let correction = self
+            .correction
+            .step(aileron - rolling, schedule.lateral_pace * dt_s);
         // A side force to the right requires yaw to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
-            self.rudder_feed_forward(moved, estimate, schedule),
+            self.rudder_feed_forward(rolling + correction, estimate, schedule),
             schedule.moment * schedule.lateral_pace,
             schedule.lateral_pace * dt_s,
         );
