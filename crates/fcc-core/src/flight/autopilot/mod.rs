@@ -15,6 +15,7 @@ mod notices;
 mod observe;
 mod other_control;
 mod plant_clock;
+mod reading_age;
 mod resume;
 mod scale;
 mod sensor_health;
@@ -35,6 +36,7 @@ use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use plant_clock::PlantClock;
+use reading_age::ReadingAges;
 pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
@@ -104,6 +106,7 @@ pub struct Autopilot {
     recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
+    ages: ReadingAges,
     whereabouts: Whereabouts,
     /// The previous tick.
     before: Time,
@@ -147,6 +150,7 @@ impl Autopilot {
             recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
+            ages: ReadingAges::default(),
             whereabouts: Whereabouts::default(),
             before: Time::NEVER,
             watching_since: Time::NEVER,
@@ -307,6 +311,7 @@ impl Controller for Autopilot {
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
         self.actuation.follow(&self.last, &estimate, dt_s);
+        self.actuation.knows_age(self.ages.rates_s());
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();

@@ -7,6 +7,7 @@
 
 use core::time::Duration;
 
+use super::reading_age::taken_of_needed;
 use crate::flight::{Measurements, Plant, PlantState};
 use crate::framework::{Notice, Reading, Tick, Time};
 
@@ -74,6 +75,9 @@ pub(super) struct PlantClock {
     /// The ticks in which the plant's time last advanced, something last
     /// arrived, and its time was last not taken to stand still.
     advanced: Time,
+    /// When the plant's time was taken that last advanced: what a network held
+    /// back arrives late, and was sent without a gap.
+    sent: Time,
     arrived: Time,
     judged: Time,
     /// The newest time of a reading.
@@ -99,6 +103,7 @@ impl Default for PlantClock {
             source: 0,
             told: Time::NEVER,
             advanced: Time::NEVER,
+            sent: Time::NEVER,
             arrived: Time::NEVER,
             judged: Time::NEVER,
             newest: Time::NEVER,
@@ -146,7 +151,7 @@ impl PlantClock {
                 Waiting::Replaying
             }
             PlantState::Jumped | PlantState::Reloaded => {
-                self.begin(tick, plant.value.time_s);
+                self.begin(tick, &plant);
                 Waiting::No
             }
             state => {
@@ -155,7 +160,7 @@ impl PlantClock {
                     .map_or(0.0, |time_s| plant.value.time_s - time_s);
                 if gained_s < -SET_BACK_S {
                     self.state = PlantState::Jumped;
-                    self.begin(tick, plant.value.time_s);
+                    self.begin(tick, &plant);
                     Waiting::No
                 } else if arrives && (gained_s > LEAST_STEP_S || self.time_s.is_none()) {
                     self.advance(tick, gained_s, was);
@@ -199,24 +204,25 @@ impl PlantClock {
     }
 
     /// Begins anew with a clock that was set.
-    fn begin(&mut self, tick: &Tick, time_s: f64) {
+    fn begin(&mut self, tick: &Tick, plant: &Reading<Plant>) {
         *self = Self {
             state: self.state,
             source: self.source,
-            told: self.told,
+            told: plant.taken,
             newest: self.newest,
             arrived: self.arrived,
-            time_s: Some(time_s),
+            time_s: Some(plant.value.time_s),
             advanced: tick.woke,
+            sent: plant.taken,
             ..Self::default()
         };
     }
 
     /// The plant's time advanced, in this tick, for the first time after `was`.
     fn advance(&mut self, tick: &Tick, gained_s: f64, was: Waiting) {
-        let ours = tick.woke.since(self.advanced);
+        let ours = self.told.since(self.sent);
         let is_first = self.advanced.is_never();
-        self.advanced = tick.woke;
+        (self.advanced, self.sent) = (tick.woke, self.told);
         self.is_ignored = false;
         let missed_s = core::mem::take(&mut self.missed_s);
         if is_first {
@@ -304,6 +310,16 @@ impl PlantClock {
         self.is_ignored || self.waiting == Waiting::Stopped
     }
 
+    /// For how long the plant's time has stood still although it sends and is
+    /// not paused.
+    pub(super) fn stopped_for(&self, now: Time) -> Duration {
+        if self.has_stopped() {
+            now.since(self.advanced)
+        } else {
+            Duration::ZERO
+        }
+    }
+
     /// Why the plant's time is taken to stand still.
     pub(super) const fn waiting(&self) -> Waiting {
         self.waiting
@@ -343,18 +359,7 @@ impl PlantClock {
 /// When the newest of the readings was taken that control needs or that are the
 /// plant's own.
 fn newest(measured: &Measurements) -> Time {
-    fn taken<T>(reading: &Reading<T>) -> Time {
-        reading.taken
-    }
-    [
-        taken(&measured.attitude),
-        taken(&measured.heading_rad),
-        taken(&measured.body_rates),
-        taken(&measured.specific_force),
-        taken(&measured.airspeed_mps),
-        taken(&measured.altitude_m),
-        taken(&measured.plant),
-    ]
-    .into_iter()
-    .fold(Time::NEVER, Time::max)
+    taken_of_needed(measured)
+        .into_iter()
+        .fold(measured.plant.taken, |newest, (_, taken)| newest.max(taken))
 }
