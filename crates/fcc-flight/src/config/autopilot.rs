@@ -169,6 +169,9 @@ section! {
         /// Within this margin of an airspeed limit the climb limits are
         /// reduced.
         airspeed_margin_kt => airspeed_margin_mps * KNOT_MPS,
+        /// No command and no mode leads below this altitude above mean sea
+        /// level, by the altimeter setting; -1500 for none.
+        floor_ft => floor_m * FOOT_M,
     }
 }
 

@@ -60,6 +60,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.envelope.max_climb_fpm", 10.0, 10_000.0),
     ("autopilot.envelope.max_sink_fpm", 10.0, 10_000.0),
     ("autopilot.envelope.airspeed_margin_kt", 0.5, 100.0),
+    ("autopilot.envelope.floor_ft", -1_500.0, 60_000.0),
     ("autopilot.navigation.attitude_tau_s", 0.01, 100.0),
     ("autopilot.navigation.heading_tau_s", 0.01, 100.0),
     ("autopilot.navigation.vertical_bandwidth_radps", 0.01, 10.0),

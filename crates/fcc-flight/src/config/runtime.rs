@@ -183,17 +183,31 @@ impl From<Then> for AfterRelease {
 }
 
 /// `[engage]`.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
+    /// A command engages only while the engage switch, if there is one, is on.
+    pub command_needs_switch: bool,
     /// Engage although another autopilot is on.
     pub permit_autopilot: bool,
     /// Engage although another autothrottle is on.
     pub permit_autothrottle: bool,
     /// Engage although another flight control computer moves the surfaces.
     pub permit_fly_by_wire: bool,
+}
+
+impl Default for EngageSection {
+    fn default() -> Self {
+        Self {
+            switch_off: Then::Standby,
+            command_needs_switch: true,
+            permit_autopilot: false,
+            permit_autothrottle: false,
+            permit_fly_by_wire: false,
+        }
+    }
 }
 
 impl EngageSection {

@@ -5,6 +5,7 @@ mod command;
 mod config;
 mod failsafe;
 pub mod flags;
+mod floor;
 mod future;
 mod observe;
 mod other_control;
@@ -105,6 +106,8 @@ pub struct Autopilot {
     kept_trims: KeptTrims,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
 }
 
 impl Autopilot {
@@ -131,6 +134,7 @@ impl Autopilot {
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
             distrusted: Flags::NONE,
+            is_at_floor: false,
             config,
         }
     }
@@ -217,7 +221,8 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        self.external(tick.woke, measurements)
+        let external = self.external(tick.woke, measurements);
+        external.with(flags::AT_FLOOR, self.is_at_floor)
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -239,6 +244,9 @@ impl Controller for Autopilot {
             plant_clock::LINK_LOST => write!(
                 f,
                 "link lost for {lasted_s:.1} s: the simulator ran on meanwhile"
+            ),
+            plant_clock::CLOCK_MISSING => f.write_str(
+                "the simulator's clock is missing while its other values arrive: our time is used",
             ),
             _ => f.write_str("an unknown notice"),
         }
@@ -306,6 +314,7 @@ impl Controller for Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
+        self.keep_above_floor();
         self.guidance
             .advance(self.navigation.estimate(), self.clock.passed_s());
     }
@@ -355,6 +364,7 @@ impl Controller for Autopilot {
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
         self.change_mode(ModeInput::Disengage);
+        self.is_at_floor = false;
         self.capture = None;
         self.setpoints = Setpoints::default();
     }

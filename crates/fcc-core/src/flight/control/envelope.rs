@@ -39,6 +39,9 @@ pub struct Envelope {
     /// Within this margin of either airspeed limit the climb limits are
     /// reduced, m/s.
     pub airspeed_margin_mps: f64,
+    /// No command and no mode leads below this altitude, m above mean sea level
+    /// by the altimeter setting; [`Envelope::NO_FLOOR_M`] for none.
+    pub floor_m: f64,
 }
 
 impl Default for Envelope {
@@ -54,11 +57,15 @@ impl Default for Envelope {
             max_climb_mps: 4.902_2,         // 965 ft/min
             max_sink_mps: 4.902_2,          // 965 ft/min
             airspeed_margin_mps: 4.115_556, // 8 kt
+            floor_m: Self::NO_FLOOR_M,
         }
     }
 }
 
 impl Envelope {
+    /// The floor if there is none: 1,500 ft below sea level, below all land.
+    pub const NO_FLOOR_M: f64 = -457.2;
+
     /// The bank limit: the configured one, or the one at which a level turn
     /// reaches the largest load factor (n = 1/cos φ), whichever is less; rad.
     pub fn bank_limit_rad(&self) -> f64 {
