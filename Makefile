@@ -39,7 +39,7 @@ STAMPS   := .stamps
 # Two goals build the same program with and without faults.
 .NOTPARALLEL:
 
-.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight bench-live soak doc build clean
+.PHONY: package-check wheels deb test-deb test-vm test-cross check-cross help faulty fly fly-jsbsim test test-rust test-python test-x-plane lint lint-rust lint-python deny fuzz bench bench-timing bench-peer bench-flight campaign bench-live soak doc build clean
 
 help: ## Show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -168,6 +168,13 @@ bench-peer: $(STAMPS)/rust build $(STAMPS)/python-module ## Fly the benchmark: t
 bench-flight: $(STAMPS)/rust $(STAMPS)/python-module ## Fly the suite: ten aircraft, all weathers, against stated limits
 	@mkdir -p target
 	$(PYTHON) -m fcc_hil suite --json target/suite.json --picture target/suite.png
+
+# For campaign, such as CAMPAIGN="--flights 60 --seed 1".
+CAMPAIGN ?=
+
+campaign: $(STAMPS)/rust $(STAMPS)/python-module ## Fly 300 flights at the edges of the envelope, and say what failed (CAMPAIGN=)
+	@mkdir -p target
+	$(PYTHON) -m fcc_hil campaign --seed 200000 --json target/campaign.json --picture target/campaign.png $(CAMPAIGN)
 
 bench-live: $(STAMPS)/rust build $(STAMPS)/python ## Fly with and without 1,000 watchers, alternately (50 minutes)
 	cargo build --locked --release -p fcc-live --features flight --example watch

@@ -330,6 +330,30 @@ class Estimate:
     def side_force_mps2(self) -> float:
         """Specific force to the right, m/s²: 0 in a coordinated turn."""
 
+    @property
+    def load_factor(self) -> float:
+        """Load factor, g, along the body's z axis, upwards."""
+
+    @property
+    def gust_load(self) -> float:
+        """Standard deviation of the load that gusts cause, g."""
+
+    @property
+    def estimated_angle_of_attack_rad(self) -> float:
+        """Angle of attack, rad."""
+
+    @property
+    def acceleration_mps2(self) -> float:
+        """Acceleration along the flight path, without gusts, m/s²."""
+
+    @property
+    def output_latency_s(self) -> float:
+        """The time from an output to its effect, s, measured by the elevator."""
+
+    @property
+    def elevator_play(self) -> float:
+        """The play of the elevator, in the elevator's units of -1 to 1."""
+
     # </schema>
     def __eq__(self, other: object, /) -> bool: ...
     __hash__: None  # type: ignore[assignment]

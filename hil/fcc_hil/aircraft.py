@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .loading import Loading
+
 
 @dataclass(frozen=True)
 class Aircraft:
@@ -24,6 +26,8 @@ class Aircraft:
     trims: bool = True
     """Whether JSBSim's trim finds a steady state. If not, the aircraft is flown to it in closed
     loop (see `settle`)."""
+    loading: Loading | None = None
+    """None for that of its file."""
 
 
 _TABLE = (

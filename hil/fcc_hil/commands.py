@@ -1,4 +1,4 @@
-"""The commands `suite`, `tune` and `soak`."""
+"""The commands `suite`, `margins`, `tune` and `soak`, and `campaign` of its package."""
 
 from __future__ import annotations
 
@@ -6,37 +6,16 @@ import argparse
 import fnmatch
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
 from .aircraft import AIRCRAFT
+from .campaign import command as campaign
+from .progress import bar
 from .soak import Soak, soak
 
 _LARGEST_SEEDS = 1_000
-
-
-@contextmanager
-def _bar(what: str, total: int) -> Iterator[Any]:
-    """Yield a function that shows progress; without output if there is no terminal."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-    )
-    console = Console(stderr=True)
-    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
-        task = progress.add_task(what, total=total)
-
-        def notify(done: int, doing: str) -> None:
-            progress.update(task, completed=done, description=doing)
-
-        yield notify
+_AXES = ("elevator", "aileron", "rudder", "throttle")
 
 
 def seeds(text: str) -> tuple[int, ...]:
@@ -62,6 +41,13 @@ def _positive(text: str) -> int:
     return int(text)
 
 
+def _numbers(text: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}': give numbers, as in 70,85,100") from None
+
+
 def add(commands: Any) -> None:
     """Add these commands to a parser's."""
     suite = commands.add_parser(
@@ -75,6 +61,25 @@ def add(commands: Any) -> None:
     suite.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
     suite.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
     suite.set_defaults(run=_suite)
+
+    margins = commands.add_parser(
+        "margins", help="measure gain and phase margins with the loop broken at each actuator"
+    )
+    margins.add_argument(
+        "--aircraft", default="c172p", metavar="NAME,NAME", help="(default %(default)s)"
+    )
+    margins.add_argument(
+        "--airspeeds", type=_numbers, default=(70.0, 85.0, 100.0, 125.0), metavar="KT,KT"
+    )
+    margins.add_argument("--axes", default=",".join(_AXES), metavar="AXIS,AXIS")
+    margins.add_argument("--delays", type=_numbers, default=(25.0,), metavar="MS,MS")
+    margins.add_argument("--servo", type=float, default=3.0, metavar="HZ", help="0 for none")
+    margins.add_argument("--light", action="store_true", help="also with a tenth of the fuel")
+    margins.add_argument("--workers", type=_positive, metavar="N", help="processes")
+    margins.add_argument("--json", type=Path, metavar="FILE", help="write all figures here")
+    margins.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    margins.set_defaults(run=_margins)
+    campaign.add(commands)
 
     tune = commands.add_parser("tune", help="search gains for an aircraft")
     tune.add_argument(
@@ -144,7 +149,7 @@ def _suite(options: argparse.Namespace) -> int:
         names = "\n  ".join(case.name for case in cases())
         raise ValueError(f"--only '{options.only}' matches no case; there are:\n  {names}")
     flown = {}
-    with _bar("flying", len(chosen)) as notify:
+    with bar("flying", len(chosen)) as notify:
         for outcome in fly_all(chosen, options.workers):
             flown[outcome.case.name] = outcome
             notify(len(flown), outcome.case.name)
@@ -160,6 +165,32 @@ def _suite(options: argparse.Namespace) -> int:
 
         draw(options.picture, outcomes)
     return 1 if any(outcome.broken for outcome in outcomes) else 0
+
+
+def _margins(options: argparse.Namespace) -> int:
+    from . import margins  # noqa: PLC0415 - needs the module fcc
+    from .margins import report  # noqa: PLC0415 - matplotlib takes a second
+
+    conditions = [
+        margins.Condition(name, airspeed_kt, axis, delay_ms / 1e3, options.servo, is_light)
+        for name in options.aircraft.split(",")
+        for is_light in ((False, True) if options.light else (False,))
+        for delay_ms in options.delays
+        for airspeed_kt in options.airspeeds
+        for axis in options.axes.split(",")
+    ]
+    measured = []
+    with bar("measuring", len(conditions)) as notify:
+        for found in margins.measure_all(conditions, options.workers):
+            measured.append(found)
+            notify(len(measured), found.condition.aircraft)
+    print(report.text(measured))
+    if options.json:
+        document = [found.document() for found in measured]
+        options.json.write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    if options.picture:
+        report.draw(options.picture, measured)
+    return 0 if all(found.holds for found in measured) else 1
 
 
 def _tune(options: argparse.Namespace) -> int:
@@ -181,10 +212,10 @@ def _tune(options: argparse.Namespace) -> int:
     workers = (
         tuning.on_dask(options.dask) if options.dask else tuning.local_workers(options.workers)
     )
-    with workers as fly_all, _bar("tuning", task.evaluations) as bar:
+    with workers as fly_all, bar("tuning", task.evaluations) as show:
 
         def notify(flown: int, least: float) -> None:
-            bar(min(flown, task.evaluations), f"cost {least:.3f}")
+            show(min(flown, task.evaluations), f"cost {least:.3f}")
 
         found = tuning.tune(task, fly_all, notify)
     head = (
@@ -208,8 +239,8 @@ def _soak(options: argparse.Namespace) -> int:
     if seconds <= 0.0:
         raise ValueError("--minutes: give more than 0")
     task = Soak(options.fccd, seconds, options.rate, not options.idle)
-    with _bar("flying", round(seconds)) as bar:
-        result = soak(task, lambda flown_s: bar(round(flown_s), "flying"))
+    with bar("flying", round(seconds)) as show:
+        result = soak(task, lambda flown_s: show(round(flown_s), "flying"))
     late, machine = result.lateness_us, result.machine
     rows = {
         "ticks": f"{result.ticks}, {result.missed} missed, "

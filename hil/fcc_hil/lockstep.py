@@ -8,11 +8,13 @@ measurements of n ticks before.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import fcc
 
+from .aircraft import by_name
 from .initial_state import InitialState, begin
+from .loading import Loading
 from .noise import SensorNoise
 from .pattern import TimedPattern
 from .plant import Plant, Weather
@@ -39,6 +41,17 @@ class Scenario:
     config: str = ""
     """Text of a configuration; the default gains if empty."""
     initial_state: InitialState = InitialState.TRIMMED
+    airspeed_kt: float | None = None
+    """At which it is trimmed and engaged; None for that of the aircraft table."""
+    loading: Loading | None = None
+    """None for that of the aircraft's file."""
+
+    def plant(self) -> Plant:
+        """Return the aircraft, trimmed."""
+        aircraft = replace(by_name(self.aircraft), loading=self.loading)
+        if self.airspeed_kt is not None:
+            aircraft = replace(aircraft, airspeed_kt=self.airspeed_kt)
+        return Plant(aircraft, seed=self.seed, weather=self.weather)
 
 
 def measurements(state: State) -> fcc.Measurements:
@@ -72,7 +85,7 @@ class _Sensors:
 
 def fly(scenario: Scenario) -> tuple[Score, Truth]:
     """Fly a scenario to its end; return its score and the truth."""
-    plant = Plant(scenario.aircraft, seed=scenario.seed, weather=scenario.weather)
+    plant = scenario.plant()
     autopilot = fcc.Autopilot(scenario.config)
     sensors = _Sensors(scenario)
 

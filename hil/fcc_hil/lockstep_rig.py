@@ -2,23 +2,42 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import fcc
 
+from .actuation import Actuation, Servos
 from .lockstep import measurements
-from .noise import SensorNoise
+from .noise import NoiseLevels, SensorNoise
 from .plant import STEPS_PER_SECOND, Plant
 from .quantities import SENSORS
 from .rig import Event, FlightError
 from .sensor_faults import FaultySensors, SensorFault
 from .standin import Settings
-from .state import Controls
+from .state import Controls, State
 from .truth import Row, Truth, row
 
 _STANDBY_S = 2.0
 """Navigation settles for 1 s before the autopilot may engage."""
+
+
+_AT_ONCE = Actuation()
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What lies between the aircraft and the autopilot, beyond the settings of the stand-in."""
+
+    levels: NoiseLevels | None = None
+    """The noise, if the settings ask for noise; None for the usual levels."""
+    sensor_delay_ticks: int = 0
+    """The age of the measurements."""
+    actuation: Actuation = _AT_ONCE
+    gust: Callable[[Plant], None] | None = None
+    """Called before each tick, to move the air."""
 
 
 class LockstepRig:
@@ -28,7 +47,13 @@ class LockstepRig:
     not_centred = ""
     """Centring is done by the actuator; there is none here."""
 
-    def __init__(self, settings: Settings, plant: Plant, machine: fcc.Machine) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        plant: Plant,
+        machine: fcc.Machine,
+        conditions: Conditions | None = None,
+    ) -> None:
         """Combine them. Raise FlightError if their rates do not fit."""
         steps = machine.period_s * STEPS_PER_SECOND
         if abs(steps - round(steps)) > 1e-6 or round(steps) < 1:
@@ -42,8 +67,17 @@ class LockstepRig:
         self.machine = machine
         self.events: list[Event] = []
         self._steps = round(steps)
-        self._noise = SensorNoise(settings.seed) if settings.noise else None
+        conditions = conditions or Conditions()
+        self._gust = conditions.gust
+        self._noise = SensorNoise(settings.seed, conditions.levels) if settings.noise else None
+        self._late: deque[State] = deque(maxlen=conditions.sensor_delay_ticks + 1)
         self._sensors = FaultySensors()
+        self._command = plant.controls
+        self._servos = (
+            None
+            if conditions.actuation == _AT_ONCE
+            else Servos(conditions.actuation, plant.controls)
+        )
         self._switch = False
         self._rows: list[Row] = [row(plant.state(), plant.controls)]
 
@@ -92,10 +126,12 @@ class LockstepRig:
 
     def _fly_a_tick(self) -> None:
         plant = self.plant
-        plant.step(self._steps)
+        if self._gust:
+            self._gust(plant)
+        self._move()
         state = plant.state()
-        sensed = self._noise.apply(state) if self._noise else state
-        measured, channels = self._sensors.read(plant.time_s, sensed)
+        self._late.append(self._noise.apply(state) if self._noise else state)
+        measured, channels = self._sensors.read(plant.time_s, self._late[0])
         if measured is None:
             surfaces = self.machine.step(None)
         else:
@@ -108,9 +144,9 @@ class LockstepRig:
             )
         if surfaces is None:
             # The pilot has control, and holds the trimmed controls.
-            plant.write(plant.trim)
+            self._write(plant.trim)
         else:
-            plant.write(
+            self._write(
                 Controls(
                     elevator=surfaces.elevator,
                     aileron=surfaces.aileron,
@@ -121,6 +157,20 @@ class LockstepRig:
         for event in self.machine.events():
             self.events.append(Event(plant.time_s, event.text))
         self._rows.append(row(state, plant.controls))
+
+    def _write(self, controls: Controls) -> None:
+        self._command = controls
+        if self._servos is None:
+            self.plant.write(controls)
+
+    def _move(self) -> None:
+        """Advance the aircraft by a tick."""
+        if self._servos is None:
+            self.plant.step(self._steps)
+            return
+        for _ in range(self._steps):
+            self.plant.write(self._servos.step(self._command))
+            self.plant.step()
 
 
 def _sensors_of(channels: frozenset[str]) -> list[str]:

@@ -79,6 +79,9 @@ class AutopilotMark:
     """How long failsafe holds the wings level before the controls are released."""
     all_silent_s: float
     """How long a simulator from which nothing arrives is waited for."""
+    degraded_s: float
+    """How long at most it flies on without a sensor. At 0 a failsafe is seen from outside, by its
+    release."""
     config: str
     """More sections of a configuration."""
 
@@ -93,7 +96,8 @@ class AutopilotMark:
                 f"turn_deg = {pattern.turn_deg!r}\nclimb_ft = {pattern.climb_ft!r}"
             )
         failsafe = (
-            f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}\nall_silent_s = {self.all_silent_s!r}"
+            f"[failsafe]\nhold_s = {self.failsafe_hold_s!r}\nall_silent_s = {self.all_silent_s!r}\n"
+            f"degraded_s = {self.degraded_s!r}"
         )
         return f"[guidance]\n{flown}\n{failsafe}\n{self.config}\n"
 
@@ -107,13 +111,15 @@ def autopilot_mark(
     climb_ft: float = 150.0,
     failsafe_hold_s: float = 5.0,
     all_silent_s: float = 30.0,
+    degraded_s: float = 0.0,
     config: str = "",
 ) -> AutopilotMark:
     """Return the autopilot of the mark; raise ValueError or TypeError for a wrong argument.
 
     The timed pattern holds for `hold_s`, then turns by `turn_deg` (right if positive) every
-    `leg_s`, climbs `climb_ft` on every odd leg and descends on every even one. `config` is the text
-    of more sections: gains, limits, the loop's rate.
+    `leg_s`, climbs `climb_ft` on every odd leg and descends on every even one. Without a sensor it
+    flies on for at most `degraded_s`; by default a failsafe ends in a release, by which it is seen
+    on another host, too. `config` is the text of more sections: gains, limits, the loop's rate.
     """
     if mode not in MODES:
         raise ValueError(f"mode is {mode!r}: choose {' or '.join(MODES)}")
@@ -129,5 +135,6 @@ def autopilot_mark(
         pattern=pattern if mode == MODES[0] else None,
         failsafe_hold_s=_within("failsafe_hold_s", failsafe_hold_s, 0.0, 600.0, "s"),
         all_silent_s=_within("all_silent_s", all_silent_s, 0.25, 600.0, "s"),
+        degraded_s=_within("degraded_s", degraded_s, 0.0, _LONGEST_S, "s"),
         config=config,
     )

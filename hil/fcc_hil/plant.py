@@ -95,6 +95,8 @@ class Plant:
         self._silence_output()
         fdm.set_dt(STEP_S)
         fdm["simulation/randomseed"] = seed
+        if self.aircraft.loading is not None:
+            self.aircraft.loading.apply(fdm)
         fdm["ic/terrain-elevation-ft"] = runway_elevation_ft or 0.0
         fdm["ic/lat-geod-deg"] = latitude_deg
         fdm["ic/long-gc-deg"] = longitude_deg
@@ -144,6 +146,16 @@ class Plant:
     def set_qnh(self, pressure_pa: float) -> None:
         """Set the pressure at sea level."""
         self.fdm["atmosphere/P-sl-psf"] = pressure_pa / PSF_TO_PA
+
+    def set_gust(self, *, north_mps: float, east_mps: float, down_mps: float) -> None:
+        """Set the velocity of a gust over the ground, which adds to wind and turbulence."""
+        self.fdm["atmosphere/gust-north-fps"] = north_mps / FT_TO_M
+        self.fdm["atmosphere/gust-east-fps"] = east_mps / FT_TO_M
+        self.fdm["atmosphere/gust-down-fps"] = down_mps / FT_TO_M
+
+    def fail_engines(self) -> None:
+        """Switch the ignition off: a windmilling propeller, no power."""
+        self.fdm["propulsion/magneto_cmd"] = 0
 
     def write(self, controls: Controls, throttles: Sequence[float] | None = None) -> None:
         """Command the controls; values beyond their range are clipped.

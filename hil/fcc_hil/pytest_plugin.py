@@ -79,7 +79,7 @@ def pytest_configure(config: pytest.Config) -> None:
     for line in (
         "aircraft(name, wind=(from_deg, kt), turbulence=0..7, seed, noise, heading): the aircraft",
         "autopilot(mode, hold_s, leg_s, turn_deg, climb_ft, failsafe_hold_s, all_silent_s, "
-        "config): the autopilot's settings",
+        "degraded_s, config): the autopilot's settings",
         "realtime: always in real time",
     ):
         config.addinivalue_line("markers", line)

@@ -30,6 +30,11 @@ COLUMNS = (
     "aileron",
     "rudder",
     "throttle",
+    "load_g",
+    "roll_rate_degps",
+    "pitch_rate_degps",
+    "yaw_rate_degps",
+    "angle_of_attack_deg",
 )
 
 Row = tuple[float, ...]
@@ -50,6 +55,11 @@ def row(state: State, controls: Controls) -> Row:
         controls.aileron,
         controls.rudder,
         controls.throttle,
+        -state.specific_force_z_mps2 / STANDARD_GRAVITY_MPS2,
+        math.degrees(state.roll_rate_radps),
+        math.degrees(state.pitch_rate_radps),
+        math.degrees(state.yaw_rate_radps),
+        math.degrees(state.angle_of_attack_rad),
     )
 
 
@@ -67,6 +77,13 @@ class Truth:
     def table(self) -> npt.NDArray[np.float64]:
         """Return all rows, their columns in the order of COLUMNS."""
         return self._table
+
+    def since(self, time_s: float) -> Truth:
+        """Return the rows from a time on, at least the last."""
+        index = min(int(np.searchsorted(self["time_s"], time_s)), len(self._table) - 1)
+        part = Truth(())
+        part._table = self._table[index:]
+        return part
 
     def trace(self) -> Trace:
         """Return the columns for the score."""

@@ -27,7 +27,7 @@ WRONG = {
         '[x-plane]\n\n[loop]\nrate_hz = "forty"\n',
         4,
         "loop.rate_hz",
-        "a number, 1 to 2000",
+        "a number, 20 to 2000",
     ),
     "a fraction for a count": (
         "[x-plane]\nengines = 1.5\n",
@@ -37,7 +37,7 @@ WRONG = {
     ),
     "a number for a text": ("[x-plane]\nengage_switch = 3\n", 2, "x-plane.engage_switch", "text"),
     "a number for a truth": ("[x-plane]\n[realtime]\nstrict = 1\n", 3, "realtime.strict", "true"),
-    "too large": ("[x-plane]\n[loop]\nrate_hz = 5000\n", 3, "loop.rate_hz", "1 to 2000"),
+    "too large": ("[x-plane]\n[loop]\nrate_hz = 5000\n", 3, "loop.rate_hz", "20 to 2000"),
     "too small": ("[x-plane]\nengines = -1\n", 2, "x-plane.engines", "1 to 8"),
     "no number": ("[x-plane]\n[failsafe]\nhold_s = nan\n", 3, "failsafe.hold_s", "0 to 600"),
     "an unknown timer": (

@@ -21,7 +21,7 @@ from fcc_hil.truth import COLUMNS
 SUCCESS = 0
 FAILSAFE = 3
 
-SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\n"
+SHORT_FAILSAFE = "[failsafe]\nhold_s = 1.0\ndegraded_s = 0.0\n"
 SAMPLED_WITHIN_S = 0.3
 LEVER = 0.35
 ICE = 0.22

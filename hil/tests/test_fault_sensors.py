@@ -220,7 +220,11 @@ def fly(fccd: Path, scratch: Path, name: str) -> Ending:
             log = daemon.wait_for("engaged -> ", within_s=40.0)
             assert "failsafe" in log, log
             assert words in log, f"{fault}: {log}"
+            if fault == "silent":
+                daemon.wait_for("now: flying on without a lost quantity")
             flight.restore()
+            if fault == "silent":
+                daemon.wait_for("failsafe -> engaged")
             flight.disengage()
         return daemon.end(signal.SIGTERM)
 
@@ -334,6 +338,29 @@ def _steps(values: Sequence[tuple[float, ...]]) -> list[float]:
         max(abs(now - before) for now, before in zip(later, earlier, strict=True))
         for earlier, later in itertools.pairwise(values)
     ]
+
+
+@pytest.mark.parametrize("name", SENSED)
+def test_what_is_good_again_is_flown_on(flown: dict[str, Flown], name: str) -> None:
+    flight = flown[name]
+    lost = failsafe_of(flight, "silent")
+    records = flight.records[lost:]
+    back = next(place for place, record in enumerate(records) if record.state.phase == ENGAGED)
+    good = max(
+        place
+        for place, record in enumerate(records[:back])
+        if record.tick.woke_ns - _taken_ns(record, name) > MAX_AGE_S * 1e9
+    )
+    # Good for 2 s, by the simulator's time.
+    assert 1.8 < seconds(records[back], records[good]) < 3.0
+    # The pattern is continued where it was.
+    before, after = records[0].setpoints.guidance, records[back].setpoints.guidance
+    assert after.mode == before.mode
+    assert after.elapsed_s == pytest.approx(before.elapsed_s, abs=0.2)
+    # A captured altitude is refined in the first seconds.
+    assert after.captured.altitude_m == pytest.approx(before.captured.altitude_m, abs=0.3)
+    assert after.captured.heading_rad == before.captured.heading_rad
+    assert after.captured.airspeed_mps == before.captured.airspeed_mps
 
 
 @pytest.mark.parametrize("name", SENSED)

@@ -96,8 +96,9 @@ def test_commands_change_the_set_points() -> None:
 
 
 def test_a_sensor_that_breaks_leads_to_failsafe_after_its_age() -> None:
-    """Failsafe comes 250 ms after the last good reading, and releases after 5 s."""
-    loop, aircraft = fcc.Machine(HOLD), fcc.BuiltInAircraft()
+    """Failsafe comes after 250 ms; without degraded flight it releases after 5 s."""
+    config = HOLD + "[failsafe]\ndegraded_s = 0.0\n"
+    loop, aircraft = fcc.Machine(config), fcc.BuiltInAircraft()
     flown(10.0, loop, aircraft)
     broke_s, surfaces, failed_s = loop.time_s, None, 0.0
     while loop.state != "standby":

@@ -66,7 +66,7 @@ def test_a_sensor_that_is_missing_for_longer_than_allowed_is_a_failsafe(
     level: fcc.Measurements, sensor: str
 ) -> None:
     """250 ms by default, and a second of failsafe by this configuration."""
-    machine = fcc.Machine(HOLD + "[failsafe]\nhold_s = 1.0\n")
+    machine = fcc.Machine(HOLD + "[failsafe]\nhold_s = 1.0\ndegraded_s = 0.0\n")
     _watch(machine, level, 2.0)
     machine.step(level, readback=READBACK, switch=True)
     for _ in range(10):

@@ -37,6 +37,7 @@ def test_the_autopilot_of_a_mark() -> None:
     climb_ft=st.floats(-5_000.0, 5_000.0),
     failsafe_hold_s=st.floats(0.0, 600.0),
     all_silent_s=st.floats(0.25, 600.0),
+    degraded_s=st.floats(0.0, 600.0),
 )
 def test_the_daemon_accepts_what_a_mark_accepts(mode: str, **others: float) -> None:
     fcc.Machine(autopilot_mark(mode, **others).toml())  # type: ignore[arg-type]

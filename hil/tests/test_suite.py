@@ -60,6 +60,14 @@ def test_the_same_suite_twice_is_the_same_to_the_last_bit() -> None:
     assert len(set(alone.values())) == len(chosen)
 
 
+def test_the_edges_of_speed_and_weight_are_flown() -> None:
+    edges = [case for case in cases() if case.group == "speeds and loads"]
+    assert len(edges) == 4 * 3 * 2
+    heavy = next(case for case in edges if case.name.startswith("c172p: 1.3 Vs, heavy"))
+    assert heavy.scenario.airspeed_kt == pytest.approx(1.3 * 52.6, abs=1.5)
+    assert heavy.scenario.plant().fdm["inertia/weight-lbs"] == pytest.approx(2_400.0, abs=0.1)
+
+
 def test_another_seed_is_another_flight() -> None:
     calm = scenario_of("c172p")
     noisy = Case("noisy", "", replace(calm, legs=1, noise=True), limits(), seeds=(1,))

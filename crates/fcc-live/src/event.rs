@@ -76,7 +76,7 @@ pub enum EventCode {
     /// (those that began, those that ended).
     ConditionsChanged = 19,
     /// The controller noticed something (how long it lasted, ns); the index is
-    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost, 3
+    /// which. An autopilot's: 1 the simulator stood still, 2 the link was lost, 5
     /// the simulator's clock is missing.
     Noticed = 20,
     /// Control is given back at once (why, one bit each, as in the flags of a

@@ -56,6 +56,15 @@ impl<C: Controller> Machine<C> {
         }
         let lost_control = before.holds_control() && self.state != before;
 
+        let is_by_faults = matches!(self.state, State::Failsafe(Cause::Faults(_)));
+        if is_by_faults && self.controller.has_recovered() && !self.overruns.are_too_many() {
+            self.apply_input(Input::Recovered, tick);
+        } else if is_by_faults
+            && self.controller.failsafe_goes_on()
+            && !self.failsafe_hold.is_zero()
+        {
+            self.failsafe_since = tick.scheduled;
+        }
         if matches!(self.state, State::Failsafe(_))
             && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
         {
@@ -129,7 +138,11 @@ impl<C: Controller> Machine<C> {
         match to {
             State::Engaged => {
                 self.record.engage_inhibits = Flags::NONE;
-                self.controller.engage(tick, &self.measurements);
+                if input == Input::Recovered {
+                    self.controller.recover(tick, &self.measurements);
+                } else {
+                    self.controller.engage(tick, &self.measurements);
+                }
             }
             State::Failsafe(cause) => {
                 self.failsafe_since = tick.scheduled;

@@ -144,6 +144,55 @@ fn faults_lead_through_failsafe_to_standby() {
 }
 
 #[test]
+fn a_failsafe_that_goes_on_ends_only_when_it_no_longer_does() {
+    let mut bench = Bench::engaged(&config());
+    bench.stage.set(|s| (s.faults, s.goes_on) = (LOST, true));
+    for _ in 0..100 {
+        assert_eq!(bench.tick(|_| {}), Failsafe(SENSORS_LOST));
+    }
+    // Four periods from then on, of which one has passed.
+    for _ in 0..3 {
+        assert_eq!(bench.tick(|s| s.goes_on = false), Failsafe(SENSORS_LOST));
+    }
+    assert_eq!(bench.tick(|_| {}), Standby);
+    // Invalid outputs do not go on.
+    let mut bench = Bench::engaged(&config());
+    bench.stage.set(|s| s.goes_on = true);
+    bench.tick(|s| s.output = f64::NAN);
+    for _ in 0..3 {
+        bench.tick(|_| {});
+    }
+    assert_eq!(bench.tick(|_| {}), Standby);
+}
+
+#[test]
+fn a_failsafe_whose_faults_are_over_continues_what_was_done() {
+    let mut bench = Bench::engaged(&config());
+    bench.tick(|s| s.faults = LOST);
+    bench.events();
+    bench.stage.forget();
+    let state = bench.tick(|s| (s.faults, s.has_recovered) = (Flags::NONE, true));
+    assert_eq!(state, Engaged);
+    assert_eq!(
+        bench.stage.log().calls,
+        ["sample", "estimate", "recover", "guide", "control", "apply"]
+    );
+    assert_eq!(bench.stage.log().applied, [0.5]);
+    assert_eq!(bench.events(), [change(Failsafe(SENSORS_LOST), Engaged)]);
+    // A command to disengage wins.
+    let mut bench = Bench::engaged(&config());
+    bench.tick(|s| s.faults = LOST);
+    bench.command(LoopCommand::Disengage);
+    let state = bench.tick(|s| (s.faults, s.has_recovered) = (Flags::NONE, true));
+    assert_eq!(state, Standby);
+    // Invalid outputs are no fault of a sensor.
+    let mut bench = Bench::engaged(&config());
+    bench.tick(|s| s.output = f64::NAN);
+    let state = bench.tick(|s| (s.output, s.has_recovered) = (0.5, true));
+    assert_eq!(state, Failsafe(Cause::InvalidOutput));
+}
+
+#[test]
 fn failsafe_lasts_by_the_schedule_and_not_by_ticks() {
     let mut bench = Bench::engaged(&config());
     bench.stage.set(|s| s.faults = LOST);

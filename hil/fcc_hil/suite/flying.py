@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..lockstep import Scenario, fly
+from ..motion import LEAST, motion
 from ..pattern import Leg
 from ..peer import fly_peer
 from ..score import LegScore, Score, score, worst
@@ -120,10 +121,13 @@ def _figures(scenario: Scenario, flights: Sequence[tuple[Score, Truth]]) -> dict
     figures: dict[str, float | None] = dict(together["worst"].items())  # type: ignore[arg-type]
     unsettled = sum(leg["heading_settle_s"] is None for leg in legs)
     holds = [_hold(scenario, truth) for _, truth in flights]
+    motions = [_motion(scenario, truth) for _, truth in flights]
+    for name in motions[0]:
+        worst_of = min if name in LEAST else max
+        figures[name] = worst_of(moved[name] for moved in motions)
     return figures | {
         "unsettled_share": unsettled / len(legs),
         "mean_altitude_rms_ft": float(np.mean([leg["altitude_rms_ft"] for leg in legs])),
-        "largest_bank_deg": max(float(np.max(np.abs(truth["roll_deg"]))) for _, truth in flights),
         "turned_back_deg": max(_turned_back_deg(scenario, truth) for _, truth in flights),
         "hold_heading_error_deg": max(hold["heading_rms_deg"] for hold in holds),
         "hold_altitude_error_ft": max(hold["altitude_rms_ft"] for hold in holds),
@@ -138,6 +142,12 @@ def _turned_back_deg(scenario: Scenario, truth: Truth) -> float:
         math.copysign(1.0, scenario.pattern.turn_deg) * turned_deg[time_s > scenario.pattern.hold_s]
     )
     return float(np.max(np.maximum.accumulate(turning) - turning))
+
+
+def _motion(scenario: Scenario, truth: Truth) -> dict[str, float]:
+    start_s = float(truth["time_s"][0])
+    legs = scenario.pattern.legs(scenario.legs, start_s, truth.captured_at(start_s))
+    return motion(truth, legs)
 
 
 def _hold(scenario: Scenario, truth: Truth) -> LegScore:

@@ -61,3 +61,24 @@ ROUGH = MappingProxyType(
 
 TAKEN_OVER = MappingProxyType({"c172p": 1.0, "c172x": 2.0, "OV10": 1.0, "737": 2.0})
 """After engaging in another state than trimmed flight: altitude RMS, ft."""
+
+_EDGES = limits(
+    unsettled_share=0.0,
+    mean_altitude_rms_ft=2.0,
+    largest_bank_deg=40.0,
+    largest_load_g=2.0,
+    # 2 deg/s, and 2 deg/s of the usual noise, which is independent of it.
+    pitch_rate_sd_degps=2.83,
+    # All stall at 15 or 16. A level turn at 1.3 Vs and 30 degrees of bank needs 68 % of the lift.
+    largest_angle_of_attack_deg=14.0,
+)
+EDGES = MappingProxyType(
+    {
+        "c172p": _EDGES,
+        # The play of its elevator lets it oscillate, by 5.3 to 8.7 deg/s as measured.
+        "c172x": {**_EDGES, "pitch_rate_sd_degps": 9.0},
+        "c172r": _EDGES,
+        "J3Cub": _EDGES,
+    }
+)
+"""At the edges of speed and weight, with noise and a delay of 25 ms: reasons, not measurements."""

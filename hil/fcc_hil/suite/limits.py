@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
+from .. import motion
+
 Limits = Mapping[str, float]
 
 UNITS = MappingProxyType(
@@ -26,11 +28,11 @@ UNITS = MappingProxyType(
         "lateral_acceleration_g": "g",
         "unsettled_share": "of the legs",
         "mean_altitude_rms_ft": "ft",
-        "largest_bank_deg": "deg",
         "turned_back_deg": "deg",
         "hold_heading_error_deg": "deg",
         "hold_altitude_error_ft": "ft",
     }
+    | {name: unit for name, unit in motion.UNITS.items() if name not in motion.LEAST}
 )
 """Every figure that can have a limit. The first nine are the worst over the legs."""
 

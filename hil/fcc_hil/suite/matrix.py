@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from ..campaign.aircraft import AIRCRAFT
 from ..configurations import configuration, pattern_of, with_values
 from ..initial_state import InitialState
+from ..loading import Loading
 from ..lockstep import Scenario
 from ..peer import PEER_AIRCRAFT
 from ..plant import Weather
-from .limit_table import ROUGH, SMOOTH, TAKEN_OVER, late
+from .limit_table import EDGES, ROUGH, SMOOTH, TAKEN_OVER, late
 from .limits import Limits, limits
 
 SEEDS = (4101, 4102, 4103, 4104, 4105)
@@ -48,7 +50,7 @@ class Case:
 
 def cases() -> list[Case]:
     """Return all cases, in the order of the table."""
-    return [_peer(), *_aircraft(), *_initial_states(), *_narrow_bank()]
+    return [_peer(), *_aircraft(), *_initial_states(), *_narrow_bank(), *_speeds_and_loads()]
 
 
 def scenario_of(aircraft: str) -> Scenario:
@@ -148,3 +150,50 @@ def _narrow_bank() -> Iterator[Case]:
             limits(turned_back_deg=1.0, largest_bank_deg=23.0, mean_altitude_rms_ft=2.0),
             is_quick=True,
         )
+
+
+def _speeds_and_loads() -> Iterator[Case]:
+    """At 1.3 Vs, in cruise and fast, with one person and little fuel, and at the greatest weight.
+
+    A leg takes 30 s, because a turn at the greatest speed takes more than 20, and climbs 60 ft,
+    because there is little power left to climb.
+    """
+    for aircraft in LIGHT:
+        limits_of = AIRCRAFT[aircraft]
+        plain = scenario_of(aircraft)
+        pattern = replace(plain.pattern, leg_s=30.0, climb_ft=60.0)
+        config = with_values(
+            plain.config,
+            {
+                "guidance.mode": "timed-pattern",
+                "guidance.leg_s": pattern.leg_s,
+                "guidance.climb_ft": pattern.climb_ft,
+            },
+        )
+        fuel_lb = 0.1 * limits_of.tanks_lb
+        for weight, weight_lb in (
+            ("light", limits_of.bare_lb + fuel_lb + 10.0),
+            ("heavy", limits_of.most_lb),
+        ):
+            slow_kt = max(1.3 * limits_of.stall_kt(weight_lb), limits_of.floor_kt + 4.0)
+            for speed, airspeed_kt in (
+                ("1.3 Vs", slow_kt),
+                ("cruise", None),
+                ("fast", limits_of.fast_kt),
+            ):
+                yield Case(
+                    f"{aircraft}: {speed}, {weight}, noise, 25 ms late",
+                    "speeds and loads",
+                    replace(
+                        plain,
+                        legs=4,
+                        noise=True,
+                        delay_ticks=_DELAY_TICKS,
+                        config=config,
+                        pattern=pattern,
+                        airspeed_kt=airspeed_kt,
+                        loading=Loading(weight_lb, fuel_lb),
+                    ),
+                    EDGES[aircraft],
+                    is_quick=(aircraft, speed) in (("c172r", "1.3 Vs"), ("J3Cub", "fast")),
+                )

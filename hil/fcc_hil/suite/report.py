@@ -9,12 +9,25 @@ from ..table import COLUMNS, TITLES, table
 from .flying import Outcome
 from .speed import Speed
 
+_MOTION = (
+    ("least_load_g", "least load g", 2),
+    ("largest_load_g", "load g", 2),
+    ("largest_roll_rate_degps", "roll °/s", 1),
+    ("largest_pitch_rate_degps", "pitch °/s", 1),
+    ("pitch_rate_sd_degps", "pitch sd °/s", 2),
+    ("movement_per_s", "movement /s", 3),
+    ("largest_angle_of_attack_deg", "attack °", 1),
+    ("least_airspeed_kt", "least kt", 1),
+    ("height_lost_ft", "height lost ft", 1),
+)
+"""Figure, title and digits."""
+
 
 def text(outcomes: Sequence[Outcome], speed: Speed | None = None) -> str:
     """Return the table, mean/worst over the legs, then every exceeded limit."""
     flown = [(_title(outcome), outcome.score) for outcome in outcomes]
     parts = [table([(title, figures) for title, figures in flown if figures is not None])]
-    parts += [part for part in (_asked(outcomes), _further(outcomes)) if part]
+    parts += [part for part in (_asked(outcomes), _further(outcomes), _motion(outcomes)) if part]
     if speed is not None:
         parts.append(speed.words())
     bad = [outcome for outcome in outcomes if outcome.broken]
@@ -54,6 +67,17 @@ def _asked(outcomes: Sequence[Outcome]) -> str:
     ]
     head = f"| limit of the worst leg, from here on | {' | '.join(TITLES)} |"
     return "\n".join([head, "|---" * (len(COLUMNS) + 1) + "|", *lines])
+
+
+def _motion(outcomes: Sequence[Outcome]) -> str:
+    """Return how each aircraft moved."""
+    titles = [title for _, title, _ in _MOTION]
+    lines = [f"| how it moved | {' | '.join(titles)} |", "|---" * (len(titles) + 1) + "|"]
+    for outcome in outcomes:
+        if outcome.figures:
+            cells = [f"{outcome.figures[name] or 0.0:.{digits}f}" for name, _, digits in _MOTION]
+            lines.append(f"| {outcome.case.name} | {' | '.join(cells)} |")
+    return "\n".join(lines) if len(lines) > 2 else ""
 
 
 def _further(outcomes: Sequence[Outcome]) -> str:

@@ -15,8 +15,9 @@ from types import MappingProxyType
 import numpy as np
 
 from ..lockstep import Scenario, fly
+from ..motion import movement_per_s
 from ..score import Score
-from ..truth import TRUTH_HZ, Truth
+from ..truth import Truth
 
 _GOOD = MappingProxyType(
     {
@@ -32,7 +33,6 @@ _GOOD = MappingProxyType(
 _SETTLING = ("heading_settle_s", "altitude_settle_s")
 _MOVEMENT = "movement"
 _GOOD_MOVEMENT_PER_S = 0.5
-_SURFACES = ("elevator", "aileron", "rudder")
 
 NOT_FLOWN = 1_000.0
 """The cost of a flight that is not completed, or cannot be started."""
@@ -102,14 +102,10 @@ def weighed(flown: Score, truth: Truth, leg_s: float, weights: Weights) -> float
     total = 0.0
     for name, weight in weights.items():
         if name == _MOVEMENT:
-            total += weight * _movement_per_s(truth) / _GOOD_MOVEMENT_PER_S
+            total += weight * movement_per_s(truth) / _GOOD_MOVEMENT_PER_S
             continue
         good = leg_s if name in _SETTLING else _GOOD[name]
         values = [dict(leg)[name] for leg in flown["legs"]]
         known = [value if isinstance(value, float) else 2.0 * leg_s for value in values]
         total += weight * (2.0 * sum(known) / len(known) + max(known)) / 3.0 / good
     return float(total)
-
-
-def _movement_per_s(truth: Truth) -> float:
-    return float(np.mean([np.mean(np.abs(np.diff(truth[name]))) * TRUTH_HZ for name in _SURFACES]))

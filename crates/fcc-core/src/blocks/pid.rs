@@ -182,6 +182,18 @@ impl Pid {
         output
     }
 
+    /// Changes the limits of the output. An output beyond them is limited in the
+    /// next step, and the integral does not grow towards them.
+    pub const fn set_output_limits(&mut self, min: f64, max: f64) {
+        self.config.output_min = min;
+        self.config.output_max = max;
+    }
+
+    /// The output that is nearest within the limits.
+    pub fn limited(&self, output: f64) -> f64 {
+        self.limit(output)
+    }
+
     /// The integral, in units of the output.
     pub const fn integral(&self) -> f64 {
         self.integral

@@ -20,7 +20,9 @@ mod setpoints;
 mod surfaces;
 
 pub use altimeter::{ALTIMETER_SETTINGS_PA, Altimeter, AltitudeReference};
-pub use autopilot::{Autopilot, AutopilotCommand, AutopilotConfig, Resume, Scale, flags};
+pub use autopilot::{
+    Autopilot, AutopilotCommand, AutopilotConfig, FailsafeConfig, FailsafeEnd, Resume, Scale, flags,
+};
 pub use measurements::{
     Attitude, BodyRates, Measurements, OtherControl, Plant, PlantState, Position, SpecificForce,
     Suspect, Velocity,

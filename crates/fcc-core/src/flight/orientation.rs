@@ -78,6 +78,29 @@ pub fn euler_from_quaternion(quaternion: [f64; 4]) -> EulerAngles {
     }
 }
 
+/// The rotation `first`, and then `second` about the axes turned by it; of unit
+/// length if both are.
+///
+/// ```
+/// use core::f64::consts::FRAC_1_SQRT_2;
+/// use fcc_core::flight::orientation::{euler_from_quaternion, product};
+///
+/// // A quarter of a turn to the right, then a bank of 90° to the right.
+/// let east = [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2];
+/// let bank = [FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0, 0.0];
+/// let angles = euler_from_quaternion(product(east, bank));
+/// assert!((angles.roll_rad.to_degrees() - 90.0).abs() < 1e-9);
+/// assert!((angles.heading_rad.to_degrees() - 90.0).abs() < 1e-9);
+/// ```
+pub fn product([a, b, c, d]: [f64; 4], [w, x, y, z]: [f64; 4]) -> [f64; 4] {
+    [
+        a * w - b * x - c * y - d * z,
+        a * x + b * w + c * z - d * y,
+        a * y - b * z + c * w + d * x,
+        a * z + b * y - c * x + d * w,
+    ]
+}
+
 /// Transforms a vector from body axes to earth axes.
 ///
 /// ```

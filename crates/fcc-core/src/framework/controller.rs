@@ -112,6 +112,25 @@ pub trait Controller: Send {
     /// Faults that make it unsafe to stay engaged; empty if there are none.
     fn faults(&self, tick: &Tick, measurements: &Self::Measurements) -> Flags;
 
+    /// Whether a failsafe because of [`faults`](Self::faults) goes on however
+    /// long it has lasted: what it holds is sound. By default it ends after its
+    /// configured time.
+    fn failsafe_goes_on(&self) -> bool {
+        false
+    }
+
+    /// Whether a failsafe because of [`faults`](Self::faults) is over, and what
+    /// was done before is to be continued, by [`recover`](Self::recover). By
+    /// default it is never.
+    fn has_recovered(&self) -> bool {
+        false
+    }
+
+    /// Continues what was done before the failsafe, instead of
+    /// [`engage`](Self::engage): the set points are kept, and the outputs do not
+    /// jump.
+    fn recover(&mut self, _tick: &Tick, _measurements: &Self::Measurements) {}
+
     /// Why control must be given back in this tick, without a failsafe: the
     /// plant is another, or was set to another state. Empty if there is no
     /// reason; by default there is none.

@@ -9,12 +9,12 @@ use super::Flags;
 /// The complete transition table: rows are states, columns inputs, `·` means no
 /// change.
 ///
-/// | | Engage | Disengage | `SwitchedOff` | Fault | `FailsafeEnded` | `ReleaseNow` | Stop |
-/// |---|---|---|---|---|---|---|---|
-/// | **Standby** | Engaged | · | · | · | · | · | Stopped |
-/// | **Engaged** | · | Standby | Standby, or Stopped if configured | Failsafe | · | Standby | Stopped |
-/// | **Failsafe** | Engaged | Standby | Standby, or Stopped if configured | · | Standby | Standby | Stopped |
-/// | **Stopped** | · | · | · | · | · | · | · |
+/// | | Engage | Disengage | `SwitchedOff` | Fault | Recovered | `FailsafeEnded` | `ReleaseNow` | Stop |
+/// |---|---|---|---|---|---|---|---|---|
+/// | **Standby** | Engaged | · | · | · | · | · | · | Stopped |
+/// | **Engaged** | · | Standby | Standby, or Stopped if configured | Failsafe | · | · | Standby | Stopped |
+/// | **Failsafe** | Engaged | Standby | Standby, or Stopped if configured | · | Engaged | Standby | Standby | Stopped |
+/// | **Stopped** | · | · | · | · | · | · | · | · |
 ///
 /// Leaving Engaged or Failsafe for Standby or Stopped releases the actuators.
 /// `Engage` is input only when no engage inhibit is active.
@@ -77,6 +77,8 @@ pub enum Input {
     SwitchedOff,
     /// It is unsafe to stay engaged.
     Fault(Cause),
+    /// What led to failsafe is over, for good: what was done before goes on.
+    Recovered,
     /// Failsafe has lasted as long as configured.
     FailsafeEnded,
     /// Control must be given back at once, without a failsafe: what it was taken
@@ -111,7 +113,8 @@ impl State {
     pub const fn after(self, input: Input, switch_off: AfterRelease) -> Self {
         match (self, input) {
             (Self::Stopped, _) | (_, Input::Stop) => Self::Stopped,
-            (Self::Standby | Self::Failsafe(_), Input::Engage) => Self::Engaged,
+            (Self::Standby | Self::Failsafe(_), Input::Engage)
+            | (Self::Failsafe(_), Input::Recovered) => Self::Engaged,
             (Self::Engaged | Self::Failsafe(_), Input::Disengage | Input::ReleaseNow)
             | (Self::Failsafe(_), Input::FailsafeEnded) => Self::Standby,
             (Self::Engaged | Self::Failsafe(_), Input::SwitchedOff) => match switch_off {
@@ -145,11 +148,12 @@ mod tests {
     use super::*;
 
     const FAILSAFE: State = State::Failsafe(Cause::InvalidOutput);
-    const INPUTS: [Input; 7] = [
+    const INPUTS: [Input; 8] = [
         Input::Engage,
         Input::Disengage,
         Input::SwitchedOff,
         Input::Fault(Cause::InvalidOutput),
+        Input::Recovered,
         Input::FailsafeEnded,
         Input::ReleaseNow,
         Input::Stop,
@@ -163,22 +167,22 @@ mod tests {
             (
                 Standby,
                 [
-                    Engaged, Standby, Standby, Standby, Standby, Standby, Stopped,
+                    Engaged, Standby, Standby, Standby, Standby, Standby, Standby, Stopped,
                 ],
             ),
             (
                 Engaged,
                 [
-                    Engaged, Standby, Standby, FAILSAFE, Engaged, Standby, Stopped,
+                    Engaged, Standby, Standby, FAILSAFE, Engaged, Engaged, Standby, Stopped,
                 ],
             ),
             (
                 FAILSAFE,
                 [
-                    Engaged, Standby, Standby, FAILSAFE, Standby, Standby, Stopped,
+                    Engaged, Standby, Standby, FAILSAFE, Engaged, Standby, Standby, Stopped,
                 ],
             ),
-            (Stopped, [Stopped; 7]),
+            (Stopped, [Stopped; 8]),
         ];
         for (state, expected) in rows {
             for (input, after) in INPUTS.into_iter().zip(expected) {

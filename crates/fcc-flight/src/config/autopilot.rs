@@ -18,6 +18,9 @@ use super::GuidanceSection;
 pub struct AutopilotSection {
     /// The reference airspeed of the gains.
     pub reference_airspeed_kt: f64,
+    /// The latency from an output to its effect that is assumed until it has
+    /// been measured.
+    pub assumed_latency_ms: f64,
     /// How the aircraft differs from the one for which the gains were tuned.
     pub scale: ScaleSection,
     /// The limits of the loops' commands.
@@ -37,6 +40,7 @@ impl Default for AutopilotSection {
         let core = AutopilotConfig::default();
         Self {
             reference_airspeed_kt: rounded(core.reference_airspeed_mps / KNOT_MPS),
+            assumed_latency_ms: rounded(core.assumed_latency_s * 1e3),
             scale: ScaleSection::default(),
             envelope: EnvelopeSection::from(&core.envelope),
             navigation: NavigationSection::from(&core.navigation),
@@ -58,6 +62,7 @@ impl AutopilotSection {
     ) -> AutopilotConfig {
         AutopilotConfig {
             reference_airspeed_mps: self.reference_airspeed_kt * KNOT_MPS,
+            assumed_latency_s: self.assumed_latency_ms * 1e-3,
             max_age,
             frozen_after,
             navigation: NavigationConfig::from(&self.navigation),
@@ -166,12 +171,25 @@ section! {
         max_climb_fpm => max_climb_mps * FOOT_PER_MINUTE_MPS,
         /// Largest descent rate.
         max_sink_fpm => max_sink_mps * FOOT_PER_MINUTE_MPS,
-        /// Within this margin of an airspeed limit the climb limits are
-        /// reduced.
+        /// Commanded airspeeds keep this margin from both limits.
         airspeed_margin_kt => airspeed_margin_mps * KNOT_MPS,
         /// No command and no mode leads below this altitude above mean sea
         /// level, by the altimeter setting; -1500 for none.
         floor_ft => floor_m * FOOT_M,
+        /// Stalling speed, clean, without power, at the heaviest weight flown.
+        stall_airspeed_kt => stall_airspeed_mps * KNOT_MPS,
+        /// Airspeed of the longest glide.
+        best_glide_airspeed_kt => best_glide_airspeed_mps * KNOT_MPS,
+        /// Manoeuvring speed, Va.
+        maneuvering_airspeed_kt => maneuvering_airspeed_mps * KNOT_MPS,
+        /// Never-exceed speed, Vne.
+        never_exceed_airspeed_kt => never_exceed_airspeed_mps * KNOT_MPS,
+        /// Limit load factor of the structure.
+        limit_load_factor_g => limit_load_factor * SI,
+        /// The same, negative.
+        limit_negative_load_factor_g => limit_negative_load_factor * SI,
+        /// Largest angle of attack, below that of the stall.
+        max_angle_of_attack_deg => max_angle_of_attack_rad * DEGREE_RAD,
     }
 }
 

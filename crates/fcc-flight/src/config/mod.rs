@@ -238,6 +238,7 @@ impl Config {
             settling: self.restart.mode.settling(),
             max_silence: Duration::from_secs_f64(self.failsafe.all_silent_s),
             permitted: self.engage.permitted(),
+            failsafe: (&self.failsafe).into(),
             altimeter: (&self.altimeter).into(),
             ..self.autopilot.to_core(
                 &self.guidance,

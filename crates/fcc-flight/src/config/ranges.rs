@@ -12,7 +12,7 @@ use super::{Config, Problem, SensorEntry, XPlaneSection, relations};
 
 /// Key, smallest and largest value.
 const RANGES: &[(&str, f64, f64)] = &[
-    ("loop.rate_hz", 1.0, 2_000.0),
+    ("loop.rate_hz", 20.0, 2_000.0),
     ("loop.early_wake.min_us", 0.0, 10_000.0),
     ("loop.early_wake.max_us", 1.0, 10_000.0),
     ("loop.early_wake.guard_us", 0.0, 10_000.0),
@@ -35,6 +35,8 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("failsafe.all_silent_s", 0.01, 600.0),
     ("failsafe.sensor_frozen_s", 0.0, 60.0),
     ("failsafe.hold_s", 0.0, 600.0),
+    ("failsafe.degraded_s", 0.0, 86_400.0),
+    ("failsafe.recover_s", 0.0, 600.0),
     ("recording.max_file_mb", 0.0, 1e6),
     ("recording.max_file_minutes", 0.0, 1e5),
     ("recording.keep_total_mb", 0.0, 1e8),
@@ -46,6 +48,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("altimeter.setting_hpa", 940.0, 1_060.0),
     ("altimeter.field_elevation_ft", -1_500.0, 20_000.0),
     ("autopilot.reference_airspeed_kt", 15.0, 600.0),
+    ("autopilot.assumed_latency_ms", 0.0, 300.0),
     ("autopilot.scale.elevator", 0.01, 100.0),
     ("autopilot.scale.aileron", 0.01, 100.0),
     ("autopilot.scale.rudder", 0.0, 100.0),
@@ -61,6 +64,17 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.envelope.max_sink_fpm", 10.0, 10_000.0),
     ("autopilot.envelope.airspeed_margin_kt", 0.5, 100.0),
     ("autopilot.envelope.floor_ft", -1_500.0, 60_000.0),
+    ("autopilot.envelope.stall_airspeed_kt", 5.0, 300.0),
+    ("autopilot.envelope.best_glide_airspeed_kt", 5.0, 400.0),
+    ("autopilot.envelope.maneuvering_airspeed_kt", 10.0, 600.0),
+    ("autopilot.envelope.never_exceed_airspeed_kt", 10.0, 700.0),
+    ("autopilot.envelope.limit_load_factor_g", 1.5, 12.0),
+    (
+        "autopilot.envelope.limit_negative_load_factor_g",
+        -10.0,
+        0.0,
+    ),
+    ("autopilot.envelope.max_angle_of_attack_deg", 3.0, 45.0),
     ("autopilot.navigation.attitude_tau_s", 0.01, 100.0),
     ("autopilot.navigation.heading_tau_s", 0.01, 100.0),
     ("autopilot.navigation.vertical_bandwidth_radps", 0.01, 10.0),

@@ -1,7 +1,7 @@
 //! Constraints between the values of a configuration, and on its lists.
 
 use super::ranges::range_of;
-use super::{Config, SensorEntry};
+use super::{AutopilotSection, Config, SensorEntry};
 
 /// Of `SCHED_FIFO` (sched(7)).
 const HIGHEST_PRIORITY: u8 = 99;
@@ -28,12 +28,7 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
             ),
         );
     }
-    let envelope = &config.autopilot.envelope;
-    let (least, most) = (envelope.min_airspeed_kt, envelope.max_airspeed_kt);
-    if least >= most {
-        let message = format!("is {least}: choose less than max_airspeed_kt, {most}");
-        report("autopilot.envelope.min_airspeed_kt", message);
-    }
+    envelope(&config.autopilot, report);
     let (silent_s, max_age_ms) = (
         config.failsafe.all_silent_s,
         config.failsafe.sensor_max_age_ms,
@@ -53,6 +48,98 @@ pub(super) fn check(config: &Config, report: &mut impl FnMut(&str, String)) {
     }
     connections(config, report);
     lists(config, report);
+}
+
+/// The lowest airspeed over the stalling speed: the margin of certification is
+/// 1.2 to 1.3 (14 CFR 23.73 in force until 2017: approach at 1.3).
+const OVER_STALL: f64 = 1.1;
+/// Room between the lowest and the highest airspeed, in margins: two, and one
+/// to hold an airspeed in.
+const MARGINS: f64 = 3.0;
+
+/// Of `[autopilot.envelope]`: an envelope in which an aircraft can fly.
+fn envelope(autopilot: &AutopilotSection, report: &mut impl FnMut(&str, String)) {
+    let envelope = &autopilot.envelope;
+    let (stall, least, most, never) = (
+        envelope.stall_airspeed_kt,
+        envelope.min_airspeed_kt,
+        envelope.max_airspeed_kt,
+        envelope.never_exceed_airspeed_kt,
+    );
+    let mut at = |key: &str, value: f64, wanted: String| {
+        report(
+            &format!("autopilot.envelope.{key}"),
+            format!("is {value}: choose {wanted}"),
+        );
+    };
+    if least >= most {
+        at(
+            "min_airspeed_kt",
+            least,
+            format!("less than max_airspeed_kt, {most}"),
+        );
+        return;
+    }
+    let room = MARGINS * envelope.airspeed_margin_kt;
+    if most < least + room {
+        at(
+            "max_airspeed_kt",
+            most,
+            format!(
+                "at least {:.1}: min_airspeed_kt, {least}, and {MARGINS} times airspeed_margin_kt, \
+                 {}, or there is no airspeed to hold",
+                least + room,
+                envelope.airspeed_margin_kt
+            ),
+        );
+    }
+    let above_stall = OVER_STALL * stall;
+    if least < above_stall {
+        at(
+            "min_airspeed_kt",
+            least,
+            format!("at least {above_stall:.1}: {OVER_STALL} times stall_airspeed_kt, {stall}"),
+        );
+    }
+    if most > never {
+        at(
+            "max_airspeed_kt",
+            most,
+            format!("at most never_exceed_airspeed_kt, {never}"),
+        );
+    }
+    for (key, value, lowest, highest, range) in [
+        (
+            "best_glide_airspeed_kt",
+            envelope.best_glide_airspeed_kt,
+            above_stall,
+            most,
+            format!(
+                "{above_stall:.1} to {most}: {OVER_STALL} times stall_airspeed_kt to max_airspeed_kt"
+            ),
+        ),
+        (
+            "maneuvering_airspeed_kt",
+            envelope.maneuvering_airspeed_kt,
+            above_stall,
+            never,
+            format!(
+                "{above_stall:.1} to {never}: {OVER_STALL} times stall_airspeed_kt to never_exceed_airspeed_kt"
+            ),
+        ),
+    ] {
+        if !(lowest..=highest).contains(&value) {
+            at(key, value, range);
+        }
+    }
+    let (load, limit_load) = (envelope.max_load_factor_g, envelope.limit_load_factor_g);
+    if load > limit_load {
+        at(
+            "max_load_factor_g",
+            load,
+            format!("at most limit_load_factor_g, {limit_load}"),
+        );
+    }
 }
 
 /// X-Plane sends the values of a frame in one datagram, and the position in

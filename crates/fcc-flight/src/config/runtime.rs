@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use fcc_core::flight::flags;
+use fcc_core::flight::{FailsafeConfig, FailsafeEnd, flags};
 use fcc_core::framework::{AfterRelease, Flags};
 use fcc_timer::{CpuRequest, EarlyWake, RealtimeRequest, Strictness, Timer, TimerError, TimerKind};
 use serde::{Deserialize, Serialize};
@@ -185,6 +185,10 @@ impl From<Then> for AfterRelease {
 /// `[engage]`.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "four conditions, each permitted or not"
+)]
 pub struct EngageSection {
     /// The effect of switching off.
     pub switch_off: Then,
@@ -196,6 +200,8 @@ pub struct EngageSection {
     pub permit_autothrottle: bool,
     /// Engage although another flight control computer moves the surfaces.
     pub permit_fly_by_wire: bool,
+    /// Engage beyond 60° of bank or pitch, and recover from it first.
+    pub permit_upset: bool,
 }
 
 impl Default for EngageSection {
@@ -217,6 +223,7 @@ impl EngageSection {
             .with(flags::OTHER_AUTOPILOT, self.permit_autopilot)
             .with(flags::OTHER_AUTOTHROTTLE, self.permit_autothrottle)
             .with(flags::FLY_BY_WIRE, self.permit_fly_by_wire)
+            .with(flags::UPSET, self.permit_upset)
     }
 }
 
@@ -236,6 +243,38 @@ pub struct FailsafeSection {
     pub hold_s: f64,
     /// What follows after that.
     pub then: Then,
+    /// How long at most is flown without a quantity.
+    pub degraded_s: f64,
+    /// What was flown before is continued when all has been good for so long.
+    pub recover_s: f64,
+    /// What ends a failsafe.
+    pub end: End,
+}
+
+/// What ends a failsafe in which nothing sound can be held.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum End {
+    /// Release the controls.
+    #[default]
+    Release,
+    /// Glide in a gentle turn with idle throttle.
+    Glide,
+}
+
+impl From<&FailsafeSection> for FailsafeConfig {
+    fn from(section: &FailsafeSection) -> Self {
+        Self {
+            end: match section.end {
+                End::Release => FailsafeEnd::Release,
+                End::Glide => FailsafeEnd::Glide,
+            },
+            hold: Duration::from_secs_f64(section.hold_s),
+            degraded: Duration::from_secs_f64(section.degraded_s),
+            recovered_after: Duration::from_secs_f64(section.recover_s),
+            ..Self::default()
+        }
+    }
 }
 
 impl Default for FailsafeSection {
@@ -246,6 +285,9 @@ impl Default for FailsafeSection {
             sensor_frozen_s: 2.0,
             hold_s: 5.0,
             then: Then::Standby,
+            degraded_s: 600.0,
+            recover_s: 2.0,
+            end: End::Release,
         }
     }
 }

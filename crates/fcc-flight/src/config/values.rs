@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(through, "config: loop.rate_hz.x: there is no such key");
         let nan = words("loop.rate_hz", Value::Float(f64::NAN));
         assert!(
-            nan.contains("loop.rate_hz: is NaN: choose 1 to 2000"),
+            nan.contains("loop.rate_hz: is NaN: choose 20 to 2000"),
             "{nan}"
         );
         let missing = plain().value("loop.hz").unwrap_err().to_string();

@@ -130,11 +130,11 @@ mod tests {
         for (text, expected) in [
             (
                 "[loop]\nrate_hz = 1e308\n",
-                "f:3: loop.rate_hz: is 1e308: choose 1 to 2000",
+                "f:3: loop.rate_hz: is 1e308: choose 20 to 2000",
             ),
             (
                 "[loop]\nrate_hz = {}\n",
-                "f:3: loop.rate_hz: is a section: choose a number, 1 to 2000",
+                "f:3: loop.rate_hz: is a section: choose a number, 20 to 2000",
             ),
             (
                 "[realtime]\npriority = 1e300\n",

@@ -60,6 +60,18 @@ impl Controller for Pilot {
         self.autopilot.withholds_outputs(tick, measurements)
     }
 
+    fn failsafe_goes_on(&self) -> bool {
+        self.autopilot.failsafe_goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.autopilot.has_recovered()
+    }
+
+    fn recover(&mut self, tick: &Tick, measurements: &Measurements) {
+        self.autopilot.recover(tick, measurements);
+    }
+
     fn notice(&self) -> Option<Notice> {
         self.autopilot.notice()
     }

@@ -154,6 +154,12 @@ impl Flight {
         world.hears = hears;
     }
 
+    /// Cuts the link to the simulator only: its incoming connections are
+    /// switched off.
+    pub(crate) fn deafen(&mut self) {
+        self.wire.world().hears = false;
+    }
+
     pub(crate) fn restore(&mut self) {
         let mut world = self.wire.world();
         world.sends = true;

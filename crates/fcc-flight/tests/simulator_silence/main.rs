@@ -5,6 +5,7 @@
 mod flight;
 mod world;
 
+use fcc_core::flight::flags::NOT_FOLLOWED;
 use fcc_core::framework::State::{Engaged, Standby};
 use fcc_core::framework::{EventKind, Notice};
 use flight::{Flight, PERIOD_NS};
@@ -232,6 +233,31 @@ fn freezes_in_a_row_and_in_a_pause_are_flown_through() {
     }
     let worst = flight.flown(200.0);
     assert!(worst.heading_overshoot_deg < 0.75, "{worst:?}");
+}
+
+/// X-Plane's incoming connections are switched off, 7 s after engaging and in a
+/// turn: the loops do not wind up what has no effect.
+#[test]
+fn writes_that_do_not_arrive_wind_nothing_up() {
+    for (after_s, length_s) in [(7.0, 15.0), (23.0, 4.0)] {
+        let mut flight = Flight::engaged(60.0, 0);
+        flight.fly(after_s);
+        flight.deafen();
+        flight.fly(length_s);
+        flight.restore();
+        let mut bank_deg: f64 = 0.0;
+        for _ in 0..200 {
+            flight.fly(0.1);
+            bank_deg = bank_deg.max(flight.true_bank_deg().abs());
+        }
+        // The pattern's turns have 30°.
+        assert!(bank_deg < 35.0, "{after_s} s: {bank_deg}°");
+        let reported = flight.events().into_iter().any(|kind| match kind {
+            EventKind::ConditionsChanged { began, .. } => began.contains(NOT_FOLLOWED),
+            _ => false,
+        });
+        assert!(reported, "{after_s} s");
+    }
 }
 
 #[test]

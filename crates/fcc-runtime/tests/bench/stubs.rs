@@ -56,6 +56,18 @@ impl Controller for Stub {
         self.stage.script().faults
     }
 
+    fn failsafe_goes_on(&self) -> bool {
+        self.stage.script().goes_on
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.stage.script().has_recovered
+    }
+
+    fn recover(&mut self, _: &Tick, _: &Measured) {
+        self.stage.called("recover");
+    }
+
     fn must_release(&self, _: &Tick, _: &Measured) -> Flags {
         self.stage.script().must_release
     }

@@ -8,6 +8,8 @@ use crate::flight::guidance::{GuidanceConfig, TimedPatternConfig};
 use crate::flight::navigation::NavigationConfig;
 use crate::framework::Flags;
 
+use super::FailsafeConfig;
+
 /// The autopilot's configuration.
 ///
 /// ```
@@ -26,6 +28,12 @@ use crate::framework::Flags;
 pub struct AutopilotConfig {
     /// The reference airspeed of the gains, m/s.
     pub reference_airspeed_mps: f64,
+    /// The latency from an output to its effect that is assumed until it has
+    /// been measured in flight, s.
+    pub assumed_latency_s: f64,
+    /// The pace of the gains, as [`Scale`](super::Scale) has it: a slower loop
+    /// stands more latency.
+    pub pace: f64,
     /// Readings older than this count as a loss of their sensor.
     pub max_age: Duration,
     /// If a simulated plant falls silent, so that none of its readings arrives,
@@ -39,9 +47,11 @@ pub struct AutopilotConfig {
     /// engage.
     pub settling: Duration,
     /// Conditions of [`flags`](super::flags) that are reported but do not
-    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE` and
-    /// `FLY_BY_WIRE`.
+    /// prevent engaging: of `OTHER_AUTOPILOT`, `OTHER_AUTOTHROTTLE`,
+    /// `FLY_BY_WIRE` and `UPSET`, from which it recovers first.
     pub permitted: Flags,
+    /// How a flight goes on without a sensor, and how it ends.
+    pub failsafe: FailsafeConfig,
     /// Navigation's time constants.
     pub navigation: NavigationConfig,
     /// The mode that is flown once engaged.
@@ -63,11 +73,14 @@ impl Default for AutopilotConfig {
     fn default() -> Self {
         Self {
             reference_airspeed_mps: 51.444_444, // 100 kt
+            assumed_latency_s: 0.025,
+            pace: 1.0,
             max_age: Duration::from_millis(250),
             max_silence: Duration::from_secs(30),
             frozen_after: Duration::from_secs(2),
             settling: Duration::from_secs(1),
             permitted: Flags::NONE,
+            failsafe: FailsafeConfig::default(),
             navigation: NavigationConfig::default(),
             guidance: GuidanceConfig::TimedPattern(TimedPatternConfig::default()),
             heading: HeadingConfig::default(),

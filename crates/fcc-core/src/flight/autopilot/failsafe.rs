@@ -1,8 +1,82 @@
-//! The outputs of the failsafe.
+//! The outputs of the failsafe, its configuration, and the way back.
 
+use core::time::Duration;
+
+use super::degraded::{Degraded, Lateral, Power, Vertical, held_without};
 use super::{Autopilot, flags};
-use crate::flight::{BodyRates, Measurements, Surfaces};
-use crate::framework::Time;
+use crate::blocks::{limit_abs, wrap_two_pi};
+use crate::flight::atmosphere::true_airspeed_mps;
+use crate::flight::{Attitude, BodyRates, Measurements, Surfaces};
+use crate::framework::{Flags, Time};
+
+/// What ends a failsafe in which nothing sound can be held.
+///
+/// ```
+/// use fcc_core::flight::{FailsafeConfig, FailsafeEnd};
+///
+/// assert_eq!(FailsafeConfig::default().end, FailsafeEnd::Release);
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum FailsafeEnd {
+    /// The controls are given back: a pilot is there.
+    #[default]
+    Release,
+    /// None is there: a glide in a gentle turn, with idle throttle, as far as
+    /// the attitude is known.
+    Glide,
+}
+
+/// The failsafe of lost sensors.
+///
+/// ```
+/// use core::time::Duration;
+/// use fcc_core::flight::{FailsafeConfig, FailsafeEnd};
+///
+/// // Without a pilot.
+/// let config = FailsafeConfig { end: FailsafeEnd::Glide, ..FailsafeConfig::default() };
+/// assert_eq!(config.recovered_after, Duration::from_secs(2));
+/// ```
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct FailsafeConfig {
+    /// What ends it.
+    pub end: FailsafeEnd,
+    /// A glide begins when nothing sound could be held for so long.
+    pub hold: Duration,
+    /// How long at most is flown without a quantity.
+    pub degraded: Duration,
+    /// What was flown before is continued when all has been good for so long;
+    /// zero for never.
+    pub recovered_after: Duration,
+    /// The ratio of distance to height of the best glide.
+    pub glide_ratio: f64,
+    /// The bank of the glide, rad.
+    pub glide_bank_rad: f64,
+}
+
+impl Default for FailsafeConfig {
+    /// A Cessna 172: its best glide is 1.5 nautical miles for 1,000 ft (handbook
+    /// of the 172P, 1981, section 3).
+    fn default() -> Self {
+        Self {
+            end: FailsafeEnd::Release,
+            hold: Duration::from_secs(5),
+            degraded: Duration::from_secs(600),
+            recovered_after: Duration::from_secs(2),
+            glide_ratio: 9.1,
+            glide_bank_rad: 0.261_799, // 15°
+        }
+    }
+}
+
+/// Sink rate above that of the glide per airspeed below it, m/s per m/s: the
+/// airspeed error decays with g/V times it, in 3 s.
+const GLIDE_GAIN: f64 = 1.2;
+
+/// Flight path per height below the altitude that is to be kept by pitch, rad/m:
+/// a bandwidth of 0.1 rad/s at 100 kt, a tenth of the flight path's. At most 2°:
+/// the power stays.
+const PATH_PER_M: f64 = 0.002;
+const MOST_PATH_RAD: f64 = 0.035;
 
 /// The trims that the loops had found when the body rates last changed: with
 /// rates that no longer change, the loops' integrals run away.
@@ -21,54 +95,145 @@ impl Autopilot {
         };
     }
 
-    /// Wings level while the attitude is known, level flight while the climb
-    /// rate is; otherwise the trims that the loops had found; trim throttle,
-    /// idle while thrust is reversed. A silent plant keeps its throttle: it may
-    /// return with another aircraft. What was rejected as implausible is not
-    /// believed again while the failsafe lasts, however long it is repeated.
+    /// What the table of [degraded flight](super::degraded) holds without the
+    /// lost quantities; idle throttle while thrust is reversed. A silent plant
+    /// keeps its throttle: it may return with another aircraft. What was
+    /// rejected as implausible is not believed again while the failsafe lasts,
+    /// unless it agrees with the estimate.
     pub(super) fn safest(&mut self, now: Time, measured: &Measurements) -> Surfaces {
-        self.distrusted |= self.rejected(measured);
-        let frozen = self.frozen();
-        let unusable = flags::unusable(self.stale(now), frozen);
+        // One that was frozen stood still: what comes after it is no jump.
+        self.degraded.frozen |= flags::unusable(Flags::NONE, self.frozen());
+        let jumped = self.rejected(measured).bits() & !self.degraded.frozen.bits();
+        self.distrusted |= Flags::from_bits(jumped);
+        if !self.degraded.is_failsafe {
+            self.degraded.is_failsafe = true;
+            self.degraded.altitude_m = self.navigation.estimate().altitude_m;
+            if self.frozen().contains(flags::FROZEN_BODY_RATES) {
+                let trims = Surfaces {
+                    throttle: self.last.throttle,
+                    ..self.kept_trims.trims
+                };
+                self.take_over(&trims);
+            }
+        }
+        let lost = self.lost(now, measured);
+        let held = held_without(lost);
+        let glides = self.degraded.glides;
         self.setpoints.roll_rad = 0.0;
         self.setpoints.climb_rate_mps = 0.0;
-        let throttle = if self.is_silent(now) {
-            self.last.throttle
-        } else if measured.other_control.value.reverse_thrust {
-            0.0
-        } else {
-            self.config.airspeed.trim_throttle
-        };
-        if unusable.intersects(flags::ATTITUDE | flags::BODY_RATES) {
+        let silent = self.is_silent(now);
+        let idle = glides && !silent || measured.other_control.value.reverse_thrust;
+        if held.lateral == Lateral::Trims {
             self.setpoints.pitch_rad = 0.0;
-            let trims = if frozen.contains(flags::FROZEN_BODY_RATES) {
-                self.kept_trims.trims
+            let throttle = if silent {
+                self.last.throttle
+            } else if idle {
+                0.0
             } else {
-                self.trims()
+                self.airspeed.trim()
             };
-            return Surfaces { throttle, ..trims };
+            return Surfaces {
+                throttle,
+                ..self.trims()
+            };
         }
+        let config = self.config.failsafe;
         let mut estimate = *self.navigation.estimate();
-        if unusable.contains(flags::SPECIFIC_FORCE) {
+        if lost.contains(flags::SPECIFIC_FORCE) {
             estimate.side_force_mps2 = 0.0;
         }
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
+        if lost.contains(flags::AIRSPEED) {
+            // That of the pitch and power that are held.
+            estimate.airspeed_mps = if glides {
+                self.config.envelope.best_glide_airspeed_mps
+            } else {
+                self.targets.airspeed_mps
+            };
+            estimate.true_airspeed_mps =
+                true_airspeed_mps(estimate.airspeed_mps, estimate.altitude_m);
+        }
+        let (schedule, dt_s) = (self.schedule_at(estimate.airspeed_mps), self.clock.step_s());
         let envelope = self.config.envelope;
-        let lateral = self.heading.hold_bank(0.0, &estimate, schedule, dt_s);
-        let vertical = if unusable.intersects(flags::ALTITUDE | flags::SPECIFIC_FORCE) {
-            self.altitude
-                .hold_level_pitch(&estimate, &envelope, schedule, dt_s)
+        // A constant pitch: one that follows the airspeed lets it diverge.
+        let trimmed = self.schedule_at(if glides {
+            self.config.envelope.best_glide_airspeed_mps
         } else {
-            self.altitude
-                .hold_climb_rate(0.0, &estimate, &envelope, schedule, dt_s)
+            self.targets.airspeed_mps
+        });
+        let roll_rad = if glides { config.glide_bank_rad } else { 0.0 };
+        let lateral = self.heading.hold_bank(roll_rad, &estimate, schedule, dt_s);
+        let glide_mps = estimate.true_airspeed_mps / config.glide_ratio;
+        let altitude = &mut self.altitude;
+        let vertical = match held.vertical {
+            Vertical::Level if glides => {
+                let fast_mps = estimate.airspeed_mps - self.config.envelope.best_glide_airspeed_mps;
+                let climb_rate_mps = GLIDE_GAIN * fast_mps - glide_mps;
+                altitude.hold_climb_rate(climb_rate_mps, &estimate, &envelope, schedule, dt_s)
+            }
+            Vertical::Level => altitude.hold_climb_rate(0.0, &estimate, &envelope, schedule, dt_s),
+            Vertical::Pitch | Vertical::Trim => {
+                let low_m = self.degraded.altitude_m - estimate.altitude_m;
+                let path_rad = if glides {
+                    -1.0 / config.glide_ratio
+                } else if lost.contains(flags::ALTITUDE) {
+                    0.0
+                } else {
+                    limit_abs(PATH_PER_M * low_m, MOST_PATH_RAD)
+                };
+                altitude.hold_path_pitch(path_rad, trimmed, &estimate, &envelope, schedule, dt_s)
+            }
         };
+        self.setpoints.roll_rad = lateral.roll_rad;
         self.setpoints.climb_rate_mps = vertical.climb_rate_mps;
         self.setpoints.pitch_rad = vertical.pitch_rad;
+        let throttle = if idle {
+            0.0
+        } else if held.power == Power::Airspeed {
+            let demand = self.throttle_demand(vertical.climb_rate_mps);
+            self.airspeed.step(&demand, &estimate, dt_s)
+        } else {
+            self.airspeed.trim()
+        };
         Surfaces {
             throttle,
             elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
+        }
+    }
+
+    /// Continues what was flown before the failsafe: targets, mode and progress
+    /// are as they were.
+    pub(super) fn fly_on(&mut self) {
+        self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
+        let last = self.last;
+        self.take_over(&last);
+        self.heading.lead_from(self.setpoints.roll_rad);
+    }
+
+    /// A value that was rejected is believed again when it agrees with what the
+    /// others tell about it: the last good one is moved with the estimate.
+    pub(super) fn move_distrusted(&mut self) {
+        if self.distrusted.is_empty() {
+            return;
+        }
+        let (estimate, distrusted) = (*self.navigation.estimate(), self.distrusted);
+        let last = &mut self.accepted;
+        if distrusted.contains(flags::ATTITUDE) {
+            last.attitude.value = Attitude {
+                pitch_rad: estimate.pitch_rad,
+                roll_rad: estimate.roll_rad,
+            };
+        }
+        if distrusted.contains(flags::HEADING) {
+            last.heading_rad.value = wrap_two_pi(estimate.heading_rad);
+        }
+        if distrusted.contains(flags::BODY_RATES) {
+            last.body_rates.value = estimate.body_rates;
+        }
+        if distrusted.contains(flags::ALTITUDE) {
+            last.altitude_m.value = estimate.altitude_m;
         }
     }
 

@@ -104,6 +104,16 @@ pub(super) const fn unusable(stale: Flags, frozen: Flags) -> Flags {
     Flags::from_bits(stale.bits() | frozen.bits() >> FROZEN_SHIFT)
 }
 
+/// What is not about a quantity that control needs: nothing is held without it.
+pub(super) const NOT_SENSED: Flags = Flags::from_bits(
+    !(NEEDED.bits()
+        | NEEDED.bits() << FROZEN_SHIFT
+        | REJECTED.bits()
+        | SUSPECT_AIRSPEED.bits()
+        | DOUBTED_AIRSPEED.bits()
+        | FROM_THE_FUTURE.bits()),
+);
+
 /// The bits of the frozen quantities.
 pub(super) const fn frozen(frozen: Frozen) -> Flags {
     Flags::NONE

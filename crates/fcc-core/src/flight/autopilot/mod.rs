@@ -1,11 +1,14 @@
 //! The autopilot: navigation, guidance and control as one [`Controller`].
 
+mod actuation;
 mod capture;
 mod command;
 mod config;
+mod degraded;
 mod failsafe;
 pub mod flags;
 mod floor;
+mod following;
 mod future;
 mod observe;
 mod other_control;
@@ -13,6 +16,7 @@ mod plant_clock;
 mod resume;
 mod scale;
 mod sensor_health;
+mod upset;
 mod whereabouts;
 
 use core::fmt;
@@ -20,24 +24,26 @@ use core::hint::black_box;
 
 use libm::cos;
 
+use actuation::Actuation;
 use capture::Capture;
 pub use command::AutopilotCommand;
 pub use config::AutopilotConfig;
+use degraded::Degraded;
 use failsafe::KeptTrims;
+pub use failsafe::{FailsafeConfig, FailsafeEnd};
+use following::Following;
 use plant_clock::PlantClock;
 pub use resume::Resume;
 pub use scale::Scale;
+use upset::is_far_from_level;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Schedule, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
-use super::navigation::{Estimate, FrozenDetector, Navigation, plausibility_gate};
+use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, PlantState, Setpoints, Surfaces};
 use crate::blocks::wrap_two_pi;
 use crate::framework::{Controller, Flags, Notice, Reading, Switch, Tick, Time};
-
-/// Beyond this bank or pitch the autopilot does not engage, rad.
-const UPSET_RAD: f64 = 1.047;
 
 /// Navigation, guidance and control as one [`Controller`].
 ///
@@ -82,6 +88,7 @@ pub struct Autopilot {
     /// The last plausible measurements.
     accepted: Measurements,
     navigation: Navigation,
+    replacement: Replacement,
     frozen: FrozenDetector,
     guidance: ActiveMode,
     targets: Targets,
@@ -92,6 +99,8 @@ pub struct Autopilot {
     heading: HeadingLoop,
     altitude: AltitudeLoop,
     airspeed: AirspeedLoop,
+    actuation: Actuation,
+    recovery: Recovery,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -104,6 +113,8 @@ pub struct Autopilot {
     /// The last outputs.
     last: Surfaces,
     kept_trims: KeptTrims,
+    degraded: Degraded,
+    following: Following,
     /// The quantities that were rejected as implausible in this failsafe.
     distrusted: Flags,
     /// Whether the target altitude is limited by the floor.
@@ -115,7 +126,9 @@ impl Autopilot {
     pub fn new(config: AutopilotConfig) -> Self {
         Self {
             accepted: Measurements::default(),
-            navigation: Navigation::new(&config.navigation),
+            navigation: Navigation::new(&config.navigation)
+                .for_stall_airspeed(config.envelope.stall_airspeed_mps),
+            replacement: Replacement::new(config.navigation.attitude_tau_s),
             frozen: FrozenDetector::new(config.frozen_after.as_secs_f64()),
             guidance: ActiveMode::None,
             targets: Targets::default(),
@@ -125,6 +138,8 @@ impl Autopilot {
             heading: HeadingLoop::new(config.heading),
             altitude: AltitudeLoop::new(config.altitude, &config.envelope),
             airspeed: AirspeedLoop::new(config.airspeed),
+            actuation: Actuation::new(config.assumed_latency_s, config.pace),
+            recovery: Recovery::new(),
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -133,6 +148,8 @@ impl Autopilot {
             renewed_since: Time::NEVER,
             last: Surfaces::default(),
             kept_trims: KeptTrims::default(),
+            degraded: Degraded::default(),
+            following: Following::default(),
             distrusted: Flags::NONE,
             is_at_floor: false,
             config,
@@ -145,16 +162,22 @@ impl Autopilot {
     }
 
     fn schedule(&self) -> Schedule {
-        Schedule::at(
-            self.navigation.estimate().airspeed_mps,
-            self.config.reference_airspeed_mps,
-        )
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
         ThrottleDemand {
-            airspeed_mps: self.targets.airspeed_mps,
+            airspeed_mps: self
+                .config
+                .envelope
+                .least_target_mps(estimate)
+                .max(self.targets.airspeed_mps),
             climb_rate_mps,
             load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
             least_throttle: self.config.envelope.least_throttle(estimate.airspeed_mps),
@@ -208,11 +231,12 @@ impl Controller for Autopilot {
         )
         .with(
             flags::TOO_SLOW,
-            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps,
+            estimate.airspeed_mps < self.config.envelope.min_airspeed_mps
+                && !(is_far_from_level(estimate) && self.may_engage_in_upset()),
         )
         .with(
             flags::UPSET,
-            estimate.roll_rad.abs() > UPSET_RAD || estimate.pitch_rad.abs() > UPSET_RAD,
+            is_far_from_level(estimate) && !self.may_engage_in_upset(),
         )
     }
 
@@ -221,8 +245,22 @@ impl Controller for Autopilot {
     }
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
-        let external = self.external(tick.woke, measurements);
-        external.with(flags::AT_FLOOR, self.is_at_floor)
+        (self.external(tick.woke, measurements) | self.actuation.conditions())
+            .with(flags::RECOVERING, self.is_recovering())
+            .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::AT_FLOOR, self.is_at_floor)
+    }
+
+    fn failsafe_goes_on(&self) -> bool {
+        self.goes_on()
+    }
+
+    fn has_recovered(&self) -> bool {
+        self.is_good_again()
+    }
+
+    fn recover(&mut self, _tick: &Tick, _measurements: &Measurements) {
+        self.fly_on();
     }
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
@@ -234,7 +272,7 @@ impl Controller for Autopilot {
     }
 
     fn notice(&self) -> Option<Notice> {
-        self.clock.notice()
+        self.clock.notice().or_else(|| self.degraded_notice())
     }
 
     fn write_notice(notice: &Notice, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -247,6 +285,14 @@ impl Controller for Autopilot {
             ),
             plant_clock::CLOCK_MISSING => f.write_str(
                 "the simulator's clock is missing while its other values arrive: our time is used",
+            ),
+            degraded::GOOD_AGAIN => write!(
+                f,
+                "all is good again: back to what was flown {lasted_s:.1} s ago"
+            ),
+            degraded::GLIDES => write!(
+                f,
+                "nothing can be held any longer: gliding in a gentle turn, with idle throttle"
             ),
             _ => f.write_str("an unknown notice"),
         }
@@ -275,6 +321,7 @@ impl Controller for Autopilot {
 
     fn engage(&mut self, tick: &Tick, _measurements: &Measurements) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         let estimate = *self.navigation.estimate();
         self.targets = Targets {
             airspeed_mps: self.config.envelope.allowed_airspeed(estimate.airspeed_mps),
@@ -293,7 +340,9 @@ impl Controller for Autopilot {
                 throttle: self.config.airspeed.trim_throttle,
                 ..Surfaces::default()
             });
+        self.actuation.engage(&standing);
         self.take_over(&standing);
+        self.begin_watching_for_upsets();
     }
 
     fn warm_up(&self, tick: &Tick, measurements: &Measurements) {
@@ -324,11 +373,15 @@ impl Controller for Autopilot {
             self.last = self.trims();
             return self.last;
         }
-        let estimate = *self.navigation.estimate();
-        let (schedule, dt_s) = (self.schedule(), self.clock.step_s());
-        let envelope = self.config.envelope;
+        let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
+        let (schedule, envelope) = (self.schedule(), self.config.envelope);
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
+        }
+        if let Some(recovering) = self.recover_from_upset(tick.woke) {
+            self.last = recovering;
+            return self.last;
         }
         let to = self.targets;
         let (heading, altitude) = (&mut self.heading, &mut self.altitude);
@@ -349,7 +402,7 @@ impl Controller for Autopilot {
         };
         self.last = Surfaces {
             throttle,
-            elevator: vertical.elevator,
+            elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
         };
@@ -363,9 +416,11 @@ impl Controller for Autopilot {
 
     fn disengage(&mut self) {
         self.distrusted = Flags::NONE;
+        self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
         self.is_at_floor = false;
         self.capture = None;
+        self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();
     }
 
@@ -374,7 +429,7 @@ impl Controller for Autopilot {
     }
 
     fn estimated(&self) -> Estimate {
-        *self.navigation.estimate()
+        self.actuation.shown_in(self.navigation.estimate())
     }
 
     fn setpoints(&self) -> Setpoints {

@@ -1,12 +1,13 @@
 //! From a tick's measurements to the estimate, also after a gap in which a
 //! simulated plant was not heard.
 
+use super::degraded::by_name;
 use super::future::{is_from_the_future, without_future};
 use super::plant_clock::Waiting;
 use super::whereabouts::Whereabouts;
 use super::{Autopilot, flags};
 use crate::flight::navigation::{
-    FrozenDetector, GateLimits, airspeed_can_follow, plausibility_gate,
+    FrozenDetector, GateLimits, Lost, airspeed_can_follow, plausibility_gate,
 };
 use crate::flight::{Measurements, PlantState};
 use crate::framework::{Flags, Readings, Tick, Time};
@@ -44,10 +45,12 @@ impl Autopilot {
             self.whereabouts.keep(&self.accepted);
         }
         let step_s = self.clock.step_s();
-        self.navigation.step(now, &self.accepted, step_s);
+        self.navigate(now, measured, step_s);
         let known = self.navigation.known();
         self.frozen.step(now, &self.accepted, &known, step_s);
         self.take_over_after_loss(now);
+        self.take_over_unless_followed(now, self.config.max_age);
+        self.follow_failsafe(tick, measured);
         // After an outage everything settles anew before it may engage.
         if !self.stale(now).is_empty() {
             self.watching_since = Time::NEVER;
@@ -55,6 +58,22 @@ impl Autopilot {
             self.watching_since = now;
         }
         self.before = now;
+    }
+
+    /// Estimates the aircraft's state, in failsafe without what is lost.
+    fn navigate(&mut self, now: Time, measured: &Measurements, step_s: f64) {
+        let lost = by_name(self.lost(now, measured));
+        let estimate = *self.navigation.estimate();
+        self.replacement
+            .follow(&self.accepted, lost, &estimate, step_s);
+        if self.degraded.is_failsafe && lost != Lost::default() {
+            let left = self
+                .replacement
+                .without(&self.accepted, lost, &estimate, now);
+            self.navigation.step(now, &left, step_s);
+        } else {
+            self.navigation.step(now, &self.accepted, step_s);
+        }
     }
 
     /// Follows where the aircraft is.
@@ -71,6 +90,7 @@ impl Autopilot {
     /// Accepts the plausible measurements of a tick, after the gap that ended
     /// in it, if one did.
     fn accept(&mut self, tick: &Tick, measured: &Measurements) {
+        self.move_distrusted();
         let Some(gap) = self.clock.gap() else {
             self.pass_gate(measured);
             return;

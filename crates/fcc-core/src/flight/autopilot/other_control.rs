@@ -29,6 +29,8 @@ impl Autopilot {
             .with(flags::REVERSE_THRUST, other.reverse_thrust)
             .with(flags::PLANT_FAST, self.plant_is(PlantState::Fast))
             .with(flags::SUSPECT_AIRSPEED, airspeed_is_suspect(measurements))
+            .with(flags::NOT_FOLLOWED, self.is_not_followed())
+            .with(flags::DEGRADED, self.is_degraded())
             .with(
                 flags::FROM_THE_FUTURE,
                 is_from_the_future(measurements, now),

@@ -31,7 +31,7 @@ const USUAL_OF: usize = 4;
 /// The kinds of notices.
 pub(super) const STOOD_STILL: u8 = 1;
 pub(super) const LINK_LOST: u8 = 2;
-pub(super) const CLOCK_MISSING: u8 = 3;
+pub(super) const CLOCK_MISSING: u8 = 5;
 
 /// Why the plant's time is taken to stand still.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]

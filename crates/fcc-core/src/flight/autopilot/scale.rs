@@ -54,6 +54,7 @@ impl AutopilotConfig {
     #[must_use]
     pub fn scaled(mut self, scale: &Scale) -> Self {
         let pace = scale.pace;
+        self.pace *= pace;
 
         let heading = &mut self.heading;
         heading.heading_gain_per_s *= pace;

@@ -1,7 +1,7 @@
 //! Airspeed → throttle.
 
 use super::SURFACE;
-use crate::blocks::{Pid, PidConfig};
+use crate::blocks::{Pid, PidConfig, limit};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
 
@@ -28,7 +28,7 @@ pub struct AirspeedConfig {
     /// Largest throttle rate, 1/s.
     pub max_throttle_rate_per_s: f64,
     /// Throttle for level flight at the reference airspeed, 0..=1: used at
-    /// engagement if the plant does not measure its throttle, and in failsafe.
+    /// engagement if the plant does not measure its throttle.
     pub trim_throttle: f64,
 }
 
@@ -140,6 +140,11 @@ impl AirspeedLoop {
             dt_s,
         );
         throttle.max(demand.least_throttle)
+    }
+
+    /// The throttle that the loop has found for level flight, 0..=1.
+    pub fn trim(&self) -> f64 {
+        limit(self.throttle.integral(), 0.0, 1.0)
     }
 
     /// A climb needs g sin γ, a turn the additional induced drag.

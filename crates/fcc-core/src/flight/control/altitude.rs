@@ -2,7 +2,7 @@
 
 use libm::{asin, cos, sin, tan};
 
-use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule};
+use super::{Envelope, MAX_TURN_BANK_RAD, SURFACE, Schedule, SpeedLimits};
 use crate::blocks::{LowPass, Pid, PidConfig, RateLimit, SquareRootProfile, limit, limit_abs};
 use crate::flight::navigation::Estimate;
 use crate::units::GRAVITY_MPS2;
@@ -50,36 +50,17 @@ impl Default for AltitudeConfig {
             altitude_gain_per_s: 1.5,
             capture_mps2: 1.108_151,            // 0.113 g
             climb_acceleration_mps2: 3.285_228, // 0.335 g
-            climb_rate_gain: 1.8,
+            climb_rate_gain: 1.53,
             climb_rate_integral_gain_per_s: 0.35,
-            flight_path_lag_s: 0.2,
+            flight_path_lag_s: 0.235,
             angle_of_attack_per_g_rad: 0.038_572, // 2.21°
-            pitch_gain_per_s: 6.2,
+            pitch_gain_per_s: 4.96,
             max_pitch_rate_radps: 0.174_533, // 10 °/s
-            pitch_rate_gain: 0.86,
-            pitch_rate_integral_gain: 2.76,
+            pitch_rate_gain: 0.69,
+            pitch_rate_integral_gain: 1.77,
             elevator_per_g: 0.30,
         }
     }
-}
-
-/// Limits of the climb rate, m/s; if they conflict, the upper one applies,
-/// since too slow is more dangerous than too fast.
-///
-/// ```
-/// use fcc_core::flight::control::{ClimbLimits, Envelope};
-///
-/// // At 100 kt a Cessna 172 is far from either limit: 965 ft/min up and down.
-/// let limits: ClimbLimits = Envelope::default().climb_limits(51.4);
-/// assert!((limits.max_mps * 196.85 - 965.0).abs() < 0.1);
-/// assert!((limits.min_mps + limits.max_mps).abs() < 1e-12);
-/// ```
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct ClimbLimits {
-    /// Fastest climb.
-    pub max_mps: f64,
-    /// Fastest descent, a negative number.
-    pub min_mps: f64,
 }
 
 /// The commands of the altitude loop.
@@ -127,9 +108,13 @@ pub struct AltitudeLoop {
     climb_rate: RateLimit,
     /// The flight-path angle expected now from the past commands, rad.
     expected_path: LowPass,
+    speed: SpeedLimits,
     pitch: Pid,
     pitch_rate: Pid,
 }
+
+/// How fast the angle of attack approaches its limit, 1/s.
+const ANGLE_OF_ATTACK_GAIN_PER_S: f64 = 2.0;
 
 impl AltitudeLoop {
     /// A loop that is not engaged.
@@ -138,6 +123,7 @@ impl AltitudeLoop {
             config,
             climb_rate: RateLimit::new(config.climb_acceleration_mps2),
             expected_path: LowPass::new(config.flight_path_lag_s),
+            speed: SpeedLimits::new(),
             pitch: Pid::new(PidConfig {
                 kp: config.climb_rate_gain,
                 ki: config.climb_rate_integral_gain_per_s,
@@ -158,6 +144,7 @@ impl AltitudeLoop {
         let path = flight_path(estimate.climb_rate_mps, estimate);
         self.climb_rate.reset(estimate.climb_rate_mps);
         self.expected_path.reset(path);
+        self.speed = SpeedLimits::new();
         self.pitch.engage(
             estimate.pitch_rad,
             path,
@@ -167,8 +154,9 @@ impl AltitudeLoop {
         );
         let rate = estimate.body_rates.pitch_radps;
         let feed_forward = schedule.moment * self.config.elevator_per_g * turn_load(estimate);
+        let gain = schedule.moment * schedule.pitch_pace;
         self.pitch_rate
-            .engage(elevator, rate, rate, feed_forward, schedule.moment);
+            .engage(elevator, rate, rate, feed_forward, gain);
     }
 
     /// One step towards an altitude (m).
@@ -181,7 +169,7 @@ impl AltitudeLoop {
         dt_s: f64,
     ) -> PitchCommand {
         let profile = SquareRootProfile {
-            gain_per_s: self.config.altitude_gain_per_s,
+            gain_per_s: schedule.pace * self.config.altitude_gain_per_s,
             deceleration: self.config.capture_mps2,
         };
         let wanted = profile.speed(altitude_m - estimate.altitude_m);
@@ -197,19 +185,23 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
-        let limits = envelope.climb_limits(estimate.airspeed_mps);
-        let wanted = limit(climb_rate_mps, limits.min_mps, limits.max_mps);
+        let wanted = limit(
+            climb_rate_mps,
+            -envelope.max_sink_mps,
+            envelope.max_climb_mps,
+        );
         let climb_rate_mps = self.climb_rate.step(wanted, dt_s);
         let path = flight_path(climb_rate_mps, estimate);
-        let expected = self.expected_path.step(path, dt_s);
+        let expected = self.expected_path.step(path, schedule.path * dt_s);
         // The gain acts on the whole error, the integral only on the part not
         // explained by the lag.
-        let ahead = self.config.climb_rate_gain * (path - expected);
+        let ahead = schedule.path * self.config.climb_rate_gain * (path - expected);
+        self.limit_pitch(estimate, envelope, dt_s);
         let pitch_rad = self.pitch.step_scheduled(
             expected,
             flight_path(estimate.climb_rate_mps, estimate),
             path + ahead + self.angle_of_attack(estimate, schedule),
-            1.0,
+            schedule.path,
             dt_s,
         );
         self.hold(
@@ -222,26 +214,74 @@ impl AltitudeLoop {
         )
     }
 
-    /// One step towards the pitch expected for level flight, if altitude and
-    /// climb rate are not known.
-    pub fn hold_level_pitch(
+    /// One step towards the pitch expected for a flight path (rad, up) at the
+    /// airspeed of the schedule `trimmed`, if the climb rate is not known.
+    pub fn hold_path_pitch(
         &mut self,
+        path_rad: f64,
+        trimmed: Schedule,
         estimate: &Estimate,
         envelope: &Envelope,
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
-        let pitch_rad = limit(
-            self.angle_of_attack(estimate, schedule) + self.pitch.integral(),
-            envelope.min_pitch_rad,
-            envelope.max_pitch_rad,
-        );
-        self.hold(0.0, pitch_rad, estimate, envelope, schedule, dt_s)
+        self.limit_pitch(estimate, envelope, dt_s);
+        let level = self.angle_of_attack(estimate, trimmed) + self.pitch.integral();
+        let pitch_rad = self.pitch.limited(path_rad + level);
+        let climb_rate_mps = estimate.true_airspeed_mps * sin(path_rad);
+        self.hold(
+            climb_rate_mps,
+            pitch_rad,
+            estimate,
+            envelope,
+            schedule,
+            dt_s,
+        )
+    }
+
+    /// The elevator for a pitch-rate error (rad/s) and a load of the wing above
+    /// that of the trim (g at the reference airspeed), without the integral: while
+    /// another law determines the pitch.
+    pub(crate) fn elevator_for(
+        &self,
+        error_radps: f64,
+        load: f64,
+        trim: f64,
+        schedule: Schedule,
+    ) -> f64 {
+        trim + self.config.elevator_per_g * load
+            + schedule.moment * self.config.pitch_rate_gain * error_radps
+    }
+
+    /// What `dt_s` of a pitch-rate error (rad/s) add to the elevator.
+    pub(crate) fn elevator_increment(
+        &self,
+        error_radps: f64,
+        schedule: Schedule,
+        dt_s: f64,
+    ) -> f64 {
+        schedule.moment * self.config.pitch_rate_integral_gain * error_radps * dt_s
+    }
+
+    /// Whether energy is short for both height and airspeed: the airspeed is
+    /// held, and height is given up.
+    pub const fn gives_up_height(&self) -> bool {
+        self.speed.is_short()
     }
 
     /// The elevator trim that the loop has found.
     pub const fn trim(&self) -> f64 {
         self.pitch_rate.integral()
+    }
+
+    /// Limits the pitch to that at which the airspeed stays within its limits.
+    fn limit_pitch(&mut self, estimate: &Estimate, envelope: &Envelope, dt_s: f64) {
+        let limits = self.speed.step(estimate, envelope, dt_s);
+        let (least, most) = (envelope.min_pitch_rad, envelope.max_pitch_rad);
+        self.pitch.set_output_limits(
+            limit(limits.min_rad, least, most),
+            limit(limits.max_rad, least, most),
+        );
     }
 
     fn hold(
@@ -253,26 +293,37 @@ impl AltitudeLoop {
         schedule: Schedule,
         dt_s: f64,
     ) -> PitchCommand {
+        self.speed.commanded(pitch_rad, dt_s);
         let config = &self.config;
         let speed = estimate.true_airspeed_mps.max(1.0);
         let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
         // Euler pitch rate converted to body axes, plus the pitch rate of the
         // turn: q = θ̇ cos φ + ψ̇ cos θ sin φ.
         let theta_rate = limit_abs(
-            config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
+            schedule.pitch_pace * config.pitch_gain_per_s * (pitch_rad - estimate.pitch_rad),
             config.max_pitch_rate_radps,
         );
         let turn_rate = GRAVITY_MPS2 / speed * tan(bank);
         let turn_pitch_rate = turn_rate * cos(estimate.pitch_rad) * sin(bank);
         // Load factor in excess of 1 is about V q / g.
-        let most = GRAVITY_MPS2 / speed * (envelope.max_load_factor - cos(bank)).max(0.1);
-        let pitch_rate = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        let per_load = GRAVITY_MPS2 / speed;
+        let most = per_load * (envelope.max_load_factor - cos(bank)).max(0.1);
+        let wanted = limit_abs(theta_rate * cos(bank) + turn_pitch_rate, most);
+        // α̇ = q - (n - cos φ) g/V: the pitch rate at which the angle of attack
+        // approaches its limit and does not exceed it.
+        let spare_rad = envelope.max_angle_of_attack_rad - estimate.angle_of_attack_rad;
+        let kept = per_load * (estimate.load_factor - cos(bank));
+        let pitch_rate = wanted.min(limit_abs(
+            ANGLE_OF_ATTACK_GAIN_PER_S * spare_rad + kept,
+            2.0 * config.max_pitch_rate_radps,
+        ));
         let elevator = self.pitch_rate.step_scheduled(
             pitch_rate,
             estimate.body_rates.pitch_radps,
             schedule.moment * config.elevator_per_g * turn_load(estimate),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.pitch_pace,
+            // The integral's time constant is as long as the loop is slow.
+            schedule.pitch_pace * dt_s,
         );
         PitchCommand {
             climb_rate_mps,

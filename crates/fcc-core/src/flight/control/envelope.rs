@@ -2,10 +2,11 @@
 
 use core::ops::RangeInclusive;
 
-use libm::acos;
+use libm::{acos, cos, sqrt};
 
-use super::ClimbLimits;
-use crate::blocks::limit;
+use super::MAX_TURN_BANK_RAD;
+use crate::blocks::{limit, limit_abs};
+use crate::flight::navigation::Estimate;
 
 /// The limits of what the outer loops command.
 ///
@@ -36,16 +37,43 @@ pub struct Envelope {
     pub max_climb_mps: f64,
     /// Largest descent rate, m/s, a positive number.
     pub max_sink_mps: f64,
-    /// Within this margin of either airspeed limit the climb limits are
-    /// reduced, m/s.
+    /// Airspeeds that are commanded keep this margin from either airspeed
+    /// limit, m/s.
     pub airspeed_margin_mps: f64,
     /// No command and no mode leads below this altitude, m above mean sea level
     /// by the altimeter setting; [`Envelope::NO_FLOOR_M`] for none.
     pub floor_m: f64,
+    /// Stalling speed, clean, without power, at the heaviest weight flown,
+    /// indicated, m/s.
+    pub stall_airspeed_mps: f64,
+    /// Airspeed of the longest glide, indicated, m/s.
+    pub best_glide_airspeed_mps: f64,
+    /// Manoeuvring speed (Va): up to it full deflection stalls the wing before
+    /// the limit load is reached, indicated, m/s.
+    pub maneuvering_airspeed_mps: f64,
+    /// Never-exceed speed (Vne), indicated, m/s.
+    pub never_exceed_airspeed_mps: f64,
+    /// Limit load factor of the structure, g.
+    pub limit_load_factor: f64,
+    /// Negative limit load factor of the structure, g; negative.
+    pub limit_negative_load_factor: f64,
+    /// Largest angle of attack, rad: below that of the stall.
+    pub max_angle_of_attack_rad: f64,
 }
 
+/// The factor over the stalling speed at the present load that the lowest
+/// airspeed keeps at least.
+const OVER_STALL: f64 = 1.15;
+/// Gusts of so many standard deviations count as load.
+const GUST_DEVIATIONS: f64 = 2.0;
+/// The bank that is left to a slow aircraft, rad (5°).
+const LEAST_BANK_RAD: f64 = 0.087;
+
 impl Default for Envelope {
-    /// A light single-engine aircraft such as the Cessna 172.
+    /// A Cessna 172. The stalling speed is that of the heaviest one, the R172K at
+    /// 2,550 lb (its handbook of 1977: 53 KCAS, flaps up, power off); glide,
+    /// manoeuvring and never-exceed speed are the 172N's (65, 97 and 160 KIAS);
+    /// loads of the normal category (14 CFR 23.337: +3.8, -0.4 times that).
     fn default() -> Self {
         Self {
             max_bank_rad: 30.0_f64.to_radians(),
@@ -58,6 +86,13 @@ impl Default for Envelope {
             max_sink_mps: 4.902_2,          // 965 ft/min
             airspeed_margin_mps: 4.115_556, // 8 kt
             floor_m: Self::NO_FLOOR_M,
+            stall_airspeed_mps: 27.265_556, // 53 kt
+            best_glide_airspeed_mps: 33.438_889,
+            maneuvering_airspeed_mps: 49.901_111,  // 97 kt
+            never_exceed_airspeed_mps: 82.311_111, // 160 kt
+            limit_load_factor: 3.8,
+            limit_negative_load_factor: -1.52,
+            max_angle_of_attack_rad: 12.0_f64.to_radians(),
         }
     }
 }
@@ -73,24 +108,29 @@ impl Envelope {
             .min(acos(1.0 / self.max_load_factor.max(1.0)))
     }
 
-    /// Climb limits at an indicated airspeed: they are reduced near the lowest
-    /// airspeed (below it only a descent is permitted) and near the highest.
-    pub fn climb_limits(&self, airspeed_mps: f64) -> ClimbLimits {
-        let margin = self.airspeed_margin_mps.max(0.1);
-        let above_floor = (airspeed_mps - self.min_airspeed_mps) / margin;
-        let below_ceiling = (self.max_airspeed_mps - airspeed_mps) / margin;
-        ClimbLimits {
-            max_mps: limit(
-                self.max_climb_mps * above_floor,
-                -self.max_sink_mps,
-                self.max_climb_mps,
-            ),
-            min_mps: limit(
-                -self.max_sink_mps * below_ceiling,
-                -self.max_sink_mps,
-                self.max_climb_mps,
-            ),
-        }
+    /// The bank limit at an airspeed, rad: less where the aircraft is too slow
+    /// for the load of the turn, the wing's gusts included.
+    pub fn bank_limit_at_rad(&self, estimate: &Estimate) -> f64 {
+        let ratio = estimate.airspeed_mps / (OVER_STALL * self.stall_airspeed_mps);
+        let load = ratio * ratio - GUST_DEVIATIONS * estimate.gust_load;
+        let slow = acos(1.0 / load.max(1.0));
+        self.bank_limit_rad().min(slow.max(LEAST_BANK_RAD))
+    }
+
+    /// The lowest indicated airspeed for the load of the present bank and of the
+    /// present gusts, m/s: a wing stalls at the stalling speed times the root of
+    /// the load (FAA-H-8083-3C, chapter 5).
+    pub fn floor_mps(&self, estimate: &Estimate) -> f64 {
+        let bank = limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD);
+        let load = 1.0 / cos(bank) + GUST_DEVIATIONS * estimate.gust_load;
+        let stall = OVER_STALL * self.stall_airspeed_mps * sqrt(load.max(1.0));
+        let middle = 0.5 * (self.min_airspeed_mps + self.max_airspeed_mps);
+        limit(stall, self.min_airspeed_mps, middle)
+    }
+
+    /// The least airspeed for the throttle to hold, m/s: above the floor.
+    pub fn least_target_mps(&self, estimate: &Estimate) -> f64 {
+        self.floor_mps(estimate) + 0.5 * self.airspeed_margin_mps
     }
 
     /// The airspeeds that may be commanded, m/s: a margin inside the limits, so
@@ -135,12 +175,38 @@ mod tests {
         assert!((Envelope::default().bank_limit_rad().to_degrees() - 30.0).abs() < 1e-9);
     }
 
+    /// FAA-H-8083-3C, chapter 5: the stalling speed at 45° of bank is 1.19 times
+    /// that of level flight.
     #[test]
-    fn below_the_limits_only_descent_and_above_only_climb_is_permitted() {
+    fn the_floor_rises_with_the_root_of_the_load() {
+        let envelope = Envelope {
+            min_airspeed_mps: 10.0,
+            ..Envelope::default()
+        };
+        let banked = |degrees: f64| Estimate {
+            roll_rad: degrees.to_radians(),
+            ..Estimate::default()
+        };
+        let level = envelope.floor_mps(&banked(0.0));
+        assert!((level / envelope.stall_airspeed_mps - 1.15).abs() < 1e-9);
+        assert!((envelope.floor_mps(&banked(45.0)) / level - 1.19).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_slow_aircraft_banks_less() {
         let envelope = Envelope::default();
-        assert!(envelope.climb_limits(30.0).max_mps < 0.0);
-        assert!(envelope.climb_limits(73.0).min_mps > 0.0);
-        let cruise = envelope.climb_limits(51.4);
-        assert_eq!((cruise.min_mps, cruise.max_mps), (-4.902_2, 4.902_2));
+        let at = |knots: f64, gust_load: f64| {
+            envelope
+                .bank_limit_at_rad(&Estimate {
+                    airspeed_mps: knots * 0.514_444,
+                    gust_load,
+                    ..Estimate::default()
+                })
+                .to_degrees()
+        };
+        assert_eq!(at(73.0, 0.0), at(100.0, 0.0));
+        assert!(at(57.0, 0.0) < 29.0);
+        assert!((at(50.0, 0.0) - 5.0).abs() < 0.1);
+        assert!(at(73.0, 0.4) < 30.0);
     }
 }

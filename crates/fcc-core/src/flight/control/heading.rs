@@ -171,14 +171,14 @@ impl HeadingLoop {
             roll_rate,
             roll_rate,
             self.aileron_feed_forward(roll_rate, schedule),
-            schedule.moment,
+            schedule.moment * schedule.lateral_pace,
         );
         self.side_force.engage(
             rudder,
             0.0,
             estimate.side_force_mps2,
             self.rudder_feed_forward(aileron, estimate, schedule),
-            schedule.moment,
+            schedule.moment * schedule.lateral_pace,
         );
     }
 
@@ -195,13 +195,13 @@ impl HeadingLoop {
         let turn_rate = GRAVITY_MPS2 / speed * tan(limit_abs(estimate.roll_rad, MAX_TURN_BANK_RAD));
         let error = heading_rad - estimate.heading_rad - self.config.lead_s * turn_rate;
         let profile = SquareRootProfile {
-            gain_per_s: self.config.heading_gain_per_s,
+            gain_per_s: schedule.lateral_pace * self.config.heading_gain_per_s,
             deceleration: GRAVITY_MPS2 / speed * self.config.rollout_rate_radps,
         };
         // Coordinated turn: tan φ = V ψ̇ / g.
         let roll_rad = limit_abs(
             atan(speed / GRAVITY_MPS2 * profile.speed(error)),
-            envelope.bank_limit_rad(),
+            envelope.bank_limit_at_rad(estimate),
         );
         let roll_rad = self.led(roll_rad, dt_s);
         self.hold_bank(roll_rad, estimate, schedule, dt_s)
@@ -233,7 +233,7 @@ impl HeadingLoop {
     ) -> Lateral {
         let config = &self.config;
         let wanted = limit_abs(
-            config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
+            schedule.lateral_pace * config.roll_gain_per_s * (roll_rad - estimate.roll_rad),
             config.max_roll_rate_radps,
         );
         let roll_rate = self.roll_command.step(wanted, dt_s);
@@ -241,21 +241,46 @@ impl HeadingLoop {
             roll_rate,
             estimate.body_rates.roll_radps,
             self.aileron_feed_forward(roll_rate, schedule),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.lateral_pace,
+            schedule.lateral_pace * dt_s,
         );
         // A side force to the right requires yaw to the left.
         let rudder = self.side_force.step_scheduled(
             0.0,
             estimate.side_force_mps2,
             self.rudder_feed_forward(aileron, estimate, schedule),
-            schedule.moment,
-            dt_s,
+            schedule.moment * schedule.lateral_pace,
+            schedule.lateral_pace * dt_s,
         );
         Lateral {
             roll_rad,
             aileron,
             rudder,
+        }
+    }
+
+    /// The surfaces for a roll rate (rad/s) from trims, without the integrals:
+    /// while another law determines the roll.
+    pub(crate) fn surfaces_for(
+        &self,
+        roll_rate_radps: f64,
+        aileron_trim: f64,
+        rudder_trim: f64,
+        estimate: &Estimate,
+        schedule: Schedule,
+    ) -> Lateral {
+        let error = roll_rate_radps - estimate.body_rates.roll_radps;
+        let aileron = aileron_trim
+            + self.aileron_feed_forward(roll_rate_radps, schedule)
+            + schedule.moment * self.config.roll_rate_gain * error;
+        let aileron = limit_abs(aileron, 1.0);
+        let rudder = rudder_trim
+            + self.rudder_feed_forward(aileron - aileron_trim, estimate, schedule)
+            - schedule.moment * self.config.side_force_gain * estimate.side_force_mps2;
+        Lateral {
+            roll_rad: 0.0,
+            aileron,
+            rudder: limit_abs(rudder, 1.0),
         }
     }
 
@@ -272,7 +297,7 @@ impl HeadingLoop {
             * cos(estimate.pitch_rad);
         let excess = estimate.body_rates.yaw_radps - turn_yaw_rate;
         self.config.rudder_per_aileron * aileron
-            - schedule.moment * self.config.yaw_damping * excess
+            - schedule.moment * schedule.lateral_pace * self.config.yaw_damping * excess
     }
 
     /// The aileron trim that the loop has found for wings level.

@@ -7,6 +7,9 @@
 //!   compensated for bank;
 //! - [`AirspeedLoop`]: airspeed → throttle, compensated for climb and bank.
 //!
+//! In an upset the recovery flies instead of them, until the aircraft is
+//! level again.
+//!
 //! An [`Envelope`] limits the outer loops' commands to the inner ones. Gains
 //! apply at a reference airspeed; a surface's effect grows with dynamic
 //! pressure, so they are scaled by [`Schedule`].
@@ -15,15 +18,28 @@ use crate::blocks::{AntiWindup, PidConfig};
 
 mod airspeed;
 mod altitude;
+mod elevator_response;
 mod envelope;
 mod heading;
+mod load;
+mod oscillation;
+mod play_inverse;
+mod recovery;
 mod schedule;
+mod speed_limits;
+mod upset;
 
 pub use airspeed::{AirspeedConfig, AirspeedLoop, ThrottleDemand};
-pub use altitude::{AltitudeConfig, AltitudeLoop, ClimbLimits, PitchCommand};
+pub use altitude::{AltitudeConfig, AltitudeLoop, PitchCommand};
+pub use elevator_response::ElevatorResponse;
 pub use envelope::Envelope;
 pub use heading::{HeadingConfig, HeadingLoop, Lateral};
+pub use oscillation::OscillationMonitor;
+pub use play_inverse::PlayInverse;
+pub(crate) use recovery::{Change, Recovery, RecoveryInputs};
 pub use schedule::Schedule;
+pub use speed_limits::{PitchLimits, SpeedLimits};
+pub use upset::{Motion, UpsetDetector};
 
 /// The largest bank for which a turn's load and rate are computed, rad.
 const MAX_TURN_BANK_RAD: f64 = 1.05;

@@ -2,12 +2,15 @@
 
 use core::time::Duration;
 
-use libm::{cos, sin};
+use libm::{atan2, cos, sin, sqrt};
 
 use super::resolution::Resolution;
 use super::{NewSample, SampleTracker, is_current};
-use crate::blocks::{Complementary, wrap_pi};
-use crate::flight::Measurements;
+use crate::blocks::{smoothing_factor, wrap_pi};
+use crate::flight::orientation::{
+    EulerAngles, earth_to_body, euler_from_quaternion, product, quaternion_from_euler,
+};
+use crate::flight::{BodyRates, Measurements};
 use crate::framework::Time;
 
 /// Pitch, roll and heading; the heading is continuous through full turns.
@@ -21,8 +24,14 @@ pub struct Orientation {
     pub heading_rad: f64,
 }
 
-/// Complementary filter over Euler angles (body rates converted to angle rates
-/// as in Stevens, Lewis and Johnson 2016, equation 1.4-4).
+/// Complementary filter over rotations, right in every attitude (as Mahony et al.
+/// 2008): the gyroscopes turn the attitude; measured pitch and roll correct the
+/// direction of gravity in body axes, and the measured heading corrects the
+/// rotation about it.
+///
+/// Euler angles are what it takes and gives; with the nose within 10° of the
+/// vertical, where heading and roll are one rotation, the measured heading is not
+/// used.
 ///
 /// ```
 /// use fcc_core::flight::navigation::AttitudeChannel;
@@ -46,9 +55,12 @@ pub struct Orientation {
 /// ```
 #[derive(Clone, Debug)]
 pub struct AttitudeChannel {
-    roll: Complementary,
-    pitch: Complementary,
-    heading: Complementary,
+    attitude_tau_s: f64,
+    heading_tau_s: f64,
+    /// From body axes to earth axes.
+    rotation: [f64; 4],
+    /// Its heading, rad, continuous through full turns.
+    heading_rad: f64,
     attitude_news: SampleTracker,
     heading_news: SampleTracker,
     heading_resolution: Resolution,
@@ -57,17 +69,18 @@ pub struct AttitudeChannel {
 /// The coarsest heading that is flown: 2°, rad.
 const COARSEST_HEADING_RAD: f64 = 0.035;
 
-/// Near the vertical the heading is undefined; the rates are not divided by
-/// less than this cosine (about 80°).
+/// Near the vertical the heading is undefined: below this cosine of the pitch
+/// (about 80°).
 pub(super) const MIN_COS_PITCH: f64 = 0.17;
 
 impl AttitudeChannel {
     /// Time constants in s: of pitch and roll, of the heading.
     pub const fn new(attitude_tau_s: f64, heading_tau_s: f64) -> Self {
         Self {
-            roll: Complementary::new(attitude_tau_s),
-            pitch: Complementary::new(attitude_tau_s),
-            heading: Complementary::new(heading_tau_s),
+            attitude_tau_s,
+            heading_tau_s,
+            rotation: [1.0, 0.0, 0.0, 0.0],
+            heading_rad: 0.0,
             attitude_news: SampleTracker::new(),
             heading_news: SampleTracker::new(),
             heading_resolution: Resolution::new(COARSEST_HEADING_RAD),
@@ -94,33 +107,31 @@ impl AttitudeChannel {
         self.heading_news.adopts_next = true;
     }
 
+    /// Counts full turns so that the heading is the nearest to `near_rad`;
+    /// returns it.
+    pub(super) fn count_near(&mut self, near_rad: f64) -> f64 {
+        self.heading_rad = near_rad + wrap_pi(self.heading_rad - near_rad);
+        self.heading_rad
+    }
+
     /// Processes the measurements; returns the orientation.
     pub fn step(&mut self, now: Time, measurements: &Measurements, dt_s: f64) -> Orientation {
         if is_current(&measurements.body_rates, now) {
             let rates = measurements.body_rates.value;
-            let (sin_roll, cos_roll) = (sin(self.roll.value()), cos(self.roll.value()));
-            let (sin_pitch, cos_pitch) = (sin(self.pitch.value()), cos(self.pitch.value()));
-            let horizontal = (rates.pitch_radps * sin_roll + rates.yaw_radps * cos_roll)
-                / cos_pitch.max(MIN_COS_PITCH);
-            self.roll
-                .predict(rates.roll_radps + sin_pitch * horizontal, dt_s);
-            self.pitch.predict(
-                rates.pitch_radps * cos_roll - rates.yaw_radps * sin_roll,
-                dt_s,
-            );
-            self.heading.predict(horizontal, dt_s);
+            self.rotation = product(self.rotation, turn(&rates, dt_s));
         }
-        let attitude = measurements.attitude;
-        match self.attitude_news.of(&attitude, dt_s) {
+        let measured = measurements.attitude.value;
+        let measured = EulerAngles {
+            roll_rad: measured.roll_rad,
+            pitch_rad: measured.pitch_rad,
+            heading_rad: self.heading_rad,
+        };
+        match self.attitude_news.of(&measurements.attitude, dt_s) {
             NewSample::None => {}
-            NewSample::First => {
-                self.roll.reset(attitude.value.roll_rad);
-                self.pitch.reset(attitude.value.pitch_rad);
-            }
+            NewSample::First => self.rotation = quaternion_from_euler(measured),
             NewSample::Next(since_s) => {
-                let roll_error = wrap_pi(attitude.value.roll_rad - self.roll.value());
-                self.roll.correct_by(roll_error, since_s);
-                self.pitch.correct(attitude.value.pitch_rad, since_s);
+                let share = smoothing_factor(since_s, self.attitude_tau_s);
+                self.correct_gravity(measured, share);
             }
         }
         let heading = measurements.heading_rad;
@@ -129,20 +140,134 @@ impl AttitudeChannel {
             self.heading_resolution
                 .take(&heading, |is, was| wrap_pi(is - was));
         }
-        let error = wrap_pi(heading.value - self.heading.value());
-        match sample {
-            NewSample::None => {}
-            // Continue the present count of full turns.
-            NewSample::First => self.heading.reset(self.heading.value() + error),
+        let mut angles = euler_from_quaternion(self.rotation);
+        let error = wrap_pi(heading.value - angles.heading_rad);
+        let correction = match sample {
+            NewSample::None => 0.0,
+            NewSample::First => error,
             NewSample::Next(since_s) => {
-                let beyond = self.heading_resolution.beyond(error);
-                self.heading.correct_by(beyond, since_s);
+                smoothing_factor(since_s, self.heading_tau_s)
+                    * self.heading_resolution.beyond(error)
             }
+        };
+        if correction != 0.0 && cos(angles.pitch_rad) >= MIN_COS_PITCH {
+            angles.heading_rad += correction;
+            self.rotation = quaternion_from_euler(angles);
         }
+        self.heading_rad += wrap_pi(angles.heading_rad - self.heading_rad);
         Orientation {
-            roll_rad: wrap_pi(self.roll.value()),
-            pitch_rad: self.pitch.value(),
-            heading_rad: self.heading.value(),
+            roll_rad: angles.roll_rad,
+            pitch_rad: angles.pitch_rad,
+            heading_rad: self.heading_rad,
         }
+    }
+
+    /// Turns by a `share` of what brings gravity to its measured direction, on
+    /// the shortest way.
+    fn correct_gravity(&mut self, measured: EulerAngles, share: f64) {
+        const DOWN: [f64; 3] = [0.0, 0.0, 1.0];
+        let [ax, ay, az] = earth_to_body(quaternion_from_euler(measured), DOWN);
+        let [bx, by, bz] = earth_to_body(self.rotation, DOWN);
+        let axis = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
+        let [x, y, z] = axis;
+        let length = sqrt(x * x + y * y + z * z);
+        if length > 0.0 {
+            let angle = share * atan2(length, ax * bx + ay * by + az * bz);
+            self.rotation = product(self.rotation, rotation_about(axis, length, angle));
+        }
+    }
+}
+
+/// The rotation of body rates in a time.
+fn turn(rates: &BodyRates, dt_s: f64) -> [f64; 4] {
+    let axis = [rates.roll_radps, rates.pitch_radps, rates.yaw_radps];
+    let [x, y, z] = axis;
+    let rate = sqrt(x * x + y * y + z * z);
+    if rate > 0.0 {
+        rotation_about(axis, rate, rate * dt_s)
+    } else {
+        [1.0, 0.0, 0.0, 0.0]
+    }
+}
+
+/// The rotation about an axis of a length.
+fn rotation_about([x, y, z]: [f64; 3], length: f64, angle_rad: f64) -> [f64; 4] {
+    let share = sin(0.5 * angle_rad) / length;
+    [cos(0.5 * angle_rad), share * x, share * y, share * z]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::Attitude;
+    use crate::framework::Reading;
+
+    const DT_S: f64 = 0.025;
+
+    /// Flies a rotation at constant body rates (°/s) for a time, with exact
+    /// sensors; returns the largest angle between the estimated and the true
+    /// direction of each body axis, in degrees.
+    fn largest_error_deg(rates_degps: [f64; 3], seconds: f64) -> f64 {
+        let [p, q, r] = rates_degps.map(f64::to_radians);
+        let rates = BodyRates {
+            roll_radps: p,
+            pitch_radps: q,
+            yaw_radps: r,
+        };
+        let start = quaternion_from_euler(EulerAngles {
+            heading_rad: 1.0,
+            ..EulerAngles::default()
+        });
+        let mut channel = AttitudeChannel::new(1.36, 1.44);
+        let mut worst = 0.0_f64;
+        for n in 0..(seconds / DT_S) as i64 {
+            let passed_s = DT_S * n as f64;
+            let truth = product(start, turn(&rates, passed_s));
+            let angles = euler_from_quaternion(truth);
+            let now = Time::from_nanos(25_000_000 * (n + 1));
+            let attitude = Attitude {
+                roll_rad: angles.roll_rad,
+                pitch_rad: angles.pitch_rad,
+            };
+            let measured = Measurements {
+                body_rates: Reading::new(rates, now),
+                attitude: Reading::new(attitude, now),
+                heading_rad: Reading::new(angles.heading_rad, now),
+                ..Measurements::default()
+            };
+            let found = channel.step(now, &measured, DT_S);
+            let found = quaternion_from_euler(EulerAngles {
+                roll_rad: found.roll_rad,
+                pitch_rad: found.pitch_rad,
+                heading_rad: found.heading_rad,
+            });
+            let dot: f64 = truth.iter().zip(found).map(|(a, b)| a * b).sum();
+            worst = worst.max(2.0 * dot.abs().min(1.0).acos().to_degrees());
+        }
+        worst
+    }
+
+    /// Loops, rolls, a spin with the nose down, and tumbles about all axes pass
+    /// through the vertical and the inverted attitude.
+    #[test]
+    fn it_is_right_through_all_attitudes() {
+        for rates in [
+            [0.0, 47.0, 0.0],
+            [120.0, 0.0, 0.0],
+            [60.0, 20.0, 150.0],
+            [30.0, 50.0, -20.0],
+            [0.0, -80.0, 3.0],
+        ] {
+            let worst = largest_error_deg(rates, 20.0);
+            assert!(worst < 0.1, "{rates:?}: {worst} deg");
+        }
+    }
+
+    #[test]
+    fn the_heading_is_counted_near_another() {
+        let mut channel = AttitudeChannel::new(1.36, 1.44);
+        channel.heading_rad = 14.0;
+        let near = channel.count_near(1.0);
+        assert!((near - (14.0 - 4.0 * core::f64::consts::PI)).abs() < 1e-12);
     }
 }

@@ -8,7 +8,9 @@
 mod air_data;
 mod attitude;
 mod frozen;
+mod lift;
 mod plausibility;
+mod replacement;
 mod resolution;
 mod vertical;
 mod vertical_covariance;
@@ -19,14 +21,17 @@ use super::{BodyRates, Measurements};
 use crate::blocks::LowPass;
 use crate::framework::{Reading, Time};
 use crate::schema;
+use crate::units::KNOT_MPS;
 
 pub use air_data::AirspeedChannel;
 pub use attitude::AttitudeChannel;
 pub(crate) use frozen::{Frozen, FrozenDetector, Known};
+pub use lift::{Lift, LiftChannel};
 pub(crate) use plausibility::{
     ATTITUDE_RAD, GateLimits, HEADING_RAD, HEIGHT_M, PlausibilityLimit, airspeed_can_follow,
     airspeed_is_suspect, plausibility_gate,
 };
+pub(crate) use replacement::{Lost, Replacement};
 pub(crate) use resolution::Resolutions;
 pub use vertical::VerticalChannel;
 
@@ -108,6 +113,26 @@ schema! {
         /// Specific force to the right, m/s²: 0 in a coordinated turn.
         #[field(9)]
         pub side_force_mps2: f64,
+        /// Load factor, g, along the body's z axis, upwards.
+        #[field(10)]
+        pub load_factor: f64,
+        /// Standard deviation of the load that gusts cause, g.
+        #[field(11)]
+        pub gust_load: f64,
+        /// Angle of attack, rad: measured if a source has it, otherwise
+        /// estimated from the lift.
+        #[field(12, column = "estimated_angle_of_attack_rad")]
+        pub angle_of_attack_rad: f64,
+        /// Acceleration along the flight path, without gusts, m/s².
+        #[field(13)]
+        pub acceleration_mps2: f64,
+        /// The time from an output to its effect, s, measured by the elevator;
+        /// until then the assumed one.
+        #[field(14)]
+        pub output_latency_s: f64,
+        /// The play of the elevator, in the elevator's units of -1 to 1.
+        #[field(15)]
+        pub elevator_play: f64,
     }
 }
 
@@ -135,6 +160,7 @@ pub struct Navigation {
     attitude: AttitudeChannel,
     vertical: VerticalChannel,
     airspeed: AirspeedChannel,
+    lift: LiftChannel,
     side_force: LowPass,
     estimate: Estimate,
 }
@@ -146,6 +172,7 @@ impl Navigation {
             attitude: AttitudeChannel::new(config.attitude_tau_s, config.heading_tau_s),
             vertical: VerticalChannel::new(config.vertical_bandwidth_radps),
             airspeed: AirspeedChannel::new(config.airspeed_tau_s),
+            lift: LiftChannel::new(STALL_AIRSPEED_MPS),
             side_force: LowPass::new(config.side_force_tau_s),
             estimate: Estimate {
                 roll_rad: 0.0,
@@ -161,7 +188,22 @@ impl Navigation {
                 altitude_m: 0.0,
                 climb_rate_mps: 0.0,
                 side_force_mps2: 0.0,
+                output_latency_s: 0.0,
+                elevator_play: 0.0,
+                load_factor: 1.0,
+                gust_load: 0.0,
+                angle_of_attack_rad: 0.0,
+                acceleration_mps2: 0.0,
             },
+        }
+    }
+
+    /// For an aircraft with this stalling speed, clean and without power, m/s.
+    #[must_use]
+    pub const fn for_stall_airspeed(self, stall_airspeed_mps: f64) -> Self {
+        Self {
+            lift: LiftChannel::new(stall_airspeed_mps),
+            ..self
         }
     }
 
@@ -177,19 +219,30 @@ impl Navigation {
         if is_current(&force, now) {
             self.side_force.step(force.value.y_mps2, dt_s);
         }
+        let true_airspeed_mps =
+            super::atmosphere::true_airspeed_mps(airspeed_mps, vertical.altitude_m);
+        let path = lift::Path {
+            orientation: &attitude,
+            airspeed_mps,
+            true_airspeed_mps,
+            climb_rate_mps: vertical.climb_rate_mps,
+        };
+        let lift = self.lift.step(now, measurements, &path, dt_s);
         self.estimate = Estimate {
             roll_rad: attitude.roll_rad,
             pitch_rad: attitude.pitch_rad,
             heading_rad: attitude.heading_rad,
             body_rates: measurements.body_rates.value,
             airspeed_mps,
-            true_airspeed_mps: super::atmosphere::true_airspeed_mps(
-                airspeed_mps,
-                vertical.altitude_m,
-            ),
+            true_airspeed_mps,
             altitude_m: vertical.altitude_m,
             climb_rate_mps: vertical.climb_rate_mps,
             side_force_mps2: self.side_force.output(),
+            load_factor: lift.load_factor,
+            gust_load: lift.gust_load,
+            angle_of_attack_rad: lift.angle_of_attack_rad,
+            acceleration_mps2: lift.acceleration_mps2,
+            ..self.estimate
         };
     }
 
@@ -201,6 +254,12 @@ impl Navigation {
     /// Marks the present altitude.
     pub const fn mark_altitude(&mut self) {
         self.vertical.mark();
+    }
+
+    /// Counts the full turns of the heading so that it is the nearest to
+    /// `near_rad`: after an upset they say nothing of the turn that was flown.
+    pub(crate) fn count_heading_near(&mut self, near_rad: f64) {
+        self.estimate.heading_rad = self.attitude.count_near(near_rad);
     }
 
     /// The present estimate of the altitude at the mark, m; none if nothing was
@@ -232,6 +291,7 @@ impl Navigation {
     pub fn reset(&mut self, config: &NavigationConfig) {
         let known = self.clone();
         *self = Self::new(config);
+        self.lift = known.lift.renewed();
         self.attitude.keep_resolution(&known.attitude);
         self.vertical.keep_resolution(&known.vertical);
         self.airspeed.keep_resolution(&known.airspeed);
@@ -257,6 +317,9 @@ impl Navigation {
         }
     }
 }
+
+/// The stalling speed of a Cessna 172, m/s (53 kt).
+const STALL_AIRSPEED_MPS: f64 = 53.0 * KNOT_MPS;
 
 /// A source that is silent for longer than this is no longer integrated, and
 /// when it returns, its value is adopted at once.

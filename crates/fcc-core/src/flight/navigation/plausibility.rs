@@ -9,6 +9,8 @@
 use core::f64::consts::PI;
 use core::time::Duration;
 
+use libm::{asin, cos, sin, sqrt};
+
 use crate::blocks::wrap_pi;
 use crate::flight::{
     Attitude, BodyRates, Measurements, Plant, Position, SpecificForce, Surfaces, Velocity,
@@ -136,17 +138,16 @@ pub(crate) fn plausibility_gate(
         &new.attitude,
         convinced(0),
         |a: &Attitude| within(a.pitch_rad, MAX_ANGLE_RAD) && within(a.roll_rad, MAX_ANGLE_RAD),
-        |a, b, gap_s| {
-            ATTITUDE_RAD.holds(b.pitch_rad - a.pitch_rad, gap_s)
-                && ATTITUDE_RAD.holds(wrap_pi(b.roll_rad - a.roll_rad), gap_s)
-        },
+        |a, b, gap_s| ATTITUDE_RAD.holds(gravity_turned(*a, *b), gap_s),
     );
+    let level = cos(good.attitude.value.pitch_rad);
     let heading = take(
         &mut good.heading_rad,
         &new.heading_rad,
         convinced(1),
         |rad| within(*rad, MAX_ANGLE_RAD),
-        |a, b, gap_s| HEADING_RAD.holds(wrap_pi(b - a), gap_s),
+        // Near the vertical a small rotation is a large change of the heading.
+        |a, b, gap_s| HEADING_RAD.holds(level * wrap_pi(b - a), gap_s),
     );
     let rates = take(
         &mut good.body_rates,
@@ -182,6 +183,21 @@ pub(crate) fn plausibility_gate(
             HEIGHT_M.holds(beyond_m, gap_s)
         },
     );
+    let [angle, position, velocity, surfaces, plant] = take_others(good, new);
+    [
+        attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
+        true, plant, true, true,
+    ]
+    .into_iter()
+    .zip(0..)
+    .fold(Flags::NONE, |all, (plausible, bit)| {
+        all.with(Flags::bit(bit), plausible)
+    })
+}
+
+/// Copies what can be anything valid at once: angle of attack, position,
+/// velocity, surfaces, plant; and what is always plausible.
+fn take_others(good: &mut Measurements, new: &Measurements) -> [bool; 5] {
     let anywhere = Duration::ZERO;
     let angle = take(
         &mut good.angle_of_attack_rad,
@@ -224,15 +240,7 @@ pub(crate) fn plausibility_gate(
     replace(&mut good.engage_switch, &new.engage_switch);
     replace(&mut good.other_control, &new.other_control);
     replace(&mut good.suspect, &new.suspect);
-    [
-        attitude, heading, rates, force, airspeed, altitude, angle, position, velocity, surfaces,
-        true, plant, true, true,
-    ]
-    .into_iter()
-    .zip(0..)
-    .fold(Flags::NONE, |all, (plausible, bit)| {
-        all.with(Flags::bit(bit), plausible)
-    })
+    [angle, position, velocity, surfaces, plant]
 }
 
 /// Whether an airspeed can be that of an aircraft which had another one before it
@@ -287,6 +295,22 @@ fn forces(f: &SpecificForce) -> [f64; 3] {
 
 fn near(a: [f64; 3], b: [f64; 3], limit: &PlausibilityLimit, gap_s: f64) -> bool {
     a.iter().zip(b).all(|(a, b)| limit.holds(b - a, gap_s))
+}
+
+/// How far the direction of gravity turned in body axes, rad: continuous through
+/// the vertical, where roll jumps by half a turn.
+fn gravity_turned(a: Attitude, b: Attitude) -> f64 {
+    let down = |angles: Attitude| {
+        let level = cos(angles.pitch_rad);
+        [
+            -sin(angles.pitch_rad),
+            level * sin(angles.roll_rad),
+            level * cos(angles.roll_rad),
+        ]
+    };
+    let square = |(a, b): (f64, f64)| (a - b) * (a - b);
+    let chord = sqrt(down(a).into_iter().zip(down(b)).map(square).sum());
+    2.0 * asin((0.5 * chord).min(1.0))
 }
 
 /// False for NaN.

@@ -77,7 +77,7 @@ impl Resolution {
 
     /// How far a value is from the edge at which the reading changed by
     /// `change`, if it differs from the new reading by `error`.
-    pub(super) const fn from_edge(&self, error: f64, change: f64) -> f64 {
+    pub(super) const fn error_from_edge(&self, error: f64, change: f64) -> f64 {
         error - (0.5 * self.step()).copysign(change)
     }
 }
@@ -131,8 +131,8 @@ mod tests {
     fn the_edge_is_half_a_step_before_the_new_reading() {
         let resolution = learn((0..90).map(|n| f64::from(n / 40) * 10.0));
         // 14 with readings from 10 to 20: the edge is at 15.
-        assert!((resolution.from_edge(20.0 - 14.0, 10.0) - 1.0).abs() < 1e-9);
-        assert!((resolution.from_edge(10.0 - 14.0, -10.0) - 1.0).abs() < 1e-9);
+        assert!((resolution.error_from_edge(20.0 - 14.0, 10.0) - 1.0).abs() < 1e-9);
+        assert!((resolution.error_from_edge(10.0 - 14.0, -10.0) - 1.0).abs() < 1e-9);
         assert_eq!(resolution.beyond(4.9), 0.0);
         assert!((resolution.beyond(-6.0) + 1.0).abs() < 1e-9);
     }

@@ -228,7 +228,7 @@ impl VerticalChannel {
         let edge_m = if change_m == 0.0 {
             beyond_m
         } else {
-            self.resolution.from_edge(error_m, change_m)
+            self.resolution.error_from_edge(error_m, change_m)
         };
         let climb_rate_mps = self.state.climb_rate_mps;
         let gains = self.covariance.correct_by_edge(climb_rate_mps, since_s);

@@ -197,3 +197,26 @@ fn what_is_not_a_number_does_not_pass_in_any_field() {
     }
     assert_eq!(tried, 3 * numbers(&whole).len());
 }
+
+/// A loop at 60 °/s: over the top roll and heading change by half a turn from
+/// one reading to the next.
+#[test]
+fn a_loop_through_the_vertical_is_plausible() {
+    let mut good = flying(ms(0));
+    for step in 1..240_i32 {
+        let along_deg = 1.5 * f64::from(step);
+        let at = ms(25 * i64::from(step));
+        let over = along_deg > 90.0 && along_deg < 270.0;
+        let half_turn = if over { PI } else { 0.0 };
+        let attitude = Attitude {
+            roll_rad: half_turn,
+            pitch_rad: asin(along_deg.to_radians().sin()),
+        };
+        let mut new = flying(at);
+        new.attitude = Reading::new(attitude, at);
+        new.heading_rad = Reading::new(half_turn, at);
+        plausibility_gate(&mut good, &new, &LIMITS);
+        assert_eq!(good.attitude.taken, at, "{along_deg} deg");
+        assert_eq!(good.heading_rad.taken, at, "{along_deg} deg");
+    }
+}

@@ -1,0 +1,102 @@
+//! What is between the outputs and their effect: latency, play, oscillation.
+
+use super::flags;
+use crate::blocks::limit;
+use crate::flight::Surfaces;
+use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
+use crate::flight::navigation::Estimate;
+use crate::framework::Flags;
+
+/// The pitch loops keep 6 dB and 45° up to this latency, s: 25 ms and a servo
+/// of 3 Hz, whose lag is 1/(2π 3 Hz) = 53 ms.
+const PITCH_TUNED_FOR_S: f64 = 0.08;
+/// The roll loops keep them up to this one, s.
+const ROLL_TUNED_FOR_S: f64 = 0.12;
+/// The time constant of the loops themselves, s: their bandwidth is
+/// proportional to 1/(this + the latency in excess of what they are tuned for).
+const OWN_S: f64 = 0.2;
+/// The least part of the bandwidth: with less, the outer loops are no longer
+/// slower than the inner ones.
+const LEAST_PACE: f64 = 0.35;
+/// In an aircraft whose loops are slower than this, by their unit of time, the
+/// elevator's effect is not told from noise: the latency stays the assumed one.
+const SLOWEST_MEASURED: f64 = 1.25;
+/// A latency above the first is reported until it is below the second, s.
+const LATE_S: (f64, f64) = (0.12, 0.1);
+
+/// Follows how the aircraft responds to what was sent.
+#[derive(Clone, Debug)]
+pub(super) struct Actuation {
+    elevator: ElevatorResponse,
+    oscillation: OscillationMonitor,
+    inverse: PlayInverse,
+    is_late: bool,
+    /// The loops' own unit of time: 1 over the pace of the configuration.
+    unit: f64,
+}
+
+impl Actuation {
+    /// With the assumed latency, s, and the pace of the configuration.
+    pub(super) fn new(assumed_latency_s: f64, configured_pace: f64) -> Self {
+        Self {
+            elevator: ElevatorResponse::new(assumed_latency_s),
+            oscillation: OscillationMonitor::new(),
+            inverse: PlayInverse::new(0.0),
+            is_late: false,
+            unit: 1.0 / configured_pace,
+        }
+    }
+
+    /// Begins with the present surfaces; what was found before may be another
+    /// aircraft's.
+    pub(super) fn engage(&mut self, standing: &Surfaces) {
+        self.elevator.reset();
+        self.oscillation = OscillationMonitor::new();
+        self.inverse = PlayInverse::new(standing.elevator);
+    }
+
+    /// One step with what was sent before.
+    pub(super) fn follow(&mut self, sent: &Surfaces, estimate: &Estimate, dt_s: f64) {
+        self.oscillation.step(sent, estimate, dt_s);
+        if self.unit <= SLOWEST_MEASURED {
+            self.elevator.step(sent.elevator, estimate, dt_s);
+        }
+        let (late_s, timely_s) = LATE_S;
+        let latency_s = self.elevator.latency_s();
+        self.is_late = latency_s > if self.is_late { timely_s } else { late_s };
+    }
+
+    /// The schedule with the part of the loops' bandwidth that latency and
+    /// oscillation leave.
+    pub(super) fn slowed(&self, schedule: Schedule) -> Schedule {
+        schedule.slowed(self.pace(PITCH_TUNED_FOR_S), self.pace(ROLL_TUNED_FOR_S))
+    }
+
+    fn pace(&self, tuned_for_s: f64) -> f64 {
+        let excess_s = (self.elevator.latency_s() - tuned_for_s * self.unit).max(0.0);
+        let own_s = OWN_S * self.unit;
+        let pace = own_s / (own_s + excess_s) * self.oscillation.pace();
+        limit(pace, LEAST_PACE, 1.0)
+    }
+
+    /// The elevator to send for the one that the loops want.
+    pub(super) fn elevator(&mut self, wanted: f64) -> f64 {
+        self.inverse.step(wanted, self.elevator.play())
+    }
+
+    /// What is reported.
+    pub(super) fn conditions(&self) -> Flags {
+        Flags::NONE
+            .with(flags::OSCILLATION, self.oscillation.is_oscillating())
+            .with(flags::LATE_EFFECT, self.is_late)
+    }
+
+    /// The estimate with what was found.
+    pub(super) fn shown_in(&self, estimate: &Estimate) -> Estimate {
+        Estimate {
+            output_latency_s: self.elevator.latency_s(),
+            elevator_play: self.elevator.play(),
+            ..*estimate
+        }
+    }
+}

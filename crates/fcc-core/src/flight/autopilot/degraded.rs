@@ -1,0 +1,238 @@
+//! Degraded flight: what is held without a lost quantity, and for how long.
+
+use core::time::Duration;
+
+use super::{Autopilot, FailsafeEnd, flags};
+use crate::flight::Measurements;
+use crate::flight::navigation::Lost;
+use crate::framework::{Flags, Notice, Tick, Time};
+
+/// The kinds of notices.
+pub(super) const GOOD_AGAIN: u8 = 3;
+pub(super) const GLIDES: u8 = 4;
+
+/// How the failsafe rolls; the weakest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Lateral {
+    /// The surfaces stay at the trims that the loops have found.
+    Trims,
+    /// Wings level.
+    WingsLevel,
+}
+
+/// How the failsafe holds height; the weakest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Vertical {
+    /// The elevator stays at the trim that the loop has found.
+    Trim,
+    /// The pitch of level flight, slowly corrected by the altitude if it is
+    /// known.
+    Pitch,
+    /// No climb.
+    Level,
+}
+
+/// How the failsafe sets the power; the weakest first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) enum Power {
+    /// The throttle that the loop has found for level flight.
+    Trim,
+    /// As the commanded airspeed needs it.
+    Airspeed,
+}
+
+/// What is held.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    pub(super) lateral: Lateral,
+    pub(super) vertical: Vertical,
+    pub(super) power: Power,
+    /// For how long that is sound, s.
+    pub(super) for_s: f64,
+}
+
+/// A row of the table: what is held without these quantities.
+struct Row(Flags, Held);
+
+const fn row(lost: Flags, lateral: Lateral, vertical: Vertical, power: Power, for_s: f64) -> Row {
+    let held = Held {
+        lateral,
+        vertical,
+        power,
+        for_s,
+    };
+    Row(lost, held)
+}
+
+/// A limit only by `failsafe.degraded_s`: its error does not grow.
+const SOUND: f64 = f64::INFINITY;
+/// The integrated gyroscope alone: a bias of 10°/min, that of a phone's, makes
+/// 5° of it.
+const INTEGRATED_S: f64 = 30.0;
+
+/// Without several quantities, the weakest of all rows that apply is held; the
+/// same table for users is in `docs/faults.md`.
+const TABLE: [Row; 8] = {
+    use {Lateral as L, Power as P, Vertical as V};
+    const fn both(a: Flags, b: Flags) -> Flags {
+        Flags::from_bits(a.bits() | b.bits())
+    }
+    [
+        row(flags::HEADING, L::WingsLevel, V::Level, P::Airspeed, SOUND),
+        // The rudder follows the aileron, and damps the yaw; the climb rate of
+        // the barometer alone is too late for the loop.
+        row(
+            flags::SPECIFIC_FORCE,
+            L::WingsLevel,
+            V::Pitch,
+            P::Airspeed,
+            SOUND,
+        ),
+        // Pitch and power determine the airspeed.
+        row(flags::AIRSPEED, L::WingsLevel, V::Pitch, P::Trim, SOUND),
+        row(flags::ALTITUDE, L::WingsLevel, V::Pitch, P::Trim, SOUND),
+        // The derivative of attitude and heading replaces the gyroscope.
+        row(
+            flags::BODY_RATES,
+            L::WingsLevel,
+            V::Level,
+            P::Airspeed,
+            SOUND,
+        ),
+        // The integrated gyroscope replaces the attitude, corrected by gravity:
+        // its error is some 10 s of the gyroscope's drift.
+        row(flags::ATTITUDE, L::WingsLevel, V::Level, P::Airspeed, SOUND),
+        row(
+            both(flags::ATTITUDE, flags::SPECIFIC_FORCE),
+            L::WingsLevel,
+            V::Pitch,
+            P::Trim,
+            INTEGRATED_S,
+        ),
+        // An outage is flown through; then `failsafe.hold_s` ends it.
+        row(
+            both(flags::ATTITUDE, flags::BODY_RATES),
+            L::Trims,
+            V::Trim,
+            P::Trim,
+            0.0,
+        ),
+    ]
+};
+
+/// What is held without these quantities.
+pub(super) fn held_without(lost: Flags) -> Held {
+    let all = Held {
+        lateral: Lateral::WingsLevel,
+        vertical: Vertical::Level,
+        power: Power::Airspeed,
+        for_s: SOUND,
+    };
+    let rows = TABLE
+        .iter()
+        .filter(|Row(missing, _)| lost.contains(*missing));
+    rows.fold(all, |weakest, Row(_, held)| Held {
+        lateral: weakest.lateral.min(held.lateral),
+        vertical: weakest.vertical.min(held.vertical),
+        power: weakest.power.min(held.power),
+        for_s: weakest.for_s.min(held.for_s),
+    })
+}
+
+/// A failsafe because of faults: since when, and whether it can go on or end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Degraded {
+    /// The loop is in failsafe.
+    pub(super) is_failsafe: bool,
+    /// The altitude at its beginning, m.
+    pub(super) altitude_m: f64,
+    /// The quantities that were frozen in it.
+    pub(super) frozen: Flags,
+    /// How long it has lasted, s.
+    lasted_s: f64,
+    /// For how long nothing sound could be held, and all has been good, s.
+    unsound_s: f64,
+    good_s: f64,
+    is_sound: bool,
+    pub(super) glides: bool,
+    /// What happened in this tick, by the number of a notice.
+    news: Option<u8>,
+}
+
+impl Autopilot {
+    /// The quantities that control cannot use: too old, frozen, or contradicted.
+    pub(super) fn lost(&self, now: Time, measured: &Measurements) -> Flags {
+        let contradicted = self
+            .external(now, measured)
+            .contains(flags::SUSPECT_AIRSPEED);
+        flags::unusable(self.stale(now), self.frozen()).with(flags::AIRSPEED, contradicted)
+    }
+
+    /// Follows a failsafe: for how long it has lasted, and whether all is good
+    /// again.
+    pub(super) fn follow_failsafe(&mut self, tick: &Tick, measured: &Measurements) {
+        if !self.degraded.is_failsafe {
+            return;
+        }
+        let faults =
+            self.unsafe_to_fly(tick.woke, measured) | self.not_flyable(tick.woke, measured);
+        let held = held_without(self.lost(tick.woke, measured));
+        let config = &self.config.failsafe;
+        let degraded = &mut self.degraded;
+        degraded.lasted_s += tick.dt_s;
+        let limit_s = held.for_s.min(config.degraded.as_secs_f64());
+        degraded.is_sound = !faults.intersects(flags::NOT_SENSED) && degraded.lasted_s <= limit_s;
+        if degraded.is_sound {
+            degraded.unsound_s = 0.0;
+        } else {
+            degraded.unsound_s += tick.dt_s;
+        }
+        degraded.good_s = if faults.is_empty() {
+            degraded.good_s + self.clock.passed_s()
+        } else {
+            0.0
+        };
+        let glides = degraded.glides
+            || config.end == FailsafeEnd::Glide && degraded.unsound_s > config.hold.as_secs_f64();
+        degraded.news = (glides && !degraded.glides).then_some(GLIDES);
+        degraded.glides = glides;
+    }
+
+    /// Whether the failsafe goes on: what it holds is sound, or nobody is there
+    /// to take over.
+    pub(super) fn goes_on(&self) -> bool {
+        self.degraded.is_sound || self.config.failsafe.end == FailsafeEnd::Glide
+    }
+
+    /// Whether what was lost has been good for long enough.
+    pub(super) fn is_good_again(&self) -> bool {
+        let after = self.config.failsafe.recovered_after;
+        let good = Duration::from_secs_f64(self.degraded.good_s);
+        self.degraded.is_failsafe && after > Duration::ZERO && good >= after
+    }
+
+    /// What happened in this tick.
+    pub(super) fn degraded_notice(&self) -> Option<Notice> {
+        let is_good = self.is_good_again().then_some(GOOD_AGAIN);
+        let kind = is_good.or(self.degraded.news)?;
+        let lasted_ns = (self.degraded.lasted_s * 1e9) as u64;
+        Some(Notice { kind, lasted_ns })
+    }
+
+    /// Whether it flies on without a quantity.
+    pub(super) const fn is_degraded(&self) -> bool {
+        self.degraded.is_sound && self.degraded.good_s == 0.0
+    }
+}
+
+/// The lost quantities by name, for navigation.
+pub(super) const fn by_name(lost: Flags) -> Lost {
+    Lost {
+        attitude: lost.contains(flags::ATTITUDE),
+        heading: lost.contains(flags::HEADING),
+        body_rates: lost.contains(flags::BODY_RATES),
+        specific_force: lost.contains(flags::SPECIFIC_FORCE),
+        airspeed: lost.contains(flags::AIRSPEED),
+        altitude: lost.contains(flags::ALTITUDE),
+    }
+}

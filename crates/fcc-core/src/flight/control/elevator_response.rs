@@ -1,0 +1,328 @@
+//! The latency and the play between the elevator command and its effect, from
+//! the flight itself.
+
+use crate::blocks::HighPass;
+use crate::flight::navigation::Estimate;
+
+/// The number of delays compared, one sample each.
+const DELAYS: usize = 12;
+/// The widths of play compared, in the elevator's units of -1 to 1.
+const PLAYS: [f64; 4] = [0.0, 0.06, 0.09, 0.12];
+/// Samples are at least this far apart, s.
+const LEAST_PERIOD_S: f64 = 0.02;
+/// After a longer gap the memory begins anew, s.
+const LONGEST_PERIOD_S: f64 = 0.3;
+/// Slower changes are left out, s: they are trim.
+const SLOW_S: f64 = 2.0;
+/// The time over which is averaged, s.
+const MEMORY_S: f64 = 10.0;
+/// Samples between two comparisons.
+const COMPARED_EVERY: u32 = 20;
+/// Samples before the first.
+const FIRST_AFTER: u32 = 120;
+/// A smaller mean square of the pitch acceleration, (rad/s²)², says nothing.
+const LEAST_MOTION: f64 = 1e-3;
+/// The part of it that the elevator must explain.
+const LEAST_EXPLAINED: f64 = 0.05;
+/// Another model is believed if it leaves less than this part of what the
+/// present one leaves unexplained.
+const BETTER: f64 = 0.94;
+/// One with play, if it leaves less than this part of what the best one without
+/// play does, and the elevator explains at least this part of all.
+const PLAY_IS_BETTER: f64 = 0.94;
+const PLAY_EXPLAINS: f64 = 0.25;
+/// Play is no longer believed if a model without it leaves less than this part.
+const NO_PLAY_IS_BETTER: f64 = 0.9;
+/// The part of a change that is adopted at each comparison.
+const ADOPTED: f64 = 0.25;
+
+/// A surface that moves only after its command has crossed the play.
+#[derive(Clone, Copy, Debug)]
+struct PlayedCommand {
+    half_width: f64,
+    position: f64,
+    slow: HighPass,
+    /// The last positions without their slow part, the latest first.
+    recent: [f64; DELAYS + 1],
+    sums: [Sums; DELAYS],
+}
+
+/// Mean products of a surface position with the motion.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    with_rate: f64,
+    with_angle: f64,
+    with_acceleration: f64,
+    square: f64,
+}
+
+/// Mean products of the motion with itself.
+#[derive(Clone, Copy, Debug, Default)]
+struct Motion {
+    rate_rate: f64,
+    rate_angle: f64,
+    angle_angle: f64,
+    rate_acceleration: f64,
+    angle_acceleration: f64,
+    acceleration_acceleration: f64,
+}
+
+/// What the motion itself explains of the pitch acceleration.
+struct Explained {
+    determinant: f64,
+    motion: Motion,
+    per_rate: f64,
+    per_angle: f64,
+    left: f64,
+}
+
+impl Motion {
+    fn explains(&self) -> Explained {
+        let motion = Self {
+            rate_rate: self.rate_rate + TINY,
+            angle_angle: self.angle_angle + TINY,
+            ..*self
+        };
+        let determinant =
+            motion.rate_rate * motion.angle_angle - motion.rate_angle * motion.rate_angle;
+        let (per_rate, per_angle) =
+            motion.solve(determinant, self.rate_acceleration, self.angle_acceleration);
+        let left = self.acceleration_acceleration
+            - per_rate * self.rate_acceleration
+            - per_angle * self.angle_acceleration;
+        Explained {
+            determinant,
+            motion,
+            per_rate,
+            per_angle,
+            left,
+        }
+    }
+
+    fn solve(&self, determinant: f64, with_rate: f64, with_angle: f64) -> (f64, f64) {
+        (
+            (self.angle_angle * with_rate - self.rate_angle * with_angle) / determinant,
+            (self.rate_rate * with_angle - self.rate_angle * with_rate) / determinant,
+        )
+    }
+}
+
+/// Keeps the normal equations regular without motion.
+const TINY: f64 = 1e-9;
+
+impl Explained {
+    /// What is left unexplained with this surface position; all of it if the
+    /// elevator would act the wrong way.
+    fn left_with(&self, sums: &Sums) -> f64 {
+        let (rate, angle) = self
+            .motion
+            .solve(self.determinant, sums.with_rate, sums.with_angle);
+        let own = sums.square + TINY - sums.with_rate * rate - sums.with_angle * angle;
+        let effect = sums.with_acceleration
+            - sums.with_rate * self.per_rate
+            - sums.with_angle * self.per_angle;
+        if effect > 0.0 && own > 0.0 {
+            self.left - effect * effect / own
+        } else {
+            self.left
+        }
+    }
+}
+
+/// Measures the latency and the play between the elevator command and its
+/// effect: of a small bank of models, each with a delay and a width of play,
+/// the one whose elevator explains the pitch acceleration best.
+///
+/// A model is q̇ = a q + b (θ - γ) + c δ, the short period (Etkin and Reid 1996,
+/// section 6.3), fitted by least squares with exponential forgetting (Åström
+/// and Wittenmark 1995, section 2.2). A servo's lag appears as delay. Flight in
+/// which the elevator has no visible effect, calm or in turbulence, changes
+/// nothing. A play is 0.12 at most, a delay eleven samples.
+///
+/// ```
+/// use fcc_core::flight::control::ElevatorResponse;
+///
+/// // Until something has been measured, the latency is the assumed one.
+/// let response = ElevatorResponse::new(0.025);
+/// assert_eq!((response.latency_s(), response.play()), (0.025, 0.0));
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct ElevatorResponse {
+    assumed_s: f64,
+    latency_s: f64,
+    play: f64,
+    /// The width of play and the delay in samples of the model that is believed.
+    believed: (f64, f64),
+    /// Since the last sample, s.
+    elapsed_s: f64,
+    /// Mean time between samples, s.
+    period_s: f64,
+    samples: u32,
+    before: (f64, f64),
+    rate: HighPass,
+    angle: HighPass,
+    acceleration: HighPass,
+    motion: Motion,
+    plays: [PlayedCommand; PLAYS.len()],
+}
+
+impl ElevatorResponse {
+    /// Nothing measured yet: `assumed_s` is the latency until then, s.
+    pub fn new(assumed_s: f64) -> Self {
+        Self {
+            assumed_s,
+            latency_s: assumed_s,
+            play: 0.0,
+            believed: (0.0, 0.0),
+            elapsed_s: 0.0,
+            period_s: LEAST_PERIOD_S,
+            samples: 0,
+            before: (0.0, 0.0),
+            rate: HighPass::new(SLOW_S),
+            angle: HighPass::new(SLOW_S),
+            acceleration: HighPass::new(SLOW_S),
+            motion: Motion::default(),
+            plays: PLAYS.map(|width| PlayedCommand {
+                half_width: 0.5 * width,
+                position: 0.0,
+                slow: HighPass::new(SLOW_S),
+                recent: [0.0; DELAYS + 1],
+                sums: [Sums::default(); DELAYS],
+            }),
+        }
+    }
+
+    /// Forgets what was measured.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.assumed_s);
+    }
+
+    /// The time from a command to its effect, s.
+    pub const fn latency_s(&self) -> f64 {
+        self.latency_s
+    }
+
+    /// The width of the play, in the elevator's units.
+    pub const fn play(&self) -> f64 {
+        self.play
+    }
+
+    /// One step with the elevator command of the previous step.
+    pub fn step(&mut self, elevator: f64, estimate: &Estimate, dt_s: f64) {
+        self.elapsed_s += dt_s;
+        let rate = estimate.body_rates.pitch_radps;
+        if self.elapsed_s < LEAST_PERIOD_S - 1e-6 || rate.to_bits() == self.before.0.to_bits() {
+            return;
+        }
+        let period_s = core::mem::take(&mut self.elapsed_s);
+        let path = estimate.climb_rate_mps / estimate.true_airspeed_mps.max(1.0);
+        let angle = estimate.pitch_rad - path;
+        let (rate_before, angle_before) = core::mem::replace(&mut self.before, (rate, angle));
+        if self.samples == 0 || period_s > LONGEST_PERIOD_S {
+            *self = Self {
+                latency_s: self.latency_s,
+                play: self.play,
+                believed: self.believed,
+                period_s,
+                samples: 1,
+                before: (rate, angle),
+                ..Self::new(self.assumed_s)
+            };
+            for play in &mut self.plays {
+                play.position = elevator;
+            }
+            return;
+        }
+        self.samples = self.samples.saturating_add(1);
+        self.period_s += 0.1 * (period_s - self.period_s);
+        let acceleration = (rate - rate_before) / period_s;
+        let acceleration = self.acceleration.step(acceleration, period_s);
+        let (rate, angle) = (
+            self.rate.step(rate_before, period_s),
+            self.angle.step(angle_before, period_s),
+        );
+        self.remember(elevator, rate, angle, acceleration, period_s);
+        if self.samples >= FIRST_AFTER && self.samples.is_multiple_of(COMPARED_EVERY) {
+            self.compare();
+        }
+    }
+
+    fn remember(&mut self, elevator: f64, rate: f64, angle: f64, acceleration: f64, period_s: f64) {
+        let new = period_s / MEMORY_S;
+        let mean = |old: &mut f64, product: f64| *old += new * (product - *old);
+        let motion = &mut self.motion;
+        mean(&mut motion.rate_rate, rate * rate);
+        mean(&mut motion.rate_angle, rate * angle);
+        mean(&mut motion.angle_angle, angle * angle);
+        mean(&mut motion.rate_acceleration, rate * acceleration);
+        mean(&mut motion.angle_acceleration, angle * acceleration);
+        mean(
+            &mut motion.acceleration_acceleration,
+            acceleration * acceleration,
+        );
+        for play in &mut self.plays {
+            let (least, most) = (elevator - play.half_width, elevator + play.half_width);
+            play.position = play.position.max(least).min(most);
+            let latest = play.slow.step(play.position, period_s);
+            play.recent.rotate_right(1);
+            if let Some(first) = play.recent.first_mut() {
+                *first = latest;
+            }
+            // The latest cannot have acted yet; and noise of the rate is in
+            // both, so that it would seem to.
+            let late = play.recent.iter().skip(1);
+            for (sums, position) in play.sums.iter_mut().zip(late) {
+                mean(&mut sums.with_rate, position * rate);
+                mean(&mut sums.with_angle, position * angle);
+                mean(&mut sums.with_acceleration, position * acceleration);
+                mean(&mut sums.square, position * position);
+            }
+        }
+    }
+
+    /// Compares the models, and follows the one that is believed.
+    fn compare(&mut self) {
+        let explained = self.motion.explains();
+        let (believed_width, believed_delay) = self.believed;
+        let mut present = explained.left;
+        let nothing = (explained.left, 0.0, 0.0);
+        let (mut with_play, mut without) = (nothing, nothing);
+        for (play, width) in self.plays.iter().zip(PLAYS) {
+            let best = if width > 0.0 {
+                &mut with_play
+            } else {
+                &mut without
+            };
+            let mut delay = 0.0;
+            for sums in &play.sums {
+                delay += 1.0;
+                let left = explained.left_with(sums);
+                if left < best.0 {
+                    *best = (left, width, delay);
+                }
+                if width == believed_width && delay == believed_delay {
+                    present = left;
+                }
+            }
+        }
+        let has_play = with_play.0 < PLAY_IS_BETTER * without.0
+            && with_play.0 < (1.0 - PLAY_EXPLAINS) * explained.left;
+        let had_play = believed_width > 0.0 && NO_PLAY_IS_BETTER * present <= without.0;
+        let (left, width, delay) = if has_play || had_play {
+            with_play
+        } else {
+            without
+        };
+        let is_seen = explained.left > LEAST_MOTION
+            && explained.left - left > LEAST_EXPLAINED * explained.left;
+        // The longest delay may stand for any longer one.
+        if is_seen && left < BETTER * present && delay < DELAYS as f64 {
+            self.believed = (width, delay);
+        }
+        let (width, delay) = self.believed;
+        if delay > 0.0 {
+            self.latency_s += ADOPTED * (delay * self.period_s - self.latency_s);
+            self.play += ADOPTED * (width - self.play);
+        }
+    }
+}

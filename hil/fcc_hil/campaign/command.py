@@ -1,0 +1,149 @@
+"""The command `campaign`."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from ..progress import bar
+from ..workers import local_workers, on_dask
+from .draw import Bounds
+
+_MOST_LATE_MS = 1_000.0
+
+
+def add(commands: Any) -> None:
+    """Add the command to a parser's."""
+    usual = Bounds()
+    campaign = commands.add_parser(
+        "campaign", help="fly at the edges of the envelope by chance, and say what failed and how"
+    )
+    campaign.add_argument(
+        "--flights", type=_number, default=300, metavar="N", help="how many (%(default)s)"
+    )
+    campaign.add_argument(
+        "--seed",
+        type=int,
+        default=1,
+        help="of all that is drawn (%(default)s); see docs/campaign.md",
+    )
+    campaign.add_argument("--flight", type=int, metavar="N", help="fly only this one, and show it")
+    campaign.add_argument(
+        "--delay-ms",
+        type=_delay,
+        default=usual.delay_ms,
+        metavar="MS",
+        help="the longest delay from a measurement to the effect of the command (%(default)g)",
+    )
+    campaign.add_argument(
+        "--turbulence",
+        type=int,
+        choices=range(8),
+        default=usual.turbulence,
+        metavar="0..7",
+        help="the greatest severity (%(default)s)",
+    )
+    campaign.add_argument(
+        "--least-clean",
+        type=float,
+        default=98.0,
+        metavar="PERCENT",
+        help="exit with 1 if less of the flights are clean (%(default)g)",
+    )
+    campaign.add_argument("--workers", type=_number, metavar="N", help="processes (all processors)")
+    campaign.add_argument(
+        "--scheduler", metavar="ADDRESS", help="fly on a Dask cluster, as in tcp://10.0.0.5:8786"
+    )
+    campaign.add_argument("--json", type=Path, metavar="FILE", help="write everything here")
+    campaign.add_argument("--picture", type=Path, metavar="FILE", help="write a picture here")
+    campaign.add_argument(
+        "--record",
+        type=Path,
+        metavar="FILE",
+        help="with --flight: write its recording here (.mcap)",
+    )
+    campaign.set_defaults(run=_campaign)
+
+
+def _number(text: str) -> int:
+    if not text.isdigit() or not 0 < int(text) <= 1_000_000:
+        raise argparse.ArgumentTypeError(f"'{text}': give a number from 1 up")
+    return int(text)
+
+
+def _delay(text: str) -> float:
+    try:
+        late_ms = float(text)
+    except ValueError:
+        late_ms = -1.0
+    if not 0.0 <= late_ms <= _MOST_LATE_MS:
+        raise argparse.ArgumentTypeError(f"'{text}': give 0 to {_MOST_LATE_MS:g} ms")
+    return late_ms
+
+
+def _campaign(options: argparse.Namespace) -> int:
+    from . import report  # noqa: PLC0415 - needs the module fcc, which other commands do not
+    from .flying import Task, fly_task  # noqa: PLC0415
+
+    bounds = Bounds(options.delay_ms, options.turbulence)
+    if options.seed < 0:
+        raise ValueError(f"--seed {options.seed}: give 0 or more")
+    if options.flight is not None:
+        return _one(options, bounds)
+    if options.record:
+        raise ValueError("--record: give the number of a flight with --flight, too")
+    tasks = [Task(number, options.seed, bounds) for number in range(options.flights)]
+    workers = (
+        on_dask(fly_task, options.scheduler)
+        if options.scheduler
+        else local_workers(fly_task, options.workers)
+    )
+    began_s = time.monotonic()
+    outcomes = []
+    with workers as fly_all, bar("flying", len(tasks)) as notify:
+        for outcome in fly_all(tasks):
+            outcomes.append(outcome)
+            notify(len(outcomes), f"{100.0 * report.clean_share(outcomes):.0f} % clean")
+    print(report.text(outcomes))
+    print(f"took {time.monotonic() - began_s:.0f} s")
+    if options.json:
+        document = report.document(outcomes, options.seed, bounds)
+        options.json.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    if options.picture:
+        from .picture import draw as draw_picture  # noqa: PLC0415 - matplotlib takes a second
+
+        title = (
+            f"{len(outcomes)} flights, seed {options.seed}, delay to {bounds.delay_ms:g} ms, "
+            f"turbulence to {bounds.turbulence}"
+        )
+        draw_picture(options.picture, outcomes, title)
+    return 1 if 100.0 * report.clean_share(outcomes) < options.least_clean else 0
+
+
+def _one(options: argparse.Namespace, bounds: Bounds) -> int:
+    """Fly one flight again, and show all of it."""
+    from . import report  # noqa: PLC0415
+    from .draw import draw  # noqa: PLC0415
+    from .flying import fly  # noqa: PLC0415
+
+    if options.flight < 0:
+        raise ValueError(f"--flight {options.flight}: give 0 or more")
+    outcome, truth = fly(draw(options.flight, options.seed, bounds), options.record)
+    print(report.failure(outcome))
+    for event in outcome.events:
+        print(f"    {event.time_s:7.2f} s  {event.text}")
+    for name, value in outcome.verdict.figures.items():
+        print(f"    {name:30} {value:8.2f}")
+    print(f"digest {outcome.digest}")
+    if options.json:
+        options.json.write_text(json.dumps(outcome.document(), indent=1) + "\n", encoding="utf-8")
+    if options.picture:
+        from .flight_picture import draw as draw_picture  # noqa: PLC0415
+
+        if truth is None:
+            raise ValueError("no flight to draw: it was not flown")
+        draw_picture(options.picture, truth, outcome)
+    return 0 if outcome.verdict.is_clean else 1

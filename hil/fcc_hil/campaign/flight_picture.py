@@ -1,0 +1,46 @@
+"""One flight of a campaign as a picture: what was flown against time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+
+from ..truth import Truth
+from .flying import Outcome
+from .report import conditions
+
+_ROWS = (
+    (("airspeed_kt",), "airspeed, kt"),
+    (("altitude_ft",), "altitude, ft"),
+    (("angle_of_attack_deg", "pitch_deg"), "angle, °"),
+    (("roll_deg",), "bank, °"),
+    (("load_g",), "load, g"),
+    (("pitch_rate_degps",), "pitch rate, °/s"),
+    (("elevator", "aileron", "throttle"), "controls"),
+)
+_COLOURS = ("#1f4e79", "#c0504d", "#7f7f7f")
+
+
+def draw(path: Path, truth: Truth, outcome: Outcome) -> None:
+    """Write it, as PNG, SVG or another format by the file's extension."""
+    figure, rows = plt.subplots(len(_ROWS), 1, figsize=(10, 13), sharex=True, layout="constrained")
+    flight = outcome.flight
+    for axes, (names, title) in zip(rows, _ROWS, strict=True):
+        for name, colour in zip(names, _COLOURS, strict=False):
+            axes.plot(truth["time_s"], truth[name], color=colour, linewidth=1.0, label=name)
+        if len(names) > 1:
+            axes.legend(frameon=False, fontsize=8, ncols=len(names))
+        axes.set_ylabel(title)
+        axes.grid(visible=True, color="#dddddd", linewidth=0.6)
+    rows[0].axhline(flight.stall_kt, color=_COLOURS[1], linewidth=0.8, linestyle="--")
+    rows[2].axhline(flight.limits.stall_deg, color=_COLOURS[1], linewidth=0.8, linestyle="--")
+    rows[-1].set_xlabel("time, s")
+    broken = "; ".join(outcome.verdict.broken) or "clean"
+    figure.suptitle(f"{conditions(flight)}: {broken}", fontsize=9, wrap=True)
+    figure.savefig(path, dpi=90)
+    plt.close(figure)

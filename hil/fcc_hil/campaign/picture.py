@@ -1,0 +1,76 @@
+"""A campaign as a picture: each flight by speed, load, delay and turbulence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+mpl.use("Agg")
+
+import matplotlib.pyplot as plt
+
+from .flying import Outcome
+from .verdict import KINDS, LARGEST_BANK_DEG, LOADS_G
+
+_COLOURS = ("#c0504d", "#d98a29", "#8a5fb0", "#3b8686", "#7a5c3e", "#c06c9c")
+_CLEAN, _GRID = "#b8c7d9", "#dddddd"
+
+_PANELS = (
+    ("airspeed_over_stall", "least airspeed, of Vs", "largest_angle_of_attack_deg", "attack, °"),
+    ("least_load_g", "least load, g", "largest_load_g", "largest load, g"),
+    ("delay_ms", "delay, ms", "pitch_rate_sd_degps", "pitch rate when steady, °/s (1 sd)"),
+    ("turbulence", "turbulence, severity", "largest_bank_deg", "largest bank, °"),
+)
+_MOST_SHOWN = {"pitch_rate_sd_degps": 20.0, "largest_angle_of_attack_deg": 30.0}
+
+
+def draw(path: Path, outcomes: Sequence[Outcome], title: str) -> None:
+    """Write it, as PNG, SVG or another format by the file's extension."""
+    flown = [outcome for outcome in outcomes if outcome.verdict.figures]
+    if not flown:
+        raise ValueError("no flight to draw: none was flown")
+    figure, rows = plt.subplots(2, 2, figsize=(11, 9), layout="constrained")
+    kinds = [kind for kind in KINDS if any(kind in it.verdict.broken for it in flown)]
+    for axes, (across, across_title, up, up_title) in zip(rows.flat, _PANELS, strict=True):
+        for kind in (None, *reversed(kinds)):
+            shown = [it for it in flown if _worst(it) == kind]
+            if not shown:
+                continue
+            axes.plot(
+                [_value(outcome, across) for outcome in shown],
+                np.minimum([_value(outcome, up) for outcome in shown], _MOST_SHOWN.get(up, np.inf)),
+                "o",
+                markersize=4 if kind is None else 6,
+                color=_CLEAN if kind is None else _COLOURS[kinds.index(kind) % len(_COLOURS)],
+                label=kind or "clean",
+            )
+        axes.set_xlabel(across_title)
+        axes.set_ylabel(up_title)
+        axes.grid(visible=True, color=_GRID, linewidth=0.6)
+        axes.set_axisbelow(True)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+    rows[0][1].axvline(LOADS_G[0], color="black", linewidth=0.6)
+    rows[0][1].axhline(LOADS_G[1], color="black", linewidth=0.6)
+    rows[1][1].axhline(LARGEST_BANK_DEG, color="black", linewidth=0.6)
+    rows[0][0].legend(frameon=False, fontsize=8)
+    figure.suptitle(title, fontsize=12)
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
+
+
+def _worst(outcome: Outcome) -> str | None:
+    return next((kind for kind in KINDS if kind in outcome.verdict.broken), None)
+
+
+def _value(outcome: Outcome, name: str) -> float:
+    flight = outcome.flight
+    if name == "delay_ms":
+        return flight.delay_ms
+    if name == "turbulence":
+        # Side by side, not on top of each other.
+        return flight.weather.turbulence_severity + 0.6 * (flight.number % 11) / 11.0 - 0.3
+    return outcome.verdict.figures[name]

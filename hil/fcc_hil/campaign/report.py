@@ -1,0 +1,133 @@
+"""A campaign's outcomes as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from .draw import Bounds, Flight
+from .flying import Outcome
+from .verdict import KINDS
+
+_WORST: tuple[tuple[str, str, int, Callable[[list[float]], float]], ...] = (
+    ("largest_load_g", "load g", 2, max),
+    ("least_load_g", "least g", 2, min),
+    ("largest_bank_deg", "bank °", 0, max),
+    ("largest_roll_rate_degps", "roll °/s", 0, max),
+    ("largest_pitch_rate_degps", "pitch °/s", 0, max),
+    ("pitch_rate_sd_degps", "pitch sd °/s", 1, max),
+    ("movement_per_s", "movement /s", 2, max),
+    ("largest_angle_of_attack_deg", "attack °", 1, max),
+    ("airspeed_over_stall", "V/Vs", 2, min),
+    ("height_lost_ft", "height lost ft", 0, max),
+)
+"""Figure, title, digits, and which of them is the worst."""
+
+
+def clean_share(outcomes: Sequence[Outcome]) -> float:
+    """Return the share of flights in which nothing was broken."""
+    return sum(outcome.verdict.is_clean for outcome in outcomes) / len(outcomes)
+
+
+def text(outcomes: Sequence[Outcome]) -> str:
+    """Return the tables, then every flight that is not clean with the command that repeats it."""
+    parts = [
+        _table("aircraft", outcomes, lambda flight: flight.aircraft),
+        _table("turbulence", outcomes, lambda flight: str(flight.weather.turbulence_severity)),
+        _table("delay", outcomes, _delay),
+        _table("fault", outcomes, lambda flight: flight.fault.what if flight.fault else "none"),
+        _figures(outcomes),
+    ]
+    bad = [outcome for outcome in outcomes if not outcome.verdict.is_clean]
+    parts += [failure(outcome) for outcome in bad]
+    clean = len(outcomes) - len(bad)
+    parts.append(
+        f"{clean} of {len(outcomes)} flights clean, {100.0 * clean_share(outcomes):.1f} %; "
+        f"{sum(outcome.simulated_s for outcome in outcomes):.0f} s flown in "
+        f"{sum(outcome.cpu_s for outcome in outcomes):.0f} s of processor time"
+    )
+    return "\n\n".join(parts)
+
+
+def failure(outcome: Outcome) -> str:
+    """Return what broke in a flight, its conditions and the command that flies it again."""
+    broken = outcome.verdict.broken
+    words = "; ".join(f"{kind}: {broken[kind]}" for kind in KINDS if kind in broken) or "clean"
+    return f"{outcome.command}\n    {conditions(outcome.flight)}\n    {words}"
+
+
+def conditions(flight: Flight) -> str:
+    """Return the conditions of a flight in a line."""
+    servo_hz, fault = flight.actuation.servo_hz, flight.fault
+    parts = [
+        f"{flight.aircraft}, {flight.loading.weight_lb:.0f} lb",
+        f"{flight.airspeed_kt:.0f} kt ({flight.airspeed_kt / flight.stall_kt:.2f} Vs)",
+        f"turbulence {flight.weather.turbulence_severity}",
+        f"{flight.delay_ms:.0f} ms late",
+        "no servos" if servo_hz is None else f"servos of {servo_hz:.1f} Hz",
+        "timed pattern" if flight.is_pattern else "orders",
+    ]
+    vertical = [gust.down_mps for gust in flight.gusts]
+    if vertical:
+        parts.append(f"gusts of {', '.join(f'{mps:+.1f}' for mps in vertical)} m/s down")
+    if fault is not None:
+        lasts = "" if fault.lasts_s is None else f" for {fault.lasts_s:.1f} s"
+        parts.append(f"{fault.what} at {fault.begins_s:.0f} s{lasts}")
+    return ", ".join(parts)
+
+
+def document(outcomes: Sequence[Outcome], seed: int, bounds: Bounds) -> dict[str, Any]:
+    """Return it for JSON."""
+    return {
+        "seed": seed,
+        "delay_ms": bounds.delay_ms,
+        "turbulence": bounds.turbulence,
+        "clean_share": clean_share(outcomes),
+        "flights": [outcome.document() for outcome in outcomes],
+    }
+
+
+def _delay(flight: Flight) -> str:
+    least = 25 * int(flight.delay_ms // 25)
+    return f"{least:3} to {least + 25} ms"
+
+
+def _table(title: str, outcomes: Sequence[Outcome], group_of: Callable[[Flight], str]) -> str:
+    """Return how many flights of each group are clean, and how many broke what."""
+    kinds = [kind for kind in KINDS if any(kind in it.verdict.broken for it in outcomes)]
+    rows = []
+    groups = sorted({group_of(outcome.flight) for outcome in outcomes})
+    for group in (*groups, "all"):
+        its = [it for it in outcomes if group in ("all", group_of(it.flight))]
+        counts = [sum(kind in it.verdict.broken for it in its) for kind in kinds]
+        rows.append([group, len(its), f"{100.0 * clean_share(its):.0f} %", *counts])
+    return _markdown([title, "flights", "clean", *kinds], rows)
+
+
+def _figures(outcomes: Sequence[Outcome]) -> str:
+    """Return the worst figures of each aircraft."""
+    rows = []
+    for aircraft in sorted({outcome.flight.aircraft for outcome in outcomes}):
+        flown = [
+            outcome.verdict.figures
+            for outcome in outcomes
+            if outcome.flight.aircraft == aircraft and outcome.verdict.figures
+        ]
+        if flown:
+            cells = [
+                f"{worst([figures[name] for figures in flown]):.{digits}f}"
+                for name, _, digits, worst in _WORST
+            ]
+            rows.append([aircraft, *cells])
+    return _markdown(["worst of all flights", *(title for _, title, _, _ in _WORST)], rows)
+
+
+def _markdown(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    cells = [list(map(str, row)) for row in (head, *rows)]
+    widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
+    lines = [
+        "| " + " | ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) + " |"
+        for row in cells
+    ]
+    lines.insert(1, "|" + "|".join("-" * (width + 2) for width in widths) + "|")
+    return "\n".join(lines)

@@ -1,0 +1,195 @@
+"""The campaign: its draws, its flights, its verdicts and its command."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from distributed import LocalCluster
+
+from fcc_hil import __main__ as commands
+from fcc_hil.actuation import Actuation, Servos
+from fcc_hil.aircraft import by_name
+from fcc_hil.campaign.air import strength
+from fcc_hil.campaign.aircraft import AIRCRAFT
+from fcc_hil.campaign.draw import HOLD_S, LEG_S, Bounds, Flight, Gust, draw
+from fcc_hil.campaign.flying import Task, fly_task
+from fcc_hil.campaign.verdict import judge, largest_pitch_rate_sd_degps
+from fcc_hil.loading import Loading
+from fcc_hil.motion import longest_s
+from fcc_hil.pattern import Leg
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.state import Controls
+from fcc_hil.truth import COLUMNS, TRUTH_HZ, Truth
+from fcc_hil.workers import local_workers, on_dask
+
+USUAL = Bounds()
+
+
+def _calm(**changes: object) -> Flight:
+    """Return a flight of the c172p without gusts, noise and fault."""
+    plain = replace(
+        draw(0, 1, USUAL), gusts=(), noise=0.0, weather=Weather(), fault=None, is_pattern=True
+    )
+    return replace(plain, **changes)  # type: ignore[arg-type]
+
+
+def _truth(seconds: float, **columns: float) -> Truth:
+    """Return level flight at 100 kt and 3,000 ft, with some columns at another value."""
+    level = {"altitude_ft": 3_000.0, "airspeed_kt": 100.0, "load_g": 1.0, "throttle": 0.6}
+    values = level | columns
+    return Truth(
+        [
+            tuple({**values, "time_s": tick / TRUTH_HZ}.get(name, 0.0) for name in COLUMNS)
+            for tick in range(round(seconds * TRUTH_HZ))
+        ]
+    )
+
+
+def _leg(ends_s: float) -> Leg:
+    return Leg(0.0, ends_s, 0.0, 0.0, 3_000.0, 3_000.0, 100.0)
+
+
+def _broken(flight: Flight, truth: Truth) -> set[str]:
+    return set(judge(flight, truth, [_leg(20.0)], [], is_released=False).broken)
+
+
+def test_stalling_speeds_are_those_of_the_handbooks() -> None:
+    for name, weight_lb, handbook_kt in (
+        ("c172p", 2_400.0, 51.0),
+        ("c172r", 2_450.0, 51.0),
+        ("J3Cub", 1_220.0, 33.0),
+    ):
+        assert AIRCRAFT[name].stall_kt(weight_lb) == pytest.approx(handbook_kt, abs=2.5)
+    light, heavy = (AIRCRAFT["c172p"].stall_kt(weight_lb) for weight_lb in (1_200.0, 2_400.0))
+    assert heavy / light == pytest.approx(2.0**0.5)
+
+
+def test_the_same_draw_is_the_same_flight_and_bounds_are_kept() -> None:
+    flights = [draw(number, 3, USUAL) for number in range(200)]
+    assert flights == [draw(number, 3, USUAL) for number in range(200)]
+    assert flights[0] != draw(0, 4, USUAL)
+    assert {flight.aircraft for flight in flights} == set(AIRCRAFT)
+    assert {flight.weather.turbulence_severity for flight in flights} == {0, 1, 2, 3, 4}
+    assert 60.0 < max(flight.delay_ms for flight in flights) <= 75.0
+    for flight in flights:
+        assert flight.airspeed_kt >= 1.3 * flight.stall_kt
+        assert flight.loading.weight_lb <= flight.limits.most_lb
+    slow = sum(
+        flight.airspeed_kt < max(1.301 * flight.stall_kt, flight.limits.floor_kt + 4.01)
+        for flight in flights
+    )
+    assert slow / len(flights) == pytest.approx(1 / 3, abs=0.1)
+
+
+def test_a_loaded_aircraft_has_that_weight_and_centre_of_gravity() -> None:
+    plain = Plant("c172r").fdm
+    loading = Loading(weight_lb=2_100.0, fuel_lb=100.0, aft_in=1.5)
+    plant = Plant(replace(by_name("c172r"), loading=loading))
+    assert plant.trimmed_by_jsbsim
+    assert plant.fdm["inertia/weight-lbs"] == pytest.approx(2_100.0, abs=0.1)
+    assert plant.fdm["propulsion/total-fuel-lbs"] == pytest.approx(100.0, abs=0.1)
+    moved_in = plant.fdm["inertia/cg-x-in"] - plain["inertia/cg-x-in"]
+    assert moved_in == pytest.approx(1.5, abs=0.01)
+    with pytest.raises(ValueError, match="too little"):
+        Plant(replace(by_name("c172r"), loading=Loading(1_600.0, 100.0)))
+
+
+def test_late_commands_and_slow_servos() -> None:
+    late = Servos(Actuation(latency_steps=9), Controls())
+    moved = [late.step(Controls(elevator=1.0)).elevator for _ in range(12)]
+    assert moved == [0.0] * 9 + [1.0] * 3
+    # A first-order lag of 3 Hz is at 1 - 1/e after 1 / (2 pi 3) s, 6.4 steps.
+    slow = Servos(Actuation(servo_hz=3.0), Controls())
+    moved = [slow.step(Controls(elevator=1.0)).elevator for _ in range(7)]
+    assert moved[5] < 0.632 < moved[6]
+
+
+def test_a_gust_comes_and_goes() -> None:
+    gust = Gust(begins_s=0.0, ramp_s=2.0, steady_s=5.0, down_mps=3.0)
+    shares = [strength(gust, since_s) for since_s in (-1.0, 1.0, 2.0, 6.9, 8.0, 9.5)]
+    assert shares == pytest.approx([0.0, 0.5, 1.0, 1.0, 0.5, 0.0])
+    plant = Plant("c172p")
+    plant.set_gust(north_mps=0.0, east_mps=0.0, down_mps=3.0)
+    plant.step()
+    assert plant.state().wind_down_mps == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "kind"),
+    [
+        ("angle_of_attack_deg", 16.1, "stall"),
+        ("airspeed_kt", 40.0, "below Vs"),
+        ("roll_deg", 61.0, "bank"),
+        ("roll_deg", 91.0, "lost"),
+        ("load_g", 3.9, "load"),
+        ("altitude_ft", 90.0, "lost"),
+        ("heading_deg", 4.0, "unsettled"),
+    ],
+)
+def test_what_is_broken_is_found(column: str, value: float, kind: str) -> None:
+    assert _broken(_calm(), _truth(20.0)) == set()
+    assert kind in _broken(_calm(), _truth(20.0, **{column: value}))
+
+
+def test_a_second_without_interruption_counts() -> None:
+    holds = np.array([True] * 39 + [False] + [True] * 39)
+    assert longest_s(holds) == pytest.approx(39 / 40)
+    assert longest_s(np.array([False])) == 0.0
+
+
+def test_the_limit_of_an_oscillation_follows_air_and_noise() -> None:
+    assert largest_pitch_rate_sd_degps(_calm()) == 2.0
+    rough = _calm(noise=1.0, weather=Weather(turbulence_severity=3))
+    assert largest_pitch_rate_sd_degps(rough) == pytest.approx((4.0 + 4.0 + 9.0) ** 0.5)
+
+
+def test_processes_and_a_cluster_fly_the_same() -> None:
+    tasks = [Task(number, 5, USUAL) for number in (1, 3)]
+    with local_workers(fly_task, 1) as fly_all:
+        here = [outcome.digest for outcome in fly_all(tasks)]
+    with (
+        LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        on_dask(fly_task, cluster.scheduler_address) as fly_all,
+    ):
+        there = [outcome.digest for outcome in fly_all(tasks)]
+    assert here == there
+    assert len(set(here)) == 2
+
+
+def test_the_command_names_what_flies_a_flight_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    figures, picture = tmp_path / "campaign.json", tmp_path / "campaign.png"
+    asked = ["campaign", "--flights", "1", "--seed", "5", "--workers", "1", "--turbulence", "2"]
+    written = ["--json", str(figures), "--picture", str(picture), "--least-clean", "0"]
+    assert commands.main([*asked, *written]) == 0
+    assert "of 1 flights clean" in capsys.readouterr().out
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    flown = json.loads(figures.read_text(encoding="utf-8"))["flights"]
+    command = flown[0]["command"].split()
+    assert command == ["fcc", *["campaign", "--flight", "0", "--seed", "5", "--turbulence", "2"]]
+    assert flown[0]["simulated_s"] <= HOLD_S + 3 * LEG_S + 20.0
+
+    commands.main([*command[1:], "--picture", str(picture)])
+    assert f"digest {flown[0]['digest']}" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("wrong", "match"),
+    [
+        (["--seed", "-1"], "--seed"),
+        (["--flight", "-2"], "--flight"),
+        (["--record", "flight.mcap"], "--flight"),
+    ],
+)
+def test_wrong_arguments_are_refused(
+    wrong: list[str], match: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert commands.main(["campaign", *wrong]) == 1
+    assert match in capsys.readouterr().err

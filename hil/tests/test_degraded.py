@@ -1,0 +1,161 @@
+"""Degraded flight: every row of the table in docs/faults.md, against JSBSim's truth.
+
+Lost in the first turn of the pattern, at 30° of bank; back 20 s later.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import fcc
+import numpy as np
+import pytest
+
+from fcc_hil.lockstep_rig import LockstepRig
+from fcc_hil.plant import Plant
+from fcc_hil.quantities import SENSORS
+from fcc_hil.sensor_faults import Kind, SensorFault
+from fcc_hil.standin import Settings
+
+SEED = 11
+"""Not one of those on which the laws were developed (7)."""
+LOST_AT_S = 30.0
+LOST_FOR_S = 20.0
+LEVEL_AFTER_S = 8.0
+
+
+class Flight:
+    """A flight that is engaged, with sensors lost from `LOST_AT_S` on."""
+
+    def __init__(
+        self, lost: Sequence[str], lasts_s: float, *, aircraft: str = "c172x", config: str = ""
+    ) -> None:
+        plant = Plant(aircraft, seed=SEED)
+        settings = Settings(port=0, aircraft=aircraft, seed=SEED, noise=True)
+        self.rig = LockstepRig(settings, plant, fcc.Machine(config))
+        self.rig.prepare()
+        self.rig.set_switch(on=True)
+        self.rig.fly_to(self.rig.time_s + 0.1)
+        self.rig.set_switch(on=False)
+        self.rig.fly_to(self.rig.time_s + 0.6)
+        self.rig.set_switch(on=True)
+        self.rig.fly_to(self.rig.time_s + 0.1)
+        self.rig.fly_to(self.rig.time_s + 0.6, until=lambda: self.rig.machine.state == "engaged")
+        self.began_s = self.rig.time_s
+        begins_s = self.began_s + LOST_AT_S
+        self.rig.set_faults(
+            [
+                SensorFault(Kind.LOSS, name, SENSORS[name], begins_s, begins_s + lasts_s)
+                for name in lost
+            ]
+        )
+
+    def fly_to(self, time_s: float) -> None:
+        """Fly to a time since engaging."""
+        self.rig.fly_to(self.began_s + time_s)
+
+    def between(self, column: str, begin_s: float, end_s: float) -> np.ndarray:
+        """Return a column of the truth, by times since the loss."""
+        truth = self.rig.truth()
+        since_s = truth["time_s"] - self.began_s - LOST_AT_S
+        values: np.ndarray = truth[column][(since_s >= begin_s) & (since_s < end_s)]
+        return values
+
+    def events(self) -> list[tuple[float, str]]:
+        """Return the events since the loss, with their times since then."""
+        begin_s = self.began_s + LOST_AT_S
+        return [
+            (event.time_s - begin_s, event.text)
+            for event in self.rig.events
+            if event.time_s > begin_s
+        ]
+
+    def when(self, text: str) -> float:
+        """Return when an event came, s since the loss."""
+        return next(time_s for time_s, words in self.events() if text in words)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What is held from `LEVEL_AFTER_S` after a loss on."""
+
+    bank_deg: float
+    altitude_ft: float
+    airspeed_kt: float
+
+
+ROWS = {
+    "heading": (["heading"], Limits(1.0, 15.0, 3.0)),
+    "acceleration": (["specific_force"], Limits(1.5, 60.0, 5.0)),
+    "airspeed": (["airspeed"], Limits(1.0, 100.0, 12.0)),
+    "altitude": (["altitude"], Limits(1.0, 100.0, 15.0)),
+    "body rates": (["body_rates"], Limits(2.0, 15.0, 3.0)),
+    "body rates and heading": (["body_rates", "heading"], Limits(2.0, 15.0, 3.0)),
+    "attitude": (["attitude"], Limits(3.0, 20.0, 3.0)),
+    "attitude and acceleration": (["attitude", "specific_force"], Limits(3.0, 100.0, 15.0)),
+    "airspeed and altitude": (["airspeed", "altitude"], Limits(1.0, 150.0, 15.0)),
+}
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_what_is_left_is_held_and_then_the_pattern_is_flown_on(name: str) -> None:
+    lost, limits = ROWS[name]
+    flight = Flight(lost, LOST_FOR_S)
+    flight.fly_to(LOST_AT_S + LOST_FOR_S + 11.0)
+    assert flight.when("engaged -> failsafe") == pytest.approx(0.25, abs=0.06)
+    assert flight.when("now: flying on without a lost quantity") < 0.4
+    level = (LEVEL_AFTER_S, LOST_FOR_S)
+    assert np.max(np.abs(flight.between("roll_deg", *level))) < limits.bank_deg
+    altitude_ft = flight.between("altitude_ft", 0.0, LOST_FOR_S)
+    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < limits.altitude_ft
+    captured = flight.rig.truth().captured_at(flight.began_s)
+    airspeed_kt = flight.between("airspeed_kt", *level)
+    assert np.max(np.abs(airspeed_kt - captured.airspeed_kt)) < limits.airspeed_kt
+    # Good for 2 s: the same leg, its heading and its altitude.
+    assert flight.when("all is good again") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
+    assert flight.when("failsafe -> engaged") == pytest.approx(LOST_FOR_S + 2.0, abs=0.1)
+    assert not [text for _, text in flight.events() if text.startswith("mode: ")]
+    end = (LOST_FOR_S + 9.0, LOST_FOR_S + 11.0)
+    turned_deg = flight.between("heading_deg", *end) - captured.heading_deg
+    assert np.max(np.abs((turned_deg - 90.0 + 180.0) % 360.0 - 180.0)) < 3.0
+    climbed_ft = flight.between("altitude_ft", *end) - captured.altitude_ft
+    assert np.max(np.abs(climbed_ft - 150.0)) < 20.0
+
+
+def test_half_a_second_without_any_sensor_is_flown_through() -> None:
+    flight = Flight(list(SENSORS), 0.5)
+    flight.fly_to(LOST_AT_S + 12.0)
+    assert flight.when("failsafe -> engaged") == pytest.approx(2.5, abs=0.1)
+    assert np.max(np.abs(flight.between("roll_deg", 0.0, 12.0))) < 35.0
+    altitude_ft = flight.between("altitude_ft", 0.0, 12.0)
+    assert np.max(np.abs(altitude_ft - altitude_ft[0])) < 50.0
+    assert not [text for _, text in flight.events() if text.startswith("mode: ")]
+
+
+def test_without_attitude_and_rates_control_is_given_back() -> None:
+    flight = Flight(["attitude", "body_rates"], 60.0)
+    flight.fly_to(LOST_AT_S + 6.0)
+    # 250 ms, and failsafe.hold_s.
+    assert flight.when("failsafe -> standby") == pytest.approx(5.25, abs=0.1)
+    # The bank of the turn stays: the aircraft does not roll on.
+    assert np.max(np.abs(flight.between("roll_deg", 0.0, 5.0))) < 40.0
+
+
+def test_degraded_flight_ends_after_its_time() -> None:
+    flight = Flight(["heading"], 60.0, config="[failsafe]\ndegraded_s = 10.0\nhold_s = 2.0\n")
+    flight.fly_to(LOST_AT_S + 14.0)
+    assert flight.when("failsafe -> standby") == pytest.approx(12.25, abs=0.15)
+
+
+def test_without_a_pilot_it_glides_in_a_gentle_turn() -> None:
+    """A Cessna 172P glides best at 65 kt (its handbook, section 3)."""
+    config = '[failsafe]\nend = "glide"\ndegraded_s = 5.0\nhold_s = 1.0\n'
+    flight = Flight(["heading"], 60.0, aircraft="c172p", config=config)
+    flight.fly_to(LOST_AT_S + 55.0)
+    assert flight.when("gliding in a gentle turn") == pytest.approx(6.25, abs=0.15)
+    assert flight.rig.holds_control
+    settled = (40.0, 55.0)
+    assert np.max(np.abs(flight.between("airspeed_kt", *settled) - 65.0)) < 5.0
+    assert np.max(np.abs(flight.between("roll_deg", *settled) - 15.0)) < 2.0
+    assert np.max(flight.between("throttle", *settled)) == 0.0

@@ -1,0 +1,158 @@
+"""The lowest airspeed and the stalling angle, where there is too little energy for height.
+
+JSBSim's truth; noisy sensors; seeds on which nothing was tuned.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import fcc
+import pytest
+
+from fcc_hil.lockstep_rig import LockstepRig
+from fcc_hil.plant import Plant, Weather
+from fcc_hil.settings import Settings
+from fcc_hil.units import FT_TO_M, KT_TO_MPS
+
+_HOLD = '[guidance]\nmode = "hold"\n'
+_ENGAGED_S = 3.0
+_STALL_DEG = 16.5
+"""Of JSBSim's Cessnas: the lift table's largest value is at 0.28 rad."""
+
+
+class _Flight:
+    """A flight, and what it reached."""
+
+    def __init__(self, aircraft: str, seed: int, turbulence: int = 0, envelope: str = "") -> None:
+        self.plant = Plant(aircraft, seed=seed, weather=Weather(turbulence_severity=turbulence))
+        machine = fcc.Machine(f"{_HOLD}[autopilot.envelope]\n{envelope}")
+        settings = Settings(aircraft=aircraft, noise=True, seed=seed)
+        self.rig = LockstepRig(settings, self.plant, machine)
+        self.rig.prepare()
+        self.rig.set_switch(on=True)
+        self.rig.fly_to(_ENGAGED_S)
+        assert self.rig.holds_control
+        self.least_kt = math.inf
+        self.most_kt = 0.0
+        self.airspeed_kt = math.nan
+        self.largest_alpha_deg = 0.0
+        self.longest_stall_s = 0.0
+        self._stalled_s = 0.0
+
+    def fly(self, seconds: float, each: Callable[[], None] | None = None) -> None:
+        """Fly on and keep the extremes."""
+
+        def watch() -> bool:
+            if each is not None:
+                each()
+            state = self.plant.state()
+            alpha_deg = math.degrees(state.angle_of_attack_rad)
+            self.airspeed_kt = state.airspeed_mps / KT_TO_MPS
+            self.least_kt = min(self.least_kt, self.airspeed_kt)
+            self.most_kt = max(self.most_kt, self.airspeed_kt)
+            self.largest_alpha_deg = max(self.largest_alpha_deg, alpha_deg)
+            self._stalled_s = self._stalled_s + 0.025 if alpha_deg > _STALL_DEG else 0.0
+            self.longest_stall_s = max(self.longest_stall_s, self._stalled_s)
+            return False
+
+        self.rig.fly_to(self.plant.time_s + seconds, watch)
+
+    def texts(self) -> list[str]:
+        """Return the texts of all events."""
+        return [event.text for event in self.rig.events]
+
+
+@pytest.mark.parametrize("sink_mps", [0.0, 3.0, 5.0])
+def test_an_engine_that_fails_leaves_the_best_glide(sink_mps: float) -> None:
+    """Before: 58.7, 48 and 50 kt, with full up elevator. The best glide is 65 KIAS (172N)."""
+    flight = _Flight("c172p", seed=7301)
+    flight.plant.fdm["propulsion/magneto_cmd"] = 0
+    flight.fly(20.0)
+    flight.plant.fdm["atmosphere/wind-down-fps"] = sink_mps / FT_TO_M
+    flight.fly(35.0)
+    assert flight.least_kt >= (64.0 if sink_mps == 0.0 else 62.0)
+    assert abs(flight.airspeed_kt - 65.0) <= 5.0
+    assert flight.largest_alpha_deg <= 12.0
+    assert any("height is given up" in text for text in flight.texts())
+
+
+def test_a_best_glide_above_the_lowest_airspeed_is_flown() -> None:
+    flight = _Flight("c172p", seed=7306, envelope="best_glide_airspeed_kt = 75.0\n")
+    flight.plant.fdm["propulsion/magneto_cmd"] = 0
+    flight.fly(60.0)
+    assert abs(flight.airspeed_kt - 75.0) <= 2.0
+    assert flight.least_kt >= 64.0
+
+
+def test_the_highest_airspeed_is_held_in_air_that_rises() -> None:
+    """With the engine idling it would need 118 kt to stay down."""
+    flight = _Flight("c172p", seed=7307, envelope="max_airspeed_kt = 108.0\n")
+    before_m = flight.plant.state().altitude_m
+    flight.plant.fdm["atmosphere/wind-down-fps"] = -12.0 / FT_TO_M
+    flight.fly(60.0)
+    assert flight.most_kt <= 109.0
+    assert flight.plant.state().altitude_m > before_m + 10.0
+
+
+def test_air_that_sinks_faster_than_the_aircraft_climbs() -> None:
+    """Before: 46.7 kt at 20 degrees of pitch, in 10 m/s of sink with the engine."""
+    flight = _Flight("c172p", seed=7302)
+    flight.plant.fdm["atmosphere/wind-down-fps"] = 10.0 / FT_TO_M
+    flight.fly(75.0)
+    assert flight.least_kt >= 62.0
+    assert flight.largest_alpha_deg <= 12.0
+
+
+def test_energy_that_returns_is_used_without_a_step() -> None:
+    """Air that sinks for half a minute, and is still again."""
+    flight = _Flight("c172p", seed=7303)
+    before_m = flight.plant.state().altitude_m
+    flight.plant.fdm["atmosphere/wind-down-fps"] = 10.0 / FT_TO_M
+    flight.fly(45.0)
+    flight.plant.fdm["atmosphere/wind-down-fps"] = 0.0
+    flight.fly(75.0)
+    assert flight.least_kt >= 62.0
+    assert abs(flight.plant.state().altitude_m - before_m) <= 1.0
+    reports = [text for text in flight.texts() if "height is given up" in text]
+    assert len(reports) == 2, "it began once and ended once"
+
+
+@pytest.mark.parametrize(("turbulence", "seed"), [(4, 7304), (5, 7305)])
+def test_climbing_turns_at_75_kt_do_not_stall(turbulence: int, seed: int) -> None:
+    """Before: 5 and 15 of 20 such flights were beyond the stalling angle for a second."""
+    flight = _Flight("c172r", seed=seed, turbulence=turbulence)
+    start = flight.plant.state()
+    for leg in range(5):
+        flight.rig.machine.command(
+            heading_rad=(start.heading_rad + leg * math.pi / 2) % (2 * math.pi),
+            altitude_m=start.altitude_m + leg * 500 * FT_TO_M,
+            airspeed_mps=75 * KT_TO_MPS,
+        )
+        flight.fly(20.0)
+    assert flight.longest_stall_s < 1.0
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "min_airspeed_kt = 65.0\nmax_airspeed_kt = 66.0\nairspeed_margin_kt = 8.0\n",
+            r"autopilot\.envelope\.max_airspeed_kt: is 66: choose at least 89\.0",
+        ),
+        ("min_airspeed_kt = 50.0\n", r"min_airspeed_kt: is 50: choose at least 58\.3"),
+        ("max_airspeed_kt = 170.0\n", "max_airspeed_kt: is 170: choose at most never_exceed"),
+        ("best_glide_airspeed_kt = 40.0\n", r"best_glide_airspeed_kt: is 40: choose 58\.3 to 135"),
+        ("max_load_factor_g = 5.0\n", "max_load_factor_g: is 5: choose at most limit_load_factor"),
+    ],
+)
+def test_an_envelope_without_room_to_fly_is_refused(text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        fcc.Autopilot(f"[autopilot.envelope]\n{text}")
+
+
+def test_a_rate_that_the_loops_cannot_fly_is_refused() -> None:
+    """At 5 Hz JSBSim's c172p reaches 5.5 g and an oscillation of 90 degrees a second."""
+    with pytest.raises(ValueError, match=r"loop\.rate_hz: is 5: choose 20 to 2000"):
+        fcc.Machine("[built-in]\n[loop]\nrate_hz = 5\n")

@@ -1,0 +1,127 @@
+"""Recovery from upsets: JSBSim's Cessna in lockstep, its controls taken and given back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import fcc
+import pytest
+from upset_flights import (
+    HOLD,
+    ROUGH,
+    Conditions,
+    Recovery,
+    Script,
+    fly,
+    full_aileron,
+    full_aileron_by_a_pilot,
+    stall_with_full_rudder,
+    to_attitude,
+    wake_vortex,
+)
+
+from fcc_hil.lockstep import measurements
+from fcc_hil.plant import Plant
+from fcc_hil.units import FT_TO_M, KT_TO_MPS
+
+NEVER_EXCEED_KT = 158.0
+"""Cessna 172P, pilot's operating handbook, section 2."""
+LIMIT_LOAD = 3.8
+"""The same, flaps up."""
+
+
+def _flown_on(flown: Recovery) -> None:
+    """Assert that it is on its heading, and at its altitude or climbing to it, and said so."""
+    assert flown.state == "engaged"
+    assert flown.end is not None
+    off_deg = (math.degrees(flown.end.heading_rad) - 90.0 + 180.0) % 360.0 - 180.0
+    assert abs(off_deg) < 5.0
+    assert abs(math.degrees(flown.end.roll_rad)) < 10.0
+    off_ft = flown.end.altitude_m / FT_TO_M - flown.before_ft
+    assert abs(off_ft) < 60.0 or (off_ft < 0.0 and flown.end.down_mps < -2.0)
+    told = [event.split(" ", 1)[1] for event in flown.events]
+    assert told.count("now: recovering from an upset") == 1
+    assert told.count("no longer: recovering from an upset") == 1
+
+
+def _within_limits(flown: Recovery, most_lost_ft: float) -> None:
+    assert flown.lost_ft < most_lost_ft
+    assert flown.before_ft - flown.least_ft < most_lost_ft + 400.0, "with what the script lost"
+    assert flown.greatest_kt < NEVER_EXCEED_KT
+    assert flown.least_load > 0.0
+    assert flown.greatest_load < LIMIT_LOAD
+
+
+@pytest.mark.parametrize("conditions", [Conditions(), ROUGH], ids=["exact", "rough"])
+@pytest.mark.parametrize("script", [full_aileron, full_aileron_by_a_pilot])
+def test_full_aileron_for_three_seconds(script: Script, conditions: Conditions) -> None:
+    """Before there was a recovery, 1,550 ft and 162 kt, and 1,390 ft and 158 kt."""
+    flown = fly(script, conditions)
+    assert abs(math.degrees(flown.begin.roll_rad)) > 120.0
+    assert flown.before_ft - flown.least_ft < 700.0
+    _within_limits(flown, 700.0)
+    _flown_on(flown)
+
+
+@pytest.mark.parametrize(
+    ("script", "most_lost_ft"),
+    [
+        pytest.param(to_attitude(179.0, None, throttle=0.65), 450.0, id="inverted"),
+        pytest.param(to_attitude(90.0, None, throttle=0.65), 100.0, id="knife edge"),
+        pytest.param(to_attitude(70.0, -25.0, throttle=0.8), 200.0, id="spiral"),
+        pytest.param(to_attitude(0.0, 70.0, 50.0, throttle=1.0), 450.0, id="nose up at 50 kt"),
+        pytest.param(to_attitude(0.0, -60.0, throttle=0.0), 500.0, id="nose down at 120 kt"),
+        pytest.param(stall_with_full_rudder(3.0), 500.0, id="stalled, full rudder for 3 s"),
+    ],
+)
+def test_upsets_are_recovered_from(script: Script, most_lost_ft: float) -> None:
+    flown = fly(script, ROUGH)
+    _within_limits(flown, most_lost_ft)
+    _flown_on(flown)
+
+
+def test_a_wake_vortex() -> None:
+    flown = fly(wake_vortex, ROUGH, 15.0)
+    assert abs(math.degrees(flown.begin.roll_rad)) > 45.0
+    assert flown.lost_ft < 30.0
+    assert flown.least_load > 0.0
+    assert flown.greatest_load < 2.0
+    assert flown.state == "engaged"
+
+
+@pytest.mark.parametrize("permitted", [False, True])
+def test_it_engages_in_an_upset_only_if_permitted(permitted: bool) -> None:
+    plant = Plant("c172p")
+    machine = fcc.Machine(HOLD + f"[engage]\npermit_upset = {str(permitted).lower()}\n")
+    script = to_attitude(90.0, None, throttle=0.65)
+    for _ in range(80):
+        machine.step(measurements(plant.state()), switch=False)
+        plant.step(3)
+    began_s = plant.time_s
+    while (taken := script(plant.time_s - began_s, plant.state(), plant.trim)) is not None:
+        plant.write(taken)
+        plant.step(3)
+        machine.step(measurements(plant.state()), switch=False)
+    surfaces = machine.step(measurements(plant.state()), switch=True)
+    assert machine.state == ("engaged" if permitted else "standby")
+    if surfaces is None:
+        assert machine.engage_inhibits == ["bank or pitch is beyond 60 degrees"]
+        return
+    assert surfaces.aileron < -0.5, "the shorter way"
+    for _ in range(400):
+        surfaces = machine.step(measurements(plant.state()), switch=True)
+        assert surfaces is not None
+        plant.write(
+            replace(
+                plant.trim,
+                elevator=surfaces.elevator,
+                aileron=surfaces.aileron,
+                rudder=surfaces.rudder,
+                throttle=surfaces.throttle,
+            )
+        )
+        plant.step(3)
+    state = plant.state()
+    assert abs(math.degrees(state.roll_rad)) < 5.0
+    assert 90.0 < state.airspeed_mps / KT_TO_MPS < 115.0
