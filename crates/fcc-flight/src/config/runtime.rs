@@ -212,6 +212,7 @@ impl Default for EngageSection {
             permit_autopilot: false,
             permit_autothrottle: false,
             permit_fly_by_wire: false,
+            permit_upset: false,
         }
     }
 }
