@@ -9,6 +9,7 @@ mod degraded;
 mod engaging;
 mod failsafe;
 pub mod flags;
+mod floor;
 mod following;
 mod future;
 mod notices;
@@ -120,6 +121,8 @@ pub struct Autopilot {
     distrusted: Flags,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
 }
 
 impl Autopilot {
@@ -157,6 +160,7 @@ impl Autopilot {
             following: Following::default(),
             distrusted: Flags::NONE,
             doubt_notice: None,
+            is_at_floor: false,
             config,
         }
     }
@@ -220,6 +224,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::AT_FLOOR, self.is_at_floor)
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -296,6 +301,7 @@ impl Controller for Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
+        self.keep_above_floor();
         self.guidance
             .advance(self.navigation.estimate(), self.clock.passed_s());
     }
@@ -350,6 +356,7 @@ impl Controller for Autopilot {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
+        self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();
