@@ -170,3 +170,36 @@ fn a_clock_that_stands_still_while_running_is_a_fault_of_every_source() {
         assert_eq!(cockpit.conditions(), Flags::NONE);
     }
 }
+
+/// The clock is lost alone, or is no number; 250 ms are 10 ticks. It is flown on by
+/// our time, and taken again without a jump.
+#[test]
+fn a_clock_that_alone_is_missing_has_not_stopped() {
+    for is_silent in [true, false] {
+        let mut cockpit = manoeuvring();
+        let before_s = elapsed_s(&cockpit);
+        let last = cockpit.measurements.plant;
+        let mut noticed_kinds = Vec::new();
+        for tick in 0..80 {
+            move_on(&mut cockpit);
+            cockpit.observe_with(|measured| {
+                measured.plant = last;
+                if !is_silent {
+                    measured.plant.taken = measured.attitude.taken;
+                    measured.plant.value.time_s = f64::NAN;
+                }
+            });
+            cockpit.act();
+            noticed_kinds.extend(cockpit.autopilot.notice().map(|notice| (tick, notice.kind)));
+            assert_eq!(cockpit.faults(), Flags::NONE);
+            assert!(!cockpit.engage_inhibits().contains(flags::PLANT_STALLED));
+        }
+        assert_eq!(noticed_kinds.len(), 1, "{noticed_kinds:?}");
+        assert!((10..13).contains(&noticed_kinds[0].0));
+        assert!((elapsed_s(&cockpit) - before_s - 80.0 * DT_S).abs() < 0.31);
+        for _ in 0..80 {
+            fly(&mut cockpit, 1);
+            assert_eq!(noticed(&cockpit), None);
+        }
+    }
+}

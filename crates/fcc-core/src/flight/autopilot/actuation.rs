@@ -1,6 +1,6 @@
 //! What is between the outputs and their effect: latency, play, oscillation.
 
-use super::flags;
+use super::{Autopilot, flags};
 use crate::blocks::limit;
 use crate::flight::Surfaces;
 use crate::flight::control::{ElevatorResponse, OscillationMonitor, PlayInverse, Schedule};
@@ -109,5 +109,18 @@ impl Actuation {
             elevator_play: self.elevator.play(),
             ..*estimate
         }
+    }
+}
+
+impl Autopilot {
+    /// The gains for the present airspeed and latency.
+    pub(super) fn schedule(&self) -> Schedule {
+        self.schedule_at(self.navigation.estimate().airspeed_mps)
+    }
+
+    /// The gains for an airspeed and the present latency.
+    pub(super) fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
+        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
+        self.actuation.slowed(schedule)
     }
 }

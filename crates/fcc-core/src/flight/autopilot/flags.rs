@@ -89,6 +89,8 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// The target altitude is limited by the floor.
+pub const AT_FLOOR: Flags = Flags::bit(40);
 /// Readings arrive too old, by their source's own clock.
 pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 
@@ -166,7 +168,7 @@ pub(super) const NAMES: [&str; 43] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
-    "unknown condition",
+    "the target altitude is limited by the floor",
     "unknown condition",
     "readings arrive too old, by their source's own clock",
 ];

@@ -9,6 +9,7 @@ mod degraded;
 mod engaging;
 mod failsafe;
 pub mod flags;
+mod floor;
 mod following;
 mod future;
 mod notices;
@@ -41,7 +42,7 @@ pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
+use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, ThrottleDemand};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -123,6 +124,8 @@ pub struct Autopilot {
     distrusted: Flags,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
 }
 
 impl Autopilot {
@@ -161,6 +164,7 @@ impl Autopilot {
             following: Following::default(),
             distrusted: Flags::NONE,
             doubt_notice: None,
+            is_at_floor: false,
             config,
         }
     }
@@ -168,15 +172,6 @@ impl Autopilot {
     /// The configuration.
     pub const fn config(&self) -> &AutopilotConfig {
         &self.config
-    }
-
-    fn schedule(&self) -> Schedule {
-        self.schedule_at(self.navigation.estimate().airspeed_mps)
-    }
-
-    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.actuation.slowed(schedule)
     }
 
     fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
@@ -224,6 +219,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::AT_FLOOR, self.is_at_floor)
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -300,6 +296,7 @@ impl Controller for Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
+        self.keep_above_floor();
         self.guidance
             .advance(self.navigation.estimate(), self.clock.passed_s());
     }
@@ -310,8 +307,8 @@ impl Controller for Autopilot {
             return self.last;
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
-        self.actuation.follow(&self.last, &estimate, dt_s);
         self.actuation.knows_age(self.ages.rates_s());
+        self.actuation.follow(&self.last, &estimate, dt_s);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
@@ -355,6 +352,7 @@ impl Controller for Autopilot {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
+        self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
         self.setpoints = Setpoints::default();

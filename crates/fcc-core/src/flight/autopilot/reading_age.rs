@@ -92,6 +92,14 @@ pub(super) fn taken_of_needed(measured: &Measurements) -> [(Flags, Time); 6] {
     ]
 }
 
+/// When the newest of the readings was taken that control needs or that are the
+/// plant's own.
+pub(super) fn newest(measured: &Measurements) -> Time {
+    taken_of_needed(measured)
+        .into_iter()
+        .fold(measured.plant.taken, |newest, (_, taken)| newest.max(taken))
+}
+
 impl Autopilot {
     /// Follows the ages of a tick's readings.
     pub(super) fn follow_ages(&mut self, now: Time, measured: &Measurements) {
