@@ -108,7 +108,10 @@ const SMOOTHED_S: f64 = 0.2;
 /// // Engaged at the present throttle; a knot too slow gives more throttle.
 /// assert!((airspeed.step(&demand, &level, 0.025) - 0.65).abs() < 1e-9);
 /// let slow = Estimate { airspeed_mps: 50.9, ..level };
-/// assert!(airspeed.step(&demand, &slow, 0.025) > 0.65);
+/// assert!(airspeed.clone().step(&demand, &slow, 0.025) > 0.65);
+/// // One that accelerates gets less.
+/// let accelerates = Estimate { acceleration_mps2: 1.0, ..level };
+/// assert!(airspeed.step(&demand, &accelerates, 0.025) < 0.65);
 /// ```
 #[derive(Clone, Debug)]
 pub struct AirspeedLoop {

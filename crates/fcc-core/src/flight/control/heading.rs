@@ -307,7 +307,7 @@ impl HeadingLoop {
     ///
     /// Adverse yaw is proportional to the lift coefficient where it comes from
     /// the wing, and does not depend on it where it comes from the profile drag
-    /// of the ailerons (Etkin and Reid 1996, section 3.9): the rudder against
+    /// of the ailerons (Etkin and Reid 1996, chapter 3): the rudder against
     /// it follows V₀/V, between the two.
     fn rudder_feed_forward(&self, aileron: f64, estimate: &Estimate, schedule: Schedule) -> f64 {
         let turn_yaw_rate = GRAVITY_MPS2 / estimate.true_airspeed_mps.max(1.0)
@@ -326,5 +326,39 @@ impl HeadingLoop {
     /// The rudder trim that the loop has found for no sideslip.
     pub const fn rudder_trim(&self) -> f64 {
         self.side_force.integral()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A roll rate that the ailerons cannot stop: at first the rudder moves
+    /// with them, against adverse yaw; later it does not, or it would hold a
+    /// sideslip.
+    #[test]
+    fn a_constant_correction_moves_no_rudder() {
+        let rolling = Estimate {
+            airspeed_mps: 50.0,
+            true_airspeed_mps: 50.0,
+            body_rates: crate::flight::BodyRates {
+                roll_radps: 0.1,
+                ..crate::flight::BodyRates::default()
+            },
+            ..Estimate::default()
+        };
+        let schedule = Schedule::at(50.0, 50.0);
+        let mut heading = HeadingLoop::new(HeadingConfig::default());
+        heading.engage(0.0, 0.0, &Estimate::default(), schedule);
+        let first = heading.hold_bank(0.0, &rolling, schedule, 0.025);
+        assert!(first.aileron < -0.03);
+        let config = HeadingConfig::default();
+        assert!((first.rudder / first.aileron - config.rudder_per_aileron).abs() < 0.05);
+        let mut later = first;
+        for _ in 0..400 {
+            later = heading.hold_bank(0.0, &rolling, schedule, 0.025);
+        }
+        assert!(later.aileron < -0.3);
+        assert!(later.rudder.abs() < 0.2 * later.aileron.abs());
     }
 }
