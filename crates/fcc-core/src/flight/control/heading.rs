@@ -61,7 +61,7 @@ impl Default for HeadingConfig {
             roll_rate_gain: 0.38,
             roll_rate_integral_gain: 0.40,
             rudder_per_aileron: 0.76,
-            rudder_washout_s: 1.0,
+            rudder_washout_s: 2.0,
             side_force_gain: 0.060_163,          // 0.59 per g
             side_force_integral_gain: 0.054_045, // 0.53 per g and s
             yaw_damping: 1.35,
