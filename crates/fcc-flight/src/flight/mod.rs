@@ -16,6 +16,7 @@ mod hang;
 mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
+mod limits;
 #[cfg(feature = "live")]
 mod live;
 mod monitor;
@@ -36,6 +37,7 @@ pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use host::Host;
+pub use limits::{altitudes_m, heights_m};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;
