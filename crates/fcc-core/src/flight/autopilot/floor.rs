@@ -8,10 +8,14 @@
 
 use super::Autopilot;
 use crate::flight::AltitudeReference;
+use crate::units::GRAVITY_MPS2;
 
 /// A target this far below the lowest altitude is not limited by it, m: a round
 /// altitude in feet is not round in metres.
 const ROUNDING_M: f64 = 0.01;
+
+/// How long it takes until the flight path follows the commanded one, s.
+const REACTION_S: f64 = 0.5;
 
 /// How much a failsafe that keeps the altitude by pitch loses in turbulence
 /// (`docs/envelope.md`, degraded flight), m: 100 ft.
@@ -37,6 +41,25 @@ impl Autopilot {
         let lowest_m = self.lowest_m();
         self.is_at_floor = self.targets.altitude_m < lowest_m - ROUNDING_M;
         self.targets.altitude_m = self.targets.altitude_m.max(lowest_m);
+        let pull_out_mps2 = self.pull_out_mps2(lowest_m);
+        self.altitude.pull_out(pull_out_mps2);
+    }
+
+    /// The vertical acceleration with which the present descent ends at an
+    /// altitude (m), a = v²/2h, up to that of the largest load; 0 if it does not
+    /// descend, m/s².
+    fn pull_out_mps2(&self, lowest_m: f64) -> f64 {
+        let estimate = self.navigation.estimate();
+        let sink_mps = (-estimate.climb_rate_mps).max(0.0);
+        let height_m = estimate.altitude_m - lowest_m - REACTION_S * sink_mps;
+        let most_mps2 = GRAVITY_MPS2 * (self.config.envelope.max_load_factor - 1.0);
+        if height_m > 0.0 {
+            (0.5 * sink_mps * sink_mps / height_m).min(most_mps2)
+        } else if sink_mps > 0.0 {
+            most_mps2
+        } else {
+            0.0
+        }
     }
 
     /// The altitude for a failsafe to keep by pitch, m: that at its beginning, or
