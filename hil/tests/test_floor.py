@@ -5,6 +5,8 @@ Noisy sensors, 25 ms late; seeds on which nothing was tuned.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import fcc
 import numpy as np
 import pytest
@@ -101,6 +103,32 @@ def test_a_failsafe_in_a_descent_stays_above_the_floor(lost: str) -> None:
     rig.fly_to(lost_s + 25.0)
     assert rig.machine.state == "failsafe"
     assert np.min(altitudes_ft(rig)) > FLOOR_FT
+
+
+def test_a_dive_is_pulled_out_above_the_floor() -> None:
+    """Engaged at more than 3,000 ft/min, 100 ft above the lowest altitude; 2 ft below before.
+
+    With the load of 2 g that is permitted, and half a second until the path follows, it takes 85
+    ft.
+    """
+    plant = Plant("c172p", seed=7731)
+    machine = fcc.Machine(f"{HOLD}[autopilot.envelope]\nfloor_ft = 2700.0\n")
+    rig = LockstepRig(
+        Settings(aircraft="c172p", noise=True, seed=7731),
+        plant,
+        machine,
+        Conditions(sensor_delay_ticks=1),
+    )
+    rig.prepare()
+    plant.trim = replace(plant.trim, elevator=plant.trim.elevator - 0.12)
+    rig.fly_to(30.0, until=lambda: plant.state().altitude_m < 2850.0 * FT_TO_M)
+    sink_fpm = -60.0 * np.gradient(altitudes_ft(rig), rig.truth()["time_s"])
+    assert sink_fpm[-1] > 3000.0
+    rig.set_switch(on=True)
+    machine.engage()
+    rig.fly_to(rig.time_s + 20.0)
+    assert rig.holds_control
+    assert np.min(altitudes_ft(rig)) > 2700.0
 
 
 def test_commands_below_the_floor_are_refused_with_the_limit() -> None:
