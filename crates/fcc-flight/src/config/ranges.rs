@@ -135,6 +135,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("x-plane.datagrams_per_tick", 1.0, 1_000.0),
     ("x-plane.fallback_after_ms", 10.0, 60_000.0),
     ("built-in.altitude_ft", 500.0, 20_000.0),
+    ("built-in.ground_ft", -1_500.0, 19_500.0),
     ("built-in.airspeed_kt", 50.0, 160.0),
     ("built-in.heading_deg", 0.0, 360.0),
     ("built-in.wind_from_deg", 0.0, 360.0),
