@@ -67,35 +67,36 @@ impl InstanceLock {
         if matches!(self.claim, Claim::Locked { plant: of, .. } | Claim::Taken(of) if of == plant) {
             return false;
         }
-        let Some(file) = self.lock(&plant) else {
-            self.claim = Claim::Taken(plant);
+        self.claim = self.lock(plant);
+        let Claim::Locked { file, .. } = &self.claim else {
             return false;
         };
-        let left = file.as_ref().is_some_and(PlantFile::is_held);
         self.authority.permit(&plant);
-        self.claim = Claim::Locked { plant, file };
-        left
+        file.as_ref().is_some_and(PlantFile::is_held)
     }
 
-    /// None if another daemon has it; without a file if that cannot be locked.
-    fn lock(&self, plant: &PlantId) -> Option<Option<PlantFile>> {
+    fn lock(&self, plant: PlantId) -> Claim {
+        let without = Claim::Locked { plant, file: None };
         let Some(folder) = &self.folder else {
-            return Some(None);
+            return without;
         };
-        let unique = self.authority.unique(plant);
-        let locked = PlantFile::locked(folder, &unique).transpose()?;
+        let unique = self.authority.unique(&plant);
+        let Some(locked) = PlantFile::locked(folder, &unique).transpose() else {
+            return Claim::Taken(plant);
+        };
         // Another opening of the same file: this one's end does not unlock.
         let files = locked.and_then(|locked| Ok((locked, PlantFile::open(folder, &unique)?)));
         match files {
             Ok((locked, told)) => {
-                self.notice.add_file(*plant, told);
-                Some(Some(locked))
+                self.notice.add_file(plant, told);
+                let file = Some(locked);
+                Claim::Locked { plant, file }
             }
             Err(error) => {
                 output::message(format!(
                     "{plant} cannot be locked ({error}): a second fccd is not prevented"
                 ));
-                Some(None)
+                without
             }
         }
     }
