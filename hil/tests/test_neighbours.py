@@ -141,6 +141,9 @@ def test_a_helper_holds_nothing_of_others(fccd: Path, tmp_path: Path) -> None:
             helper = Path("/proc") / folder.read_text().strip() / "fd"
             wait_until(lambda: len(list(helper.iterdir())) == 3, "three descriptors")
             assert (helper / "2").readlink() == Path("/dev/null")
+            # Signals are caught by then.
+            recordings = tmp_path / "recordings"
+            wait_until(lambda: list(recordings.glob("*.mcap")) != [], "it records")
             process.send_signal(signal.SIGTERM)
             assert process.wait(15.0) == SUCCESS
 
