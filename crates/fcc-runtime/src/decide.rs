@@ -4,6 +4,7 @@ use fcc_core::framework::{AfterRelease, Cause, Controller, EventKind, Flags, Inp
 
 use crate::commands::StateRequest;
 use crate::machine::{Machine, ReleaseReport};
+use crate::release::After;
 use crate::report::Ending;
 use crate::switch::SwitchEdge;
 
@@ -31,7 +32,7 @@ impl<C: Controller> Machine<C> {
             self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
         } else if command == StateRequest::Stop {
-            self.stop_for(Ending::StopCommand, tick);
+            self.release_prepared(After::StopCommand, tick);
         }
         // Before the switch: what loads a flight may switch it off, too.
         if self.state.holds_control() && !release_now.is_empty() {
@@ -66,9 +67,11 @@ impl<C: Controller> Machine<C> {
         }
         if matches!(self.state, State::Failsafe(_))
             && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
+            && self.prepared.is_none()
         {
-            self.end_failsafe(tick);
+            self.release_prepared(After::Failsafe, tick);
         }
+        self.follow_prepared_release(tick);
         if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
             self.attempt_to_engage(tick, lost_control);
         }
@@ -117,7 +120,7 @@ impl<C: Controller> Machine<C> {
         }
     }
 
-    fn stop_for(&mut self, ending: Ending, tick: &Tick) {
+    pub(crate) fn stop_for(&mut self, ending: Ending, tick: &Tick) {
         self.end_by(ending);
         self.apply_input(Input::Stop, tick);
     }
@@ -131,6 +134,9 @@ impl<C: Controller> Machine<C> {
             return;
         }
         self.enter(to, tick);
+        if matches!(self.prepared, Some(release) if release.after == After::Failsafe) {
+            self.prepared = None;
+        }
         match to {
             State::Engaged => {
                 self.record.engage_inhibits = Flags::NONE;

@@ -199,6 +199,7 @@ impl Autopilot {
             elevator: vertical.elevator,
             aileron: lateral.aileron,
             rudder: lateral.rudder,
+            elevator_trim: None,
         }
     }
 
@@ -207,6 +208,7 @@ impl Autopilot {
     pub(super) fn fly_on(&mut self) {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
+        self.end_release_of_failsafe();
         let last = self.last;
         self.take_over(&last);
         self.heading.lead_from(self.setpoints.roll_rad);
@@ -245,6 +247,7 @@ impl Autopilot {
             elevator: self.altitude.trim(),
             aileron: self.heading.aileron_trim(),
             rudder: self.heading.rudder_trim(),
+            elevator_trim: self.trim.position(),
         }
     }
 }

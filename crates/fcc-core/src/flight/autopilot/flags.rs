@@ -89,6 +89,8 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// A release is being prepared: the aircraft is levelled and trimmed.
+pub const RELEASING: Flags = Flags::bit(44);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -122,7 +124,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 40] = [
+pub(super) const NAMES: [&str; 45] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -163,6 +165,11 @@ pub(super) const NAMES: [&str; 40] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
+    "unused",
+    "unused",
+    "unused",
+    "unused",
+    "levelling and trimming before the release",
 ];
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod notices;
 mod observe;
 mod other_control;
 mod plant_clock;
+mod release;
 mod resume;
 mod scale;
 mod sensor_health;
@@ -35,11 +36,14 @@ use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use plant_clock::PlantClock;
+use release::Release;
 pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{AirspeedLoop, AltitudeLoop, HeadingLoop, Recovery, Schedule, ThrottleDemand};
+use super::control::{
+    AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery, Schedule, ThrottleDemand,
+};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -102,6 +106,9 @@ pub struct Autopilot {
     airspeed: AirspeedLoop,
     actuation: Actuation,
     recovery: Recovery,
+    trim: ElevatorTrim,
+    /// A release that is being prepared.
+    release: Option<Release>,
     setpoints: Setpoints,
     clock: PlantClock,
     whereabouts: Whereabouts,
@@ -145,6 +152,8 @@ impl Autopilot {
             airspeed: AirspeedLoop::new(config.airspeed),
             actuation: Actuation::new(config.assumed_latency_s, config.pace),
             recovery: Recovery::new(),
+            trim: ElevatorTrim::new(None),
+            release: None,
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
             whereabouts: Whereabouts::default(),
@@ -220,6 +229,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::RELEASING, self.release.is_some())
     }
 
     fn failsafe_goes_on(&self) -> bool {
@@ -236,6 +246,14 @@ impl Controller for Autopilot {
 
     fn must_release(&self, _tick: &Tick, _measurements: &Measurements) -> Flags {
         self.is_elsewhere()
+    }
+
+    fn prepare_release(&mut self, tick: &Tick, measurements: &Measurements) -> bool {
+        self.begin_to_release(tick.woke, measurements)
+    }
+
+    fn is_ready_for_release(&self) -> bool {
+        self.is_trimmed_for_release()
     }
 
     fn withholds_outputs(&self, tick: &Tick, _measurements: &Measurements) -> bool {
@@ -312,7 +330,11 @@ impl Controller for Autopilot {
             self.keep_trims();
         }
         if let Some(recovering) = self.recover_from_upset(tick.woke) {
-            self.last = recovering;
+            self.last = self.with_trim(recovering, Flags::NONE);
+            return self.last;
+        }
+        if let Some(levelling) = self.fly_to_release(&estimate, dt_s) {
+            self.last = self.with_trim(levelling, Flags::NONE);
             return self.last;
         }
         let to = self.targets;
@@ -332,17 +354,20 @@ impl Controller for Autopilot {
             pitch_rad: vertical.pitch_rad,
             ..self.setpoints
         };
-        self.last = Surfaces {
+        let outputs = Surfaces {
             throttle,
             elevator: self.actuation.elevator(vertical.elevator),
             aileron: lateral.aileron,
             rudder: lateral.rudder,
+            elevator_trim: None,
         };
+        self.last = self.with_trim(outputs, Flags::NONE);
         self.last
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
-        self.last = self.safest(tick.woke, measurements);
+        let outputs = self.safest(tick.woke, measurements);
+        self.last = self.with_trim(outputs, self.lost(tick.woke, measurements));
         self.last
     }
 
@@ -352,6 +377,7 @@ impl Controller for Autopilot {
         self.change_mode(ModeInput::Disengage);
         self.capture = None;
         self.recovery = Recovery::new();
+        self.release = None;
         self.setpoints = Setpoints::default();
     }
 
