@@ -143,13 +143,13 @@ def test_without_the_trim_the_elevator_holds() -> None:
 
 
 def test_degraded_flight_ends_with_a_trimmed_aircraft() -> None:
-    flight = Flight(100.0, config="[failsafe]\ndegraded_s = 1.0\nhold_s = 1.0\n")
+    flight = Flight(100.0, config="[failsafe]\ndegraded_s = 1.0\n")
     flight.machine.command(airspeed_mps=80.0 * KT_TO_MPS)
     flight.fly(10.0)
     turning(flight)
     flight.lose("heading")
-    # 0.25 s until it is lost, 1 s of degraded flight and 1 s of hold.
-    assert 2.2 < flight.fly_until("standby") < 12.4
+    # 0.25 s until it is lost, 1 s of degraded flight and 5 s of hold.
+    assert 6.0 < flight.fly_until("standby") < 6.5
     assert any("levelling and trimming" in event.text for event in flight.rig.events)
     changed_kt, climb_fpm = flight.hands_off()
     assert abs(changed_kt) < 10.0

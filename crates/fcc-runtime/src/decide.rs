@@ -4,7 +4,6 @@ use fcc_core::framework::{AfterRelease, Cause, Controller, EventKind, Flags, Inp
 
 use crate::commands::StateRequest;
 use crate::machine::{Machine, ReleaseReport};
-use crate::release::After;
 use crate::report::Ending;
 use crate::switch::SwitchEdge;
 
@@ -32,7 +31,7 @@ impl<C: Controller> Machine<C> {
             self.telemetry.events.push(tick, EventKind::StopRequested);
             self.stop_for(Ending::StopFlag, tick);
         } else if command == StateRequest::Stop {
-            self.release_prepared(After::StopCommand, tick);
+            self.stop_by_command(tick);
         }
         // Before the switch: what loads a flight may switch it off, too.
         if self.state.holds_control() && !release_now.is_empty() {
@@ -67,11 +66,10 @@ impl<C: Controller> Machine<C> {
         }
         if matches!(self.state, State::Failsafe(_))
             && tick.scheduled.since(self.failsafe_since) >= self.failsafe_hold
-            && self.prepared.is_none()
         {
-            self.release_prepared(After::Failsafe, tick);
+            self.end_failsafe(tick);
         }
-        self.follow_prepared_release(tick);
+        self.follow_commanded_stop(tick);
         if command == StateRequest::Engage || edge == Some(SwitchEdge::On) {
             self.attempt_to_engage(tick, lost_control);
         }
@@ -134,9 +132,6 @@ impl<C: Controller> Machine<C> {
             return;
         }
         self.enter(to, tick);
-        if matches!(self.prepared, Some(release) if release.after == After::Failsafe) {
-            self.prepared = None;
-        }
         match to {
             State::Engaged => {
                 self.record.engage_inhibits = Flags::NONE;

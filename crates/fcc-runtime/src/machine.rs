@@ -16,7 +16,6 @@ use crate::heartbeat::Heartbeat;
 use crate::link::{CommandSender, Link, MessageReceiver, StopHandle};
 use crate::overruns::Overruns;
 use crate::panics;
-use crate::release::PreparedRelease;
 use crate::report::{Ending, LoopReport};
 use crate::sensors::Sensors;
 use crate::stopwatch::Stopwatch;
@@ -53,8 +52,8 @@ pub struct Machine<C: Controller> {
     pub(crate) conditions: Flags,
     pub(crate) measurements: C::Measurements,
     pub(crate) failsafe_since: Time,
-    /// A release that is being prepared.
-    pub(crate) prepared: Option<PreparedRelease>,
+    /// When a stop was commanded whose release is being prepared.
+    pub(crate) stopping_since: Time,
     pub(crate) record: RecordOf<C>,
     pub(crate) overruns: Overruns,
 
@@ -106,7 +105,7 @@ impl<C: Controller> Machine<C> {
             conditions: Flags::NONE,
             measurements: C::Measurements::default(),
             failsafe_since: Time::NEVER,
-            prepared: None,
+            stopping_since: Time::NEVER,
             record: Record::new(Tick::default(), State::Standby),
             overruns: Overruns::new(config.budget, period),
             timing: TimingStats::new(period)?,

@@ -4,7 +4,7 @@
 mod bench;
 
 use bench::{Bench, PERIOD};
-use fcc_core::framework::State::{Engaged, Failsafe, Standby, Stopped};
+use fcc_core::framework::State::{Engaged, Failsafe, Stopped};
 use fcc_core::framework::{Cause, Flags, Switch};
 use fcc_runtime::{Ending, LoopCommand, LoopConfig};
 
@@ -87,27 +87,12 @@ fn a_controller_that_does_not_prepare_is_released_at_once() {
 }
 
 #[test]
-fn the_end_of_a_failsafe_waits_and_a_recovery_ends_the_wait() {
-    let mut bench = Bench::engaged(&config());
+fn a_failsafe_ends_after_its_time_while_a_stop_waits() {
+    let mut bench = stopping();
     let failsafe = Failsafe(Cause::Faults(LOST));
-    for _ in 0..20 {
-        let state = bench.tick(|s| {
-            s.prepares_release = true;
-            s.faults = LOST;
-        });
-        assert_eq!(state, failsafe);
+    for _ in 0..4 {
+        assert_eq!(bench.tick(|s| s.faults = LOST), failsafe);
     }
-    let prepared = |bench: &Bench| {
-        let calls = bench.stage.log().calls;
-        calls.iter().filter(|call| **call == "prepare").count()
-    };
-    assert_eq!(prepared(&bench), 1);
-    assert_eq!(bench.tick(|s| s.has_recovered = true), Engaged);
-    // The next failsafe is prepared for anew.
-    for _ in 0..20 {
-        bench.tick(|s| s.has_recovered = false);
-    }
-    assert_eq!(prepared(&bench), 2);
-    assert_eq!(bench.tick(|s| s.is_ready = true), Standby);
-    assert_eq!(bench.stage.log().held, [false, false]);
+    assert_eq!(bench.tick(|_| {}), Stopped);
+    assert!(is_by_command(bench));
 }

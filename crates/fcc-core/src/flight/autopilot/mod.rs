@@ -366,6 +366,7 @@ impl Controller for Autopilot {
     }
 
     fn failsafe(&mut self, tick: &Tick, measurements: &Measurements) -> Surfaces {
+        self.prepare_end_of_failsafe(tick.woke, measurements);
         let outputs = self.safest(tick.woke, measurements);
         self.last = self.with_trim(outputs, self.lost(tick.woke, measurements));
         self.last

@@ -1,9 +1,10 @@
 //! Elevator trim in flight, and the last seconds before a release that is ours
-//! to time: wings level, no climb, the airspeed held, the elevator trimmed.
+//! to time: wings level, no climb, the airspeed held, the elevator trimmed. A
+//! failsafe that ends is level already, and is trimmed in its last seconds.
 
 use super::degraded::{Vertical, held_without};
 use super::upset::is_far_from_level;
-use super::{Autopilot, flags};
+use super::{Autopilot, FailsafeEnd, flags};
 use crate::blocks::LowPass;
 use crate::flight::control::Trimming;
 use crate::flight::navigation::Estimate;
@@ -65,6 +66,15 @@ impl Autopilot {
     /// Ends what began in a failsafe that is over.
     pub(super) fn end_release_of_failsafe(&mut self) {
         self.release.take_if(|release| release.in_failsafe);
+    }
+
+    /// Trims in the last seconds of a failsafe, when nothing is held any longer.
+    pub(super) fn prepare_end_of_failsafe(&mut self, now: Time, measured: &Measurements) {
+        if self.degraded.is_sound() {
+            self.end_release_of_failsafe();
+        } else if self.release.is_none() && self.config.failsafe.end == FailsafeEnd::Release {
+            self.begin_to_release(now, measured);
+        }
     }
 
     /// Whether the aircraft is trimmed, or the time for it is over.
@@ -138,7 +148,7 @@ impl Autopilot {
             release.lasted_s += dt_s;
             let mean = release.throttle.step(outputs.throttle, dt_s);
             let left_s = (SETTLED_S - release.settled_s).min(limit_s - release.lasted_s);
-            if left_s < THROTTLE_STANDS_S {
+            if left_s < THROTTLE_STANDS_S && !release.in_failsafe {
                 outputs.throttle = mean;
             }
         }
