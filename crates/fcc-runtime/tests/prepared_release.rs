@@ -20,7 +20,7 @@ fn config() -> LoopConfig {
 fn stopping() -> Bench {
     let mut bench = Bench::engaged(&config());
     bench.command(LoopCommand::Stop);
-    assert_eq!(bench.tick(|s| s.prepares_release = true), Engaged);
+    assert_eq!(bench.tick(|s| s.prepares_release = Some(false)), Engaged);
     bench
 }
 
@@ -36,7 +36,7 @@ fn a_commanded_stop_waits_until_the_plant_is_prepared() {
         assert_eq!(bench.tick(|_| {}), Engaged);
     }
     assert_eq!(bench.stage.log().held, [true, true]);
-    assert_eq!(bench.tick(|s| s.is_ready = true), Stopped);
+    assert_eq!(bench.tick(|s| s.prepares_release = Some(true)), Stopped);
     assert_eq!(bench.stage.log().held, [false, false]);
     assert!(is_by_command(bench));
 }
@@ -73,8 +73,10 @@ fn disengaging_and_the_switch_release_at_once_and_the_stop_follows() {
     let mut bench = Bench::engaged(&config());
     bench.tick(|s| s.switch = Some(Switch::On));
     bench.command(LoopCommand::Stop);
-    assert_eq!(bench.tick(|s| s.prepares_release = true), Engaged);
-    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Stopped);
+    assert_eq!(bench.tick(|s| s.prepares_release = Some(false)), Engaged);
+    // Two readings of the switch agree.
+    assert_eq!(bench.tick(|s| s.switch = Some(Switch::Off)), Engaged);
+    assert_eq!(bench.tick(|_| {}), Stopped);
     assert!(is_by_command(bench));
 }
 

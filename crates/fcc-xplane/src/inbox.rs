@@ -330,8 +330,8 @@ impl Inbox {
         }
     }
 
-    /// The simulator's clock and state: written in every tick in which it sent
-    /// something, once its clock is known.
+    /// The simulator's clock and state: written in every tick in which it sent its
+    /// time. If that value alone is missing, the reading grows old.
     fn publish_plant(
         &mut self,
         now: Time,
@@ -343,7 +343,7 @@ impl Inbox {
         if state == SimulatorState::Jumped {
             count(&link.counters.jumps);
         }
-        if self.clock.last_received() == now
+        if self.clock.time_seen() == now
             && let (Some(time_s), Some(state)) = (self.clock.time_s(), state.plant_state())
         {
             into.plant = Reading::new(Plant { time_s, state }, now);

@@ -8,7 +8,7 @@ use fcc_core::flight::{PlantState, flags};
 use fcc_core::framework::{Controller, Flags};
 
 use crate::cockpit::{Cockpit, DT_S};
-use crate::silence::{LINK_LOST, fly, manoeuvring, noticed, silence};
+use crate::silence::{LINK_LOST, fly, manoeuvring, move_on, noticed, silence};
 
 fn elapsed_s(cockpit: &Cockpit) -> f64 {
     cockpit.autopilot.setpoints().guidance.elapsed_s
@@ -94,4 +94,37 @@ fn a_slow_loop_is_no_lost_link() {
     cockpit.receive_nothing();
     cockpit.observe();
     assert_eq!(noticed(&cockpit).map(|(kind, _)| kind), Some(LINK_LOST));
+}
+
+/// The clock is lost alone, or is no number; 250 ms are 10 ticks. It is flown on by
+/// our time, and taken again without a jump.
+#[test]
+fn a_clock_that_alone_is_missing_has_not_stopped() {
+    for is_silent in [true, false] {
+        let mut cockpit = manoeuvring();
+        let before_s = elapsed_s(&cockpit);
+        let last = cockpit.measurements.plant;
+        let mut noticed_kinds = Vec::new();
+        for tick in 0..80 {
+            move_on(&mut cockpit);
+            cockpit.observe_with(|measured| {
+                measured.plant = last;
+                if !is_silent {
+                    measured.plant.taken = measured.attitude.taken;
+                    measured.plant.value.time_s = f64::NAN;
+                }
+            });
+            cockpit.act();
+            noticed_kinds.extend(cockpit.autopilot.notice().map(|notice| (tick, notice.kind)));
+            assert_eq!(cockpit.faults(), Flags::NONE);
+            assert!(!cockpit.engage_inhibits().contains(flags::PLANT_STALLED));
+        }
+        assert_eq!(noticed_kinds.len(), 1, "{noticed_kinds:?}");
+        assert!((10..13).contains(&noticed_kinds[0].0));
+        assert!((elapsed_s(&cockpit) - before_s - 80.0 * DT_S).abs() < 0.31);
+        for _ in 0..80 {
+            fly(&mut cockpit, 1);
+            assert_eq!(noticed(&cockpit), None);
+        }
+    }
 }

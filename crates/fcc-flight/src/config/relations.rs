@@ -183,6 +183,15 @@ fn built_in(config: &Config, report: &mut impl FnMut(&str, String)) {
     };
     let airspeed = "built-in.airspeed_kt";
     // One that is out of its range is reported as such.
+    if section.ground_ft >= section.altitude_ft {
+        report(
+            "built-in.ground_ft",
+            format!(
+                "is {}: choose less than altitude_ft, {}: the flight begins in the air",
+                section.ground_ft, section.altitude_ft
+            ),
+        );
+    }
     if is_in_range(airspeed, section.airspeed_kt)
         && is_in_range("built-in.altitude_ft", section.altitude_ft)
         && let Some(message) = section.why_not_level()

@@ -5,12 +5,16 @@ use std::sync::Arc;
 
 #[cfg(feature = "live")]
 use fcc_core::flight::AutopilotConfig;
+#[cfg(feature = "live")]
+use fcc_core::flight::control::Envelope;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
 use fcc_live::{PlantLimits, SentCommands};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
+#[cfg(feature = "live")]
+use fcc_telemetry::units::COMMANDED_ALTITUDE_M;
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
 use super::control_override::ControlOverride;
@@ -214,7 +218,17 @@ impl Assembly {
 #[cfg(feature = "live")]
 fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
     let mut limits = vec![("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds()))];
-    if autopilot.altimeter.field_elevation_m.is_none() {
+    let floor_m = autopilot.envelope.floor_m;
+    let highest_m = *COMMANDED_ALTITUDE_M.end();
+    let has_floor = floor_m > Envelope::NO_FLOOR_M;
+    if has_floor {
+        limits.push(("altitude_m", Ok(floor_m..=highest_m)));
+    }
+    if let Some(elevation_m) = autopilot.altimeter.field_elevation_m {
+        if has_floor {
+            limits.push(("height_m", Ok(floor_m - elevation_m..=highest_m)));
+        }
+    } else {
         limits.push((
             "height_m",
             Err(

@@ -12,6 +12,7 @@ mod event_log;
 mod flapping;
 mod fly;
 mod follow;
+mod ground;
 mod hang;
 mod host;
 #[cfg(feature = "fault-injection")]
@@ -35,6 +36,7 @@ pub use assemble::{Assembly, AssemblyError, assemble, authority_without_connecti
 pub use control_override::ControlOverride;
 pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
+pub use ground::Impact;
 pub use host::Host;
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};

@@ -39,8 +39,8 @@ pub(crate) struct Script {
     pub(crate) has_recovered: bool,
     pub(crate) must_release: Flags,
     pub(crate) withholds: bool,
-    pub(crate) prepares_release: bool,
-    pub(crate) is_ready: bool,
+    /// Whether the controller prepares a release, and is ready for it.
+    pub(crate) prepares_release: Option<bool>,
     pub(crate) notice: Option<Notice>,
     pub(crate) conditions: Flags,
     pub(crate) output: f64,
@@ -69,8 +69,7 @@ impl Default for Script {
             has_recovered: false,
             must_release: Flags::NONE,
             withholds: false,
-            prepares_release: false,
-            is_ready: false,
+            prepares_release: None,
             notice: None,
             conditions: Flags::NONE,
             output: 0.5,
@@ -219,6 +218,12 @@ impl Bench {
     pub(crate) fn tick(&mut self, change: impl FnOnce(&mut Script)) -> State {
         self.stage.set(change);
         self.machine.step()
+    }
+
+    /// Moves the switch, for the two ticks after which its position counts.
+    pub(crate) fn turn(&mut self, position: Switch) -> State {
+        self.tick(|s| s.switch = Some(position));
+        self.tick(|_| {})
     }
 
     pub(crate) fn messages(&mut self) -> Vec<MessageOf<Stub>> {

@@ -74,11 +74,11 @@ impl Controller for Stub {
 
     fn prepare_release(&mut self, _: &Tick, _: &Measured) -> bool {
         self.stage.called("prepare");
-        self.stage.script().prepares_release
+        self.stage.script().prepares_release.is_some()
     }
 
     fn is_ready_for_release(&self) -> bool {
-        self.stage.script().is_ready
+        self.stage.script().prepares_release == Some(true)
     }
 
     fn withholds_outputs(&self, _: &Tick, _: &Measured) -> bool {

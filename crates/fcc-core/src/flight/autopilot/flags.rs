@@ -89,6 +89,8 @@ pub const UNDERSPEED: Flags = Flags::bit(37);
 pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 /// A quantity is lost, and the flight goes on without it.
 pub const DEGRADED: Flags = Flags::bit(39);
+/// The target altitude is limited by the floor.
+pub const AT_FLOOR: Flags = Flags::bit(40);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
 
@@ -165,7 +167,7 @@ pub(super) const NAMES: [&str; 45] = [
     "too little energy for speed and height: height is given up",
     "a reading is from the future",
     "flying on without a lost quantity",
-    "unused",
+    "the target altitude is limited by the floor",
     "unused",
     "unused",
     "unused",

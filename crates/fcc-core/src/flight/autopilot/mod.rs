@@ -9,6 +9,7 @@ mod degraded;
 mod engaging;
 mod failsafe;
 pub mod flags;
+mod floor;
 mod following;
 mod future;
 mod notices;
@@ -18,14 +19,13 @@ mod plant_clock;
 mod release;
 mod resume;
 mod scale;
+mod schedule;
 mod sensor_health;
 mod upset;
 mod whereabouts;
 
 use core::fmt;
 use core::hint::black_box;
-
-use libm::cos;
 
 use actuation::Actuation;
 use capture::Capture;
@@ -41,9 +41,7 @@ pub use resume::Resume;
 pub use scale::Scale;
 use whereabouts::Whereabouts;
 
-use super::control::{
-    AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery, Schedule, ThrottleDemand,
-};
+use super::control::{AirspeedLoop, AltitudeLoop, ElevatorTrim, HeadingLoop, Recovery};
 use super::guidance::{ActiveMode, Mode, ModeInput, Targets};
 use super::navigation::{Estimate, FrozenDetector, Navigation, Replacement, plausibility_gate};
 use super::{Altimeter, AltitudeReference, Measurements, Setpoints, Surfaces};
@@ -127,6 +125,8 @@ pub struct Autopilot {
     distrusted: Flags,
     /// That the airspeed has just been doubted.
     doubt_notice: Option<Notice>,
+    /// Whether the target altitude is limited by the floor.
+    is_at_floor: bool,
 }
 
 impl Autopilot {
@@ -166,6 +166,7 @@ impl Autopilot {
             following: Following::default(),
             distrusted: Flags::NONE,
             doubt_notice: None,
+            is_at_floor: false,
             config,
         }
     }
@@ -173,28 +174,6 @@ impl Autopilot {
     /// The configuration.
     pub const fn config(&self) -> &AutopilotConfig {
         &self.config
-    }
-
-    fn schedule(&self) -> Schedule {
-        self.schedule_at(self.navigation.estimate().airspeed_mps)
-    }
-
-    fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.actuation.slowed(schedule)
-    }
-
-    fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
-        let estimate = self.navigation.estimate();
-        ThrottleDemand {
-            airspeed_mps: self
-                .envelope()
-                .least_target_mps(estimate)
-                .max(self.flyable_airspeed_mps(self.targets.airspeed_mps)),
-            climb_rate_mps,
-            load_factor: 1.0 / cos(estimate.roll_rad).max(0.5),
-            least_throttle: self.envelope().least_throttle(estimate.airspeed_mps),
-        }
     }
 
     /// Enters the mode given by the transition table, with the present targets.
@@ -229,6 +208,7 @@ impl Controller for Autopilot {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
             .with(flags::RECOVERING, self.is_recovering())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
+            .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
     }
 
@@ -314,6 +294,7 @@ impl Controller for Autopilot {
         if let Some(targets) = self.guidance.targets() {
             self.targets = targets;
         }
+        self.keep_above_floor();
         self.guidance
             .advance(self.navigation.estimate(), self.clock.passed_s());
     }
@@ -329,12 +310,9 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        if let Some(recovering) = self.recover_from_upset(tick.woke) {
-            self.last = self.with_trim(recovering, Flags::NONE);
-            return self.last;
-        }
-        if let Some(levelling) = self.fly_to_release(&estimate, dt_s) {
-            self.last = self.with_trim(levelling, Flags::NONE);
+        let recovering = self.recover_from_upset(tick.woke);
+        if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
+            self.last = self.with_trim(outputs, Flags::NONE);
             return self.last;
         }
         let to = self.targets;
@@ -376,6 +354,7 @@ impl Controller for Autopilot {
         self.distrusted = Flags::NONE;
         self.degraded = Degraded::default();
         self.change_mode(ModeInput::Disengage);
+        self.is_at_floor = false;
         self.capture = None;
         self.recovery = Recovery::new();
         self.release = None;

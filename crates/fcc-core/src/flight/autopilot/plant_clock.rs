@@ -31,6 +31,7 @@ const USUAL_OF: usize = 4;
 /// The kinds of notices.
 pub(super) const STOOD_STILL: u8 = 1;
 pub(super) const LINK_LOST: u8 = 2;
+pub(super) const CLOCK_MISSING: u8 = 5;
 
 /// Why the plant's time is taken to stand still.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -85,6 +86,9 @@ pub(super) struct PlantClock {
     /// tick after it, s.
     missed_s: f64,
     is_ignored: bool,
+    /// Whether readings arrive, but not its time, and since when they arrive.
+    is_missing: bool,
+    arrives_since: Time,
     step_s: f64,
     passed_s: f64,
     gap: Option<Gap>,
@@ -106,6 +110,8 @@ impl Default for PlantClock {
             gaps_s: [0.0; USUAL_OF],
             missed_s: 0.0,
             is_ignored: false,
+            is_missing: false,
+            arrives_since: Time::NEVER,
             step_s: 0.0,
             passed_s: 0.0,
             gap: None,
@@ -133,9 +139,15 @@ impl PlantClock {
         let newest = newest(measured);
         let arrives = newest > self.newest;
         if arrives {
+            if tick.woke.since(self.arrived) > STOPPED_AFTER {
+                self.arrives_since = tick.woke;
+            }
             self.newest = newest;
             self.arrived = tick.woke;
             self.state = plant.value.state;
+        }
+        if self.misses_time(tick, &plant) {
+            return;
         }
         self.follow_source(&plant);
         let was = self.waiting;
@@ -180,6 +192,31 @@ impl PlantClock {
         }
     }
 
+    /// Whether readings arrive, but not the plant's time: then ours is used
+    /// instead. A clock that is read again is not compared with itself before.
+    fn misses_time(&mut self, tick: &Tick, plant: &Reading<Plant>) -> bool {
+        let is_finite = plant.value.time_s.is_finite();
+        let told = if is_finite { plant.taken } else { self.told };
+        let is_missing = self.state != PlantState::Replaying
+            && tick.woke.since(self.arrived) <= STOPPED_AFTER
+            && tick.woke.since(told.max(self.arrives_since)) > STOPPED_AFTER;
+        if is_missing {
+            if !self.is_missing {
+                self.notice = Some(Notice {
+                    kind: CLOCK_MISSING,
+                    lasted_ns: 0,
+                });
+            }
+            self.is_missing = true;
+            self.waiting = Waiting::No;
+            self.judged = tick.woke;
+            self.pass(tick.dt_s.min(MAX_STEP_S));
+        } else if self.is_missing && tick.woke.since(told) <= STOPPED_AFTER {
+            self.begin(tick, plant.value.time_s);
+        }
+        is_missing || !is_finite && !self.told.is_never()
+    }
+
     fn pass(&mut self, seconds: f64) {
         self.step_s = seconds;
         self.passed_s = seconds;
@@ -206,6 +243,7 @@ impl PlantClock {
             told: self.told,
             newest: self.newest,
             arrived: self.arrived,
+            arrives_since: self.arrives_since,
             time_s: Some(time_s),
             advanced: tick.woke,
             ..Self::default()
