@@ -36,8 +36,8 @@ class Flight:
         self.machine = fcc.Machine(hold + config)
         self.rig = LockstepRig(settings, self.plant, self.machine)
         self.rig.prepare()
-        self.machine.engage()
-        self.fly(0.1)
+        self.rig.set_switch(on=True)
+        self.fly(0.2)
         assert self.machine.state == "engaged"
 
     def fly(self, seconds: float) -> None:
