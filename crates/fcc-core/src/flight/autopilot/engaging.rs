@@ -5,7 +5,7 @@ use super::degraded::Degraded;
 use super::upset::is_far_from_level;
 use super::{Autopilot, flags};
 use crate::flight::control::ElevatorTrim;
-use crate::flight::guidance::{ModeInput, Targets};
+use crate::flight::guidance::{ActiveMode, ModeInput, Targets};
 use crate::flight::{AltitudeReference, Measurements, PlantState, Surfaces};
 use crate::framework::{Flags, Time};
 
@@ -75,5 +75,13 @@ impl Autopilot {
         let demand = self.throttle_demand(estimate.climb_rate_mps);
         self.airspeed.engage(standing.throttle, &demand, &estimate);
         self.keep_trims();
+    }
+
+    /// Enters the mode given by the transition table, with the present targets.
+    pub(super) fn change_mode(&mut self, input: ModeInput) {
+        let config = &self.config.guidance;
+        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
+            self.guidance = ActiveMode::enter(mode, config, self.targets);
+        }
     }
 }

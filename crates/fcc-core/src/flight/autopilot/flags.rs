@@ -91,6 +91,8 @@ pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 pub const DEGRADED: Flags = Flags::bit(39);
 /// The target altitude is limited by the floor.
 pub const AT_FLOOR: Flags = Flags::bit(40);
+/// Readings arrive too old, by their source's own clock.
+pub const SOURCE_CLOCK: Flags = Flags::bit(42);
 /// A release is being prepared: the aircraft is levelled and trimmed.
 pub const RELEASING: Flags = Flags::bit(44);
 
@@ -111,7 +113,8 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
-        | FROM_THE_FUTURE.bits()),
+        | FROM_THE_FUTURE.bits()
+        | SOURCE_CLOCK.bits()),
 );
 
 /// The bits of the frozen quantities.
@@ -168,9 +171,9 @@ pub(super) const NAMES: [&str; 45] = [
     "a reading is from the future",
     "flying on without a lost quantity",
     "the target altitude is limited by the floor",
-    "unused",
-    "unused",
-    "unused",
+    "unknown condition",
+    "readings arrive too old, by their source's own clock",
+    "unknown condition",
     "levelling and trimming before the release",
 ];
 

@@ -16,11 +16,12 @@ mod notices;
 mod observe;
 mod other_control;
 mod plant_clock;
+mod reading_age;
 mod release;
 mod resume;
 mod scale;
-mod schedule;
 mod sensor_health;
+mod throttle_demand;
 mod upset;
 mod whereabouts;
 
@@ -36,6 +37,7 @@ use failsafe::KeptTrims;
 pub use failsafe::{FailsafeConfig, FailsafeEnd};
 use following::Following;
 use plant_clock::PlantClock;
+use reading_age::ReadingAges;
 use release::Release;
 pub use resume::Resume;
 pub use scale::Scale;
@@ -109,6 +111,7 @@ pub struct Autopilot {
     release: Option<Release>,
     setpoints: Setpoints,
     clock: PlantClock,
+    ages: ReadingAges,
     whereabouts: Whereabouts,
     /// The previous tick.
     before: Time,
@@ -156,6 +159,7 @@ impl Autopilot {
             release: None,
             setpoints: Setpoints::default(),
             clock: PlantClock::default(),
+            ages: ReadingAges::default(),
             whereabouts: Whereabouts::default(),
             before: Time::NEVER,
             watching_since: Time::NEVER,
@@ -174,14 +178,6 @@ impl Autopilot {
     /// The configuration.
     pub const fn config(&self) -> &AutopilotConfig {
         &self.config
-    }
-
-    /// Enters the mode given by the transition table, with the present targets.
-    fn change_mode(&mut self, input: ModeInput) {
-        let config = &self.config.guidance;
-        if let Some(mode) = self.guidance.mode().after(input, config.mode()) {
-            self.guidance = ActiveMode::enter(mode, config, self.targets);
-        }
     }
 }
 
@@ -305,6 +301,7 @@ impl Controller for Autopilot {
             return self.last;
         }
         let (estimate, dt_s) = (*self.navigation.estimate(), self.clock.step_s());
+        self.actuation.knows_age(self.ages.rates_s());
         self.actuation.follow(&self.last, &estimate, dt_s);
         let (schedule, envelope) = (self.schedule(), self.envelope());
         if self.accepted.body_rates.value != self.kept_trims.found_with {

@@ -1,22 +1,11 @@
-//! The gains and the demand for throttle at the present airspeed and bank.
+//! The demand for throttle at the present airspeed and bank.
 
 use libm::cos;
 
 use super::Autopilot;
-use crate::flight::control::{Schedule, ThrottleDemand};
+use crate::flight::control::ThrottleDemand;
 
 impl Autopilot {
-    /// The gains' schedule at the present airspeed.
-    pub(super) fn schedule(&self) -> Schedule {
-        self.schedule_at(self.navigation.estimate().airspeed_mps)
-    }
-
-    /// The same at an airspeed.
-    pub(super) fn schedule_at(&self, airspeed_mps: f64) -> Schedule {
-        let schedule = Schedule::at(airspeed_mps, self.config.reference_airspeed_mps);
-        self.actuation.slowed(schedule)
-    }
-
     /// What the throttle is to do for the commanded airspeed and a climb rate.
     pub(super) fn throttle_demand(&self, climb_rate_mps: f64) -> ThrottleDemand {
         let estimate = self.navigation.estimate();
