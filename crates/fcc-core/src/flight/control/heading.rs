@@ -64,7 +64,7 @@ impl Default for HeadingConfig {
             rudder_washout_s: 2.0,
             side_force_gain: 0.060_163,          // 0.59 per g
             side_force_integral_gain: 0.054_045, // 0.53 per g and s
-            yaw_damping: 1.35,
+            yaw_damping: 1.5,
         }
     }
 }
