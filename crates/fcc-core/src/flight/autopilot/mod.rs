@@ -222,7 +222,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
-            .with(flags::RECOVERING, self.is_recovering())
+            .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::AT_FLOOR, self.is_at_floor)
     }
@@ -317,7 +317,7 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        if let Some(recovering) = self.recover_from_upset(tick.woke) {
+        if let Some(recovering) = self.recover_from_upset(tick.woke, &estimate) {
             self.last = recovering;
             return self.last;
         }
