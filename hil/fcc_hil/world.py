@@ -7,10 +7,18 @@ when it is told so.
 from __future__ import annotations
 
 import math
+import time
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
-from .cockpit import OVERRIDE_JOYSTICK, OVERRIDE_THROTTLES, SIM_SPEED, YOKE_ROLL, Cockpit
+from .cockpit import (
+    ELEVATOR_TRIM,
+    OVERRIDE_JOYSTICK,
+    OVERRIDE_THROTTLES,
+    SIM_SPEED,
+    YOKE_ROLL,
+    Cockpit,
+)
 from .datarefs import getter
 from .frames import FrameClock, VaryingRate
 from .local_axes import LocalAxes, MeasuredAttitude
@@ -69,6 +77,7 @@ class World:
         varying = rates_hz and VaryingRate(rate_hz, *rates_hz, settings.seed + 2)
         self.clock = FrameClock(rate_hz, varying)
         self._running_time_s = 0.0
+        self._began_s = time.monotonic()
         self._hung_s = 0.0
         self.period_s = self._frame_period_s = self._smoothed_period_s = 1.0 / rate_hz
         self._mode_ends: tuple[Mode, float] | None = None
@@ -141,7 +150,10 @@ class World:
             )
         )
         self.cockpit = Cockpit(
-            self.plant.trim, self.plant.engines, settings.version, self._qnh_inhg
+            replace(self.plant.trim, elevator_trim=self.plant.controls.elevator_trim),
+            self.plant.engines,
+            settings.version,
+            self._qnh_inhg,
         )
         self.truth: list[Row] = [row(self.plant.state(), self.cockpit.controls())]
 
@@ -170,6 +182,7 @@ class World:
             self.cockpit.clear_overrides()
         self.cockpit.set(SIM_SPEED, 1.0)
         self.cockpit.hold(self.plant.trim)
+        self.cockpit.set(ELEVATOR_TRIM, self.plant.controls.elevator_trim or 0.0)
         self.truth = [row(self.plant.state(), self.cockpit.controls())]
 
     def jump(self, seconds: float) -> None:
@@ -205,6 +218,7 @@ class World:
             axes=self.axes,
             magnetic_variation_deg=self.settings.magnetic_variation_deg,
             running_time_s=self._running_time_s,
+            network_time_s=time.monotonic() - self._began_s,
             in_replay=in_replay,
             speed=0.0 if self._is_paused() else self._speed(),
             qnh_pa=self._qnh_inhg * INHG_TO_PA,
@@ -315,6 +329,7 @@ class World:
             aileron=now.aileron + min(most, max(-most, to.aileron - now.aileron)),
             rudder=now.rudder + min(most, max(-most, to.rudder - now.rudder)),
             throttle=to.throttle,
+            elevator_trim=to.elevator_trim,
         )
 
     def _remember(self, state: State) -> None:

@@ -91,6 +91,10 @@ pub const FROM_THE_FUTURE: Flags = Flags::bit(38);
 pub const DEGRADED: Flags = Flags::bit(39);
 /// The target altitude is limited by the floor.
 pub const AT_FLOOR: Flags = Flags::bit(40);
+/// Readings arrive too old, by their source's own clock.
+pub const SOURCE_CLOCK: Flags = Flags::bit(42);
+/// A release is being prepared: the aircraft is levelled and trimmed.
+pub const RELEASING: Flags = Flags::bit(44);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -109,7 +113,8 @@ pub(super) const NOT_SENSED: Flags = Flags::from_bits(
         | REJECTED.bits()
         | SUSPECT_AIRSPEED.bits()
         | DOUBTED_AIRSPEED.bits()
-        | FROM_THE_FUTURE.bits()),
+        | FROM_THE_FUTURE.bits()
+        | SOURCE_CLOCK.bits()),
 );
 
 /// The bits of the frozen quantities.
@@ -124,7 +129,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 41] = [
+pub(super) const NAMES: [&str; 45] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -166,6 +171,10 @@ pub(super) const NAMES: [&str; 41] = [
     "a reading is from the future",
     "flying on without a lost quantity",
     "the target altitude is limited by the floor",
+    "unknown condition",
+    "readings arrive too old, by their source's own clock",
+    "unknown condition",
+    "levelling and trimming before the release",
 ];
 
 #[cfg(test)]

@@ -84,6 +84,7 @@ impl Recovery {
                 elevator: 0.0,
                 aileron: 0.0,
                 rudder: 0.0,
+                elevator_trim: None,
             },
             trimmed_at: 1.0,
             load: LoadLoop::new(),
@@ -182,6 +183,7 @@ impl Recovery {
             elevator: self.load.step(&motion, estimate, inputs, trim, rolls),
             aileron,
             rudder: lateral.rudder,
+            elevator_trim: None,
         }
     }
 
@@ -202,6 +204,7 @@ impl Recovery {
             elevator,
             aileron: self.trims.aileron,
             rudder: -estimate.body_rates.yaw_radps.signum(),
+            elevator_trim: None,
         }
     }
 
