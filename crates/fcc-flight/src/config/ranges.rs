@@ -64,6 +64,7 @@ const RANGES: &[(&str, f64, f64)] = &[
     ("autopilot.envelope.max_sink_fpm", 10.0, 10_000.0),
     ("autopilot.envelope.airspeed_margin_kt", 0.5, 100.0),
     ("autopilot.envelope.floor_ft", -1_500.0, 60_000.0),
+    ("autopilot.envelope.floor_margin_ft", 0.0, 1_000.0),
     ("autopilot.envelope.stall_airspeed_kt", 5.0, 300.0),
     ("autopilot.envelope.best_glide_airspeed_kt", 5.0, 400.0),
     ("autopilot.envelope.maneuvering_airspeed_kt", 10.0, 600.0),

@@ -5,20 +5,18 @@ use std::sync::Arc;
 
 #[cfg(feature = "live")]
 use fcc_core::flight::AutopilotConfig;
-#[cfg(feature = "live")]
-use fcc_core::flight::control::Envelope;
 use fcc_core::flight::{Autopilot, Measurements, Surfaces};
 use fcc_core::framework::{Actuator, ControlAuthority, Sensor};
 #[cfg(feature = "live")]
 use fcc_live::{PlantLimits, SentCommands};
 use fcc_runtime::LoopConfig;
 use fcc_sim::{SimConfig, SimError, Simulation, TruthHandle};
-#[cfg(feature = "live")]
-use fcc_telemetry::units::COMMANDED_ALTITUDE_M;
 use fcc_xplane::{OpenError, XPlane, XPlaneAuthority, XPlaneConfig, XPlaneStatus};
 
 use super::control_override::ControlOverride;
 use super::event_log::EventLog;
+#[cfg(feature = "live")]
+use super::limits::{altitudes_m, heights_m};
 #[cfg(feature = "live")]
 use super::live::Live;
 use super::observer::Observer;
@@ -217,27 +215,17 @@ impl Assembly {
 /// What an aircraft permits of the set points of other programs.
 #[cfg(feature = "live")]
 fn limits(autopilot: &AutopilotConfig) -> PlantLimits {
-    let mut limits = vec![("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds()))];
-    let floor_m = autopilot.envelope.floor_m;
-    let highest_m = *COMMANDED_ALTITUDE_M.end();
-    let has_floor = floor_m > Envelope::NO_FLOOR_M;
-    if has_floor {
-        limits.push(("altitude_m", Ok(floor_m..=highest_m)));
-    }
-    if let Some(elevation_m) = autopilot.altimeter.field_elevation_m {
-        if has_floor {
-            limits.push(("height_m", Ok(floor_m - elevation_m..=highest_m)));
-        }
-    } else {
-        limits.push((
+    vec![
+        ("airspeed_mps", Ok(autopilot.envelope.allowed_airspeeds())),
+        ("altitude_m", Ok(altitudes_m(autopilot))),
+        (
             "height_m",
-            Err(
+            heights_m(autopilot).ok_or(
                 "a height needs the elevation of its field: set altimeter.field_elevation_ft in \
                  the configuration, or give an altitude",
             ),
-        ));
-    }
-    limits
+        ),
+    ]
 }
 
 #[cfg(test)]

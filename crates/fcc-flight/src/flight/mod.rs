@@ -17,6 +17,7 @@ mod hang;
 mod host;
 #[cfg(feature = "fault-injection")]
 mod injection;
+mod limits;
 #[cfg(feature = "live")]
 mod live;
 mod monitor;
@@ -38,6 +39,7 @@ pub use flapping::Flapping;
 pub use fly::{FlyError, fly};
 pub use ground::Impact;
 pub use host::Host;
+pub use limits::{altitudes_m, heights_m};
 pub use observer::{Access, Facts, FlightTime, Observer, Report, Reports};
 pub use outcome::{Conclusion, EventEntry, Outcome, RecordingOutcome};
 pub use pilot::Pilot;
