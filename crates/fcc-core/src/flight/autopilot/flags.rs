@@ -93,6 +93,8 @@ pub const DEGRADED: Flags = Flags::bit(39);
 pub const AT_FLOOR: Flags = Flags::bit(40);
 /// Readings arrive too old, by their source's own clock.
 pub const SOURCE_CLOCK: Flags = Flags::bit(42);
+/// A release is being prepared: the aircraft is levelled and trimmed.
+pub const RELEASING: Flags = Flags::bit(44);
 
 /// The shift from the bit of a quantity that is too old to the bit of the same
 /// quantity being frozen.
@@ -127,7 +129,7 @@ pub(super) const fn frozen(frozen: Frozen) -> Flags {
 }
 
 /// The text of each bit, lowest first.
-pub(super) const NAMES: [&str; 43] = [
+pub(super) const NAMES: [&str; 45] = [
     "attitude is missing or too old",
     "heading is missing or too old",
     "body rates are missing or too old",
@@ -171,6 +173,8 @@ pub(super) const NAMES: [&str; 43] = [
     "the target altitude is limited by the floor",
     "unknown condition",
     "readings arrive too old, by their source's own clock",
+    "unknown condition",
+    "levelling and trimming before the release",
 ];
 
 #[cfg(test)]
