@@ -204,7 +204,7 @@ impl Controller for Autopilot {
 
     fn conditions(&self, tick: &Tick, measurements: &Measurements) -> Flags {
         (self.external(tick.woke, measurements) | self.actuation.conditions() | self.doubted())
-            .with(flags::RECOVERING, self.is_recovering())
+            .with(flags::RECOVERING, self.recovery.is_active())
             .with(flags::UNDERSPEED, self.altitude.gives_up_height())
             .with(flags::AT_FLOOR, self.is_at_floor)
             .with(flags::RELEASING, self.release.is_some())
@@ -309,7 +309,7 @@ impl Controller for Autopilot {
         if self.accepted.body_rates.value != self.kept_trims.found_with {
             self.keep_trims();
         }
-        let recovering = self.recover_from_upset(tick.woke);
+        let recovering = self.recover_from_upset(tick.woke, &estimate);
         if let Some(outputs) = recovering.or_else(|| self.fly_to_release(&estimate, dt_s)) {
             self.last = self.with_trim(outputs, Flags::NONE);
             return self.last;
